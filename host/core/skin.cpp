@@ -1,0 +1,55 @@
+#include "pillarfield/skin.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+void check_range(const char* where, const char* name, double value, double low, double high) {
+  if (std::isfinite(value) && value >= low && value <= high) return;
+  throw Error(where, fmt::format("{} is {}", name, value),
+              fmt::format("it must lie in [{}, {}]", low, high));
+}
+
+}  // namespace
+
+std::size_t size_of(SenselType type) {
+  switch (type) {
+    case SenselType::u8: return 1;
+    case SenselType::u16: return 2;
+    case SenselType::f32: break;
+  }
+  return 4;
+}
+
+const char* name_of(SenselType type) {
+  switch (type) {
+    case SenselType::u8: return "uint8";
+    case SenselType::u16: return "uint16";
+    case SenselType::f32: break;
+  }
+  return "float32";
+}
+
+void check(const Skin& skin, const char* where) {
+  check_range(where, "rows", skin.rows, 2, kMaxSensels);
+  check_range(where, "cols", skin.cols, 2, kMaxSensels);
+  check_range(where, "sensel_pitch_mm", skin.sensel_pitch_mm, 1e-3, 1e3);
+  check_range(where, "counts_per_newton", skin.counts_per_newton, kMinCountsPerNewton,
+              kMaxCountsPerNewton);
+  check_range(where, "threshold_counts", skin.threshold_counts, 0, kMaxCounts);
+  if (!skin.full_scale_counts) return;
+  check_range(where, "full_scale_counts", *skin.full_scale_counts, 0, kMaxCounts);
+  if (*skin.full_scale_counts <= skin.threshold_counts) {
+    throw Error(where,
+                fmt::format("full_scale_counts is {}, not above threshold_counts, {}",
+                            *skin.full_scale_counts, skin.threshold_counts),
+                "a reading must have room between the two");
+  }
+}
+
+}  // namespace pillarfield

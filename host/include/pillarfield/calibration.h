@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace pillarfield {
+
+/// What is known of each sensel apart: planes [rows, cols] of sensels, row by row. An empty plane
+/// means that nothing has to be corrected, and its correction is not compiled into the kernel.
+///
+/// A sensel of sensitivity g, tare t and dead zone z answers the model's V of equation (2) with
+/// raw = t + g·max(0, V − z). Its reading is therefore taken as V = (raw − t)·gain + z where
+/// (raw − t)·gain is above the threshold, with gain = 1/g.
+struct Calibration {
+  std::vector<float> tare;       ///< counts, reading of the unloaded sensel
+  std::vector<float> gain;       ///< factor on (raw − tare) that makes sensels equal, > 0
+  std::vector<float> dead_zone;  ///< counts, what a sensel swallows before it answers, >= 0
+  std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
+
+  [[nodiscard]] bool empty() const {
+    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty();
+  }
+};
+
+}  // namespace pillarfield

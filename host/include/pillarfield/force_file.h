@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pillarfield/force_field.h"
+
+namespace pillarfield {
+
+/// What a file of force fields says of itself.
+struct ForceFileInfo {
+  std::uint32_t rows = 0;  ///< pillar rows
+  std::uint32_t cols = 0;  ///< pillar columns
+  double pillar_pitch_mm = 0;
+  std::string estimator;   ///< "direct"
+  std::string device;      ///< name of the device that solved it
+  std::string source;      ///< name of the file the frames came from
+  bool angles = false;     ///< with magnitude, theta and phi
+};
+
+/// Takes solved frames one by one. Like recordings, files are written under `path` + ".part" and
+/// get their name in finish(); one destroyed before that is removed, except for an HDF5 file that
+/// already holds flushed frames.
+class ForceSink {
+ public:
+  virtual ~ForceSink() = default;
+  virtual void append(const ForceFieldView& forces, double time_s) = 0;
+  virtual void finish() = 0;
+};
+
+/// Makes the sink that the ending of `path` names: .h5 or .hdf5 (format "pillarfield-forces"), .csv
+/// (one line per pillar that is not idle) or .npy (a structured array [frames, rows, cols]).
+/// Throws Error for another ending or a place that cannot be written.
+[[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
+                                                           const ForceFileInfo& info);
+
+/// Reads "pillarfield-forces" files, also ones whose writer was killed.
+class ForceFileReader {
+ public:
+  explicit ForceFileReader(const std::filesystem::path& path);
+  ~ForceFileReader();
+  ForceFileReader(ForceFileReader&&) noexcept;
+  ForceFileReader& operator=(ForceFileReader&&) noexcept;
+
+  [[nodiscard]] const ForceFileInfo& info() const;
+  [[nodiscard]] std::uint64_t frames() const;
+  [[nodiscard]] const std::vector<std::string>& remarks() const;
+
+  /// Reads frame `index` and returns its time in seconds.
+  double read(std::uint64_t index, ForceField& forces) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pillarfield

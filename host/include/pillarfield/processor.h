@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pillarfield/calibration.h"
+#include "pillarfield/force_field.h"
+#include "pillarfield/frame.h"
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+/// What a processor computes, and from which sensor. Each member that is set or not empty adds its
+/// stage to the kernel; what is not named costs nothing.
+struct SolverPlan {
+  Skin skin;
+  SenselType sensel_type = SenselType::u8;
+  Calibration calibration;
+  /// Largest parity residual, and largest surplus of a lifted sensel, that the status byte passes
+  /// as consistent, in counts; unset: not tested.
+  std::optional<double> parity_tolerance_counts;
+  bool angles = false;  ///< also magnitude, theta and phi
+};
+
+/// How frames and results reach the device.
+enum class Memory : std::uint8_t {
+  automatic,  ///< shared where the device uses the host's memory, staged elsewhere
+  shared,     ///< zero copy: the kernel reads the caller's frame and writes the result in place
+  staged,     ///< copies to and from buffers of the device
+};
+
+/// One line about an OpenCL device, as `pillarfield info --devices` prints it.
+struct DeviceInfo {
+  int index = 0;          ///< for open_device
+  std::string name;
+  std::string platform;
+  std::string type;       ///< "CPU", "GPU", "accelerator" or "other"
+  int lanes = 1;          ///< pillars a work-item solves at once
+  bool shares_memory = false;
+  std::string unsuitable; ///< why it is passed over; empty where it is suitable
+};
+
+/// All OpenCL devices, suitable or not; none is no error.
+[[nodiscard]] std::vector<DeviceInfo> list_devices();
+
+/// An open device with the programs compiled for it so far. Copies share both.
+class Device {
+ public:
+  [[nodiscard]] const DeviceInfo& info() const;
+
+  struct State;
+  explicit Device(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  [[nodiscard]] State& state() const { return *state_; }
+
+ private:
+  std::shared_ptr<State> state_;
+};
+
+/// Opens a device by index or by a part of its name (any case); empty: the best suitable one, GPUs
+/// before CPUs. Throws Error that lists every device and why it was passed over.
+[[nodiscard]] Device open_device(std::string_view index_or_name = {});
+
+/// The OpenCL C that is compiled for a plan on a device with so many lanes, complete.
+[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int lanes);
+
+/// The stages that kernel_source holds, in their order, one name each.
+[[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
+
+/// Solves frames on a device by the direct method (docs/derivations/direct_solve.md).
+///
+/// A ring of `frames_in_flight` slots: submit() starts a frame and returns; receive() waits for the
+/// oldest. Not for use by two threads at once.
+///
+///     Processor processor(open_device(), plan);
+///     processor.submit(frame.view());
+///     ForceFieldView forces = processor.receive();
+class Processor {
+ public:
+  struct Options {
+    Memory memory = Memory::automatic;
+    int frames_in_flight = 2;  ///< 1..64
+  };
+
+  /// Compiles (or finds compiled) the kernel and makes all buffers. Throws Error on a plan out of
+  /// range or a device that fails.
+  Processor(const Device& device, const SolverPlan& plan, const Options& options);
+  Processor(const Device& device, const SolverPlan& plan);
+  ~Processor();
+  Processor(Processor&&) noexcept;
+  Processor& operator=(Processor&&) noexcept;
+
+  /// Starts solving a frame of the plan's size and type, of any row stride. With shared memory the
+  /// frame must stay as it is until it was received; with staged memory it may change at once.
+  /// Throws Error when all slots are in flight or the frame does not fit the plan.
+  void submit(const FrameView& frame);
+
+  /// Waits for the oldest frame in flight. Its spans stay valid until `frames_in_flight` further
+  /// frames were submitted. Throws Error when none is in flight.
+  [[nodiscard]] ForceFieldView receive();
+
+  [[nodiscard]] int in_flight() const;
+  [[nodiscard]] bool shares_memory() const;
+  [[nodiscard]] const Device& device() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pillarfield

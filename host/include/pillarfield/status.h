@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+
+/// The status byte of a pillar: which of its readings the force was solved from, and what is
+/// wrong with it. The values are those of kernels/maths/status.h.
+namespace pillarfield::status {
+
+inline constexpr std::uint8_t kSensel1 = 1;  ///< upper right sensel usable
+inline constexpr std::uint8_t kSensel2 = 2;  ///< upper left
+inline constexpr std::uint8_t kSensel3 = 4;  ///< lower left
+inline constexpr std::uint8_t kSensel4 = 8;  ///< lower right
+inline constexpr std::uint8_t kUsable = 15;  ///< mask of the four
+inline constexpr std::uint8_t kAmbiguous = 16;      ///< the force is the middle of a segment
+inline constexpr std::uint8_t kSaturated = 32;      ///< a sensel at full scale
+inline constexpr std::uint8_t kInconsistent = 64;   ///< a missing sensel, or readings at odds
+inline constexpr std::uint8_t kFromNeighbours = 128; ///< ambiguity resolved by the field
+
+}  // namespace pillarfield::status
+
+namespace pillarfield {
+
+/// The regions of the paper, by the number of usable readings (its Figure 3).
+enum class Region : std::uint8_t {
+  none,      ///< nothing usable: no contact
+  one,       ///< four usable
+  two,       ///< three usable
+  three,     ///< two adjacent usable: ambiguous
+  four,      ///< one usable
+  opposite,  ///< two opposite usable alone: impossible in the model, a fault
+};
+inline constexpr int kRegions = 6;
+
+/// The region that the usable bits of a status byte tell.
+[[nodiscard]] Region region_of(std::uint8_t status);
+
+/// "none", "1", "2", "3", "4" or "opposite".
+[[nodiscard]] const char* name_of(Region region);
+
+}  // namespace pillarfield

@@ -1,0 +1,59 @@
+/* The only file that knows the language, the precision and the number of lanes.
+ *
+ * It gives kernels/maths three types and two macros. The same text then compiles three ways:
+ *
+ *              OpenCL C                      C++, PF_PRECISION 32    C++, PF_PRECISION 64
+ *   Real       float, or floatN of lanes     float                   double
+ *   Mask       int, or intN: 0 or all ones   int: 0 or 1             int: 0 or 1
+ *   Bits       int, or intN                  int                     int
+ *
+ *   PF_REAL(x)   the constant x in every lane, of Real's own precision
+ *   PF_BITS(x)   the integer x in every lane
+ *
+ * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
+ * PF_LANES (1, 2, 4, 8 or 16) from the program's first lines.
+ *
+ * What may stand in kernels/maths is what means the same in all three: masks joined by & and |,
+ * negated by !; choices written c ? x : y with both sides of lane type; structs passed by value;
+ * + - * /, comparisons, fabs, sqrt, hypot, atan2. No contraction: the device and a host built with
+ * -ffp-contract=off then agree bit for bit in all but atan2.
+ */
+#ifdef __OPENCL_VERSION__
+
+#pragma OPENCL FP_CONTRACT OFF
+
+#define PF_JOIN_(a, b) a##b
+#define PF_JOIN(a, b) PF_JOIN_(a, b)
+#if PF_LANES == 1
+typedef float Real;
+typedef int Mask;
+typedef int Bits;
+#else
+typedef PF_JOIN(float, PF_LANES) Real;
+typedef PF_JOIN(int, PF_LANES) Mask;
+typedef PF_JOIN(int, PF_LANES) Bits;
+#endif
+#define PF_REAL(x) ((Real)(x##f))
+#define PF_BITS(x) ((Bits)(x))
+
+#else /* C++ */
+
+#undef PF_REAL
+#undef PF_BITS
+#if PF_PRECISION == 64
+using Real = double;
+#define PF_REAL(x) (x)
+#else
+using Real = float;
+#define PF_REAL(x) (x##f)
+#endif
+using Mask = int;
+using Bits = int;
+#define PF_BITS(x) (x)
+
+using std::atan2;
+using std::fabs;
+using std::hypot;
+using std::sqrt;
+
+#endif
