@@ -1,7 +1,6 @@
 #include "io/hdf5_frames.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
