@@ -27,8 +27,8 @@ static inline Sensel reject_absurd(Sensel sensel, Real largest) {
 }
 
 /* `good` is zero where the sensel is masked. */
-static inline Sensel apply_mask(Sensel sensel, Bits good) {
-  sensel.missing = sensel.missing | (good == PF_BITS(0));
+static inline Sensel apply_mask(Sensel sensel, Real good) {
+  sensel.missing = sensel.missing | (good == PF_REAL(0.0));
   return sensel;
 }
 
