@@ -34,6 +34,7 @@ class Hdf5Sink final : public ForceSink {
   void create_datasets();
   void require_open() const;
   void put(const ForceFieldView& forces, double time_s);
+  void flush();
 
   ForceFileInfo info_;
   std::filesystem::path path_;
@@ -43,6 +44,7 @@ class Hdf5Sink final : public ForceSink {
   hdf5::GrowingDataset status_;
   hdf5::GrowingDataset time_;
   std::uint64_t frames_ = 0;
+  std::uint64_t flushed_ = 0;
 };
 
 Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, const ForceFileInfo& info)
@@ -54,7 +56,7 @@ Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, const ForceFileInfo& info)
 
 Hdf5Sink::~Hdf5Sink() {
   const hdf5::QuietErrors quiet;
-  if (frames_ >= kFlushEvery) part_.keep();
+  if (flushed_ > 0) part_.keep();
   planes_.clear();
   status_ = {};
   time_ = {};
@@ -102,23 +104,28 @@ void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
   time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);
 }
 
+void Hdf5Sink::flush() {
+  hdf5::flush(file_);
+  flushed_ = frames_;
+}
+
 void Hdf5Sink::append(const ForceFieldView& forces, double time_s) {
   const hdf5::QuietErrors quiet;
   require_open();
   check(forces, time_s, info_, path_.string());
   put(forces, time_s);
-  if ((frames_ + 1) % kFlushEvery == 0) hdf5::flush(file_);
   ++frames_;
+  if (frames_ % kFlushEvery == 0) flush();
 }
 
 void Hdf5Sink::finish() {
   const hdf5::QuietErrors quiet;
   require_open();
-  hdf5::flush(file_);
+  flush();
   for (auto& plane : planes_) plane.close();
   status_.close();
   time_.close();
-  if (!file_.id.close()) hdf5::fail(path_, "cannot be closed", "check the space left on its disk");
+  hdf5::close(file_);
   part_.commit();
 }
 

@@ -13,7 +13,6 @@ namespace {
 
 constexpr const char* kLayout = "docs/formats.md describes the file that is expected";
 constexpr const char* kCannotWrite = "cannot be written";
-constexpr const char* kFreeSpace = "check the space left on its disk";
 
 std::string advice_for(std::string_view found_format) {
   if (found_format == "pillarfield-forces") {
@@ -64,7 +63,8 @@ void require_format(const File& file, std::string_view format, int version) {
 File create(const std::filesystem::path& path) {
   File file;
   file.path = path;
-  const Handle access = own(H5Pcreate(H5P_FILE_ACCESS), path, kCannotWrite);
+  file.health = std::make_shared<WriteHealth>();
+  const Handle access = surviving_access(file.health, path);
   require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path,
           kCannotWrite);
   file.id = own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), path,
@@ -73,16 +73,24 @@ File create(const std::filesystem::path& path) {
 }
 
 void start_appending(const File& file) {
-  require(H5Fstart_swmr_write(file.id.get()), file.path, kCannotWrite, kFreeSpace);
+  flush(file);  // HDF5 reads back what it wrote so far, and must find it
+  require(H5Fstart_swmr_write(file.id.get()), file.path, kCannotWrite);
+  require_written(*file.health, file.path);
 }
 
 void flush(const File& file) {
-  require(H5Fflush(file.id.get(), H5F_SCOPE_GLOBAL), file.path, kCannotWrite, kFreeSpace);
+  require(H5Fflush(file.id.get(), H5F_SCOPE_GLOBAL), file.path, kCannotWrite);
+  require_written(*file.health, file.path);
+}
+
+void close(File& file) {
+  if (!file.id.close()) fail(file.path, kCannotWrite);
+  require_written(*file.health, file.path);
 }
 
 Handle create_group(const File& file, const char* name) {
   return own(H5Gcreate2(file.id.get(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), file.path,
-             kCannotWrite, kFreeSpace);
+             kCannotWrite);
 }
 
 bool exists(const File& file, std::string_view path) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string_view>
 
+#include "io/hdf5_driver.h"
 #include "io/hdf5_handle.h"
 
 namespace pillarfield::hdf5 {
@@ -11,7 +13,8 @@ namespace pillarfield::hdf5 {
 struct File {
   std::filesystem::path path;
   Handle id;
-  bool unclosed = false;  ///< its writer was killed or still writes
+  std::shared_ptr<WriteHealth> health;  ///< of a file that was created
+  bool unclosed = false;                ///< its writer was killed or still writes
 };
 
 /// Opens a file to read it, as a SWMR reader where its writer has not closed it.
@@ -25,6 +28,9 @@ void require_format(const File& file, std::string_view format, int version);
 [[nodiscard]] File create(const std::filesystem::path& path);
 void start_appending(const File& file);
 void flush(const File& file);
+
+/// Closes a created file whose datasets are closed; throws Error where not all could be written.
+void close(File& file);
 
 /// Makes a group, all of whose parents exist.
 [[nodiscard]] Handle create_group(const File& file, const char* name);

@@ -70,6 +70,7 @@ GrowingDataset::GrowingDataset(const File& file, const char* name, hid_t stored_
                                const FrameShape& shape)
     : path_(file.path),
       failure_(fmt::format("{} cannot be written", name)),
+      health_(file.health),
       extent_(with_frames(0, shape)) {
   const auto chunk = chunk_of(shape, H5Tget_size(stored_type));
   auto longest = extent_;
@@ -78,7 +79,8 @@ GrowingDataset::GrowingDataset(const File& file, const char* name, hid_t stored_
   const Handle space = own(H5Screate_simple(rank, extent_.data(), longest.data()), path_, failure_);
   const Handle layout = own(H5Pcreate(H5P_DATASET_CREATE), path_, failure_);
   require(H5Pset_chunk(layout.get(), rank, chunk.data()), path_, failure_);
-  // Without a chunk cache each frame goes straight to the file, and a full disk is told at once.
+  // Each frame then goes straight into the file, and no chunk is filled with zeros before.
+  require(H5Pset_fill_time(layout.get(), H5D_FILL_TIME_NEVER), path_, failure_);
   const Handle access = own(H5Pcreate(H5P_DATASET_ACCESS), path_, failure_);
   require(H5Pset_chunk_cache(access.get(), 0, 0, 1), path_, failure_);
   dataset_ = own(H5Dcreate2(file.id.get(), name, stored_type, space.get(), H5P_DEFAULT,
@@ -88,21 +90,17 @@ GrowingDataset::GrowingDataset(const File& file, const char* name, hid_t stored_
 
 void GrowingDataset::put(std::uint64_t index, hid_t memory_type, const void* frame,
                          std::size_t row_stride) {
-  constexpr const char* kMend = "check the space left on its disk";
   if (index >= extent_[0]) {
     auto longer = extent_;
     longer[0] = index + 1;
-    require(H5Dset_extent(dataset_.get(), longer.data()), path_, failure_, kMend);
+    require(H5Dset_extent(dataset_.get(), longer.data()), path_, failure_);
     extent_ = longer;
   }
   const Handle target = frame_selection(path_, failure_, extent_, index);
   const Handle source = memory_selection(path_, failure_, extent_, row_stride);
   require(H5Dwrite(dataset_.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, frame),
-          path_, failure_, kMend);
-}
-
-void GrowingDataset::close() {
-  if (!dataset_.close()) fail(path_, failure_, "check the space left on its disk");
+          path_, failure_);
+  require_written(*health_, path_);
 }
 
 StoredFrames::StoredFrames(const File& file, const char* name, std::size_t frame_rank)

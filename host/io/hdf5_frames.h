@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -23,12 +24,12 @@ class GrowingDataset {
   /// longer reaches the file with the next flush.
   void put(std::uint64_t index, hid_t memory_type, const void* frame, std::size_t row_stride = 1);
 
-  /// Throws Error where HDF5 could not write what was left to write.
-  void close();
+  void close() { (void)dataset_.close(); }
 
  private:
   std::filesystem::path path_;
   std::string failure_;
+  std::shared_ptr<WriteHealth> health_;
   Handle dataset_;
   std::vector<hsize_t> extent_;  // of the whole dataset
 };

@@ -79,6 +79,7 @@ struct RecordingWriter::State {
   void check_frame(const FrameView& frame, double time_s, const ForceField* truth) const;
   void put_truth(const ForceField& field);
   void require_open() const;
+  void flush();
   void close();
 
   Skin skin;
@@ -91,6 +92,7 @@ struct RecordingWriter::State {
   hdf5::GrowingDataset time;
   std::array<hdf5::GrowingDataset, 3> truth;  // shear_x, shear_y, normal
   std::uint64_t frames = 0;
+  std::uint64_t flushed = 0;
 };
 
 RecordingWriter::State::State(const std::filesystem::path& final_path, const Skin& frame_skin,
@@ -111,7 +113,8 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
 }
 
 RecordingWriter::State::~State() {
-  if (frames > 0) part.keep();
+  const bool unflushed_are_safe = file.health->error_number == 0;
+  if ((unflushed_are_safe ? frames : flushed) > 0) part.keep();
 }
 
 void RecordingWriter::State::create_datasets() {
@@ -163,11 +166,16 @@ void RecordingWriter::State::require_open() const {
   throw Error(path.string(), "is finished", "start another recording");
 }
 
+void RecordingWriter::State::flush() {
+  hdf5::flush(file);
+  flushed = frames;
+}
+
 void RecordingWriter::State::close() {
   raw.close();
   time.close();
   for (auto& plane : truth) plane.close();
-  if (!file.id.close()) hdf5::fail(part.path(), "cannot be closed", "check the space on its disk");
+  hdf5::close(file);
 }
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Skin& skin,
@@ -194,19 +202,19 @@ void RecordingWriter::append(const FrameView& frame, double time_s, const ForceF
   if (truth != nullptr) state_->put_truth(*truth);
   state_->time.put(state_->frames, H5T_NATIVE_DOUBLE, &time_s);
   ++state_->frames;
-  if (state_->frames % state_->options.flush_every == 0) hdf5::flush(state_->file);
+  if (state_->frames % state_->options.flush_every == 0) state_->flush();
 }
 
 void RecordingWriter::flush() {
   const hdf5::QuietErrors quiet;
   state_->require_open();
-  hdf5::flush(state_->file);
+  state_->flush();
 }
 
 void RecordingWriter::finish() {
   const hdf5::QuietErrors quiet;
   state_->require_open();
-  hdf5::flush(state_->file);
+  state_->flush();
   state_->close();
   state_->part.commit();
 }
