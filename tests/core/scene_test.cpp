@@ -242,7 +242,7 @@ TEST(ShippedScenes, TheSquareMetreIsTouchedOnFiveToTenPercent) {
   EXPECT_NEAR(skin.pillar_cols() * skin.pillar_pitch_mm(), 1000, skin.pillar_pitch_mm());
   FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
   ForceField truth(skin.pillar_rows(), skin.pillar_cols());
-  for (const std::uint64_t index : {0, 50, 99}) {
+  for (const std::uint64_t index : {0U, 50U, 99U}) {
     simulator.render(index, raw, truth);
     const auto touched = std::ranges::count_if(truth.normal, [](float n) { return n > 0; });
     const double share = static_cast<double>(touched) / static_cast<double>(truth.pillars());

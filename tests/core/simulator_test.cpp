@@ -230,7 +230,7 @@ TEST(Simulator, RefusesBuffersThatDoNotFit) {
 }
 
 TEST(Simulator, RefusesScenesOutOfRange) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto ball = [](Scene& s) -> Contact& { return std::get<std::vector<Contact>>(s.load)[0]; };
   const std::vector<std::function<void(Scene&)>> spoilers = {
       [](Scene& s) { s.skin.rows = 0; },

@@ -31,7 +31,7 @@ TEST(Skin, CountsPillars) {
 }
 
 TEST(Skin, RefusesWhatIsOutOfRangeByName) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   struct Case {
     const char* name;
     std::function<void(Skin&)> spoil;
