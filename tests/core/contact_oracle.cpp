@@ -83,13 +83,13 @@ Traction traction(const Body& body, double x, double y) {
   double q = c.friction * p;
   const double held = 1 - c.tangential_ratio;
   if (c.motion == ContactMotion::partial_slip) {
-    // Johnson (7.18), (7.20): q'' = −(c/a) mu p0 sqrt(1 − r²/c²)
+    // Mindlin: q'' = −(c/a) mu p0 sqrt(1 − r²/c²) where r <= c
     const double stick = body.radius * std::cbrt(held);
     const double p0 = 3 * body.load / (2 * pi * body.radius * body.radius);
     q -= c.friction * p0 * stick / body.radius * root(1 - r_squared / (stick * stick));
   }
   if (c.motion == ContactMotion::roll) {
-    // Johnson (8.15): the ellipse of the stick zone, shifted to the leading edge
+    // Carter: the ellipse of the stick zone, shifted to the leading edge
     const double stick = body.radius * std::sqrt(held);
     const double p0 = 2 * body.load / (pi * body.radius * c.length_mm);
     const double from_middle = across - (body.radius - stick);
