@@ -42,7 +42,8 @@ void require_regular_file(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    throw Error(path.string(), error ? error.message() : "there is no such file", "check its name");
+    throw Error(path.string(), std::make_error_code(std::errc::no_such_file_or_directory).message(),
+                "check its name");
   }
   if (std::filesystem::is_directory(status)) {
     throw Error(path.string(), "is a directory", "name a file in it");

@@ -36,9 +36,11 @@ struct Attribute {
 };
 
 std::optional<Attribute> open_single(const File& file, hid_t object, const char* name) {
-  if (H5Aexists(object, name) <= 0) return std::nullopt;
   Attribute attribute;
   attribute.failure = fmt::format("attribute '{}' cannot be read", name);
+  const htri_t found = H5Aexists(object, name);
+  require(found, file.path, attribute.failure, kDamaged);
+  if (found == 0) return std::nullopt;
   attribute.id = own(H5Aopen(object, name, H5P_DEFAULT), file.path, attribute.failure);
   attribute.type = own(H5Aget_type(attribute.id.get()), file.path, attribute.failure);
   const Handle space = own(H5Aget_space(attribute.id.get()), file.path, attribute.failure);
@@ -85,9 +87,8 @@ void write_attribute(const File& file, hid_t object, const char* name, double va
 }
 
 void write_attribute(const File& file, hid_t object, const char* name, const std::string& value) {
-  const Handle type = text_type(file, H5T_VARIABLE);
-  const char* text = value.c_str();
-  write_scalar(file, object, name, type.get(), type.get(), static_cast<const void*>(&text));
+  const Handle type = text_type(file, value.size() + 1);
+  write_scalar(file, object, name, type.get(), type.get(), value.c_str());
 }
 
 std::optional<double> read_number(const File& file, hid_t object, const char* name) {

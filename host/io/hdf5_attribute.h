@@ -8,7 +8,8 @@
 namespace pillarfield::hdf5 {
 
 /// Attributes of one value. Those written are 64-bit integers, 64-bit floats and UTF-8 strings of
-/// variable length; those read may be of any integer, float or string type.
+/// fixed length, which HDF5 guards with a checksum (strings of variable length it does not, and a
+/// damaged one can crash it). Those read may be of any integer, float or string type.
 void write_attribute(const File& file, hid_t object, const char* name, int value);
 void write_attribute(const File& file, hid_t object, const char* name, double value);
 void write_attribute(const File& file, hid_t object, const char* name, const std::string& value);

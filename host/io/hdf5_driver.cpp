@@ -1,6 +1,7 @@
 #include "io/hdf5_driver.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 #if __has_include(<H5FDdevelop.h>)
 #include <H5FDdevelop.h>
@@ -122,6 +123,18 @@ herr_t truncate_file(H5FD_t* file, hid_t, hbool_t) {
   return 0;
 }
 
+/// HDF5 holds the lock while it creates the file, and marks only a locked file as being written.
+herr_t lock_file(H5FD_t* file, hbool_t exclusive) {
+  const int kind = exclusive ? LOCK_EX : LOCK_SH;
+  const bool locked = flock(ours(file).descriptor, kind | LOCK_NB) == 0;
+  return locked || errno == ENOSYS ? 0 : -1;
+}
+
+herr_t unlock_file(H5FD_t* file) {
+  const bool unlocked = flock(ours(file).descriptor, LOCK_UN) == 0;
+  return unlocked || errno == ENOSYS ? 0 : -1;
+}
+
 H5FD_class_t driver_class() {
   H5FD_class_t driver = {};
 #ifdef H5FD_CLASS_VERSION  // HDF5 1.14 and later
@@ -143,6 +156,8 @@ H5FD_class_t driver_class() {
   driver.read = read_block;
   driver.write = write_block;
   driver.truncate = truncate_file;
+  driver.lock = lock_file;
+  driver.unlock = unlock_file;
   constexpr H5FD_mem_t kPools[H5FD_MEM_NTYPES] = H5FD_FLMAP_DICHOTOMY;
   std::copy(std::begin(kPools), std::end(kPools), std::begin(driver.fl_map));
   return driver;

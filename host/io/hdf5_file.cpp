@@ -35,8 +35,8 @@ File open_to_read(const std::filesystem::path& path) {
   file.path = path;
   file.unclosed = state == WriterState::swmr;
   const unsigned mode = H5F_ACC_RDONLY | (file.unclosed ? H5F_ACC_SWMR_READ : 0u);
-  file.id = own(H5Fopen(path.c_str(), mode, H5P_DEFAULT), path, "cannot be opened as HDF5",
-                "it is damaged or truncated; take another copy");
+  file.id =
+      own(H5Fopen(path.c_str(), mode, H5P_DEFAULT), path, "cannot be opened as HDF5", kDamaged);
   return file;
 }
 
@@ -98,7 +98,9 @@ bool exists(const File& file, std::string_view path) {
   for (std::size_t end = 1; end != std::string_view::npos;) {
     end = path.find('/', end + 1);
     const std::string parent(path.substr(0, end));
-    if (H5Lexists(file.id.get(), parent.c_str(), H5P_DEFAULT) <= 0) return false;
+    const htri_t found = H5Lexists(file.id.get(), parent.c_str(), H5P_DEFAULT);
+    require(found, file.path, fmt::format("{} cannot be looked up", parent), kDamaged);
+    if (found == 0) return false;
   }
   return true;
 }

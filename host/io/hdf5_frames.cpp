@@ -123,7 +123,7 @@ void StoredFrames::get(std::uint64_t index, hid_t memory_type, void* frame) cons
   const Handle source = frame_selection(path_, failure, extent_, index);
   const Handle target = memory_selection(path_, failure, extent_, 1);
   require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, frame),
-          path_, failure, "the file is damaged; take another copy");
+          path_, failure, kDamaged);
 }
 
 }  // namespace pillarfield::hdf5

@@ -31,6 +31,7 @@ bool Handle::close() {
 }
 
 QuietErrors::QuietErrors() {
+  H5dont_atexit();
   H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }

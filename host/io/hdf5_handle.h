@@ -33,6 +33,10 @@ class Handle {
 
 /// Keeps HDF5 from printing its error stack, in this thread, while it lives. Every public function
 /// that reaches HDF5 begins with one.
+///
+/// It also keeps HDF5 from tidying up when the process exits, unless something else has used HDF5
+/// before: after a damaged file HDF5 1.10 would print that it cannot. Handles close all that they
+/// opened themselves.
 class QuietErrors {
  public:
   QuietErrors();
@@ -44,6 +48,9 @@ class QuietErrors {
   H5E_auto2_t function_ = nullptr;
   void* data_ = nullptr;
 };
+
+/// How to mend a file in which HDF5 finds no sense.
+inline constexpr const char* kDamaged = "the file is damaged or truncated; take another copy";
 
 /// Throws Error about `file`, with the reason that HDF5 gave for the call that failed last.
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view what_failed,

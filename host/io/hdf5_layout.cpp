@@ -11,8 +11,6 @@
 namespace pillarfield::hdf5 {
 namespace {
 
-constexpr const char* kDamaged = "the file is damaged or truncated; take another copy";
-
 /// How the values of a dataset lie in its file.
 struct Storage {
   std::vector<hsize_t> extent;
@@ -89,8 +87,11 @@ std::uint64_t end_of_last_value(const File& file, const Handle& dataset, const c
 
 Handle open_dataset(const File& file, const char* name) {
   const std::string failure = fmt::format("{} cannot be opened", name);
-  Handle dataset = own(H5Dopen2(file.id.get(), name, H5P_DEFAULT), file.path, failure,
-                       "docs/formats.md tells what the file must hold");
+  if (!exists(file, name)) {
+    throw Error(file.path.string(), fmt::format("has no {}", name),
+                "docs/formats.md tells what the file must hold");
+  }
+  Handle dataset = own(H5Dopen2(file.id.get(), name, H5P_DEFAULT), file.path, failure, kDamaged);
   const Handle layout = creation_list(file, dataset, name);
   if (H5Pget_nfilters(layout.get()) <= 0) return dataset;
   const Handle type = own(H5Dget_type(dataset.get()), file.path, failure);

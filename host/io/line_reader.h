@@ -29,7 +29,7 @@ class LineReader {
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
-  bool fill();
+  void fill();
 
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Close> file_;

@@ -94,7 +94,7 @@ void Recording::read_skin() {
   hdf5::Handle object;
   if (hdf5::exists(file_, layout::kSkin)) {
     object = hdf5::own(H5Oopen(file_.id.get(), layout::kSkin, H5P_DEFAULT), path_,
-                       "/skin cannot be opened");
+                       "/skin cannot be opened", hdf5::kDamaged);
   }
   const auto constant = [&](const char* name) {
     return object.valid() ? hdf5::read_number(file_, object.get(), name) : std::nullopt;
