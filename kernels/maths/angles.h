@@ -6,8 +6,8 @@ typedef struct {
   Real phi;       /* rad in the plane of the skin, [-pi, pi], and 0 where there is no shear */
 } Direction;
 
-/* Within 2 ULP of the exact values of the given components where hypot and atan2 are within 1 ULP,
- * as in C++ and on PoCL; OpenCL allows a device 4 ULP for the one and 6 for the other. */
+/* In C++ within 2 ULP of the exact values of the given components; OpenCL allows a device 4 ULP for
+ * each hypot and 6 for atan2. */
 static inline Direction direction_of(Force force) {
   const Real zero = PF_REAL(0.0);
   const Real shear = hypot(force.shear_x, force.shear_y);
