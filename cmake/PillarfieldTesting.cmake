@@ -1,0 +1,49 @@
+# How tests are made, and what they run with.
+
+# PoCL keeps compiled kernels in the build tree, not in the user's home.
+set(PILLARFIELD_TEST_ENVIRONMENT "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/pocl_cache")
+set(PILLARFIELD_TEST_PREFIX "")
+if(PILLARFIELD_SANITIZE)
+  list(APPEND PILLARFIELD_TEST_ENVIRONMENT
+    "ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1"
+    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/sanitizer/lsan.supp:print_suppressions=0"
+    "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1")
+  set(PILLARFIELD_TEST_PREFIX "asan.")
+endif()
+
+# pillarfield_test_program(<name> LINK <floors...> SOURCES <files...>): a GoogleTest program.
+function(pillarfield_test_program name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LINK;SOURCES")
+  add_executable(${name} ${arg_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/host)
+  list(TRANSFORM arg_LINK PREPEND pillarfield_)
+  target_link_libraries(${name} PRIVATE ${arg_LINK} GTest::gtest_main)
+  pillarfield_compile_options(${name})
+endfunction()
+
+# pillarfield_test(<floor>_<subject> LINK <floors...> SOURCES <files...>): the same, and each of its
+# tests is a test of the project.
+function(pillarfield_test name)
+  pillarfield_test_program(${name} ${ARGN})
+  string(REGEX REPLACE "_.*" "" label ${name})
+  # The list passes through two rounds of expansion before it becomes a property.
+  string(REPLACE ";" "\\\\;" environment "${PILLARFIELD_TEST_ENVIRONMENT}")
+  gtest_discover_tests(${name} TEST_PREFIX "${PILLARFIELD_TEST_PREFIX}${name}." NO_PRETTY_VALUES
+    DISCOVERY_TIMEOUT 60
+    PROPERTIES LABELS ${label} TIMEOUT 240 ENVIRONMENT "${environment}")
+endfunction()
+
+# pillarfield_oclgrind_test(<name> <program> <filter>): one more test, which runs those tests of a
+# program that match the GoogleTest filter on Oclgrind's simulated device. It fails when they do, and
+# when a kernel accesses memory out of bounds or two work-items race; it is skipped where Oclgrind is
+# not installed. Oclgrind and AddressSanitizer exclude each other.
+function(pillarfield_oclgrind_test name program filter)
+  if(PILLARFIELD_SANITIZE)
+    return()
+  endif()
+  add_test(NAME oclgrind.${name}
+    COMMAND ${PROJECT_SOURCE_DIR}/tests/oclgrind/run_under_oclgrind
+      ${CMAKE_CURRENT_BINARY_DIR}/${name}.log $<TARGET_FILE:${program}> ${filter})
+  set_tests_properties(oclgrind.${name} PROPERTIES LABELS oclgrind TIMEOUT 240 SKIP_RETURN_CODE 77
+    ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
+endfunction()
