@@ -17,20 +17,31 @@ Traction operator*(double factor, Traction t) {
   return {factor * t.x, factor * t.y, factor * t.pressure};
 }
 
-/// Double exponential (tanh-sinh) rule: end-point singularities do no harm.
+/// A node in (−1, 1) of the double exponential (tanh-sinh) rule, and its weight.
+struct Node {
+  double at;
+  double weight;
+};
+
+std::vector<Node> double_exponential_rule() {
+  std::vector<Node> nodes;
+  const double step = 0.06;
+  for (int i = -60; i <= 60; ++i) {
+    const double t = pi / 2 * std::sinh(i * step);
+    const double slope = pi / 2 * std::cosh(i * step) / std::pow(std::cosh(t), 2);
+    if (slope > 1e-17) nodes.push_back({std::tanh(t), step * slope});
+  }
+  return nodes;
+}
+
+/// By that rule, to which singularities at the ends do no harm.
 template <class Function>
 Traction integrate(double low, double high, Function f) {
+  static const std::vector<Node> kNodes = double_exponential_rule();
   Traction sum;
   if (!(high > low)) return sum;
   const double half = (high - low) / 2;
-  const double step = 0.06;
-  for (int i = -60; i <= 60; ++i) {
-    const double t = i * step;
-    const double u = std::tanh(pi / 2 * std::sinh(t));
-    const double slope = pi / 2 * std::cosh(t) / std::pow(std::cosh(pi / 2 * std::sinh(t)), 2);
-    if (slope < 1e-17) continue;
-    sum = sum + (step * slope * half) * f(low + half * (1 + u));
-  }
+  for (const Node& node : kNodes) sum = sum + half * node.weight * f(low + half * (1 + node.at));
   return sum;
 }
 
