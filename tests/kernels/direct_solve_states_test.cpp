@@ -170,12 +170,13 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsFiniteAndHasItsBits) {
 
 TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
   Random random(63);
+  const std::array<States, 256> all = all_states();
   std::array<int, 256> seen{};
   for (int i = 0; i < 2'000; ++i) {
     const auto truth = random.force(random.decades(0.1, 10));
     const auto readings = rounded_readings<TypeParam>(truth, TestFixture::kCountsPerNewton);
     for (std::size_t c = 0; c < seen.size(); ++c) {
-      const States states = all_states()[c];
+      const States& states = all[c];
       if (!TestFixture::fit(states, readings)) continue;
       SCOPED_TRACE(name_of(states));
       ++seen[c];
@@ -187,7 +188,7 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
   }
   // A diagonal that is lifted at both ends has no parity sum above zero: no force has that.
   for (std::size_t c = 0; c < seen.size(); ++c) {
-    const States states = all_states()[c];
+    const States& states = all[c];
     const bool impossible = (states[0] == lifted && states[2] == lifted) ||
                             (states[1] == lifted && states[3] == lifted);
     EXPECT_EQ(seen[c] == 0, impossible) << name_of(states);

@@ -103,11 +103,11 @@ Force least_squares(const SomeReadings& usable, Exact k) {
     const Row& row = model_rows()[n];
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) normal_equations[i][j] += row[i] * row[j];
-      normal_equations[i][3] += row[i] * *usable[n] / k;
+      normal_equations[i][3] += row[i] * *usable[n];
     }
   }
   const std::array<Exact, 3> from = eliminate<3>(normal_equations);
-  return {-from[0], -from[1], from[2]};
+  return {-from[0] / k, -from[1] / k, from[2] / k};
 }
 
 Segment segment_of(const SomeReadings& usable, Exact k) {
