@@ -26,11 +26,17 @@ endfunction()
 function(pillarfield_test name)
   pillarfield_test_program(${name} ${ARGN})
   string(REGEX REPLACE "_.*" "" label ${name})
-  # The list passes through two rounds of expansion before it becomes a property.
-  string(REPLACE ";" "\\\\;" environment "${PILLARFIELD_TEST_ENVIRONMENT}")
   gtest_discover_tests(${name} TEST_PREFIX "${PILLARFIELD_TEST_PREFIX}${name}." NO_PRETTY_VALUES
-    DISCOVERY_TIMEOUT 60
-    PROPERTIES LABELS ${label} TIMEOUT 240 ENVIRONMENT "${environment}")
+    TEST_LIST ${name}_tests DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 240)
+
+  # gtest_discover_tests takes no property that is a list; ctest sets it once it has the tests.
+  set(environment_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_environment.cmake)
+  file(CONFIGURE OUTPUT ${environment_file} @ONLY CONTENT [[
+if(@name@_tests)
+  set_tests_properties(${@name@_tests} PROPERTIES ENVIRONMENT "@PILLARFIELD_TEST_ENVIRONMENT@")
+endif()
+]])
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${environment_file})
 endfunction()
 
 # pillarfield_oclgrind_test(<name> <program> <filter>): one more test, which runs those tests of a
