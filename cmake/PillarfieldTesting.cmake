@@ -53,3 +53,32 @@ function(pillarfield_oclgrind_test name program filter)
   set_tests_properties(oclgrind.${name} PROPERTIES LABELS oclgrind TIMEOUT 240 SKIP_RETURN_CODE 77
     ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
 endfunction()
+
+# pillarfield_python_test(<floor>_<subject> SCRIPT <file> ARGUMENTS <words...>): a Python script that
+# passes by exiting with 0. It needs h5py and NumPy, which may be there for the system's Python only,
+# and that need not be the first on the path. Without them the test is skipped.
+find_program(PILLARFIELD_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+find_program(PILLARFIELD_PATH_PYTHON python3)
+mark_as_advanced(PILLARFIELD_SYSTEM_PYTHON PILLARFIELD_PATH_PYTHON)
+set(PILLARFIELD_PYTHON "")
+foreach(python IN ITEMS ${PILLARFIELD_SYSTEM_PYTHON} ${PILLARFIELD_PATH_PYTHON})
+  execute_process(COMMAND ${python} -c "import h5py, numpy" RESULT_VARIABLE failed
+    OUTPUT_QUIET ERROR_QUIET)
+  if(NOT failed AND NOT PILLARFIELD_PYTHON)
+    set(PILLARFIELD_PYTHON ${python})
+  endif()
+endforeach()
+
+function(pillarfield_python_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SCRIPT" "ARGUMENTS")
+  string(REGEX REPLACE "_.*" "" label ${name})
+  if(PILLARFIELD_PYTHON)
+    set(command ${PILLARFIELD_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SCRIPT} ${arg_ARGUMENTS})
+  else()
+    set(command ${CMAKE_COMMAND} -E echo "skipped: no Python with h5py and numpy was found")
+  endif()
+  add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${command})
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS ${label} TIMEOUT 240
+    SKIP_REGULAR_EXPRESSION "^skipped:"
+    ENVIRONMENT "PILLARFIELD=$<TARGET_FILE:pillarfield>;PILLARFIELD_SOURCE=${PROJECT_SOURCE_DIR};PYTHONDONTWRITEBYTECODE=1;${PILLARFIELD_TEST_ENVIRONMENT}")
+endfunction()

@@ -142,6 +142,7 @@ double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
 }
 
 bool is_force_file(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
   try {
     if (kind_of(path) != FileKind::hdf5) return false;
     const hdf5::File file = hdf5::open_to_read(path);
