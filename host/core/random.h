@@ -30,7 +30,7 @@ struct Row {
 };
 
 /// Standard normal variates, one per sensel of a row of at most 2^18, by the method of Box and
-/// Muller in single precision: at most 5.77 in magnitude. About 8 ns each.
+/// Muller in single precision: at most 5.77 in magnitude. About 10 ns each.
 void fill_normal(const Row& row, std::span<float> values);
 
 /// Uniform variates in [0, 1), multiples of 2^-32.

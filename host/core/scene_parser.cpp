@@ -168,7 +168,7 @@ void read_skin(TomlSection section, Scene& scene) {
 
 // [[contact]]
 
-/// What a shape and a motion are called, with the article that messages need.
+/// A shape and a motion as the file writes them.
 std::string name_of(ContactShape shape, ContactMotion motion) {
   return fmt::format("shape = \"{}\", motion = \"{}\"",
                      kShapes[static_cast<std::size_t>(shape)].name,
@@ -241,12 +241,6 @@ std::vector<ContactKey> read_path(TomlSection& section) {
   return path;
 }
 
-/// The load at which a contact has its radius, where the scene does not say: the heaviest.
-double heaviest_load(const std::vector<ContactKey>& path) {
-  const double heaviest = std::ranges::max(path, {}, &ContactKey::load_n).load_n;
-  return heaviest > 0 ? heaviest : 1;
-}
-
 Contact read_contact(TomlSection& section) {
   Contact contact;
   read_shape(section, contact);
@@ -256,7 +250,6 @@ Contact read_contact(TomlSection& section) {
     contact.clockwise = section.flag("clockwise").value_or(false);
   }
   contact.path = read_path(section);
-  if (!section.has("reference_load_n")) contact.reference_load_n = heaviest_load(contact.path);
   section.finish();
   return contact;
 }
@@ -309,15 +302,17 @@ Scene parse_scene(std::string_view text, const std::string& name) {
 
 Scene load_scene(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMaxBytes = 16 << 20;
+  const Error unreadable(path.string(), "cannot be read", "name a scene file (.toml)");
+  // The size first: only a regular file has one, and opening a pipe would wait for its writer.
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
-  std::ifstream file(path, std::ios::binary);
-  if (failed || !file) throw Error(path.string(), "cannot be read", "name a scene file (.toml)");
+  if (failed) throw unreadable;
   if (bytes > kMaxBytes) {
     throw Error(path.string(), fmt::format("has {} bytes", bytes), "a scene has 16 MiB at most");
   }
+  std::ifstream file(path, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) throw Error(path.string(), "cannot be read", "name a scene file (.toml)");
+  if (!file.is_open() || file.bad()) throw unreadable;
   return parse_scene(text, path.string());
 }
 

@@ -13,8 +13,7 @@ namespace {
 using std::numbers::pi;
 
 /// The midpoint rule in theta, x = limit·sin(theta), which takes the root singularity at the end of
-/// a chord; its nodes crowd at x = 0, where the integrand may bend
-/// sharply.
+/// a chord; its nodes crowd at x = 0, where the integrand may bend sharply.
 template <class Function>
 double along_x(double x, double half_chord, Function f) {
   constexpr int kNodes = 40000;

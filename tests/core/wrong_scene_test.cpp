@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pillarfield/error.h"
@@ -240,6 +242,42 @@ TEST(WrongScene, TextThatIsNotToml) {
 TEST(WrongScene, DeepNestingIsRefused) {
   const std::string message = message_of("a = " + std::string(100000, '['));
   EXPECT_NE(message.find("is not TOML"), std::string::npos) << message.substr(0, 200);
+}
+
+/// One random edit: a character replaced, a piece cut out, or a piece said twice.
+std::string damaged(std::string text, std::mt19937_64& random) {
+  static constexpr std::string_view kCharacters = "0159.-e[]{}=,\"'#\n x_ninf\xff\x00";
+  const std::size_t at = random() % text.size();
+  const std::size_t length = random() % 20;
+  switch (random() % 3) {
+    case 0:
+      text[at] = kCharacters[random() % kCharacters.size()];
+      break;
+    case 1:
+      text.erase(at, length);
+      break;
+    default:
+      text.insert(at, text.substr(random() % text.size(), length));
+      break;
+  }
+  return text;
+}
+
+TEST(WrongScene, AnyDamageGivesASceneOrAnErrorOfOneLine) {
+  const std::string whole = ball(
+      "[sensor]\nadc_bits = 8\nnoise_counts = 0.5\ngain_spread = 0.1\n[time]\nframes = 10\n"
+      "[[contact]]\nshape = \"cylinder\"\nmotion = \"roll\"\ncontact_radius_mm = 3\n"
+      "length_mm = 9\nfriction = 0.5\ntangential_ratio = 0.4\n"
+      "path = [{time_s = 0, position_mm = [1, 2], load_n = 3}]\n");
+  EXPECT_EQ(message_of(whole), "no error");
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string text = damaged(whole, random);
+    if (trial % 2 == 0) text = damaged(text, random);
+    const std::string message = message_of(text);
+    EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message;
+    EXPECT_TRUE(message == "no error" || message.starts_with("s.toml")) << message;
+  }
 }
 
 TEST(WrongScene, FilesThatCannotBeRead) {

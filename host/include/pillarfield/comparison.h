@@ -30,7 +30,9 @@ class Comparison {
   Comparison(Comparison&&) noexcept;
   Comparison& operator=(Comparison&&) noexcept;
 
-  /// Adds one frame; both of the same size. The region is that of the ideal model's readings.
+  /// Adds one frame; both of the same size. The region is that of the ideal model's readings, where
+  /// one of at most 1e-6 of its pillar's largest is zero. A solved force that is not a number is an
+  /// infinite error. Throws Error where sizes differ or the truth holds what is not a number.
   void add(const ForceFieldView& solved, const ForceFieldView& truth);
 
   /// Of one true region.
