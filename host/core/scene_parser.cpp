@@ -241,6 +241,12 @@ std::vector<ContactKey> read_path(TomlSection& section) {
   return path;
 }
 
+/// The load at which a contact has its radius, where the scene does not say: the heaviest.
+double heaviest_load(const std::vector<ContactKey>& path) {
+  const double heaviest = std::ranges::max(path, {}, &ContactKey::load_n).load_n;
+  return heaviest > 0 ? heaviest : 1;
+}
+
 Contact read_contact(TomlSection& section) {
   Contact contact;
   read_shape(section, contact);
@@ -250,6 +256,7 @@ Contact read_contact(TomlSection& section) {
     contact.clockwise = section.flag("clockwise").value_or(false);
   }
   contact.path = read_path(section);
+  if (!section.has("reference_load_n")) contact.reference_load_n = heaviest_load(contact.path);
   section.finish();
   return contact;
 }
