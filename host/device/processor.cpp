@@ -59,6 +59,15 @@ struct Processor::State {
     for (int i = 0; i < options.frames_in_flight; ++i) {
       slots.emplace_back(device.state(), wanted, lanes, program, calibration, shares_memory);
     }
+    warm_up();
+  }
+
+  /// Solves an empty frame: drivers finish compiling and make their buffers at the first launch,
+  /// which no real frame shall wait for.
+  void warm_up() {
+    const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
+    slots.front().submit(frame.view());
+    static_cast<void>(slots.front().receive());
   }
 
   [[nodiscard]] Slot& slot(std::uint64_t frame) { return slots[frame % slots.size()]; }

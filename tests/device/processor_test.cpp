@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "core/host_solve.h"
 #include "pillarfield/error.h"
@@ -15,12 +16,19 @@
 namespace pillarfield {
 namespace {
 
-/// One device for all tests of this program, so that programs are compiled once. It is never
-/// destroyed: Oclgrind cannot release what outlives main().
-const Device& test_device() {
-  static const auto* const device = new Device(open_device());
-  return *device;
-}
+/// One device for all tests of this program, so that programs are compiled once. It is closed
+/// before the process ends: drivers must not be called while their own statics go.
+class DeviceForTests : public testing::Environment {
+ public:
+  void SetUp() override { device = open_device(); }
+  void TearDown() override { device.reset(); }
+  static inline std::optional<Device> device;
+};
+
+const testing::Environment* const kEnvironment =
+    testing::AddGlobalTestEnvironment(new DeviceForTests);
+
+const Device& test_device() { return DeviceForTests::device.value(); }
 
 void expect_same_bits(std::span<const float> actual, std::span<const float> expected,
                       const char* plane) {

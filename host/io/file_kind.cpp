@@ -1,0 +1,96 @@
+#include "io/file_kind.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+
+std::ifstream open_binary(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw Error(path.string(), std::strerror(errno), "check its permissions");
+  return file;
+}
+
+std::string bytes_at(std::ifstream& file, std::uint64_t offset, std::size_t count) {
+  std::string bytes(count, '\0');
+  file.clear();
+  file.seekg(static_cast<std::streamoff>(offset));
+  file.read(bytes.data(), static_cast<std::streamsize>(count));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
+/// A user block may stand before the superblock: it begins at 0, 512, 1024, 2048 …
+std::optional<std::uint64_t> superblock_offset(std::ifstream& file, std::uint64_t size) {
+  for (std::uint64_t offset = 0; offset < size; offset = offset == 0 ? 512 : 2 * offset) {
+    if (bytes_at(file, offset, kSignature.size()) == kSignature) return offset;
+  }
+  return std::nullopt;
+}
+
+void require_regular_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw Error(path.string(), std::make_error_code(std::errc::no_such_file_or_directory).message(),
+                "check its name");
+  }
+  if (std::filesystem::is_directory(status)) {
+    throw Error(path.string(), "is a directory", "name a file in it");
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error(path.string(), "is no regular file", "copy what it gives into a file first");
+  }
+}
+
+bool has_line_beginning(std::string_view text, std::string_view beginning) {
+  for (std::size_t at = text.find(beginning); at != std::string_view::npos;
+       at = text.find(beginning, at + 1)) {
+    if (at == 0 || text[at - 1] == '\n') return true;
+  }
+  return false;
+}
+
+bool looks_like_tekscan(std::string_view head) {
+  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  if (head.find('\0') != std::string_view::npos) return false;
+  return has_line_beginning(head, "DATA_TYPE") || has_line_beginning(head, "ASCII_DATA") ||
+         has_line_beginning(head, "Frame ");
+}
+
+}  // namespace
+
+FileKind kind_of(const std::filesystem::path& path) {
+  require_regular_file(path);
+  const std::uint64_t size = std::filesystem::file_size(path);
+  if (size == 0) throw Error(path.string(), "is empty", "give a recording or a Tekscan export");
+  std::ifstream file = open_binary(path);
+  if (superblock_offset(file, size)) return FileKind::hdf5;
+  return looks_like_tekscan(bytes_at(file, 0, 4096)) ? FileKind::tekscan : FileKind::other;
+}
+
+WriterState writer_state(const std::filesystem::path& path) {
+  std::ifstream file = open_binary(path);
+  const auto offset = superblock_offset(file, std::filesystem::file_size(path));
+  if (!offset) return WriterState::closed;
+  const std::string superblock = bytes_at(file, *offset, 12);
+  constexpr std::size_t kVersionAt = 8;
+  constexpr std::size_t kFlagsAt = 11;
+  // Older superblocks carry no flags.
+  if (superblock.size() <= kFlagsAt || superblock[kVersionAt] < 3) return WriterState::closed;
+  const auto flags = static_cast<unsigned char>(superblock[kFlagsAt]);
+  if ((flags & 4u) != 0) return WriterState::swmr;
+  return (flags & 1u) != 0 ? WriterState::abandoned : WriterState::closed;
+}
+
+}  // namespace pillarfield

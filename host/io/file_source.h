@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pillarfield/recording.h"
+
+namespace pillarfield {
+
+/// What is the same for frames of every file format.
+class FileSource : public FrameSource {
+ public:
+  [[nodiscard]] const std::string& format() const override { return format_; }
+  [[nodiscard]] const Skin& skin() const override { return skin_; }
+  [[nodiscard]] SenselType sensel_type() const override { return type_; }
+  [[nodiscard]] std::uint64_t frames() const override { return frames_; }
+  [[nodiscard]] const Calibration& calibration() const override { return calibration_; }
+  [[nodiscard]] bool has_truth() const override { return false; }
+  [[nodiscard]] const std::vector<std::string>& remarks() const override { return remarks_; }
+  void read_truth(std::uint64_t index, ForceField& truth) override;
+
+ protected:
+  FileSource(std::filesystem::path path, std::string format);
+
+  void require_frame(std::uint64_t index) const;
+  void require_fitting(const FrameBuffer& frame) const;
+
+  /// Remarks what no pillar stands on, and that a file has no frame.
+  void remark_on_size();
+
+  std::filesystem::path path_;
+  std::string format_;
+  Skin skin_;
+  SenselType type_ = SenselType::u8;
+  std::uint64_t frames_ = 0;
+  Calibration calibration_;
+  std::vector<std::string> remarks_;
+};
+
+}  // namespace pillarfield

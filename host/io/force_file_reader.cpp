@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "io/file_kind.h"
+#include "io/force_format.h"
+#include "io/hdf5_attribute.h"
+#include "io/hdf5_file.h"
+#include "io/hdf5_frames.h"
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+namespace layout = force_format;
+
+struct ForceFileReader::State {
+  explicit State(const std::filesystem::path& path);
+
+  void read_size();
+  void read_info();
+  void count_frames();
+
+  hdf5::File file;
+  std::vector<hdf5::StoredFrames> planes;  // shear_x, shear_y, normal
+  hdf5::StoredFrames status;
+  hdf5::StoredFrames time;
+  ForceFileInfo info;
+  std::uint64_t frames = 0;
+  std::vector<std::string> remarks;
+};
+
+namespace {
+
+void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const char* kind_name,
+                   const std::filesystem::path& path) {
+  if (frames.value_class() == kind) return;
+  throw Error(path.string(), fmt::format("{} holds no {}", frames.name(), kind_name),
+              "docs/formats.md tells its type");
+}
+
+}  // namespace
+
+ForceFileReader::State::State(const std::filesystem::path& path) : file(hdf5::open_to_read(path)) {
+  hdf5::require_format(file, layout::kName, layout::kVersion);
+  for (const char* name : layout::kPlanes) {
+    planes.emplace_back(file, name, 2);
+    require_class(planes.back(), H5T_FLOAT, "floats", path);
+  }
+  status = {file, layout::kStatus, 2};
+  require_class(status, H5T_INTEGER, "integers", path);
+  time = {file, layout::kTime, 0};
+  require_class(time, H5T_FLOAT, "floats", path);
+  read_size();
+  read_info();
+  count_frames();
+}
+
+void ForceFileReader::State::read_size() {
+  const auto shape = status.shape();
+  for (const hsize_t size : shape) {
+    if (size >= 1 && size <= kMaxSensels / 2) continue;
+    throw Error(file.path.string(), fmt::format("its fields are {} x {}", shape[0], shape[1]),
+                fmt::format("rows and columns must lie in [1, {}]", kMaxSensels / 2));
+  }
+  for (const auto& plane : planes) {
+    if (plane.shape() == shape) continue;
+    throw Error(file.path.string(),
+                fmt::format("{} and {} differ in size", plane.name(), status.name()),
+                "the file is damaged; solve again");
+  }
+  info.rows = static_cast<std::uint32_t>(shape[0]);
+  info.cols = static_cast<std::uint32_t>(shape[1]);
+}
+
+void ForceFileReader::State::read_info() {
+  const hid_t root = file.id.get();
+  info.estimator = hdf5::read_text(file, root, layout::kEstimator).value_or("");
+  info.device = hdf5::read_text(file, root, layout::kDevice).value_or("");
+  info.source = hdf5::read_text(file, root, layout::kSource).value_or("");
+  info.angles = hdf5::exists(file, layout::kMagnitude);
+  const auto pitch_mm = hdf5::read_number(file, root, layout::kPillarPitch);
+  if (!pitch_mm) {
+    info.pillar_pitch_mm = Skin().pillar_pitch_mm();
+    remarks.push_back(fmt::format("The file gives no pillar pitch; {:.6g} mm are assumed.",
+                                  info.pillar_pitch_mm));
+    return;
+  }
+  if (!std::isfinite(*pitch_mm) || *pitch_mm <= 0) {
+    throw Error(file.path.string(), fmt::format("{} is {}", layout::kPillarPitch, *pitch_mm),
+                "it must be above zero");
+  }
+  info.pillar_pitch_mm = *pitch_mm;
+}
+
+void ForceFileReader::State::count_frames() {
+  frames = std::min(time.frames(), status.frames());
+  for (const auto& plane : planes) frames = std::min(frames, plane.frames());
+  if (file.unclosed) {
+    remarks.push_back(fmt::format(
+        "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
+        "are read.",
+        frames));
+  }
+}
+
+ForceFileReader::ForceFileReader(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  state_ = std::make_unique<State>(path);
+}
+
+ForceFileReader::~ForceFileReader() = default;
+ForceFileReader::ForceFileReader(ForceFileReader&&) noexcept = default;
+ForceFileReader& ForceFileReader::operator=(ForceFileReader&&) noexcept = default;
+
+const ForceFileInfo& ForceFileReader::info() const { return state_->info; }
+std::uint64_t ForceFileReader::frames() const { return state_->frames; }
+const std::vector<std::string>& ForceFileReader::remarks() const { return state_->remarks; }
+
+double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
+  const hdf5::QuietErrors quiet;
+  if (index >= state_->frames) {
+    throw Error(state_->file.path.string(), fmt::format("has no frame {}", index),
+                fmt::format("it holds {} frames, counted from 0", state_->frames));
+  }
+  if (forces.rows != state_->info.rows || forces.cols != state_->info.cols) {
+    forces = ForceField(state_->info.rows, state_->info.cols);
+  }
+  const std::array targets = {&forces.shear_x, &forces.shear_y, &forces.normal};
+  for (std::size_t plane = 0; plane < targets.size(); ++plane) {
+    targets[plane]->resize(forces.pillars());
+    state_->planes[plane].get(index, H5T_NATIVE_FLOAT, targets[plane]->data());
+  }
+  forces.status.resize(forces.pillars());
+  state_->status.get(index, H5T_NATIVE_UINT8, forces.status.data());
+  double time_s = 0;
+  state_->time.get(index, H5T_NATIVE_DOUBLE, &time_s);
+  return time_s;
+}
+
+bool is_force_file(const std::filesystem::path& path) {
+  try {
+    if (kind_of(path) != FileKind::hdf5) return false;
+    const hdf5::File file = hdf5::open_to_read(path);
+    return hdf5::read_text(file, file.id.get(), "format") == layout::kName;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace pillarfield

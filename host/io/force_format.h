@@ -1,0 +1,24 @@
+#pragma once
+
+// The names in an HDF5 file of force fields (docs/formats.md).
+namespace pillarfield::force_format {
+
+inline constexpr const char* kName = "pillarfield-forces";
+inline constexpr int kVersion = 1;
+
+inline constexpr const char* kUnit = "unit";
+inline constexpr const char* kSignConvention = "sign_convention";
+inline constexpr const char* kEstimator = "estimator";
+inline constexpr const char* kDevice = "device";
+inline constexpr const char* kSource = "source";
+inline constexpr const char* kProgramVersion = "program_version";
+inline constexpr const char* kPillarPitch = "pillar_pitch_mm";
+
+inline constexpr const char* kForce = "/force";
+inline constexpr const char* kTime = "/force/time";
+inline constexpr const char* kStatus = "/force/status";
+inline constexpr const char* kMagnitude = "/force/magnitude";
+inline constexpr const char* kPlanes[] = {"/force/shear_x", "/force/shear_y", "/force/normal"};
+inline constexpr const char* kAnglePlanes[] = {kMagnitude, "/force/theta", "/force/phi"};
+
+}  // namespace pillarfield::force_format

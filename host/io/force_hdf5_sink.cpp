@@ -1,0 +1,140 @@
+#include <string>
+#include <vector>
+
+#include "io/force_format.h"
+#include "io/force_sink.h"
+#include "io/hdf5_attribute.h"
+#include "io/hdf5_file.h"
+#include "io/hdf5_frames.h"
+#include "io/part_file.h"
+#include "pillarfield/error.h"
+#include "pillarfield/version.h"
+
+namespace pillarfield {
+namespace {
+
+namespace layout = force_format;
+
+constexpr std::uint64_t kFlushEvery = 16;  // frames
+
+constexpr const char* kConvention =
+    "shear_x (+ right, growing column) and shear_y (+ up, falling row) act on the skin; normal is "
+    "positive when pressed; (theta, phi) is the direction from which the force comes, rad";
+
+class Hdf5Sink final : public ForceSink {
+ public:
+  Hdf5Sink(const std::filesystem::path& path, const ForceFileInfo& info);
+  ~Hdf5Sink() override;
+
+  void append(const ForceFieldView& forces, double time_s) override;
+  void finish() override;
+
+ private:
+  void write_info();
+  void create_datasets();
+  void require_open() const;
+  void put(const ForceFieldView& forces, double time_s);
+  void flush();
+
+  ForceFileInfo info_;
+  std::filesystem::path path_;
+  PartFile part_;
+  hdf5::File file_;
+  std::vector<hdf5::GrowingDataset> planes_;  // shear_x, shear_y, normal, and the angles if any
+  hdf5::GrowingDataset status_;
+  hdf5::GrowingDataset time_;
+  std::uint64_t frames_ = 0;
+  std::uint64_t flushed_ = 0;
+};
+
+Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, const ForceFileInfo& info)
+    : info_(info), path_(path), part_(path), file_(hdf5::create(part_.path())) {
+  write_info();
+  create_datasets();
+  hdf5::start_appending(file_);
+}
+
+Hdf5Sink::~Hdf5Sink() {
+  const hdf5::QuietErrors quiet;
+  if (flushed_ > 0) part_.keep();
+  planes_.clear();
+  status_ = {};
+  time_ = {};
+  file_ = {};
+}
+
+void Hdf5Sink::write_info() {
+  const hid_t root = file_.id.get();
+  hdf5::write_attribute(file_, root, "format", std::string(layout::kName));
+  hdf5::write_attribute(file_, root, "version", layout::kVersion);
+  hdf5::write_attribute(file_, root, layout::kUnit, std::string("N"));
+  hdf5::write_attribute(file_, root, layout::kSignConvention, std::string(kConvention));
+  hdf5::write_attribute(file_, root, layout::kEstimator, info_.estimator);
+  hdf5::write_attribute(file_, root, layout::kDevice, info_.device);
+  hdf5::write_attribute(file_, root, layout::kSource, info_.source);
+  hdf5::write_attribute(file_, root, layout::kProgramVersion, std::string(kVersion));
+  hdf5::write_attribute(file_, root, layout::kPillarPitch, info_.pillar_pitch_mm);
+}
+
+void Hdf5Sink::create_datasets() {
+  const hdf5::Handle group = hdf5::create_group(file_, layout::kForce);
+  const hdf5::FrameShape shape = {info_.rows, info_.cols};
+  for (const char* name : layout::kPlanes) planes_.emplace_back(file_, name, H5T_IEEE_F32LE, shape);
+  if (info_.angles) {
+    for (const char* name : layout::kAnglePlanes) {
+      planes_.emplace_back(file_, name, H5T_IEEE_F32LE, shape);
+    }
+  }
+  status_ = {file_, layout::kStatus, H5T_STD_U8LE, shape};
+  time_ = {file_, layout::kTime, H5T_IEEE_F64LE, {}};
+}
+
+void Hdf5Sink::require_open() const {
+  if (file_.id.valid()) return;
+  throw Error(path_.string(), "is finished", "start another file");
+}
+
+void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
+  const std::span<const float> sources[] = {forces.shear_x,   forces.shear_y, forces.normal,
+                                            forces.magnitude, forces.theta,   forces.phi};
+  for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
+    planes_[plane].put(frames_, H5T_NATIVE_FLOAT, sources[plane].data());
+  }
+  status_.put(frames_, H5T_NATIVE_UINT8, forces.status.data());
+  time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);
+}
+
+void Hdf5Sink::flush() {
+  hdf5::flush(file_);
+  flushed_ = frames_;
+}
+
+void Hdf5Sink::append(const ForceFieldView& forces, double time_s) {
+  const hdf5::QuietErrors quiet;
+  require_open();
+  check(forces, time_s, info_, path_.string());
+  put(forces, time_s);
+  ++frames_;
+  if (frames_ % kFlushEvery == 0) flush();
+}
+
+void Hdf5Sink::finish() {
+  const hdf5::QuietErrors quiet;
+  require_open();
+  flush();
+  for (auto& plane : planes_) plane.close();
+  status_.close();
+  time_.close();
+  hdf5::close(file_);
+  part_.commit();
+}
+
+}  // namespace
+
+std::unique_ptr<ForceSink> create_hdf5_sink(const std::filesystem::path& path,
+                                            const ForceFileInfo& info) {
+  const hdf5::QuietErrors quiet;
+  return std::make_unique<Hdf5Sink>(path, info);
+}
+
+}  // namespace pillarfield

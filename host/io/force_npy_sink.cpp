@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "io/force_sink.h"
+#include "io/output_file.h"
+#include "io/part_file.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the file is little-endian");
+
+constexpr std::size_t kHeaderBytes = 256;  // a multiple of 64, with room for any number of frames
+
+/// NumPy's format 1.0: the magic, the length of what follows, and a Python dictionary padded with
+/// blanks, of the same size for every number of frames.
+std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
+  constexpr std::size_t kPreludeBytes = 10;
+  constexpr std::size_t kDictionaryBytes = kHeaderBytes - kPreludeBytes;
+  const std::string fields = fmt::format(
+      "[('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1'){}]",
+      info.angles ? ", ('magnitude', '<f4'), ('theta', '<f4'), ('phi', '<f4')" : "");
+  std::string dictionary =
+      fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': ({}, {}, {})}}", fields, frames,
+                  info.rows, info.cols);
+  dictionary.resize(kDictionaryBytes - 1, ' ');
+  std::string header = "\x93NUMPY";
+  header += {'\x01', '\x00', static_cast<char>(kDictionaryBytes & 0xff),
+             static_cast<char>(kDictionaryBytes >> 8)};
+  return header + dictionary + '\n';
+}
+
+class NpySink final : public ForceSink {
+ public:
+  NpySink(const std::filesystem::path& path, const ForceFileInfo& info);
+
+  void append(const ForceFieldView& forces, double time_s) override;
+  void finish() override;
+
+ private:
+  template <class T>
+  void interleave(std::span<const T> plane, std::size_t field_offset);
+  void require_open() const;
+
+  ForceFileInfo info_;
+  std::filesystem::path path_;
+  PartFile part_;
+  OutputFile file_;
+  std::size_t record_bytes_;
+  std::vector<std::byte> records_;  // one frame
+  std::uint64_t frames_ = 0;
+};
+
+NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info)
+    : info_(info),
+      path_(path),
+      part_(path),
+      file_(part_.path()),
+      record_bytes_(info.angles ? 25 : 13),
+      records_(record_bytes_ * info.rows * info.cols) {
+  file_.write(npy_header(info_, 0));
+}
+
+template <class T>
+void NpySink::interleave(std::span<const T> plane, std::size_t field_offset) {
+  std::byte* out = records_.data() + field_offset;
+  for (const T& value : plane) {
+    std::memcpy(out, &value, sizeof value);
+    out += record_bytes_;
+  }
+}
+
+void NpySink::require_open() const {
+  if (file_.is_open()) return;
+  throw Error(path_.string(), "is finished", "start another file");
+}
+
+void NpySink::append(const ForceFieldView& forces, double time_s) {
+  require_open();
+  check(forces, time_s, info_, path_.string());
+  interleave(forces.shear_x, 0);
+  interleave(forces.shear_y, 4);
+  interleave(forces.normal, 8);
+  interleave(forces.status, 12);
+  if (info_.angles) {
+    interleave(forces.magnitude, 13);
+    interleave(forces.theta, 17);
+    interleave(forces.phi, 21);
+  }
+  file_.write(records_);
+  ++frames_;
+}
+
+void NpySink::finish() {
+  require_open();
+  file_.write_at_begin(npy_header(info_, frames_));
+  file_.close();
+  part_.commit();
+}
+
+}  // namespace
+
+std::unique_ptr<ForceSink> create_npy_sink(const std::filesystem::path& path,
+                                           const ForceFileInfo& info) {
+  return std::make_unique<NpySink>(path, info);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,65 @@
+#include "io/force_sink.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "pillarfield/error.h"
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+namespace {
+
+std::string ending_of(const std::filesystem::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  return ending;
+}
+
+void check(const ForceFileInfo& info, const std::string& where) {
+  const auto in_range = [](std::uint32_t size) { return size >= 1 && size <= kMaxSensels / 2; };
+  if (!in_range(info.rows) || !in_range(info.cols)) {
+    throw Error(where, fmt::format("a field of {} x {} pillars", info.rows, info.cols),
+                fmt::format("rows and columns must lie in [1, {}]", kMaxSensels / 2));
+  }
+  if (!std::isfinite(info.pillar_pitch_mm) || info.pillar_pitch_mm <= 0) {
+    throw Error(where, fmt::format("pillar_pitch_mm is {}", info.pillar_pitch_mm),
+                "it must be above zero");
+  }
+}
+
+}  // namespace
+
+void check(const ForceFieldView& forces, double time_s, const ForceFileInfo& info,
+           const std::string& where) {
+  const std::size_t pillars = std::size_t{info.rows} * info.cols;
+  const auto complete = [&](std::span<const float> plane) { return plane.size() == pillars; };
+  if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.shear_x) ||
+      !complete(forces.shear_y) || !complete(forces.normal) || forces.status.size() != pillars) {
+    throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
+                fmt::format("the file takes whole frames of {} x {}", info.rows, info.cols));
+  }
+  if (info.angles &&
+      !(complete(forces.magnitude) && complete(forces.theta) && complete(forces.phi))) {
+    throw Error(where, "a frame without magnitude and angles",
+                "solve with angles, or leave them out");
+  }
+  if (!std::isfinite(time_s))
+    throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
+}
+
+std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
+                                             const ForceFileInfo& info) {
+  check(info, path.string());
+  const std::string ending = ending_of(path);
+  if (ending == ".h5" || ending == ".hdf5") return create_hdf5_sink(path, info);
+  if (ending == ".csv") return create_csv_sink(path, info);
+  if (ending == ".npy") return create_npy_sink(path, info);
+  throw Error(path.string(), "its ending names no format of forces",
+              "end it in .h5, .hdf5, .csv or .npy");
+}
+
+}  // namespace pillarfield

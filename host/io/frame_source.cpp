@@ -1,0 +1,22 @@
+#include "io/file_kind.h"
+#include "io/recording_reader.h"
+#include "io/tekscan_source.h"
+#include "pillarfield/error.h"
+#include "pillarfield/recording.h"
+
+namespace pillarfield {
+
+std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path) {
+  switch (kind_of(path)) {
+    case FileKind::hdf5:
+      return open_recording(path);
+    case FileKind::tekscan:
+      return open_tekscan(path);
+    case FileKind::other:
+      break;
+  }
+  throw Error(path.string(), "is neither an HDF5 recording nor a Tekscan ASCII export",
+              "docs/formats.md describes both");
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+#include "io/hdf5_driver.h"
+#include "io/hdf5_handle.h"
+
+namespace pillarfield::hdf5 {
+
+/// An open HDF5 file and what messages need of it.
+struct File {
+  std::filesystem::path path;
+  Handle id;
+  std::shared_ptr<WriteHealth> health;  ///< of a file that was created
+  bool unclosed = false;                ///< its writer was killed or still writes
+};
+
+/// Opens a file to read it, as a SWMR reader where its writer has not closed it.
+[[nodiscard]] File open_to_read(const std::filesystem::path& path);
+
+/// Throws Error unless the root attributes `format` and `version` are these.
+void require_format(const File& file, std::string_view format, int version);
+
+/// Creates a file in which whatever is flushed survives the death of the process. Its groups,
+/// attributes and datasets have to be made before start_appending(); from then on datasets grow.
+[[nodiscard]] File create(const std::filesystem::path& path);
+void start_appending(const File& file);
+void flush(const File& file);
+
+/// Closes a created file whose datasets are closed; throws Error where not all could be written.
+void close(File& file);
+
+/// Makes a group, all of whose parents exist.
+[[nodiscard]] Handle create_group(const File& file, const char* name);
+
+/// Whether there is an object of this absolute path; its groups may be absent too.
+[[nodiscard]] bool exists(const File& file, std::string_view path);
+
+}  // namespace pillarfield::hdf5

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pillarfield {
+
+/// Walks a text file line by line with a small, fixed amount of memory. Lines end with LF or CRLF.
+class LineReader {
+ public:
+  /// Throws Error where the file cannot be opened.
+  explicit LineReader(std::filesystem::path path);
+
+  /// Moves to the next line; false at the end. Throws Error on a line beyond 1 MiB.
+  bool next();
+
+  /// The line without its end, valid until next().
+  [[nodiscard]] std::string_view line() const { return line_; }
+
+  /// "file:line", for messages.
+  [[nodiscard]] std::string place() const;
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  void fill();
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, Close> file_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0;  // of what is not yet given out
+  std::size_t end_ = 0;
+  std::string_view line_;
+  std::uint64_t number_ = 0;
+};
+
+}  // namespace pillarfield

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include "pillarfield/skin.h"
+
+// The names and types in a recording (docs/formats.md).
+namespace pillarfield::recording_format {
+
+inline constexpr const char* kName = "pillarfield-recording";
+inline constexpr int kVersion = 1;
+
+inline constexpr const char* kFrames = "/frames";
+inline constexpr const char* kRaw = "/frames/raw";
+inline constexpr const char* kTime = "/frames/time";
+
+inline constexpr const char* kSkin = "/skin";
+inline constexpr const char* kPitch = "sensel_pitch_mm";
+inline constexpr const char* kCountsPerNewton = "counts_per_newton";
+inline constexpr const char* kThreshold = "threshold_counts";
+inline constexpr const char* kFullScale = "full_scale_counts";
+
+inline constexpr const char* kCalibration = "/calibration";
+inline constexpr const char* kTare = "/calibration/tare";
+inline constexpr const char* kGain = "/calibration/gain";
+inline constexpr const char* kDeadZone = "/calibration/dead_zone";
+inline constexpr const char* kMask = "/calibration/mask";
+
+inline constexpr const char* kTruth = "/truth";
+inline constexpr const char* kTruthPlanes[] = {"/truth/shear_x", "/truth/shear_y", "/truth/normal"};
+
+/// HDF5's name of a reading's type in the file, and in this machine's memory.
+[[nodiscard]] hid_t stored_type_of(SenselType type);
+[[nodiscard]] hid_t memory_type_of(SenselType type);
+
+}  // namespace pillarfield::recording_format

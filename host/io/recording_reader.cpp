@@ -1,0 +1,198 @@
+#include "io/recording_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "io/calibration_limits.h"
+#include "io/file_source.h"
+#include "io/hdf5_attribute.h"
+#include "io/hdf5_file.h"
+#include "io/hdf5_frames.h"
+#include "io/hdf5_layout.h"
+#include "io/recording_format.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+namespace layout = recording_format;
+
+class Recording final : public FileSource {
+ public:
+  explicit Recording(const std::filesystem::path& path);
+
+  [[nodiscard]] bool has_truth() const override { return !truth_.empty(); }
+  double read(std::uint64_t index, FrameBuffer& frame) override;
+  void read_truth(std::uint64_t index, ForceField& truth) override;
+
+ private:
+  void read_size();
+  void read_skin();
+  void read_calibration();
+  void open_truth();
+  void count_frames();
+  [[nodiscard]] std::string place(const char* object) const;
+
+  hdf5::File file_;
+  hdf5::StoredFrames raw_;
+  hdf5::StoredFrames time_;
+  std::vector<hdf5::StoredFrames> truth_;  // none, or shear_x, shear_y, normal
+  hid_t memory_type_ = H5I_INVALID_HID;
+};
+
+SenselType sensel_type_of(const hdf5::StoredFrames& raw, const std::filesystem::path& path) {
+  const H5T_class_t kind = raw.value_class();
+  const std::size_t bytes = raw.value_bytes();
+  if (kind == H5T_INTEGER && !raw.value_signed() && bytes == 1) return SenselType::u8;
+  if (kind == H5T_INTEGER && !raw.value_signed() && bytes == 2) return SenselType::u16;
+  if (kind == H5T_FLOAT && bytes == 4) return SenselType::f32;
+  throw Error(path.string(), fmt::format("{} is of no type that readings have", raw.name()),
+              "store uint8, uint16 or float32");
+}
+
+void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
+  if (frames.value_class() == H5T_FLOAT) return;
+  throw Error(path.string(), fmt::format("{} holds no floats", frames.name()), "store floats");
+}
+
+Recording::Recording(const std::filesystem::path& path)
+    : FileSource(path, "recording"), file_(hdf5::open_to_read(path)) {
+  hdf5::require_format(file_, layout::kName, layout::kVersion);
+  raw_ = {file_, layout::kRaw, 2};
+  time_ = {file_, layout::kTime, 0};
+  require_floats(time_, path);
+  type_ = sensel_type_of(raw_, path);
+  memory_type_ = layout::memory_type_of(type_);
+  read_size();
+  read_skin();
+  read_calibration();
+  open_truth();
+  count_frames();
+  remark_on_size();
+}
+
+std::string Recording::place(const char* object) const {
+  return fmt::format("{}: {}", path_.string(), object);
+}
+
+void Recording::read_size() {
+  const auto shape = raw_.shape();
+  for (const hsize_t size : shape) {
+    if (size >= 2 && size <= kMaxSensels) continue;
+    throw Error(place(layout::kRaw), fmt::format("its frames are {} x {}", shape[0], shape[1]),
+                fmt::format("rows and columns must lie in [2, {}]", kMaxSensels));
+  }
+  skin_.rows = static_cast<std::uint32_t>(shape[0]);
+  skin_.cols = static_cast<std::uint32_t>(shape[1]);
+}
+
+void Recording::read_skin() {
+  hdf5::Handle object;
+  if (hdf5::exists(file_, layout::kSkin)) {
+    object = hdf5::own(H5Oopen(file_.id.get(), layout::kSkin, H5P_DEFAULT), path_,
+                       "/skin cannot be opened", hdf5::kDamaged);
+  }
+  const auto constant = [&](const char* name) {
+    return object.valid() ? hdf5::read_number(file_, object.get(), name) : std::nullopt;
+  };
+  const auto read = [&](const char* name, double& value) {
+    if (const auto stored = constant(name)) {
+      value = *stored;
+    } else {
+      remarks_.push_back(fmt::format("The file gives no {}; {} is assumed.", name, value));
+    }
+  };
+  read(layout::kPitch, skin_.sensel_pitch_mm);
+  read(layout::kCountsPerNewton, skin_.counts_per_newton);
+  read(layout::kThreshold, skin_.threshold_counts);
+  skin_.full_scale_counts = constant(layout::kFullScale);
+  check(skin_, place(layout::kSkin).c_str());
+}
+
+void Recording::read_calibration() {
+  const auto plane = [&](const char* name) {
+    if (!hdf5::exists(file_, name)) return std::vector<float>();
+    return hdf5::read_plane(file_, name, skin_.rows, skin_.cols);
+  };
+  calibration_.tare = plane(layout::kTare);
+  calibration_.gain = plane(layout::kGain);
+  calibration_.dead_zone = plane(layout::kDeadZone);
+  const std::vector<float> mask = plane(layout::kMask);
+  calibration_.mask.resize(mask.size());
+  // What is neither 0 nor 1 becomes 2, which the check below refuses.
+  std::transform(mask.begin(), mask.end(), calibration_.mask.begin(), [](float good) {
+    return static_cast<std::uint8_t>(good == 0.0f ? 0 : good == 1.0f ? 1 : 2);
+  });
+  check(calibration_, skin_, place(layout::kCalibration).c_str());
+}
+
+void Recording::open_truth() {
+  if (!hdf5::exists(file_, layout::kTruth)) return;
+  for (const char* name : layout::kTruthPlanes) {
+    truth_.emplace_back(file_, name, 2);
+    require_floats(truth_.back(), path_);
+    const auto shape = truth_.back().shape();
+    if (shape == hdf5::FrameShape{skin_.pillar_rows(), skin_.pillar_cols()}) continue;
+    throw Error(place(name), fmt::format("its frames are {} x {}", shape[0], shape[1]),
+                fmt::format("they need {} x {} pillars", skin_.pillar_rows(), skin_.pillar_cols()));
+  }
+}
+
+void Recording::count_frames() {
+  std::uint64_t most = std::max(raw_.frames(), time_.frames());
+  frames_ = std::min(raw_.frames(), time_.frames());
+  for (const auto& plane : truth_) {
+    most = std::max(most, plane.frames());
+    frames_ = std::min(frames_, plane.frames());
+  }
+  if (file_.unclosed) {
+    remarks_.push_back(fmt::format(
+        "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
+        "are read.",
+        frames_));
+  } else if (most != frames_) {
+    remarks_.push_back(
+        fmt::format("The datasets of the file have {} to {} frames; the first {} are read.",
+                    frames_, most, frames_));
+  }
+}
+
+double Recording::read(std::uint64_t index, FrameBuffer& frame) {
+  const hdf5::QuietErrors quiet;
+  require_frame(index);
+  require_fitting(frame);
+  double time_s = 0;
+  time_.get(index, H5T_NATIVE_DOUBLE, &time_s);
+  if (!std::isfinite(time_s)) {
+    throw Error(place(layout::kTime), fmt::format("frame {} has the time {}", index, time_s),
+                "store finite seconds");
+  }
+  raw_.get(index, memory_type_, frame.bytes().data());
+  return time_s;
+}
+
+void Recording::read_truth(std::uint64_t index, ForceField& truth) {
+  const hdf5::QuietErrors quiet;
+  if (!has_truth()) FileSource::read_truth(index, truth);
+  require_frame(index);
+  truth.rows = skin_.pillar_rows();
+  truth.cols = skin_.pillar_cols();
+  const std::array planes = {&truth.shear_x, &truth.shear_y, &truth.normal};
+  for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    planes[plane]->resize(skin_.pillars());
+    truth_[plane].get(index, H5T_NATIVE_FLOAT, planes[plane]->data());
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_recording(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  return std::make_unique<Recording>(path);
+}
+
+}  // namespace pillarfield

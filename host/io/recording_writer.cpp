@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "io/calibration_limits.h"
+#include "io/hdf5_attribute.h"
+#include "io/hdf5_file.h"
+#include "io/hdf5_frames.h"
+#include "io/hdf5_layout.h"
+#include "io/part_file.h"
+#include "io/recording_format.h"
+#include "pillarfield/error.h"
+#include "pillarfield/recording.h"
+
+namespace pillarfield {
+namespace {
+
+namespace layout = recording_format;
+
+/// A recording cannot be made again, so one that was cut short is not overwritten.
+void require_no_frames_in(const std::filesystem::path& part) {
+  std::uint64_t frames = 0;
+  try {
+    if (std::filesystem::exists(part)) frames = open_frames(part)->frames();
+  } catch (const Error&) {
+    return;  // nothing in it that could be lost
+  }
+  if (frames == 0) return;
+  throw Error(part.string(),
+              fmt::format("holds {} frames of a recording that was cut short", frames),
+              "rename or remove it");
+}
+
+void write_skin(const hdf5::File& file, const Skin& skin) {
+  const hdf5::Handle group = hdf5::create_group(file, layout::kSkin);
+  hdf5::write_attribute(file, group.get(), layout::kPitch, skin.sensel_pitch_mm);
+  hdf5::write_attribute(file, group.get(), layout::kCountsPerNewton, skin.counts_per_newton);
+  hdf5::write_attribute(file, group.get(), layout::kThreshold, skin.threshold_counts);
+  if (!skin.full_scale_counts) return;
+  hdf5::write_attribute(file, group.get(), layout::kFullScale, *skin.full_scale_counts);
+}
+
+void write_calibration(const hdf5::File& file, const Skin& skin, const Calibration& calibration) {
+  if (calibration.empty()) return;
+  const hdf5::Handle group = hdf5::create_group(file, layout::kCalibration);
+  const auto write_floats = [&](const char* name, const std::vector<float>& plane) {
+    if (plane.empty()) return;
+    hdf5::write_plane(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, skin.rows, skin.cols,
+                      plane.data());
+  };
+  write_floats(layout::kTare, calibration.tare);
+  write_floats(layout::kGain, calibration.gain);
+  write_floats(layout::kDeadZone, calibration.dead_zone);
+  if (calibration.mask.empty()) return;
+  hdf5::write_plane(file, layout::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows, skin.cols,
+                    calibration.mask.data());
+}
+
+std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin,
+                              const Calibration& calibration,
+                              const RecordingWriter::Options& options) {
+  check(skin, path.c_str());
+  check(calibration, skin, path.c_str());
+  if (options.flush_every == 0) throw Error(path.string(), "flush_every is 0", "flush every frame");
+  require_no_frames_in(PartFile::part_of(path));
+  return path;
+}
+
+}  // namespace
+
+struct RecordingWriter::State {
+  State(const std::filesystem::path& final_path, const Skin& frame_skin, SenselType sensel_type,
+        const Calibration& calibration, const Options& writer_options);
+  ~State();
+
+  void create_datasets();
+  void check_frame(const FrameView& frame, double time_s, const ForceField* truth) const;
+  void put_truth(const ForceField& field);
+  void require_open() const;
+  void flush();
+  void close();
+
+  Skin skin;
+  SenselType type;
+  Options options;
+  std::filesystem::path path;
+  PartFile part;
+  hdf5::File file;
+  hdf5::GrowingDataset raw;
+  hdf5::GrowingDataset time;
+  std::array<hdf5::GrowingDataset, 3> truth;  // shear_x, shear_y, normal
+  std::uint64_t frames = 0;
+  std::uint64_t flushed = 0;
+};
+
+RecordingWriter::State::State(const std::filesystem::path& final_path, const Skin& frame_skin,
+                              SenselType sensel_type, const Calibration& calibration,
+                              const Options& writer_options)
+    : skin(frame_skin),
+      type(sensel_type),
+      options(writer_options),
+      path(checked(final_path, frame_skin, calibration, writer_options)),
+      part(path),
+      file(hdf5::create(part.path())) {
+  hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));
+  hdf5::write_attribute(file, file.id.get(), "version", layout::kVersion);
+  write_skin(file, skin);
+  write_calibration(file, skin, calibration);
+  create_datasets();
+  hdf5::start_appending(file);
+}
+
+RecordingWriter::State::~State() {
+  const bool unflushed_are_safe = file.health->error_number == 0;
+  if ((unflushed_are_safe ? frames : flushed) > 0) part.keep();
+}
+
+void RecordingWriter::State::create_datasets() {
+  const hdf5::Handle group = hdf5::create_group(file, layout::kFrames);
+  raw = {file, layout::kRaw, layout::stored_type_of(type), {skin.rows, skin.cols}};
+  time = {file, layout::kTime, H5T_IEEE_F64LE, {}};
+  if (!options.truth) return;
+  const hdf5::Handle truth_group = hdf5::create_group(file, layout::kTruth);
+  for (std::size_t plane = 0; plane < truth.size(); ++plane) {
+    truth[plane] = {file,
+                    layout::kTruthPlanes[plane],
+                    H5T_IEEE_F32LE,
+                    {skin.pillar_rows(), skin.pillar_cols()}};
+  }
+}
+
+void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
+                                         const ForceField* field) const {
+  const std::string where = fmt::format("{}: frame {}", part.path().string(), frames);
+  if (frame.type != type || frame.rows != skin.rows || frame.cols != skin.cols ||
+      frame.row_stride < frame.cols || frame.data == nullptr) {
+    throw Error(where, fmt::format("is {} x {} {}", frame.rows, frame.cols, name_of(frame.type)),
+                fmt::format("the recording is {} x {} {}", skin.rows, skin.cols, name_of(type)));
+  }
+  if (!std::isfinite(time_s))
+    throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
+  if ((field != nullptr) != options.truth) {
+    throw Error(where, options.truth ? "comes without its truth" : "comes with a truth",
+                "say in the options whether frames have one");
+  }
+  if (field == nullptr) return;
+  for (const auto* plane : {&field->shear_x, &field->shear_y, &field->normal}) {
+    if (plane->size() != skin.pillars() || field->cols != skin.pillar_cols()) {
+      throw Error(where, fmt::format("its truth is {} x {}", field->rows, field->cols),
+                  fmt::format("it needs {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()));
+    }
+  }
+}
+
+void RecordingWriter::State::put_truth(const ForceField& field) {
+  const std::array planes = {&field.shear_x, &field.shear_y, &field.normal};
+  for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+    truth[plane].put(frames, H5T_NATIVE_FLOAT, planes[plane]->data());
+  }
+}
+
+void RecordingWriter::State::require_open() const {
+  if (file.id.valid()) return;
+  throw Error(path.string(), "is finished", "start another recording");
+}
+
+void RecordingWriter::State::flush() {
+  hdf5::flush(file);
+  flushed = frames;
+}
+
+void RecordingWriter::State::close() {
+  raw.close();
+  time.close();
+  for (auto& plane : truth) plane.close();
+  hdf5::close(file);
+}
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Skin& skin,
+                                 SenselType type, const Calibration& calibration,
+                                 const Options& options) {
+  const hdf5::QuietErrors quiet;
+  state_ = std::make_unique<State>(path, skin, type, calibration, options);
+}
+
+RecordingWriter::~RecordingWriter() {
+  const hdf5::QuietErrors quiet;
+  state_.reset();
+}
+
+RecordingWriter::RecordingWriter(RecordingWriter&&) noexcept = default;
+RecordingWriter& RecordingWriter::operator=(RecordingWriter&&) noexcept = default;
+
+void RecordingWriter::append(const FrameView& frame, double time_s, const ForceField* truth) {
+  const hdf5::QuietErrors quiet;
+  state_->require_open();
+  state_->check_frame(frame, time_s, truth);
+  state_->raw.put(state_->frames, layout::memory_type_of(state_->type), frame.data,
+                  frame.row_stride);
+  if (truth != nullptr) state_->put_truth(*truth);
+  state_->time.put(state_->frames, H5T_NATIVE_DOUBLE, &time_s);
+  ++state_->frames;
+  if (state_->frames % state_->options.flush_every == 0) state_->flush();
+}
+
+void RecordingWriter::flush() {
+  const hdf5::QuietErrors quiet;
+  state_->require_open();
+  state_->flush();
+}
+
+void RecordingWriter::finish() {
+  const hdf5::QuietErrors quiet;
+  state_->require_open();
+  state_->flush();
+  state_->close();
+  state_->part.commit();
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,241 @@
+#include "pillarfield/force_file.h"
+
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::has_all;
+using io_test::sample_forces;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+using Names = std::vector<std::string>;
+
+/// Forces with angles of their own, so that no plane is like another.
+struct Field {
+  ForceField forces;
+  std::vector<float> magnitude, theta, phi;
+
+  Field(std::uint64_t index, std::uint32_t rows, std::uint32_t cols)
+      : forces(sample_forces(index, rows, cols)),
+        magnitude(sample_forces(index + 1000, rows, cols).shear_x),
+        theta(sample_forces(index + 1000, rows, cols).shear_y),
+        phi(sample_forces(index + 1000, rows, cols).normal) {}
+
+  [[nodiscard]] ForceFieldView view() const {
+    ForceFieldView view = forces.view();
+    view.magnitude = magnitude;
+    view.theta = theta;
+    view.phi = phi;
+    return view;
+  }
+};
+
+ForceFileInfo info_of(std::uint32_t rows, std::uint32_t cols, bool angles = false) {
+  return {rows, cols, 1.265, "direct", "a device \xc2\xb5", "press.h5", angles};
+}
+
+void write(const std::filesystem::path& path, const ForceFileInfo& info, std::uint64_t frames) {
+  const auto sink = create_force_sink(path, info);
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    sink->append(Field(index, info.rows, info.cols).view(), static_cast<double>(index) / 3);
+  }
+  sink->finish();
+}
+
+TEST(ForceFile, KeepsEverythingOfAnySize) {
+  for (const auto& [rows, cols, frames] :
+       {std::tuple{1u, 1u, 1100u}, {1u, 9u, 0u}, {3u, 5u, 17u}, {70u, 41u, 5u}}) {
+    for (const bool angles : {false, true}) {
+      const TemporaryDirectory directory;
+      const auto path = directory / "f.h5";
+      write(path, info_of(rows, cols, angles), frames);
+      EXPECT_EQ(directory.names(), Names{"f.h5"});
+      const ForceFileReader reader(path);
+      EXPECT_EQ(reader.info().rows, rows);
+      EXPECT_EQ(reader.info().cols, cols);
+      EXPECT_EQ(reader.info().angles, angles);
+      EXPECT_EQ(reader.info().pillar_pitch_mm, 1.265);
+      EXPECT_EQ(reader.info().estimator, "direct");
+      EXPECT_EQ(reader.info().device, "a device \xc2\xb5");
+      EXPECT_EQ(reader.info().source, "press.h5");
+      EXPECT_TRUE(reader.remarks().empty());
+      ASSERT_EQ(reader.frames(), frames);
+      ForceField read;
+      for (std::uint64_t index = 0; index < frames; ++index) {
+        EXPECT_EQ(reader.read(index, read), static_cast<double>(index) / 3);
+        const ForceField expected = sample_forces(index, rows, cols);
+        EXPECT_EQ(read.shear_x, expected.shear_x);
+        EXPECT_EQ(read.shear_y, expected.shear_y);
+        EXPECT_EQ(read.normal, expected.normal);
+        EXPECT_EQ(read.status, expected.status);
+      }
+      EXPECT_TRUE(has_all(error_of([&] { reader.read(frames, read); }), {"has no frame"}));
+    }
+  }
+}
+
+/// The cells of a line; each number must be the shortest text that reads back as the same value.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+  return cells;
+}
+
+template <class T>
+void expect_cell(const std::string& cell, T value) {
+  T read{};
+  const auto result = std::from_chars(cell.data(), cell.data() + cell.size(), read);
+  EXPECT_EQ(result.ptr, cell.data() + cell.size()) << cell;
+  EXPECT_EQ(read, value) << cell;
+}
+
+TEST(ForceCsv, HasALineForEachPillarThatIsNotIdle) {
+  for (const bool angles : {false, true}) {
+    const TemporaryDirectory directory;
+    write(directory / "f.csv", info_of(3, 5, angles), 4);
+    std::istringstream text(bytes_of(directory / "f.csv"));
+    std::string line;
+    std::getline(text, line);
+    EXPECT_EQ(line, std::string("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status") +
+                        (angles ? ",magnitude_n,theta_rad,phi_rad" : ""));
+    for (std::uint64_t index = 0; index < 4; ++index) {
+      const Field field(index, 3, 5);
+      for (std::size_t pillar = 0; pillar < 15; ++pillar) {
+        if (field.forces.status[pillar] == 0) continue;
+        ASSERT_TRUE(std::getline(text, line));
+        const auto cells = cells_of(line);
+        ASSERT_EQ(cells.size(), angles ? 11u : 8u) << line;
+        expect_cell(cells[0], index);
+        expect_cell(cells[1], static_cast<double>(index) / 3);
+        expect_cell(cells[2], pillar / 5);
+        expect_cell(cells[3], pillar % 5);
+        expect_cell(cells[4], field.forces.shear_x[pillar]);
+        expect_cell(cells[5], field.forces.shear_y[pillar]);
+        expect_cell(cells[6], field.forces.normal[pillar]);
+        expect_cell(cells[7], int{field.forces.status[pillar]});
+        if (!angles) continue;
+        expect_cell(cells[8], field.magnitude[pillar]);
+        expect_cell(cells[9], field.theta[pillar]);
+        expect_cell(cells[10], field.phi[pillar]);
+      }
+    }
+    EXPECT_FALSE(std::getline(text, line));
+  }
+}
+
+TEST(ForceNpy, IsAHeaderOfWholeSixtyFoursAndTheRecords) {
+  const TemporaryDirectory directory;
+  write(directory / "f.npy", info_of(2, 3), 12);
+  const std::string bytes = bytes_of(directory / "f.npy");
+  EXPECT_EQ(bytes.substr(0, 8), std::string("\x93NUMPY\x01\x00", 8));
+  const std::size_t header =
+      10u + static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
+  EXPECT_EQ(header % 64, 0u);
+  EXPECT_EQ(bytes[header - 1], '\n');
+  EXPECT_TRUE(has_all(bytes.substr(0, header), {"(12, 2, 3)", "('status', '|u1')"}));
+  ASSERT_EQ(bytes.size(), header + 12 * 6 * 13);
+  const Field last(11, 2, 3);
+  float normal = 0;
+  std::memcpy(&normal, &bytes[header + (11 * 6 + 5) * 13 + 8], sizeof normal);
+  EXPECT_EQ(normal, last.forces.normal[5]);
+  EXPECT_EQ(static_cast<std::uint8_t>(bytes.back()), last.forces.status[5]);
+}
+
+TEST(ForceSink, RefusesWhatItCannotWrite) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const std::filesystem::path& path, const ForceFileInfo& info) {
+    return error_of([&] { (void)create_force_sink(path, info); });
+  };
+  ForceFileInfo no_pitch = info_of(2, 3);
+  no_pitch.pillar_pitch_mm = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has_all(refused(directory / "f.txt", info_of(2, 3)), {"f.txt", ".h5", ".csv"}));
+  EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"ending"}));
+  EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(0, 3)), {"0 x 3"}));
+  EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(2, 32768)), {"2 x 32768"}));
+  EXPECT_TRUE(has_all(refused(directory / "f.h5", no_pitch), {"pillar_pitch_mm is nan"}));
+  for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
+    const auto path = directory / "none" / name;
+    EXPECT_TRUE(has_all(refused(path, info_of(2, 3)), {name, "No such file"}));
+  }
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+TEST(ForceSink, RefusesFramesThatDoNotFitAndGoesOn) {
+  for (const char* name : {"f.h5", "f.hdf5", "f.CSV", "f.npy"}) {
+    const TemporaryDirectory directory;
+    const auto sink = create_force_sink(directory / name, info_of(2, 3, true));
+    const auto refused = [&](const ForceFieldView& view, double time_s) {
+      return error_of([&] { sink->append(view, time_s); });
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(has_all(refused(Field(0, 3, 2).view(), 0), {name, "3 x 2", "2 x 3"}));
+    EXPECT_TRUE(has_all(refused(Field(0, 2, 3).forces.view(), 0), {name, "without magnitude"}));
+    EXPECT_TRUE(has_all(refused(Field(0, 2, 3).view(), nan), {name, "nan"}));
+    sink->append(Field(0, 2, 3).view(), 0);
+    sink->finish();
+    EXPECT_TRUE(has_all(refused(Field(0, 2, 3).view(), 0), {name, "is finished"}));
+    EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {name, "is finished"}));
+    EXPECT_EQ(directory.names(), Names{name});
+  }
+}
+
+TEST(ForceSink, KeepsTheOldFileUntilItIsFinishedAndCleansUp) {
+  for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
+    const TemporaryDirectory directory;
+    write_bytes(directory / name, "precious");
+    {
+      const auto sink = create_force_sink(directory / name, info_of(2, 3));
+      sink->append(Field(0, 2, 3).view(), 0);
+    }
+    EXPECT_EQ(directory.names(), Names{name});
+    EXPECT_EQ(bytes_of(directory / name), "precious");
+  }
+}
+
+TEST(ForceSink, LeavesAnHdf5PartWithFlushedFrames) {
+  const TemporaryDirectory directory;
+  {
+    const auto sink = create_force_sink(directory / "f.h5", info_of(2, 3));
+    for (std::uint64_t index = 0; index < 20; ++index) sink->append(Field(index, 2, 3).view(), 0);
+  }
+  EXPECT_EQ(directory.names(), Names{"f.h5.part"});
+  EXPECT_GE(ForceFileReader(directory / "f.h5.part").frames(), 16u);
+}
+
+TEST(ForceFileReader, RefusesWhatIsNoForceFile) {
+  const TemporaryDirectory directory;
+  Skin skin;
+  skin.rows = skin.cols = 2;
+  RecordingWriter(directory / "r.h5", skin, SenselType::u8, {}, {}).finish();
+  write(directory / "f.h5", info_of(2, 3), 3);
+  write_bytes(directory / "text.h5", "no HDF5 file");
+  const auto refused = [&](const std::string& name) {
+    return error_of([&] { const ForceFileReader reader(directory / name); });
+  };
+  EXPECT_TRUE(has_all(refused("r.h5"), {"r.h5", "pillarfield-recording", "solve it first"}));
+  EXPECT_TRUE(has_all(refused("text.h5"), {"text.h5", "no HDF5 file"}));
+  EXPECT_TRUE(has_all(refused("none.h5"), {"none.h5", "No such file"}));
+  EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(directory / "f.h5"); }),
+                      {"f.h5", "pillarfield-forces", "recording they were solved from"}));
+  const std::string whole = bytes_of(directory / "f.h5");
+  for (std::size_t part = 0; part < 100; ++part) {
+    write_bytes(directory / "cut.h5", whole.substr(0, whole.size() * part / 100));
+    EXPECT_TRUE(has_all(refused("cut.h5"), {"cut.h5"}));
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

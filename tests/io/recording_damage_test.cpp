@@ -1,0 +1,370 @@
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <sys/stat.h>
+
+#include <functional>
+#include <limits>
+
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::fill_frame;
+using io_test::has_all;
+using io_test::sample_forces;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+constexpr std::uint32_t kSize = 6;  // sensel rows and columns
+constexpr std::uint64_t kFrames = 5;
+
+/// A recording that has all a recording can have.
+void write_full_recording(const std::filesystem::path& path) {
+  Skin skin;
+  skin.rows = kSize;
+  skin.cols = kSize;
+  skin.full_scale_counts = 250;
+  const std::vector<float> ones(skin.sensels(), 1.0f);
+  const Calibration calibration = {ones, ones, ones, std::vector<std::uint8_t>(skin.sensels(), 1)};
+  RecordingWriter writer(path, skin, SenselType::u8, calibration, {.truth = true});
+  FrameBuffer frame(SenselType::u8, kSize, kSize);
+  for (std::uint64_t index = 0; index < kFrames; ++index) {
+    fill_frame(index, frame);
+    const ForceField truth = sample_forces(index, skin.pillar_rows(), skin.pillar_cols());
+    writer.append(frame.view(), static_cast<double>(index), &truth);
+  }
+  writer.finish();
+}
+
+// What the cases below do to the file, in the words of the HDF5 library.
+
+void set_number(hid_t file, const char* object, const char* name, double value) {
+  H5Adelete_by_name(file, object, name, H5P_DEFAULT);
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t attribute = H5Acreate_by_name(file, object, name, H5T_IEEE_F64BE, space, H5P_DEFAULT,
+                                            H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
+  H5Aclose(attribute);
+  H5Sclose(space);
+}
+
+void set_text(hid_t file, const char* object, const char* name, const std::string& value) {
+  H5Adelete_by_name(file, object, name, H5P_DEFAULT);
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, value.size());
+  const hid_t attribute =
+      H5Acreate_by_name(file, object, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, type, value.data());
+  H5Aclose(attribute);
+  H5Tclose(type);
+  H5Sclose(space);
+}
+
+/// Replaces a dataset by one of other size and type without values; in chunks where these are
+/// given.
+void replace(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& extent,
+             const std::vector<hsize_t>& chunk = {}) {
+  H5Ldelete(file, name, H5P_DEFAULT);
+  const hid_t space = H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr);
+  const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
+  if (!chunk.empty()) H5Pset_chunk(layout, static_cast<int>(chunk.size()), chunk.data());
+  const hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
+  H5Dclose(dataset);
+  H5Pclose(layout);
+  H5Sclose(space);
+}
+
+void set_first(hid_t file, const char* name, float value) {
+  const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
+  std::vector<float> values(kSize * kSize);
+  H5Dread(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  values[7] = value;
+  H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  H5Dclose(dataset);
+}
+
+void remove_link(hid_t file, const char* name) { H5Ldelete(file, name, H5P_DEFAULT); }
+
+void remove_attribute(hid_t file, const char* object, const char* name) {
+  H5Adelete_by_name(file, object, name, H5P_DEFAULT);
+}
+
+void change(const std::filesystem::path& path, const std::function<void(hid_t)>& action) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  ASSERT_GE(file, 0);
+  action(file);
+  ASSERT_GE(H5Fclose(file), 0);
+}
+
+struct Damage {
+  std::string name;
+  std::function<void(hid_t)> action;
+  std::vector<std::string> message;
+};
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+const float kFloatNan = std::numeric_limits<float>::quiet_NaN();
+const float kInfinity = std::numeric_limits<float>::infinity();
+
+const Damage kDamages[] = {
+    {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no 'format'"}},
+    {"other format", [](hid_t f) { set_text(f, "/", "format", "cheese"); }, {"'cheese'"}},
+    {"a force file",
+     [](hid_t f) { set_text(f, "/", "format", "pillarfield-forces"); },
+     {"pillarfield-forces", "solved forces"}},
+    {"format a number", [](hid_t f) { set_number(f, "/", "format", 1); }, {"'format'", "string"}},
+    {"no version",
+     [](hid_t f) { remove_attribute(f, "/", "version"); },
+     {"no attribute 'version'"}},
+    {"version 2", [](hid_t f) { set_number(f, "/", "version", 2); }, {"version is 2", "version 1"}},
+    {"version NaN", [](hid_t f) { set_number(f, "/", "version", kNan); }, {"version is nan"}},
+    {"version a text", [](hid_t f) { set_text(f, "/", "version", "1"); }, {"'version'", "number"}},
+    {"no frames", [](hid_t f) { remove_link(f, "/frames"); }, {"has no /frames/raw"}},
+    {"no raw", [](hid_t f) { remove_link(f, "/frames/raw"); }, {"has no /frames/raw"}},
+    {"no time", [](hid_t f) { remove_link(f, "/frames/time"); }, {"has no /frames/time"}},
+    {"raw of rank 2",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_U8LE, {6, 6});
+     },
+     {"/frames/raw has 2 dimensions", "3"}},
+    {"raw of rank 4",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_U8LE, {1, 6, 6, 1});
+     },
+     {"/frames/raw has 4 dimensions"}},
+    {"time of rank 2",
+     [](hid_t f) {
+       replace(f, "/frames/time", H5T_IEEE_F64LE, {1, 1});
+     },
+     {"/frames/time has 2 dimensions"}},
+    {"raw int32",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_I32LE, {1, 6, 6});
+     },
+     {"/frames/raw", "uint8, uint16 or float32"}},
+    {"raw int8",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_I8LE, {1, 6, 6});
+     },
+     {"/frames/raw", "uint8, uint16 or float32"}},
+    {"raw float64",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_IEEE_F64LE, {1, 6, 6});
+     },
+     {"/frames/raw", "uint8, uint16 or float32"}},
+    {"raw text",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_C_S1, {1, 6, 6});
+     },
+     {"/frames/raw", "uint8, uint16 or float32"}},
+    {"time integer",
+     [](hid_t f) { replace(f, "/frames/time", H5T_STD_I64LE, {5}); },
+     {"/frames/time holds no floats"}},
+    {"one row",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_U8LE, {1, 1, 6});
+     },
+     {"1 x 6", "[2, 65534]"}},
+    {"no columns",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_U8LE, {1, 6, 0});
+     },
+     {"6 x 0", "[2, 65534]"}},
+    {"too many rows",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_U8LE, {0, 65535, 2}, {1, 9, 2});
+     },
+     {"65535 x 2", "[2, 65534]"}},
+    {"frames the file cannot hold",
+     [](hid_t f) {
+       replace(f, "/frames/raw", H5T_STD_U8LE, {5, 60000, 60000}, {1, 99, 99});
+     },
+     {"/frames/raw", "5 x 60000 x 60000", "more than the file"}},
+    {"times the file cannot hold",
+     [](hid_t f) { replace(f, "/frames/time", H5T_IEEE_F64LE, {1ull << 60}, {9}); },
+     {"/frames/time", "more than the file"}},
+    {"pitch NaN",
+     [](hid_t f) { set_number(f, "/skin", "sensel_pitch_mm", kNan); },
+     {"/skin", "sensel_pitch_mm is nan"}},
+    {"counts per newton 0",
+     [](hid_t f) { set_number(f, "/skin", "counts_per_newton", 0); },
+     {"/skin", "counts_per_newton is 0"}},
+    {"threshold negative",
+     [](hid_t f) { set_number(f, "/skin", "threshold_counts", -1); },
+     {"threshold_counts is -1"}},
+    {"full scale infinite",
+     [](hid_t f) { set_number(f, "/skin", "full_scale_counts", kInfinity); },
+     {"full_scale_counts is inf"}},
+    {"full scale below threshold",
+     [](hid_t f) { set_number(f, "/skin", "threshold_counts", 300); },
+     {"full_scale_counts is 250"}},
+    {"pitch a text",
+     [](hid_t f) { set_text(f, "/skin", "sensel_pitch_mm", "wide"); },
+     {"'sensel_pitch_mm' is no number"}},
+    {"tare of other size",
+     [](hid_t f) {
+       replace(f, "/calibration/tare", H5T_IEEE_F32LE, {6, 5});
+     },
+     {"/calibration/tare is 6 x 5", "6 x 6"}},
+    {"tare of rank 1",
+     [](hid_t f) { replace(f, "/calibration/tare", H5T_IEEE_F32LE, {36}); },
+     {"/calibration/tare is 36", "6 x 6"}},
+    {"gain a text",
+     [](hid_t f) {
+       replace(f, "/calibration/gain", H5T_C_S1, {6, 6});
+     },
+     {"/calibration/gain cannot be read"}},
+    {"tare NaN",
+     [](hid_t f) { set_first(f, "/calibration/tare", kFloatNan); },
+     {"tare", "row 1, column 1", "nan"}},
+    {"tare infinite",
+     [](hid_t f) { set_first(f, "/calibration/tare", kInfinity); },
+     {"tare", "inf"}},
+    {"gain 0",
+     [](hid_t f) { set_first(f, "/calibration/gain", 0); },
+     {"gain", "is 0", "[0.01, 100]"}},
+    {"gain 101", [](hid_t f) { set_first(f, "/calibration/gain", 101); }, {"gain", "is 101"}},
+    {"dead zone negative",
+     [](hid_t f) { set_first(f, "/calibration/dead_zone", -1); },
+     {"dead_zone", "is -1"}},
+    {"mask 2", [](hid_t f) { set_first(f, "/calibration/mask", 2); }, {"mask", "[0, 1]"}},
+    {"truth of other size",
+     [](hid_t f) {
+       replace(f, "/truth/normal", H5T_IEEE_F32LE, {5, 3, 2});
+     },
+     {"/truth/normal", "3 x 2", "3 x 3"}},
+    {"truth without shear",
+     [](hid_t f) { remove_link(f, "/truth/shear_x"); },
+     {"has no /truth/shear_x"}},
+    {"truth of integers",
+     [](hid_t f) {
+       replace(f, "/truth/normal", H5T_STD_I32LE, {5, 3, 3});
+     },
+     {"/truth/normal holds no floats"}},
+};
+
+TEST(RecordingDamage, IsToldInOneClearError) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "r.h5";
+  for (const Damage& damage : kDamages) {
+    SCOPED_TRACE(damage.name);
+    write_full_recording(path);
+    change(path, damage.action);
+    const std::string error = error_of([&] { (void)open_frames(path); });
+    EXPECT_TRUE(has_all(error, {path.string()}));
+    EXPECT_TRUE(has_all(error, damage.message));
+  }
+}
+
+TEST(RecordingDamage, OfATimeIsToldWhenItsFrameIsRead) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "r.h5";
+  write_full_recording(path);
+  change(path, [](hid_t file) {
+    const hid_t dataset = H5Dopen2(file, "/frames/time", H5P_DEFAULT);
+    const double times[] = {0, 1, kNan, 3, 4};
+    H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times);
+    H5Dclose(dataset);
+  });
+  const auto source = open_frames(path);
+  FrameBuffer frame(SenselType::u8, kSize, kSize);
+  EXPECT_EQ(source->read(3, frame), 3);
+  EXPECT_TRUE(has_all(error_of([&] { source->read(2, frame); }), {"frame 2", "nan"}));
+}
+
+TEST(RecordingDefaults, StandInForWhatIsMissingAndAreRemarked) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "r.h5";
+  write_full_recording(path);
+  change(path, [](hid_t file) {
+    remove_link(file, "/skin");
+    remove_link(file, "/truth");
+    remove_link(file, "/calibration");
+  });
+  const auto source = open_frames(path);
+  EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
+  EXPECT_EQ(source->skin().sensel_pitch_mm, Skin().sensel_pitch_mm);
+  EXPECT_FALSE(source->skin().full_scale_counts.has_value());
+  EXPECT_FALSE(source->has_truth());
+  EXPECT_TRUE(source->calibration().empty());
+  ASSERT_EQ(source->remarks().size(), 3u);
+  EXPECT_TRUE(has_all(source->remarks()[1], {"counts_per_newton", "320"}));
+}
+
+TEST(RecordingLengths, TheSmallestCounts) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "r.h5";
+  write_full_recording(path);
+  change(path, [](hid_t file) {
+    const hid_t dataset = H5Dopen2(file, "/truth/shear_y", H5P_DEFAULT);
+    const hsize_t extent[] = {3, 3, 3};
+    H5Dset_extent(dataset, extent);
+    H5Dclose(dataset);
+  });
+  const auto source = open_frames(path);
+  EXPECT_EQ(source->frames(), 3u);
+  ASSERT_EQ(source->remarks().size(), 1u);
+  EXPECT_TRUE(has_all(source->remarks()[0], {"first 3"}));
+}
+
+TEST(RecordingDamage, ATruncatedFileIsAnErrorAtEveryLength) {
+  const TemporaryDirectory directory;
+  write_full_recording(directory / "whole.h5");
+  const std::string whole = bytes_of(directory / "whole.h5");
+  const auto path = directory / "cut.h5";
+  const std::size_t step = whole.size() / 200;
+  for (std::size_t size = 0; size < whole.size(); size += size < 64 ? 1 : step) {
+    write_bytes(path, whole.substr(0, size));
+    EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }), {path.string()})) << size;
+  }
+}
+
+/// Whatever is broken, the answer is an Error or frames, and nothing worse.
+TEST(RecordingDamage, ABrokenByteNeverCrashes) {
+  const TemporaryDirectory directory;
+  write_full_recording(directory / "whole.h5");
+  const std::string whole = bytes_of(directory / "whole.h5");
+  const auto path = directory / "broken.h5";
+  for (std::uint64_t trial = 0; trial < 300; ++trial) {
+    std::string bytes = whole;
+    const std::size_t at = io_test::number_at(trial, 0) % std::min<std::size_t>(bytes.size(), 8192);
+    bytes[at] = static_cast<char>(io_test::number_at(trial, 1));
+    write_bytes(path, bytes);
+    try {
+      const auto source = open_frames(path);
+      FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
+      for (std::uint64_t index = 0; index < source->frames(); ++index) source->read(index, frame);
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {path.string()}));
+    }
+  }
+}
+
+TEST(FileKinds, ThatAreNoneOfOursAreToldApart) {
+  const TemporaryDirectory directory;
+  const auto error_for = [&](const std::string& name) {
+    return error_of([&] { (void)open_frames(directory / name); });
+  };
+  write_bytes(directory / "empty", "");
+  write_bytes(directory / "text", "Dear reader,\nthis is no recording.\n");
+  write_bytes(directory / "binary", std::string("\0\1\2\3DATA_TYPE", 13));
+  write_bytes(directory / "signature.h5", "\x89HDF\r\n\x1a\n");
+  std::filesystem::create_directory(directory / "folder");
+  ASSERT_EQ(mkfifo((directory / "pipe").c_str(), 0600), 0);
+  EXPECT_TRUE(has_all(error_for("missing"), {"missing", "No such file"}));
+  EXPECT_TRUE(has_all(error_for("empty"), {"is empty"}));
+  EXPECT_TRUE(has_all(error_for("text"), {"neither an HDF5 recording nor a Tekscan"}));
+  EXPECT_TRUE(has_all(error_for("binary"), {"neither an HDF5 recording nor a Tekscan"}));
+  EXPECT_TRUE(has_all(error_for("signature.h5"), {"cannot be opened as HDF5"}));
+  EXPECT_TRUE(has_all(error_for("folder"), {"is a directory"}));
+  EXPECT_TRUE(has_all(error_for("pipe"), {"no regular file"}));
+  EXPECT_TRUE(has_all(error_of([] { (void)open_frames("/dev/null"); }), {"no regular file"}));
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,295 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::fill_frame;
+using io_test::has_all;
+using io_test::sample_forces;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+using Names = std::vector<std::string>;
+
+Skin skin_of(std::uint32_t rows, std::uint32_t cols) {
+  Skin skin;
+  skin.rows = rows;
+  skin.cols = cols;
+  return skin;
+}
+
+/// Each plane there or not, at random; values anywhere in their ranges.
+Calibration random_calibration(const Skin& skin, std::mt19937& random) {
+  const auto coin = [&] { return std::bernoulli_distribution(0.5)(random); };
+  const auto plane = [&](float low, float high) {
+    std::vector<float> values(coin() ? skin.sensels() : 0);
+    for (float& value : values) value = std::uniform_real_distribution<float>(low, high)(random);
+    return values;
+  };
+  Calibration calibration;
+  calibration.tare = plane(-1e6f, 1e6f);
+  calibration.gain = plane(0.01f, 100.0f);
+  calibration.dead_zone = plane(0.0f, 1e9f);
+  calibration.mask.resize(coin() ? skin.sensels() : 0);
+  for (auto& good : calibration.mask) good = coin() ? 1 : 0;
+  return calibration;
+}
+
+void expect_equal(const Skin& read, const Skin& written) {
+  EXPECT_EQ(read.rows, written.rows);
+  EXPECT_EQ(read.cols, written.cols);
+  EXPECT_EQ(read.sensel_pitch_mm, written.sensel_pitch_mm);
+  EXPECT_EQ(read.counts_per_newton, written.counts_per_newton);
+  EXPECT_EQ(read.threshold_counts, written.threshold_counts);
+  EXPECT_EQ(read.full_scale_counts, written.full_scale_counts);
+}
+
+void expect_equal(const Calibration& read, const Calibration& written) {
+  EXPECT_EQ(read.tare, written.tare);
+  EXPECT_EQ(read.gain, written.gain);
+  EXPECT_EQ(read.dead_zone, written.dead_zone);
+  EXPECT_EQ(read.mask, written.mask);
+}
+
+/// What goes into a recording comes out of it, bit for bit.
+void expect_round_trip(const Skin& skin, SenselType type, const Calibration& calibration,
+                       bool truth, std::uint64_t frames) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "recording.h5";
+  FrameBuffer frame(type, skin.rows, skin.cols);
+  RecordingWriter writer(path, skin, type, calibration, {.truth = truth, .flush_every = 3});
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    fill_frame(index, frame);
+    const ForceField forces = sample_forces(index, skin.pillar_rows(), skin.pillar_cols());
+    writer.append(frame.view(), static_cast<double>(index) / 7, truth ? &forces : nullptr);
+  }
+  writer.finish();
+  EXPECT_EQ(directory.names(), Names{"recording.h5"});
+
+  const auto source = open_frames(path);
+  EXPECT_EQ(source->format(), "recording");
+  EXPECT_EQ(source->sensel_type(), type);
+  EXPECT_EQ(source->has_truth(), truth);
+  ASSERT_EQ(source->frames(), frames);
+  expect_equal(source->skin(), skin);
+  expect_equal(source->calibration(), calibration);
+  FrameBuffer read(type, skin.rows, skin.cols);
+  for (std::uint64_t index = frames; index-- > 0;) {
+    fill_frame(index, frame);
+    EXPECT_EQ(source->read(index, read), static_cast<double>(index) / 7);
+    EXPECT_TRUE(std::ranges::equal(read.bytes(), frame.bytes())) << "frame " << index;
+    if (!truth) continue;
+    ForceField forces;
+    source->read_truth(index, forces);
+    const ForceField expected = sample_forces(index, skin.pillar_rows(), skin.pillar_cols());
+    EXPECT_EQ(forces.shear_x, expected.shear_x);
+    EXPECT_EQ(forces.shear_y, expected.shear_y);
+    EXPECT_EQ(forces.normal, expected.normal);
+  }
+}
+
+TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {
+  std::mt19937 random(1);
+  const auto pick = [&](std::uint32_t low, std::uint32_t high) {
+    return std::uniform_int_distribution<std::uint32_t>(low, high)(random);
+  };
+  for (const auto type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    for (int trial = 0; trial < 8; ++trial) {
+      Skin skin = skin_of(trial == 0 ? 2 : pick(2, 45), trial == 0 ? 2 : pick(2, 45));
+      skin.sensel_pitch_mm = 1.0 / pick(1, 9);
+      skin.counts_per_newton = pick(1, 1000) / 7.0;
+      skin.threshold_counts = pick(0, 20) / 3.0;
+      if (trial % 2 == 0) skin.full_scale_counts = 200 + pick(0, 10) / 3.0;
+      SCOPED_TRACE(testing::Message() << skin.rows << " x " << skin.cols << " " << name_of(type));
+      expect_round_trip(skin, type, random_calibration(skin, random), trial % 3 == 0,
+                        trial == 1 ? 0 : pick(1, 20));
+    }
+  }
+}
+
+TEST(RecordingRoundTrip, KeepsFramesThatFillManyChunks) {
+  expect_round_trip(skin_of(2, 2), SenselType::u8, {}, true, 2500);
+}
+
+TEST(RecordingRoundTrip, KeepsAFrameLargerThanAnyCache) {
+  expect_round_trip(skin_of(1581, 1581), SenselType::f32, {}, false, 2);
+}
+
+TEST(RecordingRoundTrip, KeepsNotANumberAndInfinity) {
+  const TemporaryDirectory directory;
+  const Skin skin = skin_of(2, 2);
+  FrameBuffer frame(SenselType::f32, 2, 2);
+  const auto readings = frame.readings<float>();
+  readings[0] = std::numeric_limits<float>::quiet_NaN();
+  readings[1] = -std::numeric_limits<float>::infinity();
+  RecordingWriter writer(directory / "r.h5", skin, SenselType::f32, {}, {});
+  writer.append(frame.view(), 0);
+  writer.finish();
+  FrameBuffer read(SenselType::f32, 2, 2);
+  open_frames(directory / "r.h5")->read(0, read);
+  EXPECT_TRUE(std::ranges::equal(read.bytes(), frame.bytes()));
+}
+
+TEST(RecordingRoundTrip, TakesRowsOfALargerFrame) {
+  const TemporaryDirectory directory;
+  FrameBuffer whole(SenselType::u16, 9, 13);
+  fill_frame(0, whole);
+  const auto readings = whole.readings<std::uint16_t>();
+  // The last row of this view ends with the last reading of the buffer.
+  const FrameView view = {&readings[5 * 13 + 9], SenselType::u16, 4, 4, 13};
+  RecordingWriter writer(directory / "r.h5", skin_of(4, 4), SenselType::u16, {}, {});
+  writer.append(view, 0);
+  writer.finish();
+  FrameBuffer read(SenselType::u16, 4, 4);
+  open_frames(directory / "r.h5")->read(0, read);
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t col = 0; col < 4; ++col) {
+      EXPECT_EQ(read.readings<std::uint16_t>()[row * 4 + col], readings[(5 + row) * 13 + 9 + col]);
+    }
+  }
+}
+
+TEST(RecordingRoundTrip, RemarksOnRowsAndColumnsWithoutPillars) {
+  const TemporaryDirectory directory;
+  RecordingWriter writer(directory / "r.h5", skin_of(5, 7), SenselType::u8, {}, {});
+  writer.append(FrameBuffer(SenselType::u8, 5, 7).view(), 0);
+  writer.finish();
+  const auto remarks = open_frames(directory / "r.h5")->remarks();
+  ASSERT_EQ(remarks.size(), 2u);
+  EXPECT_TRUE(has_all(remarks[0], {"5", "row"}));
+  EXPECT_TRUE(has_all(remarks[1], {"7", "column"}));
+}
+
+TEST(RecordingWriter, LeavesTheOldFileUntilItIsFinished) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "r.h5", "precious");
+  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+  writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
+  writer.flush();
+  EXPECT_EQ(bytes_of(directory / "r.h5"), "precious");
+  writer.finish();
+  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 1u);
+}
+
+TEST(RecordingWriter, LeavesAReadablePartWhereFramesAreInIt) {
+  const TemporaryDirectory directory;
+  {
+    RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+    writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
+  }
+  EXPECT_EQ(directory.names(), Names{"r.h5.part"});
+  EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
+}
+
+TEST(RecordingWriter, LeavesNothingWhereNoFrameIsInIt) {
+  const TemporaryDirectory directory;
+  { const RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {}); }
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+TEST(RecordingWriter, NeverOverwritesAPartThatHoldsFrames) {
+  const TemporaryDirectory directory;
+  {
+    RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+    writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
+  }
+  const std::string error =
+      error_of([&] { RecordingWriter(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {}); });
+  EXPECT_TRUE(has_all(error, {"r.h5.part", "1 frames", "rename or remove"}));
+  EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
+}
+
+TEST(RecordingWriter, OverwritesAPartWithoutFrames) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "r.h5.part", "rubbish");
+  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+  writer.finish();
+  EXPECT_EQ(directory.names(), Names{"r.h5"});
+  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 0u);
+}
+
+TEST(RecordingWriter, WritesOnAfterItWasMoved) {
+  const TemporaryDirectory directory;
+  RecordingWriter first(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+  first.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
+  RecordingWriter second(std::move(first));
+  second.append(FrameBuffer(SenselType::u8, 2, 2).view(), 1);
+  second.finish();
+  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 2u);
+}
+
+TEST(RecordingWriter, RefusesWhatDoesNotFitAndGoesOn) {
+  const TemporaryDirectory directory;
+  RecordingWriter writer(directory / "r.h5", skin_of(4, 4), SenselType::u8, {}, {.truth = true});
+  const FrameBuffer frame(SenselType::u8, 4, 4);
+  const ForceField truth(2, 2);
+  const ForceField small_truth(1, 2);
+  const auto refused = [&](const FrameView& view, double time_s, const ForceField* forces) {
+    return error_of([&] { writer.append(view, time_s, forces); });
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(has_all(refused(FrameBuffer(SenselType::u8, 4, 5).view(), 0, &truth), {"4 x 5"}));
+  EXPECT_TRUE(has_all(refused(FrameBuffer(SenselType::u16, 4, 4).view(), 0, &truth), {"uint16"}));
+  EXPECT_TRUE(has_all(refused({}, 0, &truth), {"0 x 0"}));
+  EXPECT_TRUE(has_all(refused(frame.view(), nan, &truth), {"frame 0", "nan"}));
+  EXPECT_TRUE(has_all(refused(frame.view(), 0, nullptr), {"without its truth"}));
+  EXPECT_TRUE(has_all(refused(frame.view(), 0, &small_truth), {"1 x 2"}));
+  writer.append(frame.view(), 0, &truth);
+  writer.finish();
+  EXPECT_TRUE(has_all(refused(frame.view(), 1, &truth), {"is finished"}));
+  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 1u);
+}
+
+TEST(RecordingWriter, RefusesWhatIsOutOfRange) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const Skin& skin, const Calibration& calibration,
+                           const RecordingWriter::Options& options) {
+    return error_of(
+        [&] { RecordingWriter(directory / "r.h5", skin, SenselType::u8, calibration, options); });
+  };
+  Calibration calibration;
+  calibration.gain = {1, 1, 0, 1};
+  EXPECT_TRUE(has_all(refused(skin_of(1, 2), {}, {}), {"r.h5", "rows is 1"}));
+  EXPECT_TRUE(has_all(refused(skin_of(2, 2), calibration, {}), {"gain", "row 1, column 0"}));
+  EXPECT_TRUE(has_all(refused(skin_of(2, 4), calibration, {}), {"gain has 4 values", "2 x 4"}));
+  EXPECT_TRUE(has_all(refused(skin_of(2, 2), {}, {.flush_every = 0}), {"flush_every"}));
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+TEST(RecordingWriter, RefusesPlacesThatCannotBeWritten) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const std::filesystem::path& path) {
+    return error_of([&] { RecordingWriter(path, skin_of(2, 2), SenselType::u8, {}, {}); });
+  };
+  std::filesystem::create_directory(directory / "folder");
+  EXPECT_TRUE(has_all(refused(directory / "none" / "r.h5"), {"none/r.h5", "No such file"}));
+  EXPECT_TRUE(has_all(refused(directory / "folder"), {"folder", "no regular file"}));
+  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "no regular file"}));
+  EXPECT_EQ(directory.names(), Names{"folder"});
+}
+
+TEST(Recording, RefusesFramesThatAreNotThereAndBuffersThatDoNotFit) {
+  const TemporaryDirectory directory;
+  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+  writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
+  writer.finish();
+  const auto source = open_frames(directory / "r.h5");
+  FrameBuffer fitting(SenselType::u8, 2, 2);
+  FrameBuffer wide(SenselType::u16, 2, 2);
+  ForceField truth;
+  EXPECT_TRUE(has_all(error_of([&] { source->read(1, fitting); }), {"no frame 1", "1 frames"}));
+  EXPECT_TRUE(has_all(error_of([&] { source->read(0, wide); }), {"uint16", "uint8"}));
+  EXPECT_TRUE(has_all(error_of([&] { source->read_truth(0, truth); }), {"no true forces"}));
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,414 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numeric>
+#include <sstream>
+
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::error_of;
+using io_test::has_all;
+using io_test::number_at;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+/// An export to be written, with all that varies from one to the next. A reading of -1 is a B.
+struct Export {
+  std::vector<std::string> header = {"DATA_TYPE MOVIE",
+                                     "VERSION Some Measurement System 1.0",
+                                     "ROWS 3",
+                                     "COLS 4",
+                                     "ROW_SPACING 0.5 mm",
+                                     "COL_SPACING 0.5 mm",
+                                     "NOISE_THRESHOLD 3",
+                                     "SECONDS_PER_FRAME 0.5",
+                                     "START_FRAME 1",
+                                     "END_FRAME 2",
+                                     "UNITS raw",
+                                     "ASCII_DATA @@"};
+  std::vector<std::string> frame_lines = {"Frame 1", "Frame 2"};
+  std::vector<std::vector<int>> frames = {{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12},
+                                          {0, 0, 0, 0, 0, 60, 70, 0, 0, 0, 255, 0}};
+  std::size_t cols = 4;
+  std::string line_end = "\n";
+  std::string row_end;         // behind the last cell of each row
+  std::string between = "\n";  // before each frame
+  std::string end = "@@\n";
+
+  void set(const std::string& key, const std::string& line) {
+    for (auto& entry : header) {
+      if (entry.starts_with(key + " ")) entry = line;
+    }
+  }
+  void remove(const std::string& key) {
+    std::erase_if(header, [&](const auto& entry) { return entry.starts_with(key + " "); });
+  }
+
+  [[nodiscard]] std::string text() const {
+    std::string lines;
+    for (const auto& entry : header) lines += entry + "\n";
+    for (std::size_t frame = 0; frame < frames.size(); ++frame) {
+      lines += between + frame_lines[frame] + "\n";
+      for (std::size_t i = 0; i < frames[frame].size(); ++i) {
+        const int reading = frames[frame][i];
+        lines += reading < 0 ? "B" : std::to_string(reading);
+        lines += (i + 1) % cols == 0 ? row_end + "\n" : ",";
+      }
+    }
+    lines += end;
+    if (line_end == "\n") return lines;
+    std::string translated;
+    for (const char letter : lines)
+      translated += letter == '\n' ? line_end : std::string(1, letter);
+    return translated;
+  }
+};
+
+class Tekscan : public testing::Test {
+ protected:
+  std::unique_ptr<FrameSource> open(const std::string& text) {
+    write_bytes(path_, text);
+    return open_frames(path_);
+  }
+  std::string refused(const std::string& text) {
+    return error_of([&] { (void)open(text); });
+  }
+
+  /// The readings of all frames as the source gives them.
+  static std::vector<std::vector<int>> readings(FrameSource& source) {
+    std::vector<std::vector<int>> all;
+    const bool bytes = source.sensel_type() == SenselType::u8;
+    FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+    for (std::uint64_t index = 0; index < source.frames(); ++index) {
+      source.read(index, frame);
+      const auto narrow = frame.readings<std::uint8_t>();
+      const auto wide = frame.readings<std::uint16_t>();
+      if (bytes)
+        all.emplace_back(narrow.begin(), narrow.end());
+      else
+        all.emplace_back(wide.begin(), wide.end());
+    }
+    return all;
+  }
+
+  static std::vector<double> times(FrameSource& source) {
+    std::vector<double> all;
+    FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+    for (std::uint64_t i = 0; i < source.frames(); ++i) all.push_back(source.read(i, frame));
+    return all;
+  }
+
+  static bool remarks(const FrameSource& source, const std::string& part) {
+    return std::ranges::any_of(source.remarks(), [&](const std::string& remark) {
+      return remark.find(part) != std::string::npos;
+    });
+  }
+
+  TemporaryDirectory directory_;
+  std::filesystem::path path_ = directory_ / "export.asf";
+};
+
+TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
+  const Export written;
+  const auto source = open(written.text());
+  EXPECT_EQ(source->format(), "Tekscan ASCII");
+  EXPECT_EQ(source->sensel_type(), SenselType::u8);
+  EXPECT_EQ(readings(*source), written.frames);
+  EXPECT_EQ(times(*source), (std::vector<double>{0, 0.5}));
+  EXPECT_EQ(source->skin().rows, 3u);
+  EXPECT_EQ(source->skin().cols, 4u);
+  EXPECT_EQ(source->skin().sensel_pitch_mm, 0.5);
+  EXPECT_EQ(source->skin().threshold_counts, 3);
+  EXPECT_EQ(source->skin().full_scale_counts, 255);
+  EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
+  EXPECT_TRUE(remarks(*source, "counts a newton"));
+  EXPECT_TRUE(remarks(*source, "last of the 3 sensel rows"));
+  EXPECT_FALSE(source->has_truth());
+  EXPECT_TRUE(source->calibration().empty());
+}
+
+/// However lines end and frames are set apart, the frames are the same.
+TEST_F(Tekscan, ReadsEveryLayoutAlike) {
+  for (const std::string line_end : {"\n", "\r\n"}) {
+    for (const std::string row_end : {"", ",", ",, ", " "}) {
+      for (const std::string between : {"", "\n", "\n \n"}) {
+        for (const std::string end : {"@@\n", "", "\n\n", "@@"}) {
+          Export written;
+          written.line_end = line_end;
+          written.row_end = row_end;
+          written.between = between;
+          written.end = end;
+          EXPECT_EQ(readings(*open(written.text())), written.frames);
+          EXPECT_EQ(readings(*open("\xef\xbb\xbf" + written.text())), written.frames);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(Tekscan, TakesTheLastLineWithoutItsEnd) {
+  Export written;
+  written.end = "";
+  std::string text = written.text();
+  text.pop_back();
+  EXPECT_EQ(readings(*open(text)), written.frames);
+}
+
+TEST_F(Tekscan, MasksSenselsThatAnyFrameLacks) {
+  Export written;
+  written.frames[0][0] = -1;
+  written.frames[1][0] = -1;
+  written.frames[1][5] = -1;
+  const auto source = open(written.text());
+  const std::vector<std::uint8_t> mask = {0, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1};
+  EXPECT_EQ(source->calibration().mask, mask);
+  written.frames[0][0] = written.frames[1][0] = written.frames[1][5] = 0;
+  EXPECT_EQ(readings(*source), written.frames);
+  EXPECT_TRUE(remarks(*source, "2 of 12 places hold no sensel"));
+}
+
+TEST_F(Tekscan, WidensToSixteenBitsAnywhere) {
+  for (std::size_t frame = 0; frame < 2; ++frame) {
+    for (std::size_t cell = 0; cell < 12; ++cell) {
+      Export written;
+      written.frames[frame][cell] = cell % 2 == 0 ? 256 : 65535;
+      const auto source = open(written.text());
+      EXPECT_EQ(source->sensel_type(), SenselType::u16);
+      EXPECT_FALSE(source->skin().full_scale_counts.has_value());
+      EXPECT_EQ(readings(*source), written.frames);
+    }
+  }
+}
+
+TEST_F(Tekscan, TakesAnySize) {
+  for (const std::size_t size : {2u, 7u, 200u}) {
+    Export written;
+    written.cols = size + 1;
+    written.set("ROWS", "ROWS " + std::to_string(size));
+    written.set("COLS", "COLS " + std::to_string(size + 1));
+    for (std::size_t frame = 0; frame < 2; ++frame) {
+      written.frames[frame].resize(size * (size + 1));
+      std::uint64_t place = 0;
+      for (int& reading : written.frames[frame]) {
+        reading = static_cast<int>(number_at(frame, place++) % 256);
+      }
+    }
+    EXPECT_EQ(readings(*open(written.text())), written.frames);
+  }
+}
+
+TEST_F(Tekscan, KnowsTheUnitsOfSpacing) {
+  const std::map<std::string, double> kSpacings = {
+      {"0.127 centimeters", 1.27}, {"0.05 cm", 0.5}, {"1.5 mm", 1.5},  {"2 millimeters", 2},
+      {"0.1 inches", 2.54},        {"0.1 in", 2.54}, {"0.05 CM", 0.5}, {"2.5  Millimeters", 2.5}};
+  for (const auto& [spacing, pitch_mm] : kSpacings) {
+    Export written;
+    written.set("ROW_SPACING", "ROW_SPACING " + spacing);
+    written.set("COL_SPACING", "COL_SPACING " + spacing);
+    EXPECT_DOUBLE_EQ(open(written.text())->skin().sensel_pitch_mm, pitch_mm) << spacing;
+  }
+}
+
+TEST_F(Tekscan, RemarksOnUnequalSpacingAndKeepsTheArea) {
+  Export written;
+  written.set("ROW_SPACING", "ROW_SPACING 2 mm");
+  const auto source = open(written.text());
+  EXPECT_DOUBLE_EQ(source->skin().sensel_pitch_mm, 1);
+  EXPECT_TRUE(remarks(*source, "Rows are 2 mm apart and columns 0.5 mm"));
+}
+
+TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
+  Export written;
+  for (const char* key :
+       {"ROW_SPACING", "COL_SPACING", "SECONDS_PER_FRAME", "UNITS", "NOISE_THRESHOLD"}) {
+    written.remove(key);
+  }
+  const auto source = open(written.text());
+  EXPECT_TRUE(remarks(*source, "no spacing"));
+  EXPECT_TRUE(remarks(*source, "no times"));
+  EXPECT_TRUE(remarks(*source, "no UNITS"));
+  EXPECT_EQ(source->skin().threshold_counts, 0);
+  EXPECT_EQ(times(*source), (std::vector<double>{0, 1}));
+}
+
+TEST_F(Tekscan, RemarksOnFramesThatAreAnnouncedAndNotThere) {
+  Export written;
+  written.set("END_FRAME", "END_FRAME 9");
+  EXPECT_TRUE(remarks(*open(written.text()), "announces 9 frames, and the file holds 2"));
+}
+
+TEST_F(Tekscan, PrefersTheTimesOfTheFrames) {
+  Export written;
+  written.frame_lines = {"Frame 1, 0.25,, 1/2/2020 6:21:52PM", "Frame 2, 0.75"};
+  EXPECT_EQ(times(*open(written.text())), (std::vector<double>{0.25, 0.75}));
+}
+
+TEST_F(Tekscan, CountsTimeFromTheNumbersOfTheFrames) {
+  Export written;
+  written.frame_lines = {"Frame 11", "Frame 13,,"};
+  EXPECT_EQ(times(*open(written.text())), (std::vector<double>{5, 6}));
+}
+
+TEST_F(Tekscan, HoldsFramesToTheirRawSum) {
+  Export written;
+  written.frames[0][3] = -1;
+  written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,74", "Frame 2, 1,, now,,,Raw Sum=,,385"};
+  EXPECT_EQ(open(written.text())->frames(), 2u);
+  written.frames[1][5] = 61;
+  EXPECT_TRUE(has_all(refused(written.text()), {"export.asf:19", "frame 2", "386", "raw sum 385"}));
+}
+
+struct Mistake {
+  std::string name;
+  std::function<void(Export&)> make;
+  std::vector<std::string> message;
+};
+
+const Mistake kMistakes[] = {
+    {"other units",
+     [](Export& e) { e.set("UNITS", "UNITS kPa"); },
+     {":11:", "UNITS is 'kPa'", "raw units"}},
+    {"no ROWS", [](Export& e) { e.remove("ROWS"); }, {":13:", "ROWS"}},
+    {"no COLS", [](Export& e) { e.remove("COLS"); }, {":13:", "COLS"}},
+    {"ROWS a word", [](Export& e) { e.set("ROWS", "ROWS three"); }, {":3:", "ROWS is 'three'"}},
+    {"ROWS 1", [](Export& e) { e.set("ROWS", "ROWS 1"); }, {":3:", "ROWS is '1'", "at least 2"}},
+    {"ROWS -3", [](Export& e) { e.set("ROWS", "ROWS -3"); }, {":3:", "ROWS is '-3'"}},
+    {"ROWS absurd", [](Export& e) { e.set("ROWS", "ROWS 70000"); }, {"ROWS is 70000", "65534"}},
+    {"COLS huge", [](Export& e) { e.set("COLS", "COLS 65534"); }, {":15:", "4 of 65534 columns"}},
+    {"ROWS too many",
+     [](Export& e) { e.set("ROWS", "ROWS 4"); },
+     {":19:", "frame 1 ends after 3 of 4 rows"}},
+    {"ROWS too few", [](Export& e) { e.set("ROWS", "ROWS 2"); }, {":17:", "more than 2 rows"}},
+    {"COLS too many", [](Export& e) { e.set("COLS", "COLS 5"); }, {":15:", "4 of 5 columns"}},
+    {"COLS too few", [](Export& e) { e.set("COLS", "COLS 3"); }, {":15:", "more than 3 columns"}},
+    {"spacing in feet",
+     [](Export& e) { e.set("ROW_SPACING", "ROW_SPACING 0.1 feet"); },
+     {":5:", "ROW_SPACING is '0.1 feet'", "mm, cm, inches"}},
+    {"spacing without unit",
+     [](Export& e) { e.set("ROW_SPACING", "ROW_SPACING 0.1"); },
+     {":5:", "unit"}},
+    {"spacing zero",
+     [](Export& e) { e.set("COL_SPACING", "COL_SPACING 0 mm"); },
+     {":6:", "above zero"}},
+    {"spacing NaN", [](Export& e) { e.set("COL_SPACING", "COL_SPACING nan mm"); }, {":6:"}},
+    {"threshold negative",
+     [](Export& e) { e.set("NOISE_THRESHOLD", "NOISE_THRESHOLD -1"); },
+     {":7:"}},
+    {"threshold at full scale",
+     [](Export& e) { e.set("NOISE_THRESHOLD", "NOISE_THRESHOLD 255"); },
+     {"full_scale_counts is 255"}},
+    {"frame without number",
+     [](Export& e) { e.frame_lines[1] = "Frame two"; },
+     {":19:", "'Frame two'"}},
+    {"frames out of order",
+     [](Export& e) { e.frame_lines[1] = "Frame 1"; },
+     {":19:", "frame 1 comes after frame 1"}},
+    {"one time only", [](Export& e) { e.frame_lines[0] = "Frame 1, 0.1"; }, {":19:", "time"}},
+    {"too large a reading",
+     [](Export& e) { e.frames[0][5] = 65536; },
+     {":16, column 2:", "'65536'", "[0, 65535]"}},
+    {"last frame cut",
+     [](Export& e) { e.frames[1].resize(8); },
+     {":22:", "frame 2 ends after 2 of 3 rows"}},
+    {"last row cut",
+     [](Export& e) {
+       e.frames[1].resize(10);
+       e.end = "";
+     },
+     {":22:", "2 of 4 columns"}},
+    {"no frames",
+     [](Export& e) {
+       e.frames.clear();
+       e.end = "";
+     },
+     {"ends before its first frame"}},
+};
+
+TEST_F(Tekscan, NamesTheLineOfEveryMistake) {
+  for (const Mistake& mistake : kMistakes) {
+    SCOPED_TRACE(mistake.name);
+    Export written;
+    mistake.make(written);
+    const std::string error = refused(written.text());
+    EXPECT_TRUE(has_all(error, {"export.asf"}));
+    EXPECT_TRUE(has_all(error, mistake.message));
+  }
+}
+
+TEST_F(Tekscan, NamesTheColumnOfEveryBadCell) {
+  for (const std::string cell :
+       {"", " ", "x", "-1", "1.5", "1e3", "nan", "b", "BB", "0x10", "1 2"}) {
+    std::string text = Export().text();
+    const std::size_t at = text.find("5,6,7,8");
+    text.replace(at + 4, 1, cell);
+    EXPECT_TRUE(has_all(refused(text), {"export.asf:16, column 3:", "whole number"})) << cell;
+  }
+}
+
+TEST_F(Tekscan, RefusesALineWithoutEnd) {
+  std::string text = Export().text();
+  text.insert(text.find("Frame 1"), std::string(3 << 20, 'x'));
+  EXPECT_TRUE(has_all(refused(text), {"export.asf:14", "longer"}));
+}
+
+/// Cut anywhere, an export is an Error or gives whole frames of what was written.
+TEST_F(Tekscan, TruncatedAnywhereIsAnErrorOrWholeFrames) {
+  Export written;
+  written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,78", "Frame 2, 1,, now,,,Raw Sum=,,385"};
+  const std::string text = written.text();
+  for (std::size_t size = 0; size < text.size(); ++size) {
+    try {
+      const auto read = readings(*open(text.substr(0, size)));
+      ASSERT_LE(read.size(), 2u);
+      for (std::size_t frame = 0; frame < read.size(); ++frame) {
+        EXPECT_EQ(read[frame], written.frames[frame]) << size;
+      }
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {"export.asf"}));
+    }
+  }
+}
+
+TEST(RealTekscan, AgreesWithTheRawSumsOfItsSoftware) {
+  const std::filesystem::path path =
+      std::filesystem::path(PILLARFIELD_TEST_DATA) / "tekscan" / "iscan_6900_finger_45deg.csv";
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << "the real export is not here: " << path;
+  const auto source = open_frames(path);
+  ASSERT_EQ(source->frames(), 309u);
+  EXPECT_EQ(source->skin().rows, 28u);
+  EXPECT_EQ(source->skin().cols, 28u);
+  EXPECT_DOUBLE_EQ(source->skin().sensel_pitch_mm, 1.27);
+  EXPECT_EQ(source->skin().threshold_counts, 3);
+  EXPECT_EQ(source->sensel_type(), SenselType::u8);
+
+  // An oracle of its own: the sums in the text, and where the text says B.
+  std::ifstream text(path);
+  FrameBuffer frame(SenselType::u8, 28, 28);
+  std::uint64_t index = 0;
+  std::string absent;
+  for (std::string line; std::getline(text, line);) {
+    if (line.find("Raw Sum=,,") != std::string::npos) {
+      EXPECT_EQ(source->read(index, frame), std::stod(line.substr(line.find(',') + 1)));
+      const auto values = frame.readings<std::uint8_t>();
+      EXPECT_EQ(std::accumulate(values.begin(), values.end(), 0),
+                std::stoi(line.substr(line.find("Raw Sum=,,") + 10)));
+      ++index;
+    } else if (index == 1 && std::ranges::count(line, ',') == 27) {
+      std::istringstream cells(line);
+      for (std::string cell; std::getline(cells, cell, ',');) absent += cell[0] == 'B' ? 'B' : '.';
+    }
+  }
+  EXPECT_EQ(index, 309u);
+  std::string masked;
+  for (const auto good : source->calibration().mask) masked += good == 0 ? 'B' : '.';
+  EXPECT_EQ(masked, absent);
+}
+
+}  // namespace
+}  // namespace pillarfield
