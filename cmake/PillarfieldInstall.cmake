@@ -1,4 +1,4 @@
-# Installs the library for find_package(pillarfield), the programs and the scenes.
+# Installs the library for find_package(pillarfield), the program and the scenes.
 include(CMakePackageConfigHelpers)
 
 # pillarfield::pillarfield stands for all floors.
@@ -8,31 +8,16 @@ set_target_properties(pillarfield_all PROPERTIES EXPORT_NAME pillarfield)
 
 set(libraries pillarfield_all)
 foreach(floor kernels core device io)
-  if(TARGET pillarfield_${floor})
-    target_link_libraries(pillarfield_all INTERFACE pillarfield_${floor})
-    list(APPEND libraries pillarfield_${floor})
-  endif()
+  target_link_libraries(pillarfield_all INTERFACE pillarfield_${floor})
+  list(APPEND libraries pillarfield_${floor})
 endforeach()
 install(TARGETS ${libraries} EXPORT pillarfield)
-
-foreach(folder host/cli viewer)
-  if(EXISTS ${PROJECT_SOURCE_DIR}/${folder}/CMakeLists.txt)
-    get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
-    foreach(target IN LISTS targets)
-      get_target_property(type ${target} TYPE)
-      if(type STREQUAL "EXECUTABLE")
-        install(TARGETS ${target})
-      endif()
-    endforeach()
-  endif()
-endforeach()
+install(TARGETS pillarfield)
 
 install(DIRECTORY host/include/pillarfield "${PROJECT_BINARY_DIR}/include/pillarfield"
   TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
-if(EXISTS ${PROJECT_SOURCE_DIR}/scenes)
-  install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/pillarfield
-    FILES_MATCHING PATTERN "*.toml")
-endif()
+install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/pillarfield
+  FILES_MATCHING PATTERN "*.toml")
 install(FILES LICENSE TYPE DOC)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pillarfield)

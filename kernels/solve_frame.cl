@@ -28,30 +28,30 @@ typedef struct {
 /* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. At the end of a
  * row `count` is below PF_LANES, nothing beyond it is read, and the other lanes are zero. */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type)                                                      \
-  static inline RealPair load_##name(global const type* row, uint count) {              \
-    RealPair pair;                                                                      \
-    pair.left = (Real)row[0];                                                           \
-    pair.right = (Real)row[1];                                                          \
-    return pair;                                                                        \
+#define PF_DEFINE_LOAD(name, type)                                         \
+  static inline RealPair load_##name(global const type* row, uint count) { \
+    RealPair pair;                                                         \
+    pair.left = (Real)row[0];                                              \
+    pair.right = (Real)row[1];                                             \
+    return pair;                                                           \
   }
 #else
-#define PF_DEFINE_LOAD(name, type)                                                      \
-  static inline RealPair load_##name(global const type* row, uint count) {              \
-    PF_LANE_TYPE(type) low, high;                                                       \
-    if (count == PF_LANES) {                                                            \
-      low = PF_VLOAD(0, row);                                                           \
-      high = PF_VLOAD(1, row);                                                          \
-    } else {                                                                            \
-      type padded[2 * PF_LANES];                                                        \
-      for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0; \
-      low = PF_VLOAD(0, padded);                                                        \
-      high = PF_VLOAD(1, padded);                                                       \
-    }                                                                                   \
-    RealPair pair;                                                                      \
+#define PF_DEFINE_LOAD(name, type)                                                           \
+  static inline RealPair load_##name(global const type* row, uint count) {                   \
+    PF_LANE_TYPE(type) low, high;                                                            \
+    if (count == PF_LANES) {                                                                 \
+      low = PF_VLOAD(0, row);                                                                \
+      high = PF_VLOAD(1, row);                                                               \
+    } else {                                                                                 \
+      type padded[2 * PF_LANES];                                                             \
+      for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0;  \
+      low = PF_VLOAD(0, padded);                                                             \
+      high = PF_VLOAD(1, padded);                                                            \
+    }                                                                                        \
+    RealPair pair;                                                                           \
     pair.left = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.even, high.even)); \
-    pair.right = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.odd, high.odd)); \
-    return pair;                                                                        \
+    pair.right = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.odd, high.odd));  \
+    return pair;                                                                             \
   }
 #endif
 
@@ -169,8 +169,8 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, 
     global const PF_SENSEL* const first = raw + 2 * row * row_stride + 2 * col;
     const size_t offset = 2 * row * plane_stride + 2 * col;
     const SenselPair top = read_sensels(first, offset, count, tare, gain, dead_zone, mask);
-    const SenselPair bottom = read_sensels(first + row_stride, offset + plane_stride, count, tare,
-                                           gain, dead_zone, mask);
+    const SenselPair bottom =
+        read_sensels(first + row_stride, offset + plane_stride, count, tare, gain, dead_zone, mask);
     const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
 
     const Diagonals diagonals = pillar_diagonals(pillar);

@@ -37,7 +37,7 @@ class ForceSink {
 [[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                                            const ForceFileInfo& info);
 
-/// Whether this file is an HDF5 file that says it holds force fields; false where it cannot be read.
+/// Whether this is an HDF5 file that says it holds force fields; false where it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path);
 
 /// Reads "pillarfield-forces" files, also ones whose writer was killed.
