@@ -41,12 +41,29 @@ std::vector<hsize_t> chunk_of(const Handle& layout, std::size_t rank) {
   return chunk;
 }
 
+void require_filters(const File& file, const Handle& layout, const char* name) {
+  for (int index = 0; index < H5Pget_nfilters(layout.get()); ++index) {
+    unsigned flags = 0;
+    std::size_t values = 0;
+    char filter_name[64] = "";
+    const H5Z_filter_t filter =
+        H5Pget_filter2(layout.get(), static_cast<unsigned>(index), &flags, &values, nullptr,
+                       sizeof filter_name, filter_name, nullptr);
+    if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
+    throw Error(file.path.string(),
+                fmt::format("{} is compressed by '{:.60}', filter {}, which this HDF5 lacks", name,
+                            filter_name, filter),
+                "store it with gzip or uncompressed");
+  }
+}
+
 Storage storage_of(const File& file, const Handle& dataset, const char* name) {
   const Handle layout = creation_list(file, dataset, name);
   if (H5Pget_layout(layout.get()) == H5D_VIRTUAL || H5Pget_external_count(layout.get()) > 0) {
     throw Error(file.path.string(), fmt::format("{} lies in another file", name),
                 "copy its values into this one");
   }
+  require_filters(file, layout, name);
   const Handle type = own(H5Dget_type(dataset.get()), file.path, "a dataset has no type");
   Storage storage;
   storage.extent = extent_of(file, dataset, name);

@@ -149,6 +149,20 @@ TEST(Scene, AConverterImpliesItsFullScale) {
   EXPECT_EQ(parse("16").skin.full_scale_counts, 65535);
 }
 
+TEST(Scene, AContactHasItsRadiusAtItsHeaviestLoadUnlessToldOtherwise) {
+  const auto reference_load = [](const std::string& line) {
+    const Scene scene = parse_scene(
+        "[skin]\nsize_mm = [9, 9]\n[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\n"
+        "contact_radius_mm = 2\npath = [{ time_s = 0, position_mm = [0, 0], load_n = 3 },\n"
+        "  { time_s = 1, position_mm = [0, 0], load_n = 7 }]\n" +
+            line,
+        "contact.toml");
+    return std::get<std::vector<Contact>>(scene.load).at(0).reference_load_n;
+  };
+  EXPECT_EQ(reference_load(""), 7);
+  EXPECT_EQ(reference_load("reference_load_n = 5"), 5);
+}
+
 TEST(Scene, AChartSetsTheSizeOfTheSkin) {
   const Scene scene = parse_scene(
       "[chart]\ndirections = 8\ninclinations = 5\nmagnitudes_n = [0.1, 1]\nmax_theta_deg = 60",

@@ -149,6 +149,10 @@ class Interchange(unittest.TestCase):
                         self.expect_frames(lines, typed)
                         self.assertEqual(lines[0][3], typed.dtype.newbyteorder("=").name)
 
+    def test_we_name_a_compression_that_we_lack(self):
+        with self.assertRaisesRegex(AssertionError, "'lzf'.* which this HDF5 lacks; store it with"):
+            self.new_recording(numpy.zeros((1, 20, 20), "u1"), layout={"compression": "lzf"})
+
     def test_we_read_every_kind_of_string(self):
         raw = numpy.zeros((1, 2, 2), "u1")
         name = "pillarfield-recording"
