@@ -42,7 +42,7 @@ class RecordingsOfH5py(CommandTest):
         write_recording(recording, raw, threshold, counts_per_newton)
         run("solve", recording, "-o", output)
         with h5py.File(output) as file:
-            self.assertEqual(file.attrs["format"], "pillarfield-forces")
+            self.assertEqual(file.attrs["format"].decode(), "pillarfield-forces")
             planes = ["shear_x", "shear_y", "normal"]
             forces = np.stack([file["/force"][plane][:] for plane in planes], axis=-1)
             status = file["/force/status"][:]
