@@ -39,6 +39,16 @@ endif()
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${environment_file})
 endfunction()
 
+# pillarfield_device_test(...): the same, but the whole program is one test of the project: opening an
+# OpenCL device and compiling kernels takes longer than a test of them.
+function(pillarfield_device_test name)
+  pillarfield_test_program(${name} ${ARGN})
+  string(REGEX REPLACE "_.*" "" label ${name})
+  add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${name} --gtest_brief=1)
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS ${label} TIMEOUT 240
+    ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
+endfunction()
+
 # pillarfield_oclgrind_test(<name> <program> <filter>): one more test, which runs those tests of a
 # program that match the GoogleTest filter on Oclgrind's simulated device. It fails when they do, and
 # when a kernel accesses memory out of bounds or two work-items race; it is skipped where Oclgrind is
