@@ -18,7 +18,7 @@
  * + - * /, comparisons, fabs, sqrt, hypot, atan2. No contraction: the device and a host built with
  * -ffp-contract=off then agree bit for bit in all but atan2.
  */
-#ifdef __OPENCL_VERSION__
+#ifndef __cplusplus /* OpenCL C */
 
 #pragma OPENCL FP_CONTRACT OFF
 

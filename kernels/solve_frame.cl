@@ -1,0 +1,198 @@
+/* Solves a frame: readings in, forces and status bytes out. Only indexing, loading, calling and
+ * storing; the mathematics is in maths/.
+ *
+ * The host writes what a plan asks for as the first lines of the program:
+ *
+ *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16
+ *   PF_SENSEL                       uchar, ushort or float
+ *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count (ForceScale)
+ *   PF_THRESHOLD                    counts
+ *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
+ *   PF_FULL_SCALE                   counts; stage: saturation
+ *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
+ *   PF_PARITY_TOLERANCE             counts; stage: the parity test
+ *   PF_ANGLES                       stage: magnitude, theta and phi are written too
+ *
+ * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
+
+/* The values of `PF_LANES` pillars in one row of sensels. */
+typedef struct {
+  Real left;
+  Real right;
+} RealPair;
+
+#define PF_LANE_TYPE(type) PF_JOIN(type, PF_LANES)
+#define PF_VLOAD PF_JOIN(vload, PF_LANES)
+#define PF_VSTORE PF_JOIN(vstore, PF_LANES)
+
+/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. At the end of a
+ * row `count` is below PF_LANES, nothing beyond it is read, and the other lanes are zero. */
+#if PF_LANES == 1
+#define PF_DEFINE_LOAD(name, type)                                         \
+  static inline RealPair load_##name(global const type* row, uint count) { \
+    RealPair pair;                                                         \
+    pair.left = (Real)row[0];                                              \
+    pair.right = (Real)row[1];                                             \
+    return pair;                                                           \
+  }
+#else
+#define PF_DEFINE_LOAD(name, type)                                                           \
+  static inline RealPair load_##name(global const type* row, uint count) {                   \
+    PF_LANE_TYPE(type) low, high;                                                            \
+    if (count == PF_LANES) {                                                                 \
+      low = PF_VLOAD(0, row);                                                                \
+      high = PF_VLOAD(1, row);                                                               \
+    } else {                                                                                 \
+      type padded[2 * PF_LANES];                                                             \
+      for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0;  \
+      low = PF_VLOAD(0, padded);                                                             \
+      high = PF_VLOAD(1, padded);                                                            \
+    }                                                                                        \
+    RealPair pair;                                                                           \
+    pair.left = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.even, high.even)); \
+    pair.right = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.odd, high.odd));  \
+    return pair;                                                                             \
+  }
+#endif
+
+PF_DEFINE_LOAD(readings, PF_SENSEL)
+PF_DEFINE_LOAD(plane, float)
+PF_DEFINE_LOAD(mask, uchar)
+
+/* Writes the first `count` lanes. */
+static inline void store_plane(Real value, global float* plane, uint count) {
+#if PF_LANES == 1
+  *plane = value;
+#else
+  if (count == PF_LANES) {
+    PF_VSTORE(value, 0, plane);
+  } else {
+    float lanes[PF_LANES];
+    PF_VSTORE(value, 0, lanes);
+    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
+  }
+#endif
+}
+
+static inline void store_status(Bits value, global uchar* plane, uint count) {
+#if PF_LANES == 1
+  *plane = (uchar)value;
+#else
+  const PF_LANE_TYPE(uchar) bytes = PF_JOIN(convert_uchar, PF_LANES)(value);
+  if (count == PF_LANES) {
+    PF_VSTORE(bytes, 0, plane);
+  } else {
+    uchar lanes[PF_LANES];
+    PF_VSTORE(bytes, 0, lanes);
+    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
+  }
+#endif
+}
+
+/* A raw reading through the stages of the plan. */
+static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, Real good) {
+  Sensel sensel = raw_sensel(raw);
+#ifdef PF_LARGEST_READING
+  sensel = reject_absurd(sensel, (Real)(PF_LARGEST_READING));
+#endif
+#ifdef PF_MASK
+  sensel = apply_mask(sensel, good);
+#endif
+#ifdef PF_FULL_SCALE
+  sensel = mark_saturated(sensel, (Real)(PF_FULL_SCALE));
+#endif
+#ifdef PF_TARE
+  sensel = subtract_tare(sensel, tare);
+#endif
+#ifdef PF_GAIN
+  sensel = apply_gain(sensel, gain);
+#endif
+  sensel = classify(sensel, (Real)(PF_THRESHOLD));
+#ifdef PF_DEAD_ZONE
+  sensel = fill_dead_zone(sensel, dead_zone);
+#endif
+  return sensel;
+}
+
+typedef struct {
+  Sensel left;
+  Sensel right;
+} SenselPair;
+
+/* The sensels of one row under `count` pillars. `offset` is the first one's place in the
+ * calibration planes; planes that the plan does not have are null and not touched. */
+static inline SenselPair read_sensels(global const PF_SENSEL* raw, size_t offset, uint count,
+                                      global const float* tare, global const float* gain,
+                                      global const float* dead_zone, global const uchar* mask) {
+  const RealPair readings = load_readings(raw, count);
+  RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
+  RealPair gains = tares;
+  RealPair dead_zones = tares;
+  RealPair good = tares;
+#ifdef PF_TARE
+  tares = load_plane(tare + offset, count);
+#endif
+#ifdef PF_GAIN
+  gains = load_plane(gain + offset, count);
+#endif
+#ifdef PF_DEAD_ZONE
+  dead_zones = load_plane(dead_zone + offset, count);
+#endif
+#ifdef PF_MASK
+  good = load_mask(mask + offset, count);
+#endif
+  SenselPair pair;
+  pair.left = prepare_sensel(readings.left, tares.left, gains.left, dead_zones.left, good.left);
+  pair.right =
+      prepare_sensel(readings.right, tares.right, gains.right, dead_zones.right, good.right);
+  return pair;
+}
+
+/* One work-item solves every get_global_size(0)-th block of PF_LANES pillars of its pillar row.
+ *
+ * raw          readings, `row_stride` apart from one row of sensels to the next
+ * tare .. mask calibration planes [rows, plane_stride], or null
+ * shear_x ..   results [get_global_size(1), pillar_cols]; magnitude, theta and phi may be null */
+kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, uint pillar_cols,
+                        global const float* restrict tare, global const float* restrict gain,
+                        global const float* restrict dead_zone, global const uchar* restrict mask,
+                        ulong plane_stride, global float* restrict shear_x,
+                        global float* restrict shear_y, global float* restrict normal,
+                        global uchar* restrict status, global float* restrict magnitude,
+                        global float* restrict theta, global float* restrict phi) {
+  const size_t row = get_global_id(1);
+  const uint step = (uint)get_global_size(0) * PF_LANES;
+  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+
+  for (uint col = (uint)get_global_id(0) * PF_LANES; col < pillar_cols; col += step) {
+    const uint count = min(pillar_cols - col, (uint)PF_LANES);
+    global const PF_SENSEL* const first = raw + 2 * row * row_stride + 2 * col;
+    const size_t offset = 2 * row * plane_stride + 2 * col;
+    const SenselPair top = read_sensels(first, offset, count, tare, gain, dead_zone, mask);
+    const SenselPair bottom =
+        read_sensels(first + row_stride, offset + plane_stride, count, tare, gain, dead_zone, mask);
+    const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
+
+    const Diagonals diagonals = pillar_diagonals(pillar);
+    const ParitySum sum = parity_sum(diagonals);
+    const Force force = direct_force(diagonals, sum, scale);
+    Bits bits = direct_status(pillar, sum);
+#ifdef PF_PARITY_TOLERANCE
+    bits = bits | (fails_parity(pillar, sum, (Real)(PF_THRESHOLD), (Real)(PF_PARITY_TOLERANCE))
+                       ? PF_BITS(PF_STATUS_INCONSISTENT)
+                       : PF_BITS(0));
+#endif
+
+    const size_t index = row * pillar_cols + col;
+    store_plane(force.shear_x, shear_x + index, count);
+    store_plane(force.shear_y, shear_y + index, count);
+    store_plane(force.normal, normal + index, count);
+    store_status(bits, status + index, count);
+#ifdef PF_ANGLES
+    const Direction direction = direction_of(force);
+    store_plane(direction.magnitude, magnitude + index, count);
+    store_plane(direction.theta, theta + index, count);
+    store_plane(direction.phi, phi + index, count);
+#endif
+  }
+}

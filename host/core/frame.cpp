@@ -19,9 +19,7 @@ FrameBuffer::FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols
   std::memset(data_.get(), 0, size_);
 }
 
-void FrameBuffer::Free::operator()(std::byte* memory) const {
-  ::operator delete[](memory, kPage);
-}
+void FrameBuffer::Free::operator()(std::byte* memory) const { ::operator delete[](memory, kPage); }
 
 FrameView FrameBuffer::view() const { return {data_.get(), type_, rows_, cols_, cols_}; }
 

@@ -9,7 +9,7 @@
 namespace pillarfield {
 namespace {
 
-void check_range(const char* where, const char* name, double value, double low, double high) {
+void check_range(std::string_view where, const char* name, double value, double low, double high) {
   if (std::isfinite(value) && value >= low && value <= high) return;
   throw Error(where, fmt::format("{} is {}", name, value),
               fmt::format("it must lie in [{}, {}]", low, high));
@@ -19,23 +19,29 @@ void check_range(const char* where, const char* name, double value, double low, 
 
 std::size_t size_of(SenselType type) {
   switch (type) {
-    case SenselType::u8: return 1;
-    case SenselType::u16: return 2;
-    case SenselType::f32: break;
+    case SenselType::u8:
+      return 1;
+    case SenselType::u16:
+      return 2;
+    case SenselType::f32:
+      break;
   }
   return 4;
 }
 
 const char* name_of(SenselType type) {
   switch (type) {
-    case SenselType::u8: return "uint8";
-    case SenselType::u16: return "uint16";
-    case SenselType::f32: break;
+    case SenselType::u8:
+      return "uint8";
+    case SenselType::u16:
+      return "uint16";
+    case SenselType::f32:
+      break;
   }
   return "float32";
 }
 
-void check(const Skin& skin, const char* where) {
+void check(const Skin& skin, std::string_view where) {
   check_range(where, "rows", skin.rows, 2, kMaxSensels);
   check_range(where, "cols", skin.cols, 2, kMaxSensels);
   check_range(where, "sensel_pitch_mm", skin.sensel_pitch_mm, 1e-3, 1e3);

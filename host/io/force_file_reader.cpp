@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
@@ -138,6 +139,17 @@ double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   double time_s = 0;
   state_->time.get(index, H5T_NATIVE_DOUBLE, &time_s);
   return time_s;
+}
+
+bool is_force_file(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  try {
+    if (kind_of(path) != FileKind::hdf5) return false;
+    const hdf5::File file = hdf5::open_to_read(path);
+    return hdf5::read_text(file, file.id.get(), "format") == layout::kName;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 }  // namespace pillarfield

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "io/calibration_limits.h"
 #include "io/file_source.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"

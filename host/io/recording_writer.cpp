@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "io/calibration_limits.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
 #include "io/hdf5_frames.h"

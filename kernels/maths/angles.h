@@ -3,15 +3,18 @@
 typedef struct {
   Real magnitude; /* N */
   Real theta;     /* rad from the outward normal, [0, pi] */
-  Real phi;       /* rad in the plane of the skin, [-pi, pi]; 0 where there is no shear */
+  Real phi;       /* rad in the plane of the skin, [-pi, pi], and 0 where there is no shear */
 } Direction;
 
-/* Within 2 ULP (magnitude) and 4 ULP (angles) of the exact values of the given components. */
+/* In C++ within 2 ULP of the exact values of the given components; OpenCL allows a device 4 ULP for
+ * each hypot and 6 for atan2. */
 static inline Direction direction_of(Force force) {
+  const Real zero = PF_REAL(0.0);
   const Real shear = hypot(force.shear_x, force.shear_y);
   Direction direction;
   direction.magnitude = hypot(shear, force.normal);
   direction.theta = atan2(shear, force.normal);
-  direction.phi = shear > PF_REAL(0.0) ? atan2(-force.shear_y, -force.shear_x) : PF_REAL(0.0);
+  /* Subtracted, not negated: a component +0 must not become -0, on the far side of the cut. */
+  direction.phi = shear > zero ? atan2(zero - force.shear_y, zero - force.shear_x) : zero;
   return direction;
 }

@@ -3,9 +3,11 @@
  *
  * The two diagonals 1-3 and 2-4 of a pillar measure the same thing, 2 k normal: the parity sum S.
  * A diagonal with both readings gives S; one with a single reading follows from S; where no
- * diagonal has both, S is only known to lie in an interval. The force is linear in what remains. */
+ * diagonal has both, S is only known to lie in an interval. The force is linear in what remains,
+ * and it always explains the readings: usable sensels read V, lifted ones hide theirs, saturated
+ * ones exceed. */
 
-/* The four sensels of a pillar. */
+/* The four sensels of a pillar, after `classify`. */
 typedef struct {
   Sensel s1;
   Sensel s2;
@@ -13,14 +15,14 @@ typedef struct {
   Sensel s4;
 } Pillar;
 
-/* The readings of two opposite sensels, counts; one that is not known reads zero. */
+/* Two opposite sensels. A sensel stands when V is taken to be its reading. */
 typedef struct {
-  Real p;
+  Real p; /* readings, counts */
   Real q;
-  Mask p_known;
-  Mask q_known;
-  Mask full;    /* p + q measures the parity sum */
-  Mask missing; /* a sensel that tells nothing, not even that it is lifted */
+  Mask p_stands;
+  Mask q_stands;
+  Mask full; /* p + q measures the parity sum */
+  Mask open; /* p + q does not even bound the parity sum: a sensel is missing */
 } Diagonal;
 
 typedef struct {
@@ -40,66 +42,84 @@ typedef struct {
   Real normal;
 } ForceScale;
 
-/* A saturated reading is a lower bound. It stands for the model's V only where parity, from the
- * sensel opposite and the other diagonal (`other_usable`), cannot replace it. */
-static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask other_usable) {
+static inline Mask is_pressed(Sensel sensel) { return sensel.usable | sensel.saturated; }
+
+static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) & is_pressed(q); }
+
+/* Which sensels of a diagonal stand (D4): the usable; the saturated, whose reading is a lower
+ * bound, unless the other diagonal has `more` and its parity sum leaves that for them; and the
+ * lifted, whose reading is an upper bound, where the sensel opposite does not stand. Without
+ * `contact` all read zero. */
+static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
+  const Mask p_follows = more & (q.usable | is_lifted(q));
+  const Mask q_follows = more & (p.usable | is_lifted(p));
+  const Mask p_answers = p.usable | (p.saturated & !p_follows);
+  const Mask q_answers = q.usable | (q.saturated & !q_follows);
   Diagonal d;
-  d.p_known = p.usable | (p.saturated & !(q.usable & other_usable));
-  d.q_known = q.usable | (q.saturated & !(p.usable & other_usable));
-  d.p = d.p_known ? p.reading : PF_REAL(0.0);
-  d.q = d.q_known ? q.reading : PF_REAL(0.0);
-  d.full = (p.usable & q.usable) | (d.p_known & d.q_known & !other_usable);
-  d.missing = p.missing | q.missing;
+  d.p = contact ? p.reading : PF_REAL(0.0);
+  d.q = contact ? q.reading : PF_REAL(0.0);
+  d.p_stands = p_answers | (is_lifted(p) & !q_answers);
+  d.q_stands = q_answers | (is_lifted(q) & !p_answers);
+  d.full = p_answers & q_answers & !(more & p.saturated & q.saturated);
+  d.open = p.missing | q.missing;
   return d;
 }
 
 static inline Diagonals pillar_diagonals(Pillar pillar) {
-  const Mask rising_usable = pillar.s1.usable & pillar.s3.usable;
-  const Mask falling_usable = pillar.s2.usable & pillar.s4.usable;
+  const Mask rising_pressed = both_pressed(pillar.s1, pillar.s3);
+  const Mask falling_pressed = both_pressed(pillar.s2, pillar.s4);
+  const Real rising = pillar.s1.reading + pillar.s3.reading;
+  const Real falling = pillar.s2.reading + pillar.s4.reading;
+  const Mask contact =
+      is_pressed(pillar.s1) | is_pressed(pillar.s2) | is_pressed(pillar.s3) | is_pressed(pillar.s4);
   Diagonals diagonals;
-  diagonals.rising = make_diagonal(pillar.s1, pillar.s3, falling_usable);
-  diagonals.falling = make_diagonal(pillar.s2, pillar.s4, rising_usable);
+  diagonals.rising =
+      make_diagonal(pillar.s1, pillar.s3, falling_pressed & (falling > rising), contact);
+  diagonals.falling =
+      make_diagonal(pillar.s2, pillar.s4, rising_pressed & (rising > falling), contact);
   return diagonals;
 }
 
-/* Largest parity sum that a diagonal which is not full allows (D4): its reading where the other
- * sensel is lifted, twice that where the other is missing, any where it knows nothing. */
-static inline Real parity_bound(Diagonal d) {
-  const Real reading = d.p + d.q;
-  const Real if_missing = (d.p_known | d.q_known) ? reading + reading : PF_REAL(1e38);
-  return d.missing ? if_missing : reading;
+/* The upper end of the interval where no diagonal is full (D5): the least that a diagonal without a
+ * missing sensel allows. Where both have one, nothing bounds the sum; the interval then is the one
+ * about the smallest force that explains the readings. */
+static inline Real parity_bound(Diagonal a, Diagonal b) {
+  const Real a_sum = a.p + a.q;
+  const Real b_sum = b.p + b.q;
+  const Real least = a_sum < b_sum ? a_sum : b_sum;
+  const Real closed = a.open ? b_sum : (b.open ? a_sum : least);
+  const Mask both = (a.p_stands | a.q_stands) & (b.p_stands | b.q_stands);
+  const Real share = both ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
+  return (a.open & b.open) ? share * (a_sum + b_sum) : closed;
 }
 
-/* The interval of the parity sum (D3, D4). */
+/* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5). */
 static inline ParitySum parity_sum(Diagonals diagonals) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Real a_sum = a.p + a.q;
   const Real b_sum = b.p + b.q;
-  const Real of_one = a.full ? a_sum : b_sum;
-  const Real measured = (a.full & b.full) ? PF_REAL(0.5) * (a_sum + b_sum) : of_one;
-
-  const Mask any_known = a.p_known | a.q_known | b.p_known | b.q_known;
-  const Real a_bound = parity_bound(a);
-  const Real b_bound = parity_bound(b);
-  const Real least = a_bound < b_bound ? a_bound : b_bound;
-  const Real bound = any_known ? least : PF_REAL(0.0);
-
+  const Real mean = PF_REAL(0.5) * (a_sum + b_sum);
+  const Real measured = a.full ? (b.full ? mean : a_sum) : b_sum;
+  const Mask determined = a.full | b.full;
   ParitySum sum;
-  sum.low = (a.full | b.full) ? measured : PF_REAL(0.0);
-  sum.high = (a.full | b.full) ? measured : bound;
+  sum.low = determined ? measured : PF_REAL(0.0);
+  sum.high = determined ? measured : parity_bound(a, b);
   return sum;
 }
 
-/* V_p - V_q of a diagonal, an unknown reading being what parity leaves for it (D5). */
+/* V_p - V_q of a diagonal whose parity sum is `sum`: a sensel that does not stand has what parity
+ * leaves for it; two such share equally (D3). */
 static inline Real diagonal_difference(Diagonal d, Real sum) {
-  const Real p = d.p_known ? d.p : sum - d.q;
-  const Real q = d.q_known ? d.q : sum - d.p;
-  return p - q;
+  const Real by_p = (d.p + d.p) - sum;
+  const Real by_q = sum - (d.q + d.q);
+  const Real by_one = d.p_stands ? by_p : (d.q_stands ? by_q : PF_REAL(0.0));
+  return (d.p_stands & d.q_stands) ? d.p - d.q : by_one;
 }
 
-/* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 every sum of the interval
- * gives a force that explains the readings: together they are the segment of possible forces. */
+/* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 every sum of the
+ * interval gives a force that explains the readings: together they are the segment of possible
+ * forces. */
 static inline Force force_at(Diagonals diagonals, Real sum, ForceScale scale) {
   const Real rising = diagonal_difference(diagonals.rising, sum);
   const Real falling = diagonal_difference(diagonals.falling, sum);
@@ -116,8 +136,8 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
   return force_at(diagonals, PF_REAL(0.5) * (sum.low + sum.high), scale);
 }
 
-/* The status byte, bits 0 to 6. Opposite sensels usable while the other two are lifted contradict
- * the model and are inconsistent. */
+/* The status byte, bits 0 to 6. Two opposite sensels usable while the other two are lifted
+ * contradict the model and are inconsistent. */
 static inline Bits direct_status(Pillar pillar, ParitySum sum) {
   const Bits none = PF_BITS(0);
   const Mask missing =
@@ -128,37 +148,33 @@ static inline Bits direct_status(Pillar pillar, ParitySum sum) {
       pillar.s1.usable & pillar.s3.usable & is_lifted(pillar.s2) & is_lifted(pillar.s4);
   const Mask falling_alone =
       pillar.s2.usable & pillar.s4.usable & is_lifted(pillar.s1) & is_lifted(pillar.s3);
-  Bits status = pillar.s1.usable ? PF_BITS(PF_STATUS_SENSEL_1) : none;
-  status = status | (pillar.s2.usable ? PF_BITS(PF_STATUS_SENSEL_2) : none);
-  status = status | (pillar.s3.usable ? PF_BITS(PF_STATUS_SENSEL_3) : none);
-  status = status | (pillar.s4.usable ? PF_BITS(PF_STATUS_SENSEL_4) : none);
-  status = status | (sum.low < sum.high ? PF_BITS(PF_STATUS_AMBIGUOUS) : none);
-  status = status | (saturated ? PF_BITS(PF_STATUS_SATURATED) : none);
-  status = status | ((missing | rising_alone | falling_alone) ? PF_BITS(PF_STATUS_INCONSISTENT)
-                                                              : none);
-  return status;
+  const Mask inconsistent = missing | rising_alone | falling_alone;
+  return (pillar.s1.usable ? PF_BITS(PF_STATUS_SENSEL_1) : none) |
+         (pillar.s2.usable ? PF_BITS(PF_STATUS_SENSEL_2) : none) |
+         (pillar.s3.usable ? PF_BITS(PF_STATUS_SENSEL_3) : none) |
+         (pillar.s4.usable ? PF_BITS(PF_STATUS_SENSEL_4) : none) |
+         (sum.low < sum.high ? PF_BITS(PF_STATUS_AMBIGUOUS) : none) |
+         (saturated ? PF_BITS(PF_STATUS_SATURATED) : none) |
+         (inconsistent ? PF_BITS(PF_STATUS_INCONSISTENT) : none);
 }
 
-/* By how much `lifted`, opposite `usable`, should read above zero for parity to hold, counts (D8);
- * zero where the two are not so. */
-static inline Real lifted_surplus(Sensel lifted, Sensel usable, Real sum) {
-  return (is_lifted(lifted) & usable.usable) ? sum - usable.reading : PF_REAL(0.0);
+/* Whether one of two opposite sensels is usable and the other lifted. */
+static inline Mask one_lifted(Sensel p, Sensel q) {
+  return (p.usable & is_lifted(q)) | (is_lifted(p) & q.usable);
 }
 
 /* Whether a redundant reading disagrees by more than `tolerance` counts: with four usable, the
- * parity residual (D7); with three, what the lifted one should read beyond `threshold` (D8). */
+ * parity residual (D7); with three, what parity leaves for the lifted sensel beyond the dead zone
+ * and `threshold` that can hide it (D8). */
 static inline Mask fails_parity(Pillar pillar, ParitySum sum, Real threshold, Real tolerance) {
   const Mask rising_usable = pillar.s1.usable & pillar.s3.usable;
   const Mask falling_usable = pillar.s2.usable & pillar.s4.usable;
-  const Real residual = (pillar.s1.reading + pillar.s3.reading) -
-                        (pillar.s2.reading + pillar.s4.reading);
-  const Real surplus_1 = lifted_surplus(pillar.s1, pillar.s3, sum.high);
-  const Real surplus_3 = lifted_surplus(pillar.s3, pillar.s1, sum.high);
-  const Real surplus_2 = lifted_surplus(pillar.s2, pillar.s4, sum.high);
-  const Real surplus_4 = lifted_surplus(pillar.s4, pillar.s2, sum.high);
+  const Real rising = pillar.s1.reading + pillar.s3.reading;
+  const Real falling = pillar.s2.reading + pillar.s4.reading;
   const Real allowed = threshold + tolerance;
-  const Mask rising_fails = falling_usable & ((surplus_1 > allowed) | (surplus_3 > allowed));
-  const Mask falling_fails = rising_usable & ((surplus_2 > allowed) | (surplus_4 > allowed));
-  return (rising_usable & falling_usable & (fabs(residual) > tolerance)) | rising_fails |
-         falling_fails;
+  const Mask rising_hides = falling_usable & one_lifted(pillar.s1, pillar.s3);
+  const Mask falling_hides = rising_usable & one_lifted(pillar.s2, pillar.s4);
+  return (rising_usable & falling_usable & (fabs(rising - falling) > tolerance)) |
+         (rising_hides & (sum.high - rising > allowed)) |
+         (falling_hides & (sum.high - falling > allowed));
 }

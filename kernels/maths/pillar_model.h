@@ -18,7 +18,7 @@ typedef struct {
 } Readings;
 
 /* What the four sensels would read if they answered pull as well as push: negative where the pillar
- * lifts off. `counts_per_newton` is k. Each reading is within 3 ULP of the largest of the four. */
+ * lifts off. `counts_per_newton` is k. Each reading is within 5 ULP of the largest of the four. */
 static inline Readings model_readings(Force force, Real counts_per_newton) {
   const Real half_diagonal = PF_REAL(0.70710678118654752440);
   const Real pressed = counts_per_newton * force.normal;

@@ -2,15 +2,16 @@
  * an entry point calls those that its scene needs, in the order of this file
  * (docs/derivations/direct_solve.md, section 1). */
 
-/* A reading in counts and what is known of it. Until `classify`, nothing is usable. */
+/* A reading in counts and what it tells of the model's V. After `classify` at most one mask is set;
+ * a sensel with none is lifted. */
 typedef struct {
   Real reading;
-  Mask usable;    /* above the threshold: a measurement of the model's V */
-  Mask missing;   /* tells nothing: dead, absent, masked, or not a number */
-  Mask saturated; /* tells only that V is at least the reading */
+  Mask usable;    /* V is the reading, which is above the threshold */
+  Mask saturated; /* V is at least the reading, which is above the threshold */
+  Mask missing;   /* tells nothing: dead, absent, masked, or not a number; reads zero */
 } Sensel;
 
-/* A sensel that read `raw` and has nothing wrong with it. */
+/* A sensel that read `raw` and has nothing wrong with it: `raw < raw` is false in every lane. */
 static inline Sensel raw_sensel(Real raw) {
   Sensel sensel;
   sensel.reading = raw;
@@ -27,8 +28,8 @@ static inline Sensel reject_absurd(Sensel sensel, Real largest) {
 }
 
 /* `good` is zero where the sensel is masked. */
-static inline Sensel apply_mask(Sensel sensel, Bits good) {
-  sensel.missing = sensel.missing | (good == PF_BITS(0));
+static inline Sensel apply_mask(Sensel sensel, Real good) {
+  sensel.missing = sensel.missing | (good == PF_REAL(0.0));
   return sensel;
 }
 
@@ -48,23 +49,26 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
   return sensel;
 }
 
-/* Readings above `threshold` counts are usable; what is neither usable nor saturated reads zero,
- * and what is also not missing is lifted. */
+/* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated; all
+ * others read zero, and are lifted or missing. A saturated sensel that its calibration brings down
+ * to the threshold tells nothing. */
 static inline Sensel classify(Sensel sensel, Real threshold) {
-  const Mask excluded = sensel.missing | sensel.saturated;
-  sensel.usable = (sensel.reading > threshold) & !excluded;
-  sensel.reading = (sensel.usable | sensel.saturated) ? sensel.reading : PF_REAL(0.0);
+  const Mask answers = (sensel.reading > threshold) & !sensel.missing;
+  sensel.missing = sensel.missing | (sensel.saturated & !answers);
+  sensel.usable = answers & !sensel.saturated;
+  sensel.saturated = answers & sensel.saturated;
+  sensel.reading = answers ? sensel.reading : PF_REAL(0.0);
   return sensel;
 }
 
-/* Gives back to a sensel that answers the `dead_zone` counts it swallowed. */
+/* Gives back the `dead_zone` counts that a sensel swallows before it answers. A lifted one then
+ * reads the most that its silence can hide. */
 static inline Sensel fill_dead_zone(Sensel sensel, Real dead_zone) {
-  const Mask answers = sensel.usable | sensel.saturated;
-  sensel.reading = answers ? sensel.reading + dead_zone : sensel.reading;
+  sensel.reading = sensel.missing ? sensel.reading : sensel.reading + dead_zone;
   return sensel;
 }
 
-/* Neither pressed nor unknown: the model's V is at most zero. */
+/* Silent and not missing: V is at most the reading, which is the dead zone or zero. */
 static inline Mask is_lifted(Sensel sensel) {
-  return !(sensel.usable | sensel.missing | sensel.saturated);
+  return !(sensel.usable | sensel.saturated | sensel.missing);
 }

@@ -260,7 +260,7 @@ TEST(RecordingWriter, RefusesWhatIsOutOfRange) {
   calibration.gain = {1, 1, 0, 1};
   EXPECT_TRUE(has_all(refused(skin_of(1, 2), {}, {}), {"r.h5", "rows is 1"}));
   EXPECT_TRUE(has_all(refused(skin_of(2, 2), calibration, {}), {"gain", "row 1, column 0"}));
-  EXPECT_TRUE(has_all(refused(skin_of(2, 4), calibration, {}), {"gain has 4 values", "2 x 4"}));
+  EXPECT_TRUE(has_all(refused(skin_of(2, 4), calibration, {}), {"'gain' has 4 values", "2 x 4"}));
   EXPECT_TRUE(has_all(refused(skin_of(2, 2), {}, {.flush_every = 0}), {"flush_every"}));
   EXPECT_EQ(directory.names(), Names{});
 }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
+
+#include "pillarfield/skin.h"
 
 namespace pillarfield {
 
@@ -12,14 +15,22 @@ namespace pillarfield {
 /// raw = t + g·max(0, V − z). Its reading is therefore taken as V = (raw − t)·gain + z where
 /// (raw − t)·gain is above the threshold, with gain = 1/g.
 struct Calibration {
-  std::vector<float> tare;       ///< counts, reading of the unloaded sensel
-  std::vector<float> gain;       ///< factor on (raw − tare) that makes sensels equal, > 0
-  std::vector<float> dead_zone;  ///< counts, what a sensel swallows before it answers, >= 0
+  std::vector<float> tare;         ///< counts, reading of the unloaded sensel
+  std::vector<float> gain;         ///< factor on (raw − tare) that makes sensels equal, > 0
+  std::vector<float> dead_zone;    ///< counts, what a sensel swallows before it answers, >= 0
   std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
 
   [[nodiscard]] bool empty() const {
     return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty();
   }
 };
+
+/// Limits of Calibration::gain.
+inline constexpr double kMinGain = 1e-2;
+inline constexpr double kMaxGain = 1e2;
+
+/// Throws Error, its place being `where`, when a plane has not one value per sensel of `skin` or a
+/// value is out of its range.
+void check(const Calibration& calibration, const Skin& skin, std::string_view where);
 
 }  // namespace pillarfield

@@ -36,13 +36,15 @@ struct Contact {
   /// Contact radius (sphere, punch) or half width (cylinder) at reference_load_n. It follows the
   /// load as P^(1/3) (sphere) or P^(1/2) (cylinder) and is constant for a punch.
   double contact_radius_mm = 5;
-  double reference_load_n = 1;
+  double reference_load_n = 1;  ///< a scene's default: the heaviest load of the path
   double length_mm = 0;         ///< cylinder: length along its axis
   double friction = 0;          ///< mu
-  double direction_deg = 0;     ///< of the tangential force on the skin, counter-clockwise from +x
-  double tangential_ratio = 1;  ///< Q / (mu P): partial_slip and roll, in (0, 1)
-  bool clockwise = false;       ///< spin: sense of the tangential force on the skin
-  std::vector<ContactKey> path; ///< one key or more, times rising
+  /// Of the tangential force on the skin, counter-clockwise from +x. A cylinder's axis lies across
+  /// it; a roller, being braked, rolls that way.
+  double direction_deg = 0;
+  double tangential_ratio = 1;   ///< Q / (mu P): partial_slip and roll, in (0, 1)
+  bool clockwise = false;        ///< spin: sense of the tangential force on the skin
+  std::vector<ContactKey> path;  ///< one key or more, times rising
 };
 
 }  // namespace pillarfield

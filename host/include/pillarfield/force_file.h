@@ -15,10 +15,10 @@ struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
   double pillar_pitch_mm = 0;
-  std::string estimator;   ///< "direct"
-  std::string device;      ///< name of the device that solved it
-  std::string source;      ///< name of the file the frames came from
-  bool angles = false;     ///< with magnitude, theta and phi
+  std::string estimator;  ///< "direct"
+  std::string device;     ///< name of the device that solved it
+  std::string source;     ///< name of the file the frames came from
+  bool angles = false;    ///< with magnitude, theta and phi
 };
 
 /// Takes solved frames one by one. Like recordings, files are written under `path` + ".part" and
@@ -36,6 +36,9 @@ class ForceSink {
 /// Throws Error for another ending or a place that cannot be written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                                            const ForceFileInfo& info);
+
+/// Whether this is an HDF5 file that says it holds force fields; false where it cannot be read.
+[[nodiscard]] bool is_force_file(const std::filesystem::path& path);
 
 /// Reads "pillarfield-forces" files, also ones whose writer was killed.
 class ForceFileReader {

@@ -2,29 +2,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "pillarfield/calibration.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
-#include "pillarfield/skin.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
-
-/// What a processor computes, and from which sensor. Each member that is set or not empty adds its
-/// stage to the kernel; what is not named costs nothing.
-struct SolverPlan {
-  Skin skin;
-  SenselType sensel_type = SenselType::u8;
-  Calibration calibration;
-  /// Largest parity residual, and largest surplus of a lifted sensel, that the status byte passes
-  /// as consistent, in counts; unset: not tested.
-  std::optional<double> parity_tolerance_counts;
-  bool angles = false;  ///< also magnitude, theta and phi
-};
 
 /// How frames and results reach the device.
 enum class Memory : std::uint8_t {
@@ -35,13 +21,13 @@ enum class Memory : std::uint8_t {
 
 /// One line about an OpenCL device, as `pillarfield info --devices` prints it.
 struct DeviceInfo {
-  int index = 0;          ///< for open_device
+  int index = 0;  ///< for open_device
   std::string name;
   std::string platform;
-  std::string type;       ///< "CPU", "GPU", "accelerator" or "other"
-  int lanes = 1;          ///< pillars a work-item solves at once
+  std::string type;  ///< "CPU", "GPU", "accelerator" or "other"
+  int lanes = 1;     ///< pillars a work-item solves at once
   bool shares_memory = false;
-  std::string unsuitable; ///< why it is passed over; empty where it is suitable
+  std::string unsuitable;  ///< why it is passed over; empty where it is suitable
 };
 
 /// All OpenCL devices, suitable or not; none is no error.
@@ -83,6 +69,7 @@ class Processor {
   struct Options {
     Memory memory = Memory::automatic;
     int frames_in_flight = 2;  ///< 1..64
+    int lanes = 0;  ///< pillars that a work-item solves at once: 1, 2, 4, 8 or 16; 0: DeviceInfo's
   };
 
   /// Compiles (or finds compiled) the kernel and makes all buffers. Throws Error on a plan out of

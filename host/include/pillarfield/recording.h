@@ -50,8 +50,8 @@ class FrameSource {
 class RecordingWriter {
  public:
   struct Options {
-    bool truth = false;            ///< frames come with their truth
-    std::uint32_t flush_every = 16; ///< frames, at least 1
+    bool truth = false;              ///< frames come with their truth
+    std::uint32_t flush_every = 16;  ///< frames, at least 1
   };
   RecordingWriter(const std::filesystem::path& path, const Skin& skin, SenselType type,
                   const Calibration& calibration, const Options& options);

@@ -16,9 +16,9 @@ namespace pillarfield {
 /// What makes a sensor differ from the model, each absent (zero or unset) unless the scene lists
 /// it. The order is that of the signal: dead zone, sensitivity, tare, noise, converter, dead.
 struct SensorModel {
-  double dead_zone_counts = 0;    ///< what a sensel swallows before it answers
-  double gain_spread = 0;         ///< relative standard deviation of the sensels' sensitivity, < 0.3
-  double tare_counts = 0;         ///< mean reading of an unloaded sensel
+  double dead_zone_counts = 0;  ///< what a sensel swallows before it answers
+  double gain_spread = 0;       ///< relative standard deviation of the sensels' sensitivity, < 0.3
+  double tare_counts = 0;       ///< mean reading of an unloaded sensel
   double tare_spread_counts = 0;  ///< its standard deviation over sensels
   double noise_counts = 0;        ///< standard deviation of a reading over frames
   std::optional<int> adc_bits;    ///< 1..16; readings are rounded to whole counts; unset: float32
@@ -28,8 +28,8 @@ struct SensorModel {
 /// A frame in which every pillar has a force of its own: direction phi runs along a row, theta down
 /// the columns, and the whole chart repeats for each magnitude.
 struct Chart {
-  std::uint32_t directions = 72;   ///< columns: phi in equal steps over the circle
-  std::uint32_t inclinations = 31; ///< rows of a block: theta from 0 to max_theta_deg
+  std::uint32_t directions = 72;    ///< columns: phi in equal steps over the circle
+  std::uint32_t inclinations = 31;  ///< rows of a block: theta from 0 to max_theta_deg
   double max_theta_deg = 90;
   std::vector<double> magnitudes_n = {0.3};  ///< blocks, top to bottom
 };

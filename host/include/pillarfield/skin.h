@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 
 namespace pillarfield {
 
@@ -20,12 +21,12 @@ enum class SenselType : std::uint8_t { u8, u16, f32 };
 /// Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at
 /// (r, c) stands on the sensels (2r..2r+1, 2c..2c+1); a last odd row or column has no pillar.
 struct Skin {
-  std::uint32_t rows = 0;                  ///< sensel rows, 2..65534
-  std::uint32_t cols = 0;                  ///< sensel columns, 2..65534
-  double sensel_pitch_mm = 0.632455532;    ///< 250 sensels per cm²: 10/sqrt(250) mm
-  double counts_per_newton = 320;          ///< k of equation (2): counts per newton and pillar
-  double threshold_counts = 0;             ///< a reading above it is usable
-  std::optional<double> full_scale_counts; ///< a reading at or above it is saturated
+  std::uint32_t rows = 0;                   ///< sensel rows, 2..65534
+  std::uint32_t cols = 0;                   ///< sensel columns, 2..65534
+  double sensel_pitch_mm = 0.632455532;     ///< 250 sensels per cm²: 10/sqrt(250) mm
+  double counts_per_newton = 320;           ///< k of equation (2): counts per newton and pillar
+  double threshold_counts = 0;              ///< a reading above it is usable
+  std::optional<double> full_scale_counts;  ///< a reading at or above it is saturated
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
@@ -41,6 +42,6 @@ inline constexpr double kMinCountsPerNewton = 1e-2;
 inline constexpr double kMaxCountsPerNewton = 1e6;
 
 /// Throws Error, its place being `where`, when a member of `skin` is out of its range.
-void check(const Skin& skin, const char* where);
+void check(const Skin& skin, std::string_view where);
 
 }  // namespace pillarfield

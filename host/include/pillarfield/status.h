@@ -6,15 +6,15 @@
 /// wrong with it. The values are those of kernels/maths/status.h.
 namespace pillarfield::status {
 
-inline constexpr std::uint8_t kSensel1 = 1;  ///< upper right sensel usable
-inline constexpr std::uint8_t kSensel2 = 2;  ///< upper left
-inline constexpr std::uint8_t kSensel3 = 4;  ///< lower left
-inline constexpr std::uint8_t kSensel4 = 8;  ///< lower right
-inline constexpr std::uint8_t kUsable = 15;  ///< mask of the four
-inline constexpr std::uint8_t kAmbiguous = 16;      ///< the force is the middle of a segment
-inline constexpr std::uint8_t kSaturated = 32;      ///< a sensel at full scale
-inline constexpr std::uint8_t kInconsistent = 64;   ///< a missing sensel, or readings at odds
-inline constexpr std::uint8_t kFromNeighbours = 128; ///< ambiguity resolved by the field
+inline constexpr std::uint8_t kSensel1 = 1;           ///< upper right sensel usable
+inline constexpr std::uint8_t kSensel2 = 2;           ///< upper left
+inline constexpr std::uint8_t kSensel3 = 4;           ///< lower left
+inline constexpr std::uint8_t kSensel4 = 8;           ///< lower right
+inline constexpr std::uint8_t kUsable = 15;           ///< mask of the four
+inline constexpr std::uint8_t kAmbiguous = 16;        ///< the force is the middle of a segment
+inline constexpr std::uint8_t kSaturated = 32;        ///< a sensel at full scale
+inline constexpr std::uint8_t kInconsistent = 64;     ///< a missing sensel, or readings at odds
+inline constexpr std::uint8_t kFromNeighbours = 128;  ///< ambiguity resolved by the field
 
 }  // namespace pillarfield::status
 

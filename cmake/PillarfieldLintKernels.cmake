@@ -1,0 +1,35 @@
+# Compiles the kernels with clang's own OpenCL C 1.2 front end, which warns where drivers do not:
+# every sensel type and lane width, with no stage and with all of them.
+find_program(PILLARFIELD_CLANG NAMES clang clang-14)
+mark_as_advanced(PILLARFIELD_CLANG)
+if(NOT PILLARFIELD_CLANG)
+  message(STATUS "Kernels are not linted: clang was not found")
+  return()
+endif()
+
+set(lint_includes "")
+foreach(path IN LISTS kernel_paths)
+  if(NOT path MATCHES "\\.cl$")
+    list(APPEND lint_includes -include ${path})
+  endif()
+endforeach()
+set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
+  -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES)
+
+set(lint_commands "")
+foreach(sensel uchar ushort float)
+  foreach(lanes 1 2 4 8 16)
+    foreach(stages "" "${lint_all_stages}")
+      list(APPEND lint_commands COMMAND ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
+        -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
+        -Wno-unused-function -Werror -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
+        -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f -DPF_THRESHOLD=1.0f ${stages} ${lint_includes}
+        ${PROJECT_SOURCE_DIR}/kernels/solve_frame.cl)
+    endforeach()
+  endforeach()
+endforeach()
+set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")
+add_custom_command(OUTPUT ${lint_stamp} ${lint_commands}
+  COMMAND ${CMAKE_COMMAND} -E touch ${lint_stamp}
+  DEPENDS ${kernel_paths} COMMENT "Linting the kernels" VERBATIM)
+add_custom_target(lint-kernels ALL DEPENDS ${lint_stamp})

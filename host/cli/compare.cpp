@@ -1,0 +1,153 @@
+// pillarfield compare: solved forces against the truth, region by region.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/command.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pillarfield/comparison.h"
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/recording.h"
+
+namespace pillarfield::cli {
+namespace {
+
+struct CompareOptions {
+  std::string forces;
+  std::string recording;
+  bool json = false;
+  bool quiet = false;
+};
+
+struct Row {
+  std::string name;
+  RegionErrors errors;
+};
+
+std::vector<Row> rows_of(const Comparison& comparison) {
+  std::vector<Row> rows;
+  for (const Region region : {Region::one, Region::two, Region::three, Region::four}) {
+    rows.push_back({name_of(region), comparison.region(region)});
+  }
+  rows.push_back({"loaded", comparison.loaded()});
+  rows.push_back({"none", comparison.region(Region::none)});
+  return rows;
+}
+
+void print_json(const std::vector<Row>& rows, std::uint64_t frames) {
+  nlohmann::ordered_json regions;
+  for (const auto& [name, errors] : rows) {
+    regions[name] = {{"pillars", errors.pillars},
+                     {"status_mismatches", errors.status_mismatches},
+                     {"rms_n", errors.rms_n},
+                     {"p95_n", errors.p95_n},
+                     {"rms_relative", errors.rms_relative},
+                     {"p95_relative", errors.p95_relative},
+                     {"theta_rms_rad", errors.theta_rms_rad},
+                     {"phi_rms_rad", errors.phi_rms_rad}};
+  }
+  fmt::print("{}\n", nlohmann::ordered_json{{"frames", frames}, {"regions", regions}}.dump());
+}
+
+void print_row(const Row& row) {
+  const RegionErrors& errors = row.errors;
+  const double mismatches = errors.pillars == 0
+                                ? 0
+                                : 100 * static_cast<double>(errors.status_mismatches) /
+                                      static_cast<double>(errors.pillars);
+  fmt::print("{:<8} {:>10} {:>9.4f} {:>9.4f}", row.name, errors.pillars, errors.rms_n,
+             errors.p95_n);
+  if (row.name == "none") {
+    fmt::print(" {:>8} {:>8} {:>9} {:>9}", "-", "-", "-", "-");
+  } else {
+    fmt::print(" {:>7.1f}% {:>7.1f}% {:>9.4f} {:>9.4f}", 100 * errors.rms_relative,
+               100 * errors.p95_relative, errors.theta_rms_rad, errors.phi_rms_rad);
+  }
+  fmt::print(" {:>9.2f}%\n", mismatches);
+}
+
+void print_text(const std::vector<Row>& rows, std::uint64_t frames, const CompareOptions& options) {
+  fmt::print("{} against the truth in {}, {} frames\n\n", options.forces, options.recording,
+             frames);
+  fmt::print("{:<8} {:>10} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
+             "of the true force", "angle RMS, rad", "status");
+  fmt::print("{:<8} {:>10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
+             "RMS", "95 %", "RMS", "95 %", "theta", "phi", "differs");
+  for (const Row& row : rows) print_row(row);
+  fmt::print(
+      "\nForce error: length of (solved - true). 95 %: that share of the pillars has at most "
+      "this.\n"
+      "phi is weighted with sin(theta). Status differs: other sensels usable than the ideal "
+      "model says.\n"
+      "Region 3 is ambiguous in itself: two readings, three unknowns.\n");
+}
+
+/// Whether the two files are of one patch, and how many frames they share.
+std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& recording,
+                            const CompareOptions& options) {
+  if (!recording.has_truth()) {
+    throw Error(options.recording, "it holds no truth",
+                "give a recording made by 'pillarfield simulate'");
+  }
+  const Skin& skin = recording.skin();
+  const ForceFileInfo& info = forces.info();
+  if (info.rows != skin.pillar_rows() || info.cols != skin.pillar_cols()) {
+    throw Error(options.forces,
+                fmt::format("it has {} x {} pillars and {} has {} x {}", info.rows, info.cols,
+                            options.recording, skin.pillar_rows(), skin.pillar_cols()),
+                "give the recording that these forces were solved from");
+  }
+  const std::uint64_t frames = std::min(forces.frames(), recording.frames());
+  if (forces.frames() != recording.frames()) {
+    fmt::print(stderr, "{}: it has {} frames and {} has {}; the first {} are compared\n",
+               options.forces, forces.frames(), options.recording, recording.frames(), frames);
+  }
+  return frames;
+}
+
+void compare(const CompareOptions& options) {
+  const ForceFileReader forces(options.forces);
+  const std::unique_ptr<FrameSource> recording = open_frames(options.recording);
+  const std::uint64_t frames = common_frames(forces, *recording, options);
+  const ForceFileInfo& info = forces.info();
+  ForceField solved(info.rows, info.cols);
+  ForceField truth(info.rows, info.cols);
+  Comparison comparison;
+  {
+    Progress progress("Comparing", frames, options.quiet);
+    for (std::uint64_t index = 0; index < frames; ++index) {
+      stop_if_interrupted(index, options.forces);
+      forces.read(index, solved);
+      recording->read_truth(index, truth);
+      comparison.add(solved.view(), truth.view());
+      progress.show(index + 1);
+    }
+  }
+  const std::vector<Row> rows = rows_of(comparison);
+  if (options.json) {
+    print_json(rows, frames);
+  } else {
+    print_text(rows, frames, options);
+  }
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Work& work) {
+  const auto options = std::make_shared<CompareOptions>();
+  CLI::App* const command = app.add_subcommand(
+      "compare", "Tell how far solved forces are from the truth, region by region");
+  command->add_option("FORCES", options->forces, "Force fields written by solve (.h5)")->required();
+  command
+      ->add_option("RECORDING", options->recording, "The recording they come from, with its truth")
+      ->required();
+  command->add_flag("--json", options->json, "Print the table as JSON");
+  command->add_flag("-q,--quiet", options->quiet, "Show no progress");
+  command->callback([options, &work] { work = [options] { compare(*options); }; });
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,187 @@
+// pillarfield info: what a file holds, which devices there are, which kernel a scene makes.
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/command.h"
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/simulator.h"
+#include "pillarfield/version.h"
+
+namespace pillarfield::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::string file;
+  std::string kernel;
+  bool devices = false;
+  bool json = false;
+};
+
+/// Prints `facts` as JSON, or one "key value" line each.
+void print_facts(const Json& facts, bool json) {
+  if (json) {
+    fmt::print("{}\n", facts.dump());
+    return;
+  }
+  for (const auto& [key, value] : facts.items()) {
+    if (value.is_array()) {
+      for (const Json& item : value) fmt::print("{:<20} {}\n", key, item.get<std::string>());
+    } else {
+      fmt::print("{:<20} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+    }
+  }
+}
+
+std::vector<std::string> plane_names(const Calibration& calibration) {
+  std::vector<std::string> names;
+  if (!calibration.tare.empty()) names.emplace_back("tare");
+  if (!calibration.gain.empty()) names.emplace_back("gain");
+  if (!calibration.dead_zone.empty()) names.emplace_back("dead_zone");
+  if (!calibration.mask.empty()) names.emplace_back("mask");
+  return names;
+}
+
+void add_skin(Json& facts, const Skin& skin) {
+  facts["sensel_rows"] = skin.rows;
+  facts["sensel_cols"] = skin.cols;
+  facts["pillar_rows"] = skin.pillar_rows();
+  facts["pillar_cols"] = skin.pillar_cols();
+  facts["sensel_pitch_mm"] = skin.sensel_pitch_mm;
+  facts["counts_per_newton"] = skin.counts_per_newton;
+  facts["threshold_counts"] = skin.threshold_counts;
+  if (skin.full_scale_counts) facts["full_scale_counts"] = *skin.full_scale_counts;
+}
+
+Json facts_of_frames(const std::string& file) {
+  const std::unique_ptr<FrameSource> source = open_frames(file);
+  Json facts = {{"format", source->format()}, {"frames", source->frames()}};
+  facts["sensel_type"] = name_of(source->sensel_type());
+  add_skin(facts, source->skin());
+  if (source->frames() > 0) {
+    FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
+    const double first = source->read(0, frame);
+    facts["seconds"] = source->read(source->frames() - 1, frame) - first;
+  }
+  facts["calibration"] = plane_names(source->calibration());
+  facts["truth"] = source->has_truth();
+  facts["remarks"] = source->remarks();
+  return facts;
+}
+
+Json facts_of_forces(const std::string& file) {
+  const ForceFileReader reader(file);
+  const ForceFileInfo& info = reader.info();
+  return {{"format", "force field"},
+          {"frames", reader.frames()},
+          {"pillar_rows", info.rows},
+          {"pillar_cols", info.cols},
+          {"pillar_pitch_mm", info.pillar_pitch_mm},
+          {"estimator", info.estimator},
+          {"device", info.device},
+          {"source", info.source},
+          {"angles", info.angles},
+          {"remarks", reader.remarks()}};
+}
+
+Json facts_of_scene(const std::string& file) {
+  const Scene scene = load_scene(file);
+  Json facts = {{"format", "scene"},
+                {"title", scene.title},
+                {"frames", scene.frames},
+                {"rate_hz", scene.rate_hz},
+                {"seed", scene.seed}};
+  if (const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load)) {
+    facts["contacts"] = contacts->size();
+  }
+  add_skin(facts, scene.skin);
+  return facts;
+}
+
+Json facts_of(const std::string& file) {
+  if (file.ends_with(".toml")) return facts_of_scene(file);
+  return is_force_file(file) ? facts_of_forces(file) : facts_of_frames(file);
+}
+
+void print_devices(bool json) {
+  const std::vector<DeviceInfo> devices = list_devices();
+  if (json) {
+    Json list = Json::array();
+    for (const DeviceInfo& device : devices) {
+      list.push_back({{"index", device.index},
+                      {"name", device.name},
+                      {"platform", device.platform},
+                      {"type", device.type},
+                      {"lanes", device.lanes},
+                      {"shares_memory", device.shares_memory},
+                      {"unsuitable", device.unsuitable}});
+    }
+    fmt::print("{}\n", list.dump());
+    return;
+  }
+  if (devices.empty()) {
+    fmt::print(
+        "No OpenCL device; install a driver, for instance the Debian package "
+        "pocl-opencl-icd\n");
+  }
+  for (const DeviceInfo& device : devices) {
+    fmt::print("{:>3}  {} ({}, {}; {} lanes, {})  {}\n", device.index, device.name, device.type,
+               device.platform, device.lanes, device.shares_memory ? "zero copy" : "staged",
+               device.unsuitable.empty() ? "suitable" : "passed over: " + device.unsuitable);
+  }
+}
+
+/// The stages and the source that frames of the scene would be solved with.
+void print_kernel(const std::string& scene_file) {
+  const Simulator simulator(load_scene(scene_file));
+  const Scene& scene = simulator.scene();
+  SolverPlan plan;
+  plan.skin = scene.skin;
+  plan.sensel_type = simulator.sensel_type();
+  plan.calibration = simulator.calibration();
+  plan.parity_tolerance_counts = scene.parity_tolerance_counts;
+  const DeviceInfo device = open_device().info();
+  fmt::print("// Stages on {}:", device.name);
+  for (const std::string& stage : kernel_stages(plan)) fmt::print(" {}", stage);
+  fmt::print("\n{}", kernel_source(plan, device.lanes));
+}
+
+void info(const InfoOptions& options) {
+  if (options.devices) {
+    print_devices(options.json);
+  } else if (!options.kernel.empty()) {
+    print_kernel(options.kernel);
+  } else if (!options.file.empty()) {
+    print_facts(facts_of(options.file), options.json);
+  } else {
+    print_facts({{"version", kVersion}, {"license", "MIT"}}, options.json);
+    print_devices(options.json);
+  }
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Work& work) {
+  const auto options = std::make_shared<InfoOptions>();
+  CLI::App* const command =
+      app.add_subcommand("info", "Describe a file, the OpenCL devices, or a scene's kernel");
+  CLI::Option* const file = command->add_option(
+      "FILE", options->file, "Recording, Tekscan export, force fields or scene to describe");
+  CLI::Option* const devices =
+      command->add_flag("--devices", options->devices, "List the OpenCL devices");
+  CLI::Option* const kernel = command->add_option(
+      "--kernel", options->kernel, "Print the stages of a scene and the OpenCL C compiled for it");
+  file->excludes(devices)->excludes(kernel);
+  devices->excludes(kernel);
+  command->add_flag("--json", options->json, "Print as JSON")->excludes(kernel);
+  command->callback([options, &work] { work = [options] { info(*options); }; });
+}
+
+}  // namespace pillarfield::cli

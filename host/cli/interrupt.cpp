@@ -1,0 +1,32 @@
+#include "cli/interrupt.h"
+
+#include <fmt/format.h>
+
+#include <csignal>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::cli {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void note_interrupt(int signal) {
+  interrupted = 1;
+  std::signal(signal, SIG_DFL);
+}
+
+}  // namespace
+
+void catch_interrupts() {
+  std::signal(SIGINT, note_interrupt);
+  std::signal(SIGTERM, note_interrupt);
+}
+
+void stop_if_interrupted(std::uint64_t frames, const std::filesystem::path& output) {
+  if (interrupted == 0) return;
+  throw Error(output.string(), fmt::format("interrupted after {} frames", frames),
+              "an HDF5 output keeps them, under this name + \".part\"");
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+namespace pillarfield::cli {
+
+/// From now on Ctrl-C and SIGTERM are noted instead of ending the process; a second one ends it.
+void catch_interrupts();
+
+/// Throws Error where an interrupt was noted: `frames` are done, and `part` may hold them.
+void stop_if_interrupted(std::uint64_t frames, const std::filesystem::path& output);
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,29 @@
+#include "cli/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace pillarfield::cli {
+
+Progress::Progress(std::string verb, std::uint64_t frames, bool quiet)
+    : verb_(std::move(verb)), frames_(frames), visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::show(std::uint64_t done) {
+  if (!visible_ || done == 0 || Clock::now() < next_) return;
+  const auto now = Clock::now();
+  next_ = now + std::chrono::milliseconds(100);
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  const double left = seconds / static_cast<double>(done) * static_cast<double>(frames_ - done);
+  fmt::print(stderr, "\r\033[K{}: frame {} of {} ({} %), about {:.0f} s left", verb_, done, frames_,
+             100 * done / frames_, left);
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+}  // namespace pillarfield::cli

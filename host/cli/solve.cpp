@@ -1,0 +1,262 @@
+// pillarfield solve: force fields from frames.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/command.h"
+#include "cli/device_options.h"
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "cli/region_count.h"
+#include "cli/stopwatch.h"
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/scene.h"
+
+namespace pillarfield::cli {
+namespace {
+
+struct SolveOptions {
+  std::string input;
+  std::string output;
+  std::string scene;
+  std::string estimator = "direct";
+  std::vector<std::string> outputs = {"forces"};
+  std::optional<double> threshold_counts;
+  std::optional<double> counts_per_newton;
+  std::optional<double> full_scale_counts;
+  std::optional<double> parity_tolerance_counts;
+  DeviceOptions device;
+  bool json = false;
+  bool quiet = false;
+};
+
+struct SolveSummary {
+  std::uint64_t frames = 0;
+  RegionCount regions;
+  double seconds_in_all = 0;
+  double seconds_in_solver = 0;
+};
+
+/// The plan that the file asks for, then the scene, then the command line.
+SolverPlan plan_of(const SolveOptions& options, const FrameSource& source) {
+  SolverPlan plan;
+  plan.skin = source.skin();
+  plan.sensel_type = source.sensel_type();
+  plan.calibration = source.calibration();
+  plan.angles = std::ranges::find(options.outputs, "angles") != options.outputs.end();
+  if (!options.scene.empty()) {
+    const Scene scene = load_scene(options.scene);
+    plan.skin.counts_per_newton = scene.skin.counts_per_newton;
+    plan.skin.threshold_counts = scene.skin.threshold_counts;
+    plan.skin.full_scale_counts = scene.skin.full_scale_counts;
+    plan.parity_tolerance_counts = scene.parity_tolerance_counts;
+  }
+  if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
+  if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
+  if (options.full_scale_counts) plan.skin.full_scale_counts = options.full_scale_counts;
+  if (options.parity_tolerance_counts) {
+    plan.parity_tolerance_counts = options.parity_tolerance_counts;
+  }
+  return plan;
+}
+
+ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {
+  ForceFileInfo info;
+  info.rows = plan.skin.pillar_rows();
+  info.cols = plan.skin.pillar_cols();
+  info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
+  info.estimator = options.estimator;
+  info.device = device.info().name;
+  info.source = std::filesystem::path(options.input).filename().string();
+  info.angles = plan.angles;
+  return info;
+}
+
+/// Frames on their way through the processor: reading, solving and writing overlap.
+class Pipeline {
+ public:
+  Pipeline(FrameSource& source, Processor& processor, ForceSink& sink, const SolverPlan& plan)
+      : source_(source), processor_(processor), sink_(sink) {
+    for (int i = 0; i < kFramesInFlight; ++i) {
+      frames_.emplace_back(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+    }
+  }
+
+  static constexpr int kFramesInFlight = 3;
+
+  /// Reads and starts the next frame, taking the oldest result first where the ring is full.
+  void push() {
+    if (processor_.in_flight() == kFramesInFlight) pop();
+    const std::size_t slot = pushed_ % frames_.size();
+    times_.at(slot) = source_.read(pushed_, frames_[slot]);
+    const Stopwatch watch;
+    processor_.submit(frames_[slot].view());
+    summary_.seconds_in_solver += watch.seconds();
+    ++pushed_;
+  }
+
+  /// Writes the result of the oldest frame.
+  void pop() {
+    const Stopwatch watch;
+    const ForceFieldView forces = processor_.receive();
+    summary_.seconds_in_solver += watch.seconds();
+    summary_.regions.add(forces.status);
+    sink_.append(forces, times_.at(summary_.frames % frames_.size()));
+    ++summary_.frames;
+  }
+
+  void drain() {
+    while (processor_.in_flight() > 0) pop();
+  }
+
+  [[nodiscard]] const SolveSummary& summary() const { return summary_; }
+
+ private:
+  FrameSource& source_;
+  Processor& processor_;
+  ForceSink& sink_;
+  std::vector<FrameBuffer> frames_;
+  std::array<double, kFramesInFlight> times_{};
+  std::uint64_t pushed_ = 0;
+  SolveSummary summary_;
+};
+
+double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
+
+double percent(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
+                const SolveSummary& summary, const std::vector<std::string>& remarks) {
+  const auto pillars = static_cast<double>(summary.regions.all());
+  nlohmann::ordered_json regions;
+  for (const Region region :
+       {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
+    regions[name_of(region)] = summary.regions.of(region);
+  }
+  const nlohmann::ordered_json json = {
+      {"input", options.input},
+      {"output", options.output},
+      {"estimator", options.estimator},
+      {"device", processor.device().info().name},
+      {"zero_copy", processor.shares_memory()},
+      {"stages", kernel_stages(plan)},
+      {"frames", summary.frames},
+      {"pillar_rows", plan.skin.pillar_rows()},
+      {"pillar_cols", plan.skin.pillar_cols()},
+      {"regions", regions},
+      {"saturated", summary.regions.saturated},
+      {"inconsistent", summary.regions.inconsistent},
+      {"seconds", summary.seconds_in_all},
+      {"solver_seconds", summary.seconds_in_solver},
+      {"solver_pillars_per_second", per_second(pillars, summary.seconds_in_solver)},
+      {"remarks", remarks}};
+  fmt::print("{}\n", json.dump());
+}
+
+void print_text(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
+                const SolveSummary& summary) {
+  const RegionCount& regions = summary.regions;
+  const auto frames = static_cast<double>(summary.frames);
+  const auto pillars = static_cast<double>(regions.all());
+  const DeviceInfo& device = processor.device().info();
+  fmt::print("Solved {} frames of {} x {} pillars on {} ({}, {})\n", summary.frames,
+             plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
+             processor.shares_memory() ? "zero copy" : "staged");
+  fmt::print("  solver alone           {:9.0f} frames/s  {:9.1f} million pillars/s\n",
+             per_second(frames, summary.seconds_in_solver),
+             per_second(pillars, summary.seconds_in_solver) / 1e6);
+  fmt::print("  with reading, writing  {:9.0f} frames/s  {:9.1f} million pillars/s\n",
+             per_second(frames, summary.seconds_in_all),
+             per_second(pillars, summary.seconds_in_all) / 1e6);
+  fmt::print("In contact: {} of {} pillars ({:.2f} %), of these\n", regions.in_contact(),
+             regions.all(), percent(regions.in_contact(), regions.all()));
+  for (const Region region : kContactRegions) {
+    fmt::print("  {:<9} {:6.2f} %  {}\n",
+               region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
+               percent(regions.of(region), regions.in_contact()), meaning_of(region));
+  }
+  fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
+             regions.saturated, regions.inconsistent);
+  fmt::print("Wrote {}\n", options.output);
+}
+
+void solve(const SolveOptions& options) {
+  const Stopwatch watch;
+  const std::unique_ptr<FrameSource> source = open_frames(options.input);
+  for (const std::string& remark : source->remarks()) {
+    fmt::print(stderr, "{}: {}\n", options.input, remark);
+  }
+  const SolverPlan plan = plan_of(options, *source);
+  const Device device = open_device(options.device.name);
+  Processor processor(
+      device, plan,
+      {.memory = options.device.memory, .frames_in_flight = Pipeline::kFramesInFlight});
+  const std::unique_ptr<ForceSink> sink =
+      create_force_sink(options.output, file_info(options, plan, device));
+  Pipeline pipeline(*source, processor, *sink, plan);
+  {
+    Progress progress("Solving", source->frames(), options.quiet);
+    for (std::uint64_t index = 0; index < source->frames(); ++index) {
+      stop_if_interrupted(index, options.output);
+      pipeline.push();
+      progress.show(index + 1);
+    }
+    pipeline.drain();
+  }
+  sink->finish();
+  SolveSummary summary = pipeline.summary();
+  summary.seconds_in_all = watch.seconds();
+  if (options.json) {
+    print_json(options, plan, processor, summary, source->remarks());
+  } else {
+    print_text(options, plan, processor, summary);
+  }
+}
+
+}  // namespace
+
+void add_solve(CLI::App& app, Work& work) {
+  const auto options = std::make_shared<SolveOptions>();
+  CLI::App* const command = app.add_subcommand(
+      "solve", "Turn frames into fields of three-axis force, in newtons per pillar");
+  command
+      ->add_option("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export (raw units)")
+      ->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "Force fields to write; the ending chooses: .h5, .csv or .npy")
+      ->required();
+  command->add_option("--scene", options->scene,
+                      "Take the sensor's constants and the parity test from a scene file");
+  command->add_option("--estimator", options->estimator, "How forces are estimated")
+      ->check(CLI::IsMember({"direct"}))
+      ->capture_default_str();
+  command
+      ->add_option("--outputs", options->outputs,
+                   "What is written: forces; angles adds magnitude, theta and phi")
+      ->check(CLI::IsMember({"forces", "angles"}))
+      ->delimiter(',')
+      ->capture_default_str();
+  command->add_option("--threshold", options->threshold_counts,
+                      "Readings above so many counts are usable [the file's]");
+  command->add_option("--counts-per-newton", options->counts_per_newton,
+                      "Counts per newton and pillar [the file's]");
+  command->add_option("--full-scale", options->full_scale_counts,
+                      "Readings of so many counts or more are saturated [the file's]");
+  command->add_option("--parity-tolerance", options->parity_tolerance_counts,
+                      "Flag pillars whose redundant reading is off by more counts [not tested]");
+  add_device_options(*command, options->device);
+  command->add_flag("--json", options->json, "Print the summary as JSON");
+  command->add_flag("-q,--quiet", options->quiet, "Show no progress");
+  command->callback([options, &work] { work = [options] { solve(*options); }; });
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,40 @@
+#include "pillarfield/calibration.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+/// Throws where a plane has not one value per sensel, or a value outside [low, high].
+template <class Value>
+void check_plane(const std::vector<Value>& plane, const char* name, const Skin& skin,
+                 std::string_view where, double low, double high) {
+  if (plane.empty()) return;
+  if (plane.size() != skin.sensels()) {
+    throw Error(where, fmt::format("calibration plane '{}' has {} values", name, plane.size()),
+                fmt::format("the skin has {} x {} sensels", skin.rows, skin.cols));
+  }
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    const auto value = static_cast<double>(plane[i]);
+    if (value >= low && value <= high) continue;
+    throw Error(where,
+                fmt::format("calibration plane '{}' is {} at row {}, column {}", name, value,
+                            i / skin.cols, i % skin.cols),
+                fmt::format("it must lie in [{}, {}]", low, high));
+  }
+}
+
+}  // namespace
+
+void check(const Calibration& calibration, const Skin& skin, std::string_view where) {
+  check_plane(calibration.tare, "tare", skin, where, -kMaxCounts, kMaxCounts);
+  check_plane(calibration.gain, "gain", skin, where, kMinGain, kMaxGain);
+  check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, kMaxCounts);
+  check_plane(calibration.mask, "mask", skin, where, 0, 1);
+}
+
+}  // namespace pillarfield

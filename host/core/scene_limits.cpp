@@ -1,0 +1,128 @@
+#include "core/scene_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/chart.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+void check_range(const std::string& where, std::string_view key, double value, const Range& range) {
+  if (range.contains(value)) return;
+  throw Error(where, fmt::format("{} is {}", key, value),
+              fmt::format("it must be {}", range.text()));
+}
+
+void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string& where) {
+  for (const auto& [key, member, range] : kSensorQuantities) {
+    check_range(where, key, sensor.*member, range);
+  }
+  if (!sensor.adc_bits) return;
+  check_range(where, "adc_bits", *sensor.adc_bits, {1, kMaxAdcBits});
+  const double largest = *full_scale_of(sensor);
+  const double full_scale = skin.full_scale_counts.value_or(largest);
+  if (full_scale <= largest && full_scale == std::floor(full_scale)) return;
+  throw Error(where, fmt::format("full_scale_counts is {}", full_scale),
+              fmt::format("with adc_bits = {} it must be a whole number up to {}", *sensor.adc_bits,
+                          largest));
+}
+
+void check_path(const std::vector<ContactKey>& path, const std::string& where) {
+  if (path.empty()) throw Error(where, "path is empty", "it needs a key at least");
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    check_range(where, "time_s", path[i].time_s, kPathTimeS);
+    check_range(where, "x_mm", path[i].x_mm, kPathPositionMm);
+    check_range(where, "y_mm", path[i].y_mm, kPathPositionMm);
+    check_range(where, "load_n", path[i].load_n, kPathLoadN);
+    if (i == 0 || path[i].time_s > path[i - 1].time_s) continue;
+    throw Error(where, fmt::format("time_s is {} after {}", path[i].time_s, path[i - 1].time_s),
+                "times must rise");
+  }
+}
+
+void check_contact(const Contact& contact, const std::string& where) {
+  if (!is_possible(contact.shape, contact.motion)) {
+    throw Error(where, "this shape does not move so", "see docs/scenes.md for what goes together");
+  }
+  for (const auto& [quantity, required, applies] : kContactQuantities) {
+    if (!applies(contact.shape, contact.motion)) continue;
+    check_range(where, quantity.key, contact.*quantity.member, quantity.range);
+  }
+  check_path(contact.path, where);
+}
+
+void check_chart(const Chart& chart, const Skin& skin, const std::string& where) {
+  check_range(where, "directions", chart.directions, {1, kMaxPillars});
+  check_range(where, "inclinations", chart.inclinations, {1, kMaxPillars});
+  check_range(where, "max_theta_deg", chart.max_theta_deg, kMaxThetaDeg);
+  for (const double magnitude : chart.magnitudes_n) {
+    check_range(where, "magnitudes_n", magnitude, kMagnitudeN);
+  }
+  if (skin.pillar_rows() == pillar_rows(chart) && skin.pillar_cols() == chart.directions) return;
+  throw Error(where,
+              fmt::format("the skin has {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()),
+              fmt::format("its chart needs {} x {}", pillar_rows(chart), chart.directions));
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  const bool above = open_low ? value > low : value >= low;
+  const bool below = open_high ? value < high : value <= high;
+  return above && below;
+}
+
+std::string Range::text() const {
+  return fmt::format("a number in {}{}, {}{}", open_low ? '(' : '[', low, high,
+                     open_high ? ')' : ']');
+}
+
+bool is_possible(ContactShape shape, ContactMotion motion) {
+  switch (motion) {
+    case ContactMotion::press:
+    case ContactMotion::slide:
+      return true;
+    case ContactMotion::partial_slip:
+      return shape == ContactShape::sphere;
+    case ContactMotion::spin:
+      return shape != ContactShape::cylinder;
+    case ContactMotion::roll:
+      return shape == ContactShape::cylinder;
+  }
+  return false;
+}
+
+std::optional<double> full_scale_of(const SensorModel& sensor) {
+  if (!sensor.adc_bits) return std::nullopt;
+  return std::ldexp(1.0, *sensor.adc_bits) - 1;
+}
+
+void check(const Scene& scene, const char* where) {
+  check(scene.skin, where);
+  if (scene.skin.sensels() > kMaxSkinSensels) {
+    throw Error(where, fmt::format("the skin has {} sensels", scene.skin.sensels()),
+                fmt::format("a scene takes {} at most", kMaxSkinSensels));
+  }
+  check_sensor(scene.sensor, scene.skin, where);
+  check_range(where, "rate_hz", scene.rate_hz, kRateHz);
+  check_range(where, "frames", scene.frames, {1, kMaxFrames});
+  if (scene.parity_tolerance_counts) {
+    check_range(where, "parity_tolerance_counts", *scene.parity_tolerance_counts,
+                kParityToleranceCounts);
+  }
+  if (const Chart* chart = std::get_if<Chart>(&scene.load)) {
+    check_chart(*chart, scene.skin, where);
+    return;
+  }
+  int number = 0;
+  for (const Contact& contact : std::get<std::vector<Contact>>(scene.load)) {
+    check_contact(contact, fmt::format("{}: contact {}", where, ++number));
+  }
+}
+
+}  // namespace pillarfield

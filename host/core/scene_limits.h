@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "pillarfield/scene.h"
+
+namespace pillarfield {
+
+/// An interval of numbers.
+struct Range {
+  double low;
+  double high;
+  bool open_low = false;
+  bool open_high = false;
+
+  [[nodiscard]] bool contains(double value) const;  ///< false for what is not a number
+  [[nodiscard]] std::string text() const;           ///< "a number in [0, 1)"
+};
+
+/// A number of a scene: its key in the file, where it is kept, and what it may be.
+template <class Part>
+struct Quantity {
+  std::string_view key;
+  double Part::*member;
+  Range range;
+};
+
+// The one table of what a scene may say, used to read a file and to check a scene made in code.
+
+inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
+    {"sensel_pitch_mm", &Skin::sensel_pitch_mm, {1e-3, 1e3}},
+    {"counts_per_newton", &Skin::counts_per_newton, {kMinCountsPerNewton, kMaxCountsPerNewton}},
+    {"threshold_counts", &Skin::threshold_counts, {0, kMaxCounts}},
+}};
+inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
+
+inline constexpr std::array<Quantity<SensorModel>, 6> kSensorQuantities = {{
+    {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},
+    {"gain_spread", &SensorModel::gain_spread, {0, 0.3, false, true}},
+    {"tare_counts", &SensorModel::tare_counts, {0, 1e6}},
+    {"tare_spread_counts", &SensorModel::tare_spread_counts, {0, 1e6}},
+    {"noise_counts", &SensorModel::noise_counts, {0, 1e6}},
+    {"dead_share", &SensorModel::dead_share, {0, 1}},
+}};
+inline constexpr int kMaxAdcBits = 16;
+
+/// A number of a contact, and the contacts that have it.
+struct ContactQuantity {
+  Quantity<Contact> quantity;
+  bool required;
+  bool (*applies)(ContactShape shape, ContactMotion motion);
+};
+
+/// Whether a motion pushes the skin in a direction.
+[[nodiscard]] constexpr bool is_directed(ContactMotion motion) {
+  return motion != ContactMotion::press && motion != ContactMotion::spin;
+}
+
+/// Whether a motion leaves a part of the contact sticking.
+[[nodiscard]] constexpr bool sticks(ContactMotion motion) {
+  return motion == ContactMotion::partial_slip || motion == ContactMotion::roll;
+}
+
+inline constexpr std::array<ContactQuantity, 6> kContactQuantities = {{
+    {{"contact_radius_mm", &Contact::contact_radius_mm, {1e-3, 1e4}},
+     true,
+     [](ContactShape, ContactMotion) { return true; }},
+    {{"reference_load_n", &Contact::reference_load_n, {1e-6, 1e6}},
+     false,
+     [](ContactShape shape, ContactMotion) { return shape != ContactShape::flat_punch; }},
+    {{"length_mm", &Contact::length_mm, {1e-3, 1e5}},
+     true,
+     [](ContactShape shape, ContactMotion) { return shape == ContactShape::cylinder; }},
+    {{"friction", &Contact::friction, {0, 10}},
+     true,
+     [](ContactShape, ContactMotion motion) { return motion != ContactMotion::press; }},
+    {{"direction_deg", &Contact::direction_deg, {-360, 360}},
+     false,
+     [](ContactShape shape, ContactMotion motion) {
+       return shape == ContactShape::cylinder || is_directed(motion);
+     }},
+    {{"tangential_ratio", &Contact::tangential_ratio, {0, 1, true, true}},
+     true,
+     [](ContactShape, ContactMotion motion) { return sticks(motion); }},
+}};
+
+inline constexpr Range kPathTimeS = {0, 1e9};
+inline constexpr Range kPathPositionMm = {-1e6, 1e6};
+inline constexpr Range kPathLoadN = {0, 1e6};
+
+inline constexpr Range kRateHz = {1e-6, 1e6};
+inline constexpr std::uint32_t kMaxFrames = 100'000'000;
+inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
+
+inline constexpr Range kMaxThetaDeg = {0, 90};
+inline constexpr Range kMagnitudeN = {0, 1e6, true};
+inline constexpr std::uint32_t kMaxPillars = kMaxSensels / 2;  ///< rows or columns
+inline constexpr std::uint64_t kMaxSkinSensels = 100'000'000;  ///< rows times columns: 40 m²
+
+/// A shape or motion with its name in files.
+template <class Value>
+struct Named {
+  std::string_view name;
+  Value value;
+};
+
+inline constexpr std::array<Named<ContactShape>, 3> kShapes = {{
+    {"sphere", ContactShape::sphere},
+    {"flat_punch", ContactShape::flat_punch},
+    {"cylinder", ContactShape::cylinder},
+}};
+inline constexpr std::array<Named<ContactMotion>, 5> kMotions = {{
+    {"press", ContactMotion::press},
+    {"slide", ContactMotion::slide},
+    {"partial_slip", ContactMotion::partial_slip},
+    {"spin", ContactMotion::spin},
+    {"roll", ContactMotion::roll},
+}};
+
+/// Whether the closed forms know this motion of this shape.
+[[nodiscard]] bool is_possible(ContactShape shape, ContactMotion motion);
+
+/// What an analogue-to-digital converter reads at most, 2^bits − 1; unset without one.
+[[nodiscard]] std::optional<double> full_scale_of(const SensorModel& sensor);
+
+/// Throws Error, its place being `where`, when anything in `scene` is out of its range.
+void check(const Scene& scene, const char* where);
+
+}  // namespace pillarfield

@@ -1,0 +1,326 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <system_error>
+
+#include "core/chart.h"
+#include "core/scene_limits.h"
+#include "core/toml_section.h"
+#include "pillarfield/error.h"
+#include "pillarfield/scene.h"
+
+namespace pillarfield {
+namespace {
+
+/// Reads the numbers of a table into the members they belong to.
+template <class Part, std::size_t count>
+void read_quantities(TomlSection& section, const std::array<Quantity<Part>, count>& quantities,
+                     Part& part) {
+  for (const auto& [key, member, range] : quantities) {
+    if (const auto value = section.number(key, range)) part.*member = *value;
+  }
+}
+
+/// "sphere", "flat_punch", ... as a message lists them.
+template <class Names>
+std::string quoted(const Names& names) {
+  std::vector<std::string> all;
+  for (const auto& name : names) all.push_back(fmt::format("\"{}\"", name.name));
+  return fmt::format("{}", fmt::join(all, ", "));
+}
+
+/// The value that a name stands for; unset where the key is absent.
+template <class Value, std::size_t count>
+std::optional<Value> read_name(TomlSection& section, std::string_view key,
+                               const std::array<Named<Value>, count>& names) {
+  const std::optional<std::string> text = section.text(key);
+  if (!text) return std::nullopt;
+  for (const auto& [name, value] : names) {
+    if (name == *text) return value;
+  }
+  section.fail(key, fmt::format("is \"{:.40}\"", *text), quoted(names));
+}
+
+// [sensor]
+
+/// What a sensel reads at most; with a converter, what that can express unless the scene says less.
+std::optional<double> read_full_scale(TomlSection& section, const SensorModel& sensor) {
+  const std::optional<double> largest = full_scale_of(sensor);
+  if (!largest) return section.number("full_scale_counts", kFullScaleCounts);
+  const auto whole = section.whole_number("full_scale_counts", 1, std::lround(*largest));
+  return whole ? static_cast<double>(*whole) : largest;
+}
+
+/// A reading must have room between threshold and full scale.
+void check_full_scale(const TomlSection& section, const Skin& skin) {
+  if (!skin.full_scale_counts || *skin.full_scale_counts > skin.threshold_counts) return;
+  section.fail(section.has("full_scale_counts") ? "full_scale_counts" : "adc_bits",
+               fmt::format("gives a full scale of {}", *skin.full_scale_counts),
+               fmt::format("more than threshold_counts, {}", skin.threshold_counts));
+}
+
+void read_sensor(TomlSection section, Scene& scene) {
+  read_quantities(section, kSensorQuantities, scene.sensor);
+  if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
+    scene.sensor.adc_bits = static_cast<int>(*bits);
+  }
+  scene.skin.full_scale_counts = read_full_scale(section, scene.sensor);
+  section.finish();
+  check_full_scale(section, scene.skin);
+}
+
+// [time] and [solver]
+
+void read_time(TomlSection section, Scene& scene) {
+  scene.rate_hz = section.number("rate_hz", kRateHz).value_or(scene.rate_hz);
+  if (const auto frames = section.whole_number("frames", 1, kMaxFrames)) {
+    scene.frames = static_cast<std::uint32_t>(*frames);
+  }
+  if (const auto seed = section.whole_number("seed", 0, std::numeric_limits<std::int64_t>::max())) {
+    scene.seed = static_cast<std::uint64_t>(*seed);
+  }
+  section.finish();
+}
+
+void read_solver(TomlSection section, Scene& scene) {
+  scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
+  section.finish();
+}
+
+// The size of the skin
+
+/// Rows and columns of pillars, as a scene asks for them.
+struct PillarCounts {
+  double rows;
+  double cols;
+};
+
+/// Gives the skin the size that `key` asks for.
+void set_size(const TomlSection& section, std::string_view key, PillarCounts counts, Skin& skin) {
+  const Range allowed = {1, kMaxPillars};
+  const bool fits = 4 * counts.rows * counts.cols <= double{kMaxSkinSensels};
+  if (!allowed.contains(counts.rows) || !allowed.contains(counts.cols) || !fits) {
+    section.fail(key, fmt::format("means {} x {} pillars", counts.rows, counts.cols),
+                 fmt::format("1 to {} each way, {} in all", kMaxPillars, kMaxSkinSensels / 4));
+  }
+  skin.rows = 2 * static_cast<std::uint32_t>(counts.rows);
+  skin.cols = 2 * static_cast<std::uint32_t>(counts.cols);
+}
+
+/// Whole pillars along a length; one that lacks no more than a rounding is whole.
+double pillars_along(double length_mm, const Skin& skin) {
+  return std::floor(length_mm / skin.pillar_pitch_mm() + 1e-9);
+}
+
+void read_size(TomlSection& section, Skin& skin) {
+  const auto size_mm = section.numbers("size_mm", 2, {0, 1e8, true});
+  const auto pillars = section.numbers("pillars", 2, {1, kMaxPillars});
+  if (size_mm && pillars) section.fail("pillars", "comes with size_mm", "one of the two");
+  if (size_mm) {
+    const PillarCounts counts = {pillars_along(size_mm->back(), skin),
+                                 pillars_along(size_mm->front(), skin)};
+    set_size(section, "size_mm", counts, skin);
+    return;
+  }
+  if (!pillars) section.fail_missing("size_mm", "size_mm = [x, y] or pillars = [rows, columns]");
+  const PillarCounts counts = {pillars->front(), pillars->back()};
+  if (counts.rows != std::floor(counts.rows) || counts.cols != std::floor(counts.cols)) {
+    section.fail("pillars", "has a fraction", "whole numbers, [rows, columns]");
+  }
+  set_size(section, "pillars", counts, skin);
+}
+
+// [chart] and [skin]
+
+/// Reads a chart and gives the skin a pillar for each of its forces.
+Chart read_chart(TomlSection section, Skin& skin) {
+  Chart chart;
+  if (const auto count = section.whole_number("directions", 1, kMaxPillars)) {
+    chart.directions = static_cast<std::uint32_t>(*count);
+  }
+  if (const auto count = section.whole_number("inclinations", 1, kMaxPillars)) {
+    chart.inclinations = static_cast<std::uint32_t>(*count);
+  }
+  chart.max_theta_deg = section.number("max_theta_deg", kMaxThetaDeg).value_or(chart.max_theta_deg);
+  if (const auto magnitudes = section.numbers("magnitudes_n", 0, kMagnitudeN)) {
+    chart.magnitudes_n = *magnitudes;
+  }
+  section.finish();
+  const PillarCounts counts = {static_cast<double>(pillar_rows(chart)),
+                               static_cast<double>(chart.directions)};
+  set_size(section, "inclinations", counts, skin);
+  return chart;
+}
+
+void read_skin(TomlSection section, Scene& scene) {
+  read_quantities(section, kSkinQuantities, scene.skin);
+  if (!std::holds_alternative<Chart>(scene.load)) read_size(section, scene.skin);
+  for (const std::string_view key : {"size_mm", "pillars"}) {
+    if (!std::holds_alternative<Chart>(scene.load) || !section.has(key)) continue;
+    section.fail(key, "comes with [chart]", "no size, for the chart sets it");
+  }
+  section.finish();
+}
+
+// [[contact]]
+
+/// A shape and a motion as the file writes them.
+std::string name_of(ContactShape shape, ContactMotion motion) {
+  return fmt::format("shape = \"{}\", motion = \"{}\"",
+                     kShapes[static_cast<std::size_t>(shape)].name,
+                     kMotions[static_cast<std::size_t>(motion)].name);
+}
+
+void read_shape(TomlSection& section, Contact& contact) {
+  const auto shape = read_name(section, "shape", kShapes);
+  if (!shape) section.fail_missing("shape", quoted(kShapes));
+  contact.shape = *shape;
+}
+
+void read_motion(TomlSection& section, Contact& contact) {
+  std::vector<Named<ContactMotion>> possible;
+  for (const auto& motion : kMotions) {
+    if (is_possible(contact.shape, motion.value)) possible.push_back(motion);
+  }
+  const auto motion = read_name(section, "motion", kMotions);
+  if (!motion) section.fail_missing("motion", quoted(possible));
+  contact.motion = *motion;
+  if (is_possible(contact.shape, contact.motion)) return;
+  section.fail("motion", "does not go with the shape: " + name_of(contact.shape, contact.motion),
+               quoted(possible));
+}
+
+/// Reads the numbers that this shape and motion have, and refuses those that they have not.
+void read_contact_quantities(TomlSection& section, Contact& contact) {
+  for (const auto& [quantity, required, applies] : kContactQuantities) {
+    if (!applies(contact.shape, contact.motion)) {
+      if (section.has(quantity.key)) {
+        section.fail(quantity.key, "does not apply to " + name_of(contact.shape, contact.motion),
+                     "no such key");
+      }
+      continue;
+    }
+    const auto value = section.number(quantity.key, quantity.range);
+    if (!value && required) section.fail_missing(quantity.key, quantity.range.text());
+    if (value) contact.*quantity.member = *value;
+  }
+}
+
+/// Reads where a contact is and how hard it presses, from a key of its path or from the contact
+/// itself where it stays in place.
+ContactKey read_state(TomlSection& section) {
+  const auto position = section.numbers("position_mm", 2, kPathPositionMm);
+  if (!position) section.fail_missing("position_mm", "a list of 2, [x, y] in millimetres");
+  const auto load = section.number("load_n", kPathLoadN);
+  if (!load) section.fail_missing("load_n", kPathLoadN.text());
+  return {0, position->front(), position->back(), *load};
+}
+
+std::vector<ContactKey> read_path(TomlSection& section) {
+  auto keys = section.tables("path", "path of [[contact]]");
+  if (!keys) return {read_state(section)};
+  for (const std::string_view key : {"position_mm", "load_n"}) {
+    if (section.has(key)) section.fail(key, "comes with path", "one of the two");
+  }
+  std::vector<ContactKey> path;
+  for (TomlSection& key : *keys) {
+    const auto time = key.number("time_s", kPathTimeS);
+    if (!time) key.fail_missing("time_s", kPathTimeS.text());
+    if (!path.empty() && *time <= path.back().time_s) {
+      key.fail("time_s", fmt::format("is {}", *time),
+               fmt::format("more than that of the key before, {}", path.back().time_s));
+    }
+    path.push_back(read_state(key));
+    path.back().time_s = *time;
+    key.finish();
+  }
+  return path;
+}
+
+/// The load at which a contact has its radius, where the scene does not say: the heaviest.
+double heaviest_load(const std::vector<ContactKey>& path) {
+  const double heaviest = std::ranges::max(path, {}, &ContactKey::load_n).load_n;
+  return heaviest > 0 ? heaviest : 1;
+}
+
+Contact read_contact(TomlSection& section) {
+  Contact contact;
+  read_shape(section, contact);
+  read_motion(section, contact);
+  read_contact_quantities(section, contact);
+  if (contact.motion == ContactMotion::spin) {
+    contact.clockwise = section.flag("clockwise").value_or(false);
+  }
+  contact.path = read_path(section);
+  if (!section.has("reference_load_n")) contact.reference_load_n = heaviest_load(contact.path);
+  section.finish();
+  return contact;
+}
+
+// The whole
+
+/// What touches the skin: a chart, or contacts, of which there may be none.
+void read_load(TomlSection& root, Scene& scene) {
+  TomlSection chart = root.table("chart");
+  auto contacts = root.tables("contact", "[[contact]]");
+  if (chart.is_present() && contacts)
+    root.fail("chart", "comes with [[contact]]", "one of the two");
+  if (chart.is_present()) {
+    scene.load = read_chart(std::move(chart), scene.skin);
+    return;
+  }
+  std::vector<Contact> load;
+  if (contacts) {
+    for (TomlSection& contact : *contacts) load.push_back(read_contact(contact));
+  }
+  scene.load = std::move(load);
+}
+
+Scene read_scene(TomlSection root) {
+  Scene scene;
+  scene.title = root.text("title").value_or("");
+  read_load(root, scene);
+  read_skin(root.table("skin"), scene);
+  read_sensor(root.table("sensor"), scene);
+  read_time(root.table("time"), scene);
+  read_solver(root.table("solver"), scene);
+  root.finish();
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& name) {
+  try {
+    const toml::table table = toml::parse(text, name);
+    Scene scene = read_scene(TomlSection(&table, "the scene", name));
+    check(scene, name.c_str());
+    return scene;
+  } catch (const toml::parse_error& error) {
+    throw Error(fmt::format("{}:{}", name, error.source().begin.line),
+                fmt::format("is not TOML: {}", error.description()),
+                "mend the line, or see docs/scenes.md for an example");
+  }
+}
+
+Scene load_scene(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMaxBytes = 16 << 20;
+  const Error unreadable(path.string(), "cannot be read", "name a scene file (.toml)");
+  // The size first: only a regular file has one, and opening a pipe would wait for its writer.
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+  if (failed) throw unreadable;
+  if (bytes > kMaxBytes) {
+    throw Error(path.string(), fmt::format("has {} bytes", bytes), "a scene has 16 MiB at most");
+  }
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.is_open() || file.bad()) throw unreadable;
+  return parse_scene(text, path.string());
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pillarfield/calibration.h"
+#include "pillarfield/frame.h"
+#include "pillarfield/scene.h"
+
+namespace pillarfield {
+
+/// The sensels of a scene: what stands between the model's V and the raw reading, in this order,
+/// each stage only where the scene lists it (docs/scenes.md):
+///
+///     dead zone, sensitivity, tare, noise, full scale and rounding, dead sensels.
+class Sensor {
+ public:
+  /// Draws the planes that differ from sensel to sensel. Needs a scene that passes check().
+  explicit Sensor(const Scene& scene);
+
+  [[nodiscard]] SenselType sensel_type() const;
+  [[nodiscard]] const Calibration& calibration() const { return calibration_; }
+
+  /// Writes one row of raw readings. `signal` holds the model's V of that row, counts, and is
+  /// used up.
+  void read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
+                FrameBuffer& raw) const;
+
+ private:
+  void respond(std::uint32_t row, std::span<double> signal) const;
+  void add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
+  void convert(std::uint32_t row, std::span<const double> signal, FrameBuffer& raw) const;
+  void silence_dead(std::uint32_t row, std::span<double> signal) const;
+
+  SensorModel model_;
+  double full_scale_counts_;
+  std::uint64_t seed_;
+  Calibration calibration_;
+};
+
+}  // namespace pillarfield

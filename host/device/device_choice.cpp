@@ -1,0 +1,147 @@
+// Which OpenCL device to use.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+
+#include "device/device_state.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr int kLanesOfCpu = 16;
+constexpr const char* kMendNoDevice =
+    "install an OpenCL driver, for instance the Debian package pocl-opencl-icd";
+
+const char* type_name(cl_device_type type) {
+  if ((type & CL_DEVICE_TYPE_GPU) != 0) return "GPU";
+  if ((type & CL_DEVICE_TYPE_CPU) != 0) return "CPU";
+  if ((type & CL_DEVICE_TYPE_ACCELERATOR) != 0) return "accelerator";
+  return "other";
+}
+
+/// "OpenCL 1.2 pocl ..." has at least the version that the kernels are written in.
+bool speaks_opencl_1_2(const std::string& version) {
+  constexpr std::string_view kPrefix = "OpenCL ";
+  if (!version.starts_with(kPrefix) || version.size() < kPrefix.size() + 3) return false;
+  const char major = version[kPrefix.size()];
+  const char minor = version[kPrefix.size() + 2];
+  return major > '1' || (major == '1' && minor >= '2');
+}
+
+std::string reason_against(const cl::Device& device) {
+  if (device.getInfo<CL_DEVICE_AVAILABLE>() == CL_FALSE) return "it is not available";
+  if (device.getInfo<CL_DEVICE_COMPILER_AVAILABLE>() == CL_FALSE) return "it has no compiler";
+  const std::string version = device.getInfo<CL_DEVICE_VERSION>();
+  if (!speaks_opencl_1_2(version)) return "it offers " + version + ", 1.2 is needed";
+  if (device.getInfo<CL_DEVICE_ENDIAN_LITTLE>() == CL_FALSE) return "it is big-endian";
+  return {};
+}
+
+DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int index) {
+  DeviceInfo info;
+  info.index = index;
+  const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
+  info.name = device.getInfo<CL_DEVICE_NAME>();
+  info.platform = platform.getInfo<CL_PLATFORM_NAME>();
+  info.type = type_name(type);
+  info.lanes = (type & CL_DEVICE_TYPE_CPU) != 0 ? kLanesOfCpu : 1;
+  info.shares_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+  info.unsuitable = reason_against(device);
+  return info;
+}
+
+std::string lower_case(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char character) {
+    return static_cast<char>(std::tolower(character));
+  });
+  return lower;
+}
+
+/// One clause per device, for messages.
+std::string enumerate(const std::vector<Candidate>& candidates) {
+  std::string text;
+  for (const auto& [info, device] : candidates) {
+    text += fmt::format("{}{}: {} ({}, {})", text.empty() ? "" : ", ", info.index, info.name,
+                        info.type, info.unsuitable.empty() ? "suitable" : info.unsuitable);
+  }
+  return text;
+}
+
+int rank(const DeviceInfo& info) {
+  if (info.type == "GPU") return 0;
+  if (info.type == "accelerator") return 1;
+  return info.type == "CPU" ? 2 : 3;
+}
+
+bool is_named(const Candidate& candidate, std::string_view index_or_name) {
+  int index = -1;
+  const char* const end = index_or_name.data() + index_or_name.size();
+  const auto parsed = std::from_chars(index_or_name.data(), end, index);
+  if (parsed.ec == std::errc{} && parsed.ptr == end) return candidate.info.index == index;
+  return lower_case(candidate.info.name).find(lower_case(index_or_name)) != std::string::npos;
+}
+
+/// The best suitable device, or the first that is named so.
+const Candidate* choose(const std::vector<Candidate>& candidates, std::string_view wanted) {
+  const Candidate* best = nullptr;
+  for (const Candidate& candidate : candidates) {
+    if (!wanted.empty() && !is_named(candidate, wanted)) continue;
+    if (!candidate.info.unsuitable.empty()) continue;
+    if (best == nullptr || rank(candidate.info) < rank(best->info)) best = &candidate;
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<Candidate> all_devices() {
+  std::vector<Candidate> candidates;
+  std::vector<cl::Platform> platforms;
+  try {
+    cl::Platform::get(&platforms);
+  } catch (const cl::Error&) {
+    return candidates;  // No platform is an error in OpenCL, and an empty list here.
+  }
+  for (const cl::Platform& platform : platforms) {
+    std::vector<cl::Device> devices;
+    try {
+      platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+    } catch (const cl::Error&) {
+      continue;  // A driver without devices.
+    }
+    for (cl::Device& device : devices) {
+      const int index = static_cast<int>(candidates.size());
+      candidates.push_back({describe(platform, device, index), std::move(device)});
+    }
+  }
+  return candidates;
+}
+
+std::vector<DeviceInfo> list_devices() {
+  return with_opencl_errors("OpenCL", [] {
+    std::vector<DeviceInfo> infos;
+    for (const Candidate& candidate : all_devices()) infos.push_back(candidate.info);
+    return infos;
+  });
+}
+
+Device open_device(std::string_view index_or_name) {
+  return with_opencl_errors("OpenCL", [&] {
+    const std::vector<Candidate> candidates = all_devices();
+    if (candidates.empty()) throw Error("OpenCL", "there is no device", kMendNoDevice);
+    const Candidate* const chosen = choose(candidates, index_or_name);
+    if (chosen == nullptr) {
+      throw Error("OpenCL",
+                  index_or_name.empty() ? std::string("no device is suitable")
+                                        : fmt::format("no suitable device is '{}'", index_or_name),
+                  fmt::format("there are: {}", enumerate(candidates)));
+    }
+    return Device(std::make_shared<Device::State>(chosen->info, chosen->device));
+  });
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <string>
+
+#include "core/force_scale.h"
+#include "device/kernel_files.h"
+#include "pillarfield/processor.h"
+
+namespace pillarfield {
+namespace {
+
+/// One `#define` of the program's first lines and the stage that it switches on.
+struct Definition {
+  const char* macro;
+  std::string value;
+  const char* stage;  ///< nullptr: a constant that every program has
+};
+
+/// A constant as the device gets it: rounded to single precision, then exact.
+std::string hex_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
+
+const char* sensel_macro(SenselType type) {
+  switch (type) {
+    case SenselType::u8:
+      return "uchar";
+    case SenselType::u16:
+      return "ushort";
+    case SenselType::f32:
+      break;
+  }
+  return "float";
+}
+
+/// What a plan asks of the kernel, in the order of the stages.
+std::vector<Definition> definitions(const SolverPlan& plan) {
+  const Skin& skin = plan.skin;
+  const Calibration& calibration = plan.calibration;
+  const ForceScale scale = force_scale(skin.counts_per_newton);
+  std::vector<Definition> all;
+  const auto add = [&](bool wanted, const char* macro, std::string value, const char* stage) {
+    if (wanted) all.push_back({macro, std::move(value), stage});
+  };
+  const bool floating = plan.sensel_type == SenselType::f32;
+  add(true, "PF_SENSEL", sensel_macro(plan.sensel_type), "load");
+  add(floating, "PF_LARGEST_READING", hex_float(kMaxCounts), "reject_absurd");
+  add(!calibration.mask.empty(), "PF_MASK", "", "mask");
+  if (skin.full_scale_counts) {
+    add(true, "PF_FULL_SCALE", hex_float(*skin.full_scale_counts), "saturation");
+  }
+  add(!calibration.tare.empty(), "PF_TARE", "", "tare");
+  add(!calibration.gain.empty(), "PF_GAIN", "", "gain");
+  add(true, "PF_THRESHOLD", hex_float(skin.threshold_counts), "classify");
+  add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");
+  add(true, "PF_SHEAR_SCALE", hex_float(scale.shear), "direct_solve");
+  add(true, "PF_NORMAL_SCALE", hex_float(scale.normal), nullptr);
+  if (plan.parity_tolerance_counts) {
+    add(true, "PF_PARITY_TOLERANCE", hex_float(*plan.parity_tolerance_counts), "parity_test");
+  }
+  add(plan.angles, "PF_ANGLES", "", "angles");
+  return all;
+}
+
+}  // namespace
+
+std::vector<std::string> kernel_stages(const SolverPlan& plan) {
+  std::vector<std::string> stages;
+  for (const Definition& definition : definitions(plan)) {
+    if (definition.stage != nullptr) stages.emplace_back(definition.stage);
+  }
+  stages.emplace_back("store");
+  return stages;
+}
+
+std::string kernel_source(const SolverPlan& plan, int lanes) {
+  std::string source = fmt::format("#define PF_LANES {}\n", lanes);
+  for (const Definition& definition : definitions(plan)) {
+    source += fmt::format("#define {} {}\n", definition.macro, definition.value);
+  }
+  for (const KernelFile& file : kernel_files()) {
+    source += fmt::format("#line 1 \"{}\"\n", file.name);
+    source += file.text;
+  }
+  return source;
+}
+
+}  // namespace pillarfield

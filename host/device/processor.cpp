@@ -1,0 +1,137 @@
+#include "pillarfield/processor.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "device/slot.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr int kMaxFramesInFlight = 64;
+
+void check_options(const Processor::Options& options) {
+  if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
+    throw Error("Processor", fmt::format("frames_in_flight is {}", options.frames_in_flight),
+                fmt::format("it must lie in [1, {}]", kMaxFramesInFlight));
+  }
+  const int lanes = options.lanes;
+  if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16) {
+    throw Error("Processor", fmt::format("lanes is {}", lanes),
+                "it must be 1, 2, 4, 8 or 16, or 0 for the device's own");
+  }
+}
+
+void check_plan(const SolverPlan& plan) {
+  check(plan.skin, "solver plan");
+  check(plan.calibration, plan.skin, "solver plan");
+  if (plan.parity_tolerance_counts &&
+      !(*plan.parity_tolerance_counts >= 0 && *plan.parity_tolerance_counts <= kMaxCounts)) {
+    throw Error("solver plan",
+                fmt::format("parity_tolerance_counts is {}", *plan.parity_tolerance_counts),
+                fmt::format("it must lie in [0, {}]", kMaxCounts));
+  }
+}
+
+bool decide_sharing(Memory memory, const Device& device) {
+  if (memory == Memory::automatic) return device.info().shares_memory;
+  if (memory == Memory::shared && !device.info().shares_memory) {
+    throw Error(device.info().name, "this device does not share the host's memory",
+                "use Memory::staged or Memory::automatic");
+  }
+  return memory == Memory::shared;
+}
+
+}  // namespace
+
+struct Processor::State {
+  State(const Device& opened, const SolverPlan& wanted, const Options& options)
+      : device(opened),
+        skin(wanted.skin),
+        sensel_type(wanted.sensel_type),
+        shares_memory(decide_sharing(options.memory, opened)),
+        calibration(opened.state().context, wanted.calibration) {
+    const int lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
+    const cl::Program program = device.state().program(kernel_source(wanted, lanes));
+    slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
+    for (int i = 0; i < options.frames_in_flight; ++i) {
+      slots.emplace_back(device.state(), wanted, lanes, program, calibration, shares_memory);
+    }
+    warm_up();
+  }
+
+  /// Solves an empty frame: drivers finish compiling and make their buffers at the first launch,
+  /// which no real frame shall wait for.
+  void warm_up() {
+    const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
+    slots.front().submit(frame.view());
+    static_cast<void>(slots.front().receive());
+  }
+
+  [[nodiscard]] Slot& slot(std::uint64_t frame) { return slots[frame % slots.size()]; }
+
+  Device device;
+  Skin skin;
+  SenselType sensel_type;
+  bool shares_memory;
+  CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
+  std::vector<Slot> slots;
+  std::uint64_t submitted = 0;
+  std::uint64_t received = 0;
+};
+
+Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options) {
+  check_options(options);
+  check_plan(plan);
+  state_ = with_opencl_errors(device.info().name,
+                              [&] { return std::make_unique<State>(device, plan, options); });
+}
+
+Processor::Processor(const Device& device, const SolverPlan& plan)
+    : Processor(device, plan, Options{}) {}
+
+Processor::~Processor() = default;
+Processor::Processor(Processor&&) noexcept = default;
+Processor& Processor::operator=(Processor&&) noexcept = default;
+
+void Processor::submit(const FrameView& frame) {
+  const Skin& skin = state_->skin;
+  if (frame.rows != skin.rows || frame.cols != skin.cols || frame.type != state_->sensel_type) {
+    throw Error("Processor::submit",
+                fmt::format("the frame is {} x {} {}", frame.rows, frame.cols, name_of(frame.type)),
+                fmt::format("the plan says {} x {} {}", skin.rows, skin.cols,
+                            name_of(state_->sensel_type)));
+  }
+  if (frame.data == nullptr || frame.row_stride < frame.cols) {
+    throw Error("Processor::submit", "the frame has no data or rows that overlap",
+                "row_stride counts readings and is at least cols");
+  }
+  if (state_->submitted - state_->received == state_->slots.size()) {
+    throw Error("Processor::submit",
+                fmt::format("all {} frames are in flight", state_->slots.size()),
+                "receive() one first, or ask for more frames_in_flight");
+  }
+  with_opencl_errors(state_->device.info().name,
+                     [&] { state_->slot(state_->submitted).submit(frame); });
+  ++state_->submitted;
+}
+
+ForceFieldView Processor::receive() {
+  if (state_->submitted == state_->received) {
+    throw Error("Processor::receive", "no frame is in flight", "submit() one first");
+  }
+  const ForceFieldView forces = with_opencl_errors(
+      state_->device.info().name, [&] { return state_->slot(state_->received).receive(); });
+  ++state_->received;
+  return forces;
+}
+
+int Processor::in_flight() const { return static_cast<int>(state_->submitted - state_->received); }
+
+bool Processor::shares_memory() const { return state_->shares_memory; }
+
+const Device& Processor::device() const { return state_->device; }
+
+}  // namespace pillarfield

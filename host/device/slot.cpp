@@ -1,0 +1,106 @@
+#include "device/slot.h"
+
+#include <algorithm>
+
+namespace pillarfield {
+namespace {
+
+/// A plane of calibration, copied to the device; a null buffer where it is empty.
+template <class Value>
+cl::Buffer plane_buffer(const cl::Context& context, const std::vector<Value>& plane) {
+  if (plane.empty()) return {};
+  void* const values = const_cast<Value*>(plane.data());  // Only read, but OpenCL wants it so.
+  return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, plane.size() * sizeof(Value), values};
+}
+
+/// Work-items per pillar row, and their grouping. Devices that solve several pillars at once run a
+/// row as one loop; others spread it over work-items.
+struct Launch {
+  Launch(std::uint32_t rows, std::uint32_t cols, int lanes) {
+    constexpr std::uint32_t kGroup = 64;
+    if (lanes > 1) {
+      global = cl::NDRange(1, rows);
+      return;
+    }
+    global = cl::NDRange((cols + kGroup - 1) / kGroup * kGroup, rows);
+    local = cl::NDRange(kGroup, 1);
+  }
+  cl::NDRange global;
+  cl::NDRange local = cl::NullRange;
+};
+
+constexpr cl_uint kRawArgument = 0;
+constexpr cl_uint kStrideArgument = 1;
+
+}  // namespace
+
+CalibrationBuffers::CalibrationBuffers(const cl::Context& context, const Calibration& calibration)
+    : tare(plane_buffer(context, calibration.tare)),
+      gain(plane_buffer(context, calibration.gain)),
+      dead_zone(plane_buffer(context, calibration.dead_zone)),
+      mask(plane_buffer(context, calibration.mask)) {}
+
+Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
+           const CalibrationBuffers& calibration, bool shares_memory)
+    : rows_(plan.skin.pillar_rows()),
+      cols_(plan.skin.pillar_cols()),
+      queue_(device.context, device.device),
+      kernel_(program, "solve_frame") {
+  const Launch launch(rows_, cols_, lanes);
+  global_ = launch.global;
+  local_ = launch.local;
+  const std::size_t planes = plan.angles ? kAllPlanes : kForcePlanes;
+  memory_ = shares_memory ? shared_memory(device.context, planes, plan.skin.pillars())
+                          : staged_memory(device.context, queue_, plan, planes);
+  cl_uint argument = kStrideArgument + 1;
+  kernel_.setArg(argument++, cl_uint{cols_});
+  for (const cl::Buffer* plane :
+       {&calibration.tare, &calibration.gain, &calibration.dead_zone, &calibration.mask}) {
+    kernel_.setArg(argument++, *plane);
+  }
+  kernel_.setArg(argument++, cl_ulong{plan.skin.cols});
+  for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+    kernel_.setArg(argument++, memory_->buffer(plane));
+  }
+}
+
+Slot::~Slot() {
+  if (queue_() == nullptr) return;  // Moved from.
+  try {
+    queue_.finish();
+  } catch (const cl::Error&) {
+    // Nothing of the frame in flight is wanted any more.
+  }
+}
+
+void Slot::submit(const FrameView& frame) {
+  DeviceFrame on_device = memory_->take(queue_, frame);
+  frame_ = on_device.readings;
+  kernel_.setArg(kRawArgument, frame_);
+  kernel_.setArg(kStrideArgument, on_device.row_stride);
+  memory_->release(queue_);
+  queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, global_, local_);
+  memory_->fetch(queue_);
+  queue_.flush();
+}
+
+ForceFieldView Slot::receive() {
+  queue_.finish();
+  const auto plane = [&](ResultPlane which) -> std::span<const float> {
+    const std::byte* const host = memory_->host(which);
+    if (host == nullptr) return {};
+    return {reinterpret_cast<const float*>(host), std::size_t{rows_} * cols_};
+  };
+  const auto* const status = reinterpret_cast<const std::uint8_t*>(memory_->host(kStatus));
+  return {rows_,
+          cols_,
+          plane(kShearX),
+          plane(kShearY),
+          plane(kNormal),
+          {status, std::size_t{rows_} * cols_},
+          plane(kMagnitude),
+          plane(kTheta),
+          plane(kPhi)};
+}
+
+}  // namespace pillarfield

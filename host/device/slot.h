@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "device/device_state.h"
+#include "device/slot_memory.h"
+
+namespace pillarfield {
+
+/// The calibration planes of a plan on the device; null where the plan has none.
+struct CalibrationBuffers {
+  CalibrationBuffers(const cl::Context& context, const Calibration& calibration);
+
+  cl::Buffer tare;
+  cl::Buffer gain;
+  cl::Buffer dead_zone;
+  cl::Buffer mask;
+};
+
+/// One frame in flight: a queue of its own, a kernel with its arguments, and memory.
+class Slot {
+ public:
+  Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
+       const CalibrationBuffers& calibration, bool shares_memory);
+  ~Slot();
+  Slot(Slot&&) noexcept = default;
+  Slot& operator=(Slot&&) noexcept = default;
+  Slot(const Slot&) = delete;
+  Slot& operator=(const Slot&) = delete;
+
+  /// Starts the frame; the slot must not be in flight.
+  void submit(const FrameView& frame);
+
+  /// Waits for it.
+  ForceFieldView receive();
+
+ private:
+  std::uint32_t rows_;  ///< pillars
+  std::uint32_t cols_;
+  cl::NDRange global_;
+  cl::NDRange local_;
+  cl::CommandQueue queue_;
+  cl::Kernel kernel_;
+  cl::Buffer frame_;  ///< keeps the frame in flight alive
+  std::unique_ptr<SlotMemory> memory_;
+};
+
+}  // namespace pillarfield

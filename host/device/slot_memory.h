@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "device/opencl.h"
+#include "pillarfield/frame.h"
+#include "pillarfield/processor.h"
+
+namespace pillarfield {
+
+/// The planes of a result, in the order of the kernel's arguments.
+enum ResultPlane : std::size_t { kShearX, kShearY, kNormal, kStatus, kMagnitude, kTheta, kPhi };
+inline constexpr std::size_t kForcePlanes = 4;  ///< without angles
+inline constexpr std::size_t kAllPlanes = 7;
+
+/// Bytes of one value of a plane.
+constexpr std::size_t value_size(std::size_t plane) { return plane == kStatus ? 1 : 4; }
+
+/// A frame that the kernel can read.
+struct DeviceFrame {
+  cl::Buffer readings;
+  cl_ulong row_stride = 0;  ///< readings
+};
+
+/// How one frame reaches the device and its result comes back. A slot calls take(), release(), the
+/// kernel, fetch(), and after the queue is finished results().
+class SlotMemory {
+ public:
+  virtual ~SlotMemory() = default;
+
+  /// Makes the frame's readings available to commands that follow on `queue`.
+  virtual DeviceFrame take(const cl::CommandQueue& queue, const FrameView& frame) = 0;
+
+  /// Hands the results' memory to the device.
+  virtual void release(const cl::CommandQueue& queue) = 0;
+
+  /// Starts bringing the results to the host.
+  virtual void fetch(const cl::CommandQueue& queue) = 0;
+
+  /// The buffer that the kernel writes a plane to; null for a plane without.
+  [[nodiscard]] virtual const cl::Buffer& buffer(std::size_t plane) const = 0;
+
+  /// The host's side of a plane, valid from the end of fetch() to the next release().
+  [[nodiscard]] virtual const std::byte* host(std::size_t plane) const = 0;
+};
+
+/// Zero copy: the kernel reads the caller's memory and writes the memory the caller reads.
+std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, std::size_t planes,
+                                          std::size_t pillars);
+
+/// Through pinned memory of the driver: one copy by the host, one by the device, each way one.
+std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
+                                          const SolverPlan& plan, std::size_t planes);
+
+}  // namespace pillarfield

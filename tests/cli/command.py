@@ -1,0 +1,52 @@
+"""Runs the `pillarfield` command for the tests beside this file.
+
+The environment gives PILLARFIELD, the program, and PILLARFIELD_SOURCE, the project's folder.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+PROGRAM = os.environ["PILLARFIELD"]
+SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
+SCENES = SOURCE / "scenes"
+
+
+def run(*arguments, expect=0, **options):
+    """Runs the command and returns its result; its exit status must be `expect`."""
+    result = subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True,
+                            timeout=120, check=False, **options)
+    assert result.returncode == expect, (
+        f"{arguments} ended with {result.returncode}, not {expect}\n{result.stdout}{result.stderr}")
+    return result
+
+
+def run_json(*arguments):
+    """Runs the command with --json and returns what it printed, which must be JSON and all of it."""
+    return json.loads(run(*arguments, "--json").stdout)
+
+
+class CommandTest(unittest.TestCase):
+    """A test with a folder of its own, `self.folder`."""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+
+    def assert_fails(self, *arguments, says=(), status=1):
+        """The command ends with `status` and one line on standard error that says all of `says`."""
+        result = run(*arguments, expect=status)
+        lines = result.stderr.strip().splitlines()
+        self.assertEqual(len(lines), 1, result.stderr)
+        self.assertTrue(lines[0].startswith("pillarfield: "), lines[0])
+        for words in says:
+            self.assertIn(words, lines[0])
+        self.assertEqual(result.stdout, "")
+        return lines[0]
+
+    def assert_folder_holds(self, *names):
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), sorted(names))

@@ -1,0 +1,307 @@
+"""The `pillarfield` command as a user meets it."""
+
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from command import PROGRAM, SCENES, SOURCE, CommandTest, run, run_json
+
+COMMANDS = ["simulate", "solve", "compare", "info", "completion"]
+FINGER = SOURCE.parent / "shared/data/tekscan/iscan_6900_finger_45deg.csv"
+
+SMALL_SCENE = """
+title = "A ball"
+[skin]
+pillars = [20, 20]
+threshold_counts = 2
+[time]
+frames = 6
+[sensor]
+adc_bits = 8
+noise_counts = 0.5
+[[contact]]
+shape = "sphere"
+motion = "slide"
+contact_radius_mm = 8
+load_n = 20
+position_mm = [0, 0]
+friction = 0.5
+direction_deg = 30
+"""
+
+
+class Help(CommandTest):
+    def test_every_command_explains_itself(self):
+        self.assertIn("simulate", run("--help").stdout)
+        for command in COMMANDS:
+            text = run(command, "--help").stdout
+            self.assertIn("Usage: pillarfield " + command, text)
+
+    def test_version(self):
+        self.assertRegex(run("--version").stdout, r"^\d+\.\d+\.\d+\n$")
+
+    def test_wrong_command_lines_end_with_2(self):
+        for arguments in ([], ["fly"], ["solve"], ["solve", "in.h5"], ["simulate", "--seed", "x"],
+                          ["solve", "a", "-o", "b", "--estimator", "magic"],
+                          ["solve", "a", "-o", "b", "--outputs", "smoke"],
+                          ["solve", "a", "-o", "b", "--memory", "none"],
+                          ["solve", "a", "-o", "b", "--threshold", "much"],
+                          ["simulate", "a", "-o", "b", "--frames", "0"],
+                          ["info", "file", "--devices"], ["completion", "tcsh"]):
+            with self.subTest(arguments=arguments):
+                result = run(*arguments, expect=2)
+                self.assertEqual(result.stdout, "")
+                self.assertNotEqual(result.stderr, "")
+
+
+class Work(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.folder / "ball.toml"
+        self.scene.write_text(SMALL_SCENE)
+        self.recording = self.folder / "ball.h5"
+        self.forces = self.folder / "forces.h5"
+
+    def test_simulate_solve_compare(self):
+        made = run_json("simulate", self.scene, "-o", self.recording)
+        self.assertEqual((made["frames"], made["sensel_rows"], made["sensel_cols"]), (6, 40, 40))
+        solved = run_json("solve", self.recording, "-o", self.forces)
+        self.assertEqual(solved["frames"], 6)
+        self.assertEqual(sum(solved["regions"].values()), 6 * 20 * 20)
+        self.assertGreater(solved["solver_pillars_per_second"], 0)
+        regions = run_json("compare", self.forces, self.recording)["regions"]
+        self.assertEqual(sum(regions[name]["pillars"] for name in ("loaded", "none")), 6 * 400)
+        # Half a count of noise and a quarter of rounding, over 320 counts per newton.
+        self.assertGreater(regions["1"]["pillars"], 300)
+        self.assertLess(regions["1"]["rms_n"], 1.5 / 320)
+        self.assertGreater(regions["1"]["rms_n"], 0.3 / 320)
+
+    def test_text_names_what_was_done(self):
+        text = run("simulate", self.scene, "-o", self.recording).stdout
+        self.assertIn("6 frames", text)
+        text = run("solve", self.recording, "-o", self.forces).stdout
+        for words in ("Solved 6 frames of 20 x 20 pillars", "frames/s", "region 1", "region 3",
+                      "Wrote"):
+            self.assertIn(words, text)
+        text = run("compare", self.forces, self.recording).stdout
+        for words in ("RMS", "95 %", "theta", "loaded"):
+            self.assertIn(words, text)
+
+    def test_seeds_make_frames_reproducible(self):
+        copies = [self.folder / name for name in ("a.npy", "b.npy", "c.npy")]
+        for copy, seed in zip(copies, (5, 5, 6)):
+            run("simulate", self.scene, "-o", self.recording, "--seed", seed, "--frames", 2)
+            run("solve", self.recording, "-o", copy)
+        self.assertEqual(copies[0].read_bytes(), copies[1].read_bytes())
+        self.assertNotEqual(copies[0].read_bytes(), copies[2].read_bytes())
+
+    def test_zero_copy_and_staged_memory_give_the_same_bits(self):
+        run("simulate", self.scene, "-o", self.recording)
+        copies = {memory: self.folder / f"{memory}.npy" for memory in ("auto", "staged")}
+        for memory, copy in copies.items():
+            run("solve", self.recording, "-o", copy, "--memory", memory)
+        self.assertEqual(copies["auto"].read_bytes(), copies["staged"].read_bytes())
+
+    def test_options_override_the_file(self):
+        run("simulate", self.scene, "-o", self.recording)
+        shares = []
+        for threshold in (2, 40):
+            solved = run_json("solve", self.recording, "-o", self.forces, "--threshold", threshold)
+            shares.append(solved["regions"]["none"])
+        self.assertGreater(shares[1], shares[0])
+        solved = run_json("solve", self.recording, "-o", self.forces, "--full-scale", 60)
+        self.assertGreater(solved["saturated"], 0)
+        solved = run_json("solve", self.recording, "-o", self.forces, "--parity-tolerance", 0.5)
+        self.assertGreater(solved["inconsistent"], 0)
+        self.assertIn("parity_test", solved["stages"])
+
+    def test_info_describes_every_file(self):
+        run("simulate", self.scene, "-o", self.recording)
+        run("solve", self.recording, "-o", self.forces)
+        facts = run_json("info", self.recording)
+        self.assertEqual((facts["frames"], facts["truth"], facts["sensel_type"]), (6, True, "uint8"))
+        facts = run_json("info", self.forces)
+        self.assertEqual((facts["frames"], facts["estimator"], facts["source"]),
+                         (6, "direct", "ball.h5"))
+        self.assertEqual(run_json("info", self.scene)["title"], "A ball")
+
+    def test_kernel_holds_only_the_stages_of_its_scene(self):
+        text = run("info", "--kernel", self.scene).stdout
+        self.assertIn("kernel void solve_frame", text)
+        self.assertIn("#define PF_FULL_SCALE 0x1.fep+7f", text)
+        self.assertNotIn("#define PF_TARE", text)
+        self.scene.write_text(SMALL_SCENE.replace("noise_counts", "tare_counts = 3\nnoise_counts"))
+        self.assertIn("#define PF_TARE", run("info", "--kernel", self.scene).stdout)
+
+    def test_devices_are_listed(self):
+        devices = run_json("info", "--devices")
+        self.assertTrue(any(device["unsuitable"] == "" for device in devices))
+        run("simulate", self.scene, "-o", self.recording)
+        line = self.assert_fails("solve", self.recording, "-o", self.forces, "--device",
+                                 "no such device", says=["no such device", devices[0]["name"]])
+        self.assertIn("suitable", line)
+
+    def test_existing_output_survives_a_failure(self):
+        self.forces.write_text("precious")
+        self.assert_fails("solve", self.folder / "absent.h5", "-o", self.forces)
+        self.assertEqual(self.forces.read_text(), "precious")
+
+
+class BadInput(CommandTest):
+    def test_one_line_exit_1_nothing_left(self):
+        noise = bytes(range(256)) * 64
+        cases = {"absent.h5": None, "empty.h5": b"", "noise.h5": noise, "text.csv": b"hello\n",
+                 "cut.h5": b"\x89HDF\r\n\x1a\n" + noise[:100]}
+        for name, content in cases.items():
+            with self.subTest(name=name):
+                path = self.folder / name
+                if content is not None:
+                    path.write_bytes(content)
+                self.assert_fails("solve", path, "-o", self.folder / "forces.h5", says=[name])
+                self.assert_fails("info", path, says=[name])
+                if content is not None:
+                    path.unlink()
+                self.assert_folder_holds()
+
+    def test_recording_cut_at_many_lengths(self):
+        scene = self.folder / "ball.toml"
+        scene.write_text(SMALL_SCENE)
+        whole = self.folder / "whole.h5"
+        run("simulate", scene, "-o", whole)
+        content = whole.read_bytes()
+        cut = self.folder / "cut.h5"
+        for twentieths in range(1, 20):
+            cut.write_bytes(content[:len(content) * twentieths // 20])
+            self.assert_fails("solve", cut, "-o", self.folder / "forces.h5", says=["cut.h5"])
+        self.assert_folder_holds("ball.toml", "cut.h5", "whole.h5")
+
+    def test_wrong_scene_names_its_line(self):
+        scene = self.folder / "wrong.toml"
+        scene.write_text(SMALL_SCENE + "colour = 3\n")
+        line = len(SMALL_SCENE.splitlines()) + 1
+        self.assert_fails("simulate", scene, "-o", self.folder / "out.h5",
+                          says=[f"wrong.toml:{line}", "colour", "load_n"])
+        self.assert_folder_holds("wrong.toml")
+
+    def test_output_that_cannot_be_written(self):
+        scene = self.folder / "ball.toml"
+        scene.write_text(SMALL_SCENE)
+        self.assert_fails("simulate", scene, "-o", self.folder / "no/such/place.h5",
+                          says=["no/such/place.h5"])
+        run("simulate", scene, "-o", self.folder / "ball.h5")
+        self.assert_fails("solve", self.folder / "ball.h5", "-o", self.folder / "forces.docx",
+                          says=["forces.docx", ".npy"])
+        self.assert_folder_holds("ball.h5", "ball.toml")
+
+    def test_forces_of_another_patch_are_not_compared(self):
+        scene = self.folder / "ball.toml"
+        scene.write_text(SMALL_SCENE)
+        run("simulate", scene, "-o", self.folder / "a.h5")
+        run("solve", self.folder / "a.h5", "-o", self.folder / "forces.h5")
+        scene.write_text(SMALL_SCENE.replace("[20, 20]", "[20, 22]"))
+        run("simulate", scene, "-o", self.folder / "b.h5")
+        self.assert_fails("compare", self.folder / "forces.h5", self.folder / "b.h5",
+                          says=["20 x 20", "20 x 22"])
+        self.assert_fails("compare", self.folder / "a.h5", self.folder / "b.h5", says=["a.h5"])
+
+
+class Interruption(CommandTest):
+    """A process that ends while it records leaves every flushed frame readable."""
+
+    def record_until(self, ending):
+        scene = self.folder / "ball.toml"
+        scene.write_text(SMALL_SCENE.replace("frames = 6", "frames = 1000000"))
+        part = self.folder / "long.h5.part"
+        process = subprocess.Popen([PROGRAM, "simulate", scene, "-o", self.folder / "long.h5"],
+                                   stderr=subprocess.PIPE, text=True)
+        deadline = time.monotonic() + 60
+        while not (part.exists() and part.stat().st_size > 1_000_000):
+            self.assertIsNone(process.poll(), "it ended by itself")
+            self.assertLess(time.monotonic(), deadline, "nothing was written")
+            time.sleep(0.02)
+        process.send_signal(ending)
+        _, complaint = process.communicate(timeout=60)
+        return part, process.returncode, complaint
+
+    def check_part(self, part):
+        facts = run_json("info", part)
+        self.assertGreater(facts["frames"], 16)
+        self.assertTrue(facts["truth"])
+        solved = run_json("solve", part, "-o", self.folder / "forces.h5")
+        self.assertEqual(solved["frames"], facts["frames"])
+        regions = run_json("compare", self.folder / "forces.h5", part)["regions"]
+        self.assertLess(regions["1"]["rms_n"], 1.5 / 320)
+
+    def test_killed(self):
+        part, status, _ = self.record_until(signal.SIGKILL)
+        self.assertEqual(status, -signal.SIGKILL)
+        self.assertFalse((self.folder / "long.h5").exists())
+        self.check_part(part)
+
+    def test_interrupted(self):
+        part, status, complaint = self.record_until(signal.SIGINT)
+        self.assertEqual(status, 1)
+        self.assertIn("interrupted after", complaint)
+        self.assertIn("long.h5", complaint)
+        self.check_part(part)
+
+
+class RealFrames(CommandTest):
+    def test_finger(self):
+        if not FINGER.exists():
+            self.skipTest("the real Tekscan frames are not beside this project")
+        facts = run_json("info", FINGER)
+        self.assertEqual((facts["frames"], facts["pillar_rows"], facts["pillar_cols"]),
+                         (309, 14, 14))
+        solved = run_json("solve", FINGER, "-o", self.folder / "forces.h5")
+        self.assertEqual((solved["frames"], solved["pillar_rows"]), (309, 14))
+        self.assertGreater(solved["regions"]["1"], 0)
+
+    def test_a_changed_reading_breaks_the_sum(self):
+        if not FINGER.exists():
+            self.skipTest("the real Tekscan frames are not beside this project")
+        changed = self.folder / "changed.csv"
+        text = FINGER.read_bytes().decode("latin-1")
+        changed.write_bytes(text.replace("B,B,5,0", "B,B,6,0", 1).encode("latin-1"))
+        self.assert_fails("solve", changed, "-o", self.folder / "forces.h5",
+                          says=["changed.csv", "310", "311"])
+        self.assert_folder_holds("changed.csv")
+
+
+class Completion(CommandTest):
+    def complete(self, *words):
+        """What bash offers for the last of `words`."""
+        script = run("completion", "bash").stdout + (
+            f"COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; _pillarfield\n"
+            'printf "%s\\n" "${COMPREPLY[@]}"\n')
+        result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+        return result.stdout.split()
+
+    def test_bash(self):
+        self.assertEqual(self.complete("pillarfield", "si"), ["simulate"])
+        self.assertIn("--threshold", self.complete("pillarfield", "solve", "--th"))
+        self.assertEqual(self.complete("pillarfield", "solve", "demo"), [])
+
+    def test_other_shells(self):
+        self.assertIn("bashcompinit", run("completion", "zsh").stdout)
+        self.assertIn("complete -c pillarfield", run("completion", "fish").stdout)
+        for shell in ("zsh", "fish"):
+            if shutil.which(shell):
+                script = self.folder / "script"
+                script.write_text(run("completion", shell).stdout)
+                subprocess.run([shell, "-n", script], check=True)
+
+
+class Scenes(CommandTest):
+    def test_every_scene_is_understood(self):
+        scenes = sorted(SCENES.glob("*.toml"))
+        self.assertGreaterEqual(len(scenes), 8)
+        for scene in scenes:
+            with self.subTest(scene=scene.name):
+                self.assertTrue(run_json("info", scene)["title"])
+
+
+if __name__ == "__main__":
+    unittest.main()

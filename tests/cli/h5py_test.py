@@ -1,0 +1,109 @@
+"""Recordings written by h5py, solved by the command, against an independent solve in NumPy."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from command import CommandTest, run
+from direct_oracle import sensels_of, solve
+
+
+def random_frames(random, frames, rows, cols, dtype):
+    """Readings of all regions: a third lifted; float32 also negative and missing ones."""
+    readings = random.uniform(0, 255, (frames, rows, cols))
+    readings[random.random(readings.shape) < 0.33] = 0
+    if dtype == np.float32:
+        readings[random.random(readings.shape) < 0.05] *= -1
+        readings[random.random(readings.shape) < 0.03] = np.nan
+    return readings.astype(dtype)
+
+
+def write_recording(path, raw, threshold, counts_per_newton):
+    with h5py.File(path, "w") as file:
+        file.attrs["format"] = "pillarfield-recording"
+        file.attrs["version"] = 1
+        file["/frames/raw"] = raw
+        file["/frames/time"] = np.arange(len(raw)) / 100.0
+        skin = file.create_group("skin")
+        skin.attrs["sensel_pitch_mm"] = 0.632
+        skin.attrs["counts_per_newton"] = counts_per_newton
+        skin.attrs["threshold_counts"] = threshold
+
+
+class RecordingsOfH5py(CommandTest):
+    def check(self, seed, dtype):
+        random = np.random.default_rng(seed)
+        rows, cols = (int(n) for n in random.integers(2, 90, 2))
+        threshold = float(random.uniform(0, 20))
+        counts_per_newton = float(random.uniform(5, 2000))
+        raw = random_frames(random, 3, rows, cols, dtype)
+        recording, output = self.folder / "random.h5", self.folder / "forces.h5"
+        write_recording(recording, raw, threshold, counts_per_newton)
+        run("solve", recording, "-o", output)
+        with h5py.File(output) as file:
+            self.assertEqual(file.attrs["format"].decode(), "pillarfield-forces")
+            planes = ["shear_x", "shear_y", "normal"]
+            forces = np.stack([file["/force"][plane][:] for plane in planes], axis=-1)
+            status = file["/force/status"][:]
+        self.assertEqual(forces.shape, (3, rows // 2, cols // 2, 3))
+        for index, frame in enumerate(raw):
+            self.compare(frame, forces[index], status[index], threshold, counts_per_newton)
+
+    def compare(self, frame, forces, status, threshold, counts_per_newton):
+        # The program compares in single precision.
+        expected, bits = solve(frame, np.float32(threshold), counts_per_newton)
+        missing = np.isnan(sensels_of(frame)).any(axis=-1)
+        usable = sum((bits >> n) & 1 for n in range(4))
+        opposite = (bits == 5) | (bits == 10)
+        np.testing.assert_array_equal(status & 15, bits)
+        np.testing.assert_array_equal((status & 64) != 0, missing | opposite)
+        # A missing sensel may hold anything: only three usable ones determine the force then.
+        known = ~missing | (usable >= 3)
+        np.testing.assert_array_equal((status[known] & 16) != 0,
+                                      ((usable == 2) & ~opposite)[known])
+        self.assertTrue(np.isfinite(forces).all())
+        size = np.linalg.norm(expected, axis=-1, keepdims=True)
+        error = np.abs(forces - expected) / np.where(size > 0, size, 1)
+        self.assertLess(error[known].max(initial=0), 8 * np.finfo(np.float32).eps)
+
+    def test_uint8(self):
+        for seed in range(6):
+            with self.subTest(seed=seed):
+                self.check(seed, np.uint8)
+
+    def test_uint16(self):
+        for seed in range(10, 13):
+            with self.subTest(seed=seed):
+                self.check(seed, np.uint16)
+
+    def test_float32(self):
+        for seed in range(20, 26):
+            with self.subTest(seed=seed):
+                self.check(seed, np.float32)
+
+    def test_outputs_agree_with_each_other(self):
+        random = np.random.default_rng(1)
+        raw = random_frames(random, 4, 12, 14, np.uint8)
+        recording = self.folder / "random.h5"
+        write_recording(recording, raw, 5, 320)
+        for ending in ("h5", "npy", "csv"):
+            run("solve", recording, "-o", self.folder / f"forces.{ending}", "--outputs",
+                "forces,angles")
+        array = np.load(self.folder / "forces.npy")
+        table = np.genfromtxt(self.folder / "forces.csv", delimiter=",", names=True)
+        places = tuple(table[name].astype(int) for name in ("frame", "row", "col"))
+        columns = {"shear_x": "shear_x_n", "shear_y": "shear_y_n", "normal": "normal_n",
+                   "status": "status", "magnitude": "magnitude_n", "theta": "theta_rad",
+                   "phi": "phi_rad"}
+        with h5py.File(self.folder / "forces.h5") as file:
+            for plane, column in columns.items():
+                expected = file["/force"][plane][:]
+                np.testing.assert_array_equal(array[plane], expected)
+                np.testing.assert_array_equal(table[column].astype(np.float32), expected[places])
+            status = file["/force/status"][:]
+        self.assertEqual(len(table), np.count_nonzero(status))
+
+
+if __name__ == "__main__":
+    unittest.main()

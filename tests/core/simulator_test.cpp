@@ -1,0 +1,263 @@
+#include "pillarfield/simulator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+/// A noisy skin with a ball that moves.
+Scene noisy_scene(std::uint64_t seed) {
+  Scene scene;
+  scene.skin.rows = 64;
+  scene.skin.cols = 52;
+  scene.sensor.noise_counts = 0.5;
+  scene.sensor.gain_spread = 0.1;
+  scene.sensor.tare_counts = 3;
+  scene.sensor.tare_spread_counts = 1;
+  scene.sensor.dead_share = 0.01;
+  scene.sensor.adc_bits = 8;
+  scene.frames = 10;
+  scene.seed = seed;
+  Contact ball;
+  ball.motion = ContactMotion::slide;
+  ball.contact_radius_mm = 8;
+  ball.reference_load_n = 20;
+  ball.friction = 1.3;
+  ball.path = {{0, -5, 0, 20}, {0.1, 5, 3, 30}};
+  scene.load = std::vector{ball};
+  return scene;
+}
+
+struct Rendered {
+  explicit Rendered(const Simulator& simulator)
+      : raw(simulator.sensel_type(), simulator.scene().skin.rows, simulator.scene().skin.cols),
+        truth(simulator.scene().skin.pillar_rows(), simulator.scene().skin.pillar_cols()) {}
+  FrameBuffer raw;
+  ForceField truth;
+
+  bool operator==(const Rendered& other) const {
+    return std::ranges::equal(raw.bytes(), other.raw.bytes()) &&
+           truth.shear_x == other.truth.shear_x && truth.shear_y == other.truth.shear_y &&
+           truth.normal == other.truth.normal && truth.status == other.truth.status;
+  }
+};
+
+Rendered render(const Simulator& simulator, std::uint64_t index) {
+  Rendered frame(simulator);
+  simulator.render(index, frame.raw, frame.truth);
+  return frame;
+}
+
+TEST(Simulator, TheSameSeedMakesTheSameFrames) {
+  const Simulator one(noisy_scene(4));
+  const Simulator two(noisy_scene(4));
+  EXPECT_EQ(one.calibration().gain, two.calibration().gain);
+  EXPECT_EQ(one.calibration().mask, two.calibration().mask);
+  for (std::uint64_t index = 0; index < 10; ++index) {
+    EXPECT_EQ(render(one, index), render(two, index));
+  }
+}
+
+TEST(Simulator, AnotherSeedMakesAnotherSensorAndOtherNoiseOfTheSameTruth) {
+  const Simulator one(noisy_scene(4));
+  const Simulator two(noisy_scene(5));
+  EXPECT_NE(one.calibration().gain, two.calibration().gain);
+  EXPECT_NE(one.calibration().tare, two.calibration().tare);
+  EXPECT_NE(one.calibration().mask, two.calibration().mask);
+  EXPECT_FALSE(render(one, 0) == render(two, 0));
+  EXPECT_EQ(render(one, 3).truth.normal, render(two, 3).truth.normal);
+}
+
+TEST(Simulator, OrderAndOldContentsDoNotMatter) {
+  const Simulator simulator(noisy_scene(4));
+  Rendered reused(simulator);
+  std::fill(reused.raw.bytes().begin(), reused.raw.bytes().end(), std::byte{0xAB});
+  std::fill(reused.truth.normal.begin(), reused.truth.normal.end(), 9.0F);
+  std::fill(reused.truth.status.begin(), reused.truth.status.end(), std::uint8_t{255});
+  for (const std::uint64_t index : {9U, 2U, 5U, 0U, 2U}) {
+    simulator.render(index, reused.raw, reused.truth);
+    EXPECT_EQ(reused, render(simulator, index)) << index;
+  }
+}
+
+TEST(Simulator, SeveralThreadsMakeTheSameFrames) {
+  const Simulator simulator(noisy_scene(4));
+  std::vector<Rendered> frames;
+  for (int i = 0; i < 16; ++i) frames.emplace_back(simulator);
+  const auto render_part = [&](std::size_t part) {
+    for (std::size_t i = part; i < frames.size(); i += 2) {
+      simulator.render(i, frames[i].raw, frames[i].truth);
+    }
+  };
+  std::thread other(render_part, 1);
+  render_part(0);
+  other.join();
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(frames[i], render(simulator, i)) << i;
+}
+
+TEST(Simulator, FramesFollowTheClockAndThePath) {
+  const Simulator simulator(noisy_scene(4));
+  EXPECT_DOUBLE_EQ(simulator.time_of(0), 0);
+  EXPECT_DOUBLE_EQ(simulator.time_of(5), 0.05);
+  const auto load_at = [&](std::uint64_t index) {
+    double sum = 0;
+    for (const float normal : render(simulator, index).truth.normal) sum += double{normal};
+    return sum;
+  };
+  EXPECT_NEAR(load_at(0), 20, 2e-5);
+  EXPECT_NEAR(load_at(5), 25, 2e-5);
+  EXPECT_NEAR(load_at(500), 30, 3e-5);
+}
+
+TEST(Simulator, ContactsAddUp) {
+  Scene scene = noisy_scene(1);
+  const Contact ball = std::get<std::vector<Contact>>(scene.load).front();
+  Contact punch = ball;
+  punch.shape = ContactShape::flat_punch;
+  punch.path = {{0, 3, 3, 7}};
+  const auto normal_of = [&](std::vector<Contact> load) {
+    scene.load = std::move(load);
+    return render(Simulator(scene), 0).truth.normal;
+  };
+  const std::vector<float> both = normal_of({ball, punch});
+  const std::vector<float> first = normal_of({ball});
+  const std::vector<float> second = normal_of({punch});
+  for (std::size_t i = 0; i < both.size(); ++i) EXPECT_NEAR(both[i], first[i] + second[i], 1e-6F);
+}
+
+Scene chart_scene() {
+  Scene scene;
+  Chart chart;
+  chart.magnitudes_n = {0.3, 1e-3};
+  scene.load = chart;
+  scene.skin.rows = 2 * 31 * 2;
+  scene.skin.cols = 2 * 72;
+  return scene;
+}
+
+TEST(Simulator, AChartHoldsEveryDirectionFromWhichAForceComes) {
+  const Rendered frame = render(Simulator(chart_scene()), 7);
+  using std::numbers::pi;
+  for (std::size_t row = 0; row < 62; ++row) {
+    for (std::size_t col = 0; col < 72; ++col) {
+      const double magnitude = row < 31 ? 0.3 : 1e-3;
+      const double theta = static_cast<double>(row % 31) * pi / 60;
+      const double phi = static_cast<double>(col) * pi / 36;
+      const std::size_t i = row * 72 + col;
+      EXPECT_NEAR(frame.truth.shear_x[i], -magnitude * std::sin(theta) * std::cos(phi), 3e-8);
+      EXPECT_NEAR(frame.truth.shear_y[i], -magnitude * std::sin(theta) * std::sin(phi), 3e-8);
+      EXPECT_NEAR(frame.truth.normal[i], magnitude * std::cos(theta), 3e-8);
+    }
+  }
+}
+
+/// Equation (2) of the paper, sensel by sensel, at the place in the frame that the design gives it.
+TEST(Simulator, ReadingsAreThePapersEquationAtTheirSensel) {
+  const Simulator simulator(chart_scene());
+  const Rendered frame = render(simulator, 0);
+  const auto raw = frame.raw.readings<float>();
+  using std::numbers::pi;
+  for (std::size_t row = 0; row < 31; ++row) {
+    for (std::size_t col = 0; col < 72; ++col) {
+      const double theta = static_cast<double>(row) * pi / 60;
+      const double phi = static_cast<double>(col) * pi / 36;
+      const std::size_t upper = 2 * row * 144 + 2 * col;
+      const std::size_t sensels[] = {upper + 1, upper, upper + 144, upper + 145};
+      for (int n = 1; n <= 4; ++n) {
+        const double v =
+            0.3 * 320 * (std::cos(theta) - std::sin(theta) * std::cos(pi / 4 * (2 * n - 1) - phi));
+        EXPECT_NEAR(raw[sensels[n - 1]], std::max(0.0, v), 1e-4) << row << " " << col;
+        const bool positive = (frame.truth.status[row * 72 + col] >> (n - 1) & 1) != 0;
+        EXPECT_EQ(positive, raw[sensels[n - 1]] > 0);
+      }
+    }
+  }
+}
+
+TEST(Simulator, TheStatusHoldsUsableBitsOnlyAndIgnoresTheSensor) {
+  Scene scene = noisy_scene(4);
+  const Rendered noisy = render(Simulator(scene), 0);
+  scene.sensor = {};
+  const Rendered clean = render(Simulator(scene), 0);
+  EXPECT_EQ(noisy.truth.status, clean.truth.status);
+  EXPECT_GT(std::ranges::count(clean.truth.status, status::kUsable), 0);
+  for (const std::uint8_t status : clean.truth.status) EXPECT_EQ(status & ~status::kUsable, 0);
+}
+
+TEST(Simulator, AnOddRowOrColumnIsReadWithoutLoad) {
+  Scene scene = noisy_scene(1);
+  scene.sensor = {};
+  scene.sensor.tare_counts = 2;
+  scene.skin.rows = 33;
+  scene.skin.cols = 27;
+  std::get<std::vector<Contact>>(scene.load).front().contact_radius_mm = 30;
+  const Rendered frame = render(Simulator(scene), 0);
+  const auto raw = frame.raw.readings<float>();
+  EXPECT_GT(raw[0], 2);
+  for (std::size_t row = 0; row < 33; ++row) EXPECT_EQ(raw[row * 27 + 26], 2);
+  for (std::size_t col = 0; col < 27; ++col) EXPECT_EQ(raw[32 * 27 + col], 2);
+}
+
+TEST(Simulator, AConverterSetsTheFullScale) {
+  Scene scene = noisy_scene(1);
+  scene.sensor.adc_bits = 10;
+  EXPECT_EQ(Simulator(scene).scene().skin.full_scale_counts, 1023);
+  scene.skin.full_scale_counts = 900;
+  EXPECT_EQ(Simulator(scene).scene().skin.full_scale_counts, 900);
+}
+
+TEST(Simulator, RefusesBuffersThatDoNotFit) {
+  const Simulator simulator(noisy_scene(1));
+  Rendered fits(simulator);
+  FrameBuffer floats(SenselType::f32, 64, 52);
+  FrameBuffer small(SenselType::u8, 64, 50);
+  ForceField narrow(32, 25);
+  EXPECT_THROW(simulator.render(0, floats, fits.truth), Error);
+  EXPECT_THROW(simulator.render(0, small, fits.truth), Error);
+  EXPECT_THROW(simulator.render(0, fits.raw, narrow), Error);
+}
+
+TEST(Simulator, RefusesScenesOutOfRange) {
+  static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto ball = [](Scene& s) -> Contact& { return std::get<std::vector<Contact>>(s.load)[0]; };
+  const std::vector<std::function<void(Scene&)>> spoilers = {
+      [](Scene& s) { s.skin.rows = 0; },
+      [](Scene& s) { s.skin.rows = s.skin.cols = 60000; },
+      [](Scene& s) { s.rate_hz = 0; },
+      [](Scene& s) { s.frames = 0; },
+      [](Scene& s) { s.sensor.noise_counts = -1; },
+      [](Scene& s) { s.sensor.gain_spread = 0.3; },
+      [](Scene& s) { s.sensor.dead_share = kNan; },
+      [](Scene& s) { s.sensor.adc_bits = 17; },
+      [](Scene& s) { s.sensor.adc_bits = -2000000000; },
+      [](Scene& s) { s.skin.full_scale_counts = 256; },
+      [](Scene& s) { s.skin.full_scale_counts = 200.5; },
+      [](Scene& s) { s.parity_tolerance_counts = -1; },
+      [&](Scene& s) { ball(s).contact_radius_mm = kNan; },
+      [&](Scene& s) { ball(s).path.clear(); },
+      [&](Scene& s) { ball(s).path.push_back(ball(s).path.front()); },
+      [&](Scene& s) { ball(s).path.front().x_mm = std::numeric_limits<double>::infinity(); },
+      [&](Scene& s) { ball(s).motion = ContactMotion::roll; },
+      [](Scene& s) { s.load = Chart{}; },
+  };
+  for (std::size_t i = 0; i < spoilers.size(); ++i) {
+    Scene scene = noisy_scene(1);
+    spoilers[i](scene);
+    EXPECT_THROW(Simulator{scene}, Error) << i;
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

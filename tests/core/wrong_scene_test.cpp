@@ -1,0 +1,290 @@
+#include <gtest/gtest.h>
+
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "pillarfield/scene.h"
+
+namespace pillarfield {
+namespace {
+
+std::string message_of(const std::string& text) {
+  try {
+    static_cast<void>(parse_scene(text, "s.toml"));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+struct WrongScene {
+  const char* text;
+  const char* message;
+};
+
+/// A skin of one line, then what is given.
+std::string on_skin(const char* text) { return std::string("skin.size_mm = [20, 20]\n") + text; }
+
+void expect_message(const std::string& text, const std::string& message) {
+  const std::string is = message_of(text);
+  EXPECT_EQ(is, message) << text;
+  EXPECT_EQ(is.find('\n'), std::string::npos);
+}
+
+TEST(WrongScene, SkinSensorTimeAndSolver) {
+  const std::vector<WrongScene> table = {
+      {"sise = 3",
+       "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, chart, "
+       "contact, skin, sensor, time, solver"},
+      {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
+      {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
+      {"[sensor]\n\nnoise = 1",
+       "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: dead_zone_counts, gain_spread, "
+       "tare_counts, tare_spread_counts, noise_counts, dead_share, adc_bits, full_scale_counts"},
+      {"[sensor]\nnoise_counts = -1",
+       "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
+      {"[sensor]\nnoise_counts = nan",
+       "s.toml:3: key 'noise_counts' in [sensor] is nan; allowed: a number in [0, 1000000]"},
+      {"[sensor]\nnoise_counts = \"low\"",
+       "s.toml:3: key 'noise_counts' in [sensor] is \"low\"; allowed: a number in [0, 1000000]"},
+      {"[sensor]\ngain_spread = 0.3",
+       "s.toml:3: key 'gain_spread' in [sensor] is 0.3; allowed: a number in [0, 0.3)"},
+      {"[sensor]\ndead_share = 1.5",
+       "s.toml:3: key 'dead_share' in [sensor] is 1.5; allowed: a number in [0, 1]"},
+      {"[sensor]\nadc_bits = 8.0",
+       "s.toml:3: key 'adc_bits' in [sensor] is 8; allowed: a whole number from 1 to 16"},
+      {"[sensor]\nadc_bits = 17",
+       "s.toml:3: key 'adc_bits' in [sensor] is 17; allowed: a whole number from 1 to 16"},
+      {"[sensor]\nadc_bits = 8\nfull_scale_counts = 256",
+       "s.toml:4: key 'full_scale_counts' in [sensor] is 256; allowed: a whole number from 1 to "
+       "255"},
+      {"[skin]\nthreshold_counts = 9\n[sensor]\nadc_bits = 3",
+       "s.toml:5: key 'adc_bits' in [sensor] gives a full scale of 7; allowed: more than "
+       "threshold_counts, 9"},
+      {"[time]\nrate_hz = 0",
+       "s.toml:3: key 'rate_hz' in [time] is 0; allowed: a number in [1e-06, 1000000]"},
+      {"[time]\nrate_hz = inf",
+       "s.toml:3: key 'rate_hz' in [time] is inf; allowed: a number in [1e-06, 1000000]"},
+      {"[time]\nframes = 0",
+       "s.toml:3: key 'frames' in [time] is 0; allowed: a whole number from 1 to 100000000"},
+      {"[time]\nseed = -1",
+       "s.toml:3: key 'seed' in [time] is -1; allowed: a whole number from 0 to "
+       "9223372036854775807"},
+      {"[solver]\nparity_tolerance_counts = true",
+       "s.toml:3: key 'parity_tolerance_counts' in [solver] is true; allowed: a number in [0, "
+       "1e+33]"},
+  };
+  for (const auto& [text, message] : table) {
+    // [skin] given again would be a duplicate, so the size goes into it.
+    const std::string whole = text;
+    if (whole.starts_with("[skin]")) {
+      expect_message("\n[skin]\nsize_mm = [9, 9]" + whole.substr(6),
+                     std::string(message).replace(7, 1, "6"));
+    } else {
+      expect_message(on_skin(text), message);
+    }
+  }
+}
+
+TEST(WrongScene, SizeOfTheSkin) {
+  const std::vector<WrongScene> table = {
+      {"",
+       "s.toml: key 'size_mm' in [skin] is missing; allowed: size_mm = [x, y] or pillars = "
+       "[rows, columns]"},
+      {"\n[skin]\n",
+       "s.toml:2: key 'size_mm' in [skin] is missing; allowed: size_mm = [x, y] or "
+       "pillars = [rows, columns]"},
+      {"[skin]\nsize_mm = 5",
+       "s.toml:2: key 'size_mm' in [skin] is 5; allowed: a list of 2, each a "
+       "number in (0, 100000000]"},
+      {"[skin]\nsize_mm = [5]",
+       "s.toml:2: key 'size_mm' in [skin] is a list of 1; allowed: a list "
+       "of 2, each a number in (0, 100000000]"},
+      {"[skin]\nsize_mm = [\n5,\n-5]",
+       "s.toml:4: key 'size_mm' in [skin] has an element that is "
+       "-5; allowed: a list of 2, each a number in (0, 100000000]"},
+      {"[skin]\nsize_mm = [5, nan]",
+       "s.toml:2: key 'size_mm' in [skin] has an element that is nan; "
+       "allowed: a list of 2, each a number in (0, 100000000]"},
+      {"[skin]\nsize_mm = [1, 9]",
+       "s.toml:2: key 'size_mm' in [skin] means 7 x 0 pillars; allowed: "
+       "1 to 32767 each way, 25000000 in all"},
+      {"[skin]\nsize_mm = [1e8, 9]",
+       "s.toml:2: key 'size_mm' in [skin] means 7 x 79056941 pillars; "
+       "allowed: 1 to 32767 each way, 25000000 in all"},
+      {"[skin]\npillars = [32767, 32767]",
+       "s.toml:2: key 'pillars' in [skin] means 32767 x 32767 "
+       "pillars; allowed: 1 to 32767 each way, 25000000 in all"},
+      {"[skin]\npillars = [2.5, 3]",
+       "s.toml:2: key 'pillars' in [skin] has a fraction; allowed: "
+       "whole numbers, [rows, columns]"},
+      {"[skin]\npillars = [3, 3]\nsize_mm = [9, 9]",
+       "s.toml:2: key 'pillars' in [skin] comes with "
+       "size_mm; allowed: one of the two"},
+      {"[skin]\nsize_mm = [9, 9]\n[chart]",
+       "s.toml:2: key 'size_mm' in [skin] comes with [chart]; "
+       "allowed: no size, for the chart sets it"},
+      {"[chart]\ndirections = 0",
+       "s.toml:2: key 'directions' in [chart] is 0; allowed: a whole "
+       "number from 1 to 32767"},
+      {"[chart]\ninclinations = 30000\nmagnitudes_n = [1, 2]",
+       "s.toml:2: key 'inclinations' in [chart] means 60000 x 72 pillars; allowed: 1 to 32767 each "
+       "way, 25000000 in all"},
+      {"[chart]\nmagnitudes_n = []",
+       "s.toml:2: key 'magnitudes_n' in [chart] is a list of 0; "
+       "allowed: a list, each a number in (0, 1000000]"},
+      {"[chart]\nmax_theta_deg = 91",
+       "s.toml:2: key 'max_theta_deg' in [chart] is 91; allowed: a "
+       "number in [0, 90]"},
+  };
+  for (const auto& [text, message] : table) expect_message(text, message);
+}
+
+/// A contact that lacks nothing, on lines 2 to 7, then what is given.
+std::string ball(const char* text) {
+  return on_skin(
+             "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 5\n"
+             "position_mm = [0, 0]\nload_n = 1\n") +
+         text;
+}
+
+TEST(WrongScene, KeysThatDoNotGoTogether) {
+  const std::vector<WrongScene> table = {
+      {"friction = 0.5",
+       "s.toml:8: key 'friction' in [[contact]] does not apply to shape = "
+       "\"sphere\", motion = \"press\"; allowed: no such key"},
+      {"direction_deg = 5",
+       "s.toml:8: key 'direction_deg' in [[contact]] does not apply to shape = "
+       "\"sphere\", motion = \"press\"; allowed: no such key"},
+      {"length_mm = 5",
+       "s.toml:8: key 'length_mm' in [[contact]] does not apply to shape = "
+       "\"sphere\", motion = \"press\"; allowed: no such key"},
+      {"clockwise = true",
+       "s.toml:8: key 'clockwise' in [[contact]] is unknown here; allowed: "
+       "shape, motion, contact_radius_mm, reference_load_n, path, position_mm, "
+       "load_n"},
+      {"path = [{time_s = 0, position_mm = [0, 0], load_n = 1}]",
+       "s.toml:6: key 'position_mm' in [[contact]] comes with path; allowed: one of the two"},
+      {"[chart]",
+       "s.toml:8: key 'chart' in the scene comes with [[contact]]; allowed: one of the "
+       "two"},
+      {"radius = 5",
+       "s.toml:8: key 'radius' in [[contact]] is unknown here; allowed: shape, "
+       "motion, contact_radius_mm, reference_load_n, path, position_mm, load_n"},
+  };
+  for (const auto& [text, message] : table) expect_message(ball(text), message);
+}
+
+TEST(WrongScene, Contacts) {
+  const std::vector<WrongScene> table = {
+      {"contact = 5",
+       "s.toml:2: key 'contact' in the scene is 5; allowed: a list of tables, [[contact]]"},
+      {"contact = [5]",
+       "s.toml:2: key 'contact' in the scene has an element that is 5; allowed: a list of tables, "
+       "[[contact]]"},
+      {"[[contact]]",
+       "s.toml:2: key 'shape' in [[contact]] is missing; allowed: \"sphere\", "
+       "\"flat_punch\", \"cylinder\""},
+      {"[[contact]]\nshape = \"cube\"",
+       "s.toml:3: key 'shape' in [[contact]] is \"cube\"; allowed: "
+       "\"sphere\", \"flat_punch\", \"cylinder\""},
+      {"[[contact]]\nshape = \"cylinder\"",
+       "s.toml:2: key 'motion' in [[contact]] is missing; allowed: \"press\", \"slide\", \"roll\""},
+      {"[[contact]]\nshape = \"cylinder\"\nmotion = \"spin\"",
+       "s.toml:4: key 'motion' in [[contact]] does not go with the shape: shape = \"cylinder\", "
+       "motion = \"spin\"; allowed: \"press\", \"slide\", \"roll\""},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"",
+       "s.toml:2: key 'contact_radius_mm' in [[contact]] is missing; allowed: a number in [0.001, "
+       "10000]"},
+      {"[[contact]]\nshape = \"flat_punch\"\nmotion = \"press\"\ncontact_radius_mm = "
+       "2\nreference_load_n = 1",
+       "s.toml:6: key 'reference_load_n' in [[contact]] does not apply to shape = \"flat_punch\", "
+       "motion = \"press\"; allowed: no such key"},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"partial_slip\"\ncontact_radius_mm = "
+       "2\nfriction "
+       "= 1\ntangential_ratio = 1",
+       "s.toml:7: key 'tangential_ratio' in [[contact]] is 1; allowed: a number in (0, 1)"},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\nload_n = 1",
+       "s.toml:2: key 'position_mm' in [[contact]] is missing; allowed: a list of 2, [x, y] in "
+       "millimetres"},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = []",
+       "s.toml:6: key 'path' in [[contact]] is a list of 0; allowed: a list of tables, path of "
+       "[[contact]]"},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
+       "{time_s = 1, position_mm = [0, 0], load_n = 1},\n"
+       "{time_s = 1, position_mm = [0, 0], load_n = 1}]",
+       "s.toml:8: key 'time_s' in path of [[contact]] is 1; allowed: more than that of the key "
+       "before, 1"},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
+       "{time_s = 1, position_mm = [0, 0], load_n = -1}]",
+       "s.toml:7: key 'load_n' in path of [[contact]] is -1; allowed: a number in [0, 1000000]"},
+      {"[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 2\npath = [\n"
+       "{time_s = 1, position_mm = [0, 0], load_n = 1, speed = 3}]",
+       "s.toml:7: key 'speed' in path of [[contact]] is unknown here; allowed: time_s, "
+       "position_mm, "
+       "load_n"},
+  };
+  for (const auto& [text, message] : table) expect_message(on_skin(text), message);
+}
+
+TEST(WrongScene, TextThatIsNotToml) {
+  for (const char* text : {"[skin", "a = ", "a = 1\na = 2", "\xff\xfe", "x = [1, 2", "\"",
+                           "a = 99999999999999999999999", "[a]\n[a]"}) {
+    const std::string message = message_of(text);
+    EXPECT_EQ(message.find("s.toml:"), 0U) << message;
+    EXPECT_NE(message.find("is not TOML"), std::string::npos) << message;
+  }
+}
+
+TEST(WrongScene, DeepNestingIsRefused) {
+  const std::string message = message_of("a = " + std::string(100000, '['));
+  EXPECT_NE(message.find("is not TOML"), std::string::npos) << message.substr(0, 200);
+}
+
+/// One random edit: a character replaced, a piece cut out, or a piece said twice.
+std::string damaged(std::string text, std::mt19937_64& random) {
+  static constexpr std::string_view kCharacters = "0159.-e[]{}=,\"'#\n x_ninf\xff\x00";
+  const std::size_t at = random() % text.size();
+  const std::size_t length = random() % 20;
+  switch (random() % 3) {
+    case 0:
+      text[at] = kCharacters[random() % kCharacters.size()];
+      break;
+    case 1:
+      text.erase(at, length);
+      break;
+    default:
+      text.insert(at, text.substr(random() % text.size(), length));
+      break;
+  }
+  return text;
+}
+
+TEST(WrongScene, AnyDamageGivesASceneOrAnErrorOfOneLine) {
+  const std::string whole = ball(
+      "[sensor]\nadc_bits = 8\nnoise_counts = 0.5\ngain_spread = 0.1\n[time]\nframes = 10\n"
+      "[[contact]]\nshape = \"cylinder\"\nmotion = \"roll\"\ncontact_radius_mm = 3\n"
+      "length_mm = 9\nfriction = 0.5\ntangential_ratio = 0.4\n"
+      "path = [{time_s = 0, position_mm = [1, 2], load_n = 3}]\n");
+  EXPECT_EQ(message_of(whole), "no error");
+  std::mt19937_64 random(3);
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::string text = damaged(whole, random);
+    if (trial % 2 == 0) text = damaged(text, random);
+    const std::string message = message_of(text);
+    EXPECT_EQ(message.find_first_of("\r\n"), std::string::npos) << message;
+    EXPECT_TRUE(message == "no error" || message.starts_with("s.toml")) << message;
+  }
+}
+
+TEST(WrongScene, FilesThatCannotBeRead) {
+  for (const char* path : {"no/such/scene.toml", "/", ""}) {
+    EXPECT_THROW(static_cast<void>(load_scene(path)), Error) << path;
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

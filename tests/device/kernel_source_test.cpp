@@ -1,0 +1,71 @@
+// The program that a plan makes: its stages, its constants, its files.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "device/kernel_files.h"
+#include "pillarfield/processor.h"
+#include "random_plan.h"
+
+namespace pillarfield {
+namespace {
+
+/// The value of a macro in a program, or "(none)" where it is not defined.
+std::string macro(const std::string& source, const std::string& name) {
+  const std::string definition = "\n#define " + name + " ";
+  const std::size_t start = ("\n" + source).find(definition);
+  if (start == std::string::npos) return "(none)";
+  const std::size_t value = start + definition.size() - 1;
+  return source.substr(value, source.find('\n', value) - value);
+}
+
+TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
+  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  const std::vector<std::string> expected = {"load", "classify", "direct_solve", "store"};
+  EXPECT_EQ(kernel_stages(plan), expected);
+  const std::string source = kernel_source(plan, 16);
+  EXPECT_EQ(macro(source, "PF_LANES"), "16");
+  EXPECT_EQ(macro(source, "PF_SENSEL"), "uchar");
+  for (const char* stage : {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN",
+                            "PF_DEAD_ZONE", "PF_MASK", "PF_PARITY_TOLERANCE", "PF_ANGLES"}) {
+    EXPECT_EQ(macro(source, stage), "(none)") << stage;
+  }
+}
+
+TEST(KernelSource, EveryWishOfAPlanIsAStage) {
+  SolverPlan plan = full_plan(8, 8, SenselType::f32, 1);
+  plan.angles = true;
+  const std::vector<std::string> expected = {
+      "load",     "reject_absurd", "mask",         "saturation",  "tare",   "gain",
+      "classify", "dead_zone",     "direct_solve", "parity_test", "angles", "store"};
+  EXPECT_EQ(kernel_stages(plan), expected);
+}
+
+TEST(KernelSource, ConstantsAreExact) {
+  SolverPlan plan = bare_plan(8, 8, SenselType::u16);
+  plan.skin.threshold_counts = 0.1;
+  plan.skin.counts_per_newton = 317;
+  const std::string source = kernel_source(plan, 1);
+  EXPECT_EQ(std::strtof(macro(source, "PF_THRESHOLD").c_str(), nullptr), 0.1F);
+  EXPECT_EQ(std::strtof(macro(source, "PF_NORMAL_SCALE").c_str(), nullptr),
+            static_cast<float>(1 / (2 * 317.0)));
+  EXPECT_EQ(macro(source, "PF_THRESHOLD").find("0x"), 0U);
+}
+
+TEST(KernelSource, EmbeddedFilesAreThoseOfTheTree) {
+  for (const KernelFile& embedded : kernel_files()) {
+    std::ifstream file(std::string(PILLARFIELD_KERNELS) + "/" + std::string(embedded.name));
+    std::stringstream text;
+    text << file.rdbuf();
+    EXPECT_EQ(text.str(), embedded.text) << embedded.name;
+  }
+  EXPECT_EQ(kernel_files().front().name, "portable.h");
+  EXPECT_EQ(kernel_files().back().name, "solve_frame.cl");
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,308 @@
+// The frame solver against the same mathematics as a C++ loop: 0 ULP on every path.
+
+#include "pillarfield/processor.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+
+#include "core/host_solve.h"
+#include "pillarfield/error.h"
+#include "random_plan.h"
+
+namespace pillarfield {
+namespace {
+
+/// One device for all tests of this program, so that programs are compiled once. It is closed
+/// before the process ends: drivers must not be called while their own statics go.
+class DeviceForTests : public testing::Environment {
+ public:
+  void SetUp() override { device = open_device(); }
+  void TearDown() override { device.reset(); }
+  static inline std::optional<Device> device;
+};
+
+const testing::Environment* const kEnvironment =
+    testing::AddGlobalTestEnvironment(new DeviceForTests);
+
+const Device& test_device() { return DeviceForTests::device.value(); }
+
+void expect_same_bits(std::span<const float> actual, std::span<const float> expected,
+                      const char* plane) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected[i]))
+        << plane << " of pillar " << i << ": " << actual[i] << " is not " << expected[i];
+  }
+}
+
+void expect_same_bits(const ForceFieldView& actual, const ForceFieldView& expected) {
+  ASSERT_EQ(actual.rows, expected.rows);
+  ASSERT_EQ(actual.cols, expected.cols);
+  expect_same_bits(actual.shear_x, expected.shear_x, "shear_x");
+  expect_same_bits(actual.shear_y, expected.shear_y, "shear_y");
+  expect_same_bits(actual.normal, expected.normal, "normal");
+  for (std::size_t i = 0; i < actual.status.size(); ++i) {
+    ASSERT_EQ(actual.status[i], expected.status[i]) << "status of pillar " << i;
+  }
+}
+
+/// A skin whose columns leave a rest for every lane width, and one that is smaller than any.
+struct Path {
+  SenselType type;
+  int lanes;
+  Memory memory;
+};
+
+std::string name_of_path(const testing::TestParamInfo<Path>& path) {
+  return std::string(name_of(path.param.type)) + "_lanes" + std::to_string(path.param.lanes) +
+         (path.param.memory == Memory::shared ? "_shared" : "_staged");
+}
+
+std::vector<Path> all_paths() {
+  std::vector<Path> paths;
+  for (const SenselType type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    for (const int lanes : {1, 2, 4, 8, 16}) {
+      for (const Memory memory : {Memory::shared, Memory::staged}) {
+        paths.push_back({type, lanes, memory});
+      }
+    }
+  }
+  return paths;
+}
+
+class EveryPath : public testing::TestWithParam<Path> {
+ protected:
+  void SetUp() override {
+    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
+      GTEST_SKIP() << "this device does not share the host's memory";
+    }
+  }
+
+  /// Solves random frames of `plan` and expects the bits of the C++ loop.
+  static void expect_host_bits(const SolverPlan& plan, std::size_t padding) {
+    const Path& path = GetParam();
+    Processor processor(test_device(), plan, {.memory = path.memory, .lanes = path.lanes});
+    for (std::uint32_t seed = 0; seed < 3; ++seed) {
+      const RandomFrame frame(plan, padding, seed);
+      processor.submit(frame.view());
+      expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
+    }
+  }
+};
+
+TEST_P(EveryPath, BareSolveHasTheBitsOfTheHost) {
+  expect_host_bits(bare_plan(34, 2 * 53, GetParam().type), 0);
+}
+
+TEST_P(EveryPath, AllStagesHaveTheBitsOfTheHost) {
+  expect_host_bits(full_plan(22, 2 * 39, GetParam().type, 7), 0);
+}
+
+TEST_P(EveryPath, OddAndStridedFramesHaveTheBitsOfTheHost) {
+  expect_host_bits(full_plan(9, 2 * 21 + 1, GetParam().type, 8), 11);
+}
+
+TEST_P(EveryPath, SmallestSkinHasTheBitsOfTheHost) {
+  expect_host_bits(bare_plan(2, 2, GetParam().type), 0);
+  expect_host_bits(bare_plan(3, 3, GetParam().type), 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Paths, EveryPath, testing::ValuesIn(all_paths()), name_of_path);
+
+TEST(Processor, SolvesAMillionPillarsBitForBit) {
+  const SolverPlan plan = bare_plan(2048, 2048, SenselType::u8);
+  Processor processor(test_device(), plan);
+  const RandomFrame frame(plan, 0, 1);
+  processor.submit(frame.view());
+  expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
+}
+
+TEST(Processor, EverySizeUpToTwiceTheLanesIsSolved) {
+  for (std::uint32_t cols = 2; cols <= 70; ++cols) {
+    const SolverPlan plan = bare_plan(5, cols, SenselType::u8);
+    Processor processor(test_device(), plan);
+    const RandomFrame frame(plan, cols % 3, cols);
+    processor.submit(frame.view());
+    expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
+  }
+}
+
+TEST(Processor, FramesInFlightComeBackInTheirOrder) {
+  const SolverPlan plan = bare_plan(64, 64, SenselType::u8);
+  for (const Memory memory : {Memory::automatic, Memory::staged}) {
+    Processor processor(test_device(), plan, {.memory = memory, .frames_in_flight = 3});
+    std::vector<RandomFrame> frames;
+    for (std::uint32_t seed = 0; seed < 9; ++seed) frames.emplace_back(plan, 0, seed);
+    std::size_t received = 0;
+    for (const RandomFrame& frame : frames) {
+      if (processor.in_flight() == 3) {
+        const ForceField expected = solve_on_host(plan, frames[received++].view());
+        expect_same_bits(processor.receive(), expected.view());
+      }
+      processor.submit(frame.view());
+    }
+    while (processor.in_flight() > 0) {
+      const ForceField expected = solve_on_host(plan, frames[received++].view());
+      expect_same_bits(processor.receive(), expected.view());
+    }
+    EXPECT_EQ(received, frames.size());
+  }
+}
+
+TEST(Processor, ResultsStayUntilTheirSlotIsUsedAgain) {
+  const SolverPlan plan = bare_plan(32, 32, SenselType::u8);
+  Processor processor(test_device(), plan, {.frames_in_flight = 2});
+  const RandomFrame first(plan, 0, 1);
+  const RandomFrame second(plan, 0, 2);
+  processor.submit(first.view());
+  processor.submit(second.view());
+  const ForceFieldView of_first = processor.receive();
+  const ForceFieldView of_second = processor.receive();
+  expect_same_bits(of_first, solve_on_host(plan, first.view()).view());
+  expect_same_bits(of_second, solve_on_host(plan, second.view()).view());
+}
+
+TEST(Processor, StagedFramesMayChangeAfterSubmit) {
+  const SolverPlan plan = bare_plan(64, 64, SenselType::u8);
+  Processor processor(test_device(), plan, {.memory = Memory::staged});
+  FrameBuffer frame(SenselType::u8, 64, 64);
+  std::memset(frame.bytes().data(), 100, frame.bytes().size());
+  const ForceField expected = solve_on_host(plan, frame.view());
+  processor.submit(frame.view());
+  std::memset(frame.bytes().data(), 7, frame.bytes().size());
+  expect_same_bits(processor.receive(), expected.view());
+}
+
+TEST(Processor, SharedMemoryIsReadInPlace) {
+  if (!test_device().info().shares_memory) GTEST_SKIP() << "the device does not share memory";
+  const SolverPlan plan = bare_plan(64, 64, SenselType::u8);
+  Processor processor(test_device(), plan, {.memory = Memory::shared, .frames_in_flight = 1});
+  FrameBuffer frame(SenselType::u8, 64, 64);
+  processor.submit(frame.view());
+  const float* const place = processor.receive().normal.data();
+  for (const int reading : {10, 200}) {
+    std::memset(frame.bytes().data(), reading, frame.bytes().size());
+    processor.submit(frame.view());
+    const ForceFieldView forces = processor.receive();
+    EXPECT_EQ(forces.normal.data(), place) << "the result moved";
+    EXPECT_FLOAT_EQ(forces.normal[0], static_cast<float>(reading) / 320);
+  }
+}
+
+TEST(Processor, AnglesAreThoseOfTheForces) {
+  SolverPlan plan = full_plan(40, 74, SenselType::u8, 5);
+  plan.angles = true;
+  for (const int lanes : {1, 16}) {
+    Processor processor(test_device(), plan, {.lanes = lanes});
+    const RandomFrame frame(plan, 0, 4);
+    processor.submit(frame.view());
+    const ForceFieldView forces = processor.receive();
+    expect_same_bits({forces.rows,
+                      forces.cols,
+                      forces.shear_x,
+                      forces.shear_y,
+                      forces.normal,
+                      forces.status,
+                      {},
+                      {},
+                      {}},
+                     solve_on_host(plan, frame.view()).view());
+    ASSERT_EQ(forces.theta.size(), forces.normal.size());
+    for (std::size_t i = 0; i < forces.normal.size(); ++i) {
+      const double x = forces.shear_x[i];
+      const double y = forces.shear_y[i];
+      const double shear = std::hypot(x, y);
+      const double phi = shear > 0 ? std::atan2(-y, -x) : 0;
+      EXPECT_FLOAT_EQ(forces.magnitude[i], static_cast<float>(std::hypot(shear, forces.normal[i])));
+      EXPECT_FLOAT_EQ(forces.theta[i], static_cast<float>(std::atan2(shear, forces.normal[i])));
+      EXPECT_NEAR(forces.phi[i], phi, 1e-6);
+    }
+  }
+}
+
+TEST(Processor, TheTopLeftSenselIsNumberTwo) {
+  FrameBuffer frame(SenselType::u8, 2, 2);
+  const std::array<std::uint8_t, 4> readings = {40, 10, 30, 0};  // V2 V1 / V3 V4
+  std::memcpy(frame.bytes().data(), readings.data(), readings.size());
+  SolverPlan plan = bare_plan(2, 2, SenselType::u8);
+  plan.skin.counts_per_newton = 10;
+  Processor processor(test_device(), plan);
+  processor.submit(frame.view());
+  const ForceFieldView forces = processor.receive();
+  // Parity: V1 + V3 = V2 + V4 = 40, so V4 = 0 fits, and N = 40 / (2 k).
+  EXPECT_FLOAT_EQ(forces.normal[0], 2.0F);
+  // shear_x = (V1 + V4 - V2 - V3) / (2 sqrt(2) k), shear_y = (V1 + V2 - V3 - V4) / (2 sqrt(2) k).
+  EXPECT_FLOAT_EQ(forces.shear_x[0], static_cast<float>(-60 / (20 * std::sqrt(2.0))));
+  EXPECT_FLOAT_EQ(forces.shear_y[0], static_cast<float>(20 / (20 * std::sqrt(2.0))));
+  EXPECT_EQ(forces.status[0], 7);
+}
+
+TEST(Processor, AFullRingRefusesAnotherFrame) {
+  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  Processor processor(test_device(), plan, {.frames_in_flight = 1});
+  EXPECT_THROW(static_cast<void>(processor.receive()), Error);
+  const RandomFrame frame(plan, 0, 1);
+  processor.submit(frame.view());
+  EXPECT_THROW(processor.submit(frame.view()), Error);
+  expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
+}
+
+TEST(Processor, AProcessorMayGoWhileFramesAreInFlight) {
+  const SolverPlan plan = bare_plan(512, 512, SenselType::u8);
+  const RandomFrame frame(plan, 0, 1);
+  for (const Memory memory : {Memory::automatic, Memory::staged}) {
+    Processor processor(test_device(), plan, {.memory = memory});
+    processor.submit(frame.view());
+    processor.submit(frame.view());
+    Processor moved = std::move(processor);
+    EXPECT_EQ(moved.in_flight(), 2);
+  }
+}
+
+TEST(Processor, RefusesWhatDoesNotFit) {
+  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  Processor processor(test_device(), plan);
+  const RandomFrame frame(plan, 0, 1);
+  FrameView view = frame.view();
+  view.rows = 7;
+  EXPECT_THROW(processor.submit(view), Error);
+  view = frame.view();
+  view.type = SenselType::u16;
+  EXPECT_THROW(processor.submit(view), Error);
+  view = frame.view();
+  view.row_stride = 7;
+  EXPECT_THROW(processor.submit(view), Error);
+  view = frame.view();
+  view.data = nullptr;
+  EXPECT_THROW(processor.submit(view), Error);
+  EXPECT_EQ(processor.in_flight(), 0);
+}
+
+TEST(Processor, RefusesPlansOutOfRange) {
+  const auto refuses = [](auto&& spoil) {
+    SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+    spoil(plan);
+    EXPECT_THROW(Processor(test_device(), plan), Error);
+  };
+  refuses([](SolverPlan& plan) { plan.skin.rows = 1; });
+  refuses([](SolverPlan& plan) { plan.skin.cols = 70000; });
+  refuses([](SolverPlan& plan) { plan.skin.counts_per_newton = 0; });
+  refuses([](SolverPlan& plan) { plan.skin.counts_per_newton = std::nan(""); });
+  refuses([](SolverPlan& plan) { plan.skin.threshold_counts = -1; });
+  refuses([](SolverPlan& plan) { plan.skin.full_scale_counts = 0; });
+  refuses([](SolverPlan& plan) { plan.parity_tolerance_counts = -1; });
+  refuses([](SolverPlan& plan) { plan.calibration.tare = {1, 2}; });
+  refuses([](SolverPlan& plan) { plan.calibration.gain.assign(64, 0.0F); });
+  refuses([](SolverPlan& plan) { plan.calibration.dead_zone.assign(64, std::nanf("")); });
+  refuses([](SolverPlan& plan) { plan.calibration.mask.assign(64, 2); });
+  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  EXPECT_THROW(Processor(test_device(), plan, {.frames_in_flight = 0}), Error);
+  EXPECT_THROW(Processor(test_device(), plan, {.lanes = 3}), Error);
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,169 @@
+// Region 3: the readings leave a segment of forces, of which the solve reports the middle.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+#include "pillarfield/status.h"
+#include "pillars.h"
+
+namespace pillarfield {
+namespace {
+
+template <class Force>
+double distance(const Force& a, const Force& b) {
+  return std::hypot(static_cast<double>(a.shear_x) - b.shear_x,
+                    static_cast<double>(a.shear_y) - b.shear_y,
+                    static_cast<double>(a.normal) - b.normal);
+}
+
+template <class Precision>
+class DirectSolveSegment : public testing::Test {
+ protected:
+  /// Calls `check(truth, readings)` for random forces that lift two adjacent sensels.
+  template <class Check>
+  static void for_random_region_three(int cases, Check check) {
+    Random random(51);
+    while (cases > 0) {
+      const auto truth = random.force(random.decades(1e-6, 1e6));
+      const auto readings = rounded_readings<Precision>(truth, kCountsPerNewton);
+      if (count_positive(readings) != 2) continue;
+      check(truth, readings);
+      --cases;
+    }
+  }
+
+  /// The ULP of RealOf<Precision> that a force of this size has.
+  static double ulp_of(const double_precision::Force& force) {
+    return ulp_at<RealOf<Precision>>(std::hypot(force.shear_x, force.shear_y, force.normal));
+  }
+
+  static constexpr double kCountsPerNewton = 320;
+};
+TYPED_TEST_SUITE(DirectSolveSegment, Precisions, PrecisionNames);
+
+TYPED_TEST(DirectSolveSegment, HasTheEndsThatBisectionFinds) {
+  double worst = 0;
+  TestFixture::for_random_region_three(1000, [&](const auto&, const auto& readings) {
+    const auto pillar = pillar_of<TypeParam>(readings);
+    const auto solved = solve<TypeParam>(pillar, TestFixture::kCountsPerNewton);
+    const oracle::Segment expected =
+        oracle::segment_of(usable_readings(pillar), TestFixture::kCountsPerNewton);
+    worst = std::max(worst, force_ulps<TypeParam>(solved.low(), expected.low));
+    worst = std::max(worst, force_ulps<TypeParam>(solved.high(), expected.high));
+  });
+  std::printf("ends of the segment: worst error %.3f ULP of the magnitude\n", worst);
+  EXPECT_LE(worst, 4);
+}
+
+TYPED_TEST(DirectSolveSegment, HoldsTheTruthWithinHalfItsLengthOfTheMiddle) {
+  TestFixture::for_random_region_three(100'000, [](const auto& truth, const auto& readings) {
+    const auto solved =
+        solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton);
+    const double_precision::Force low = {solved.low().shear_x, solved.low().shear_y,
+                                         solved.low().normal};
+    const double_precision::Force high = {solved.high().shear_x, solved.high().shear_y,
+                                          solved.high().normal};
+    const double_precision::Force middle = {solved.force.shear_x, solved.force.shear_y,
+                                            solved.force.normal};
+    const double rounding = 16 * TestFixture::ulp_of(truth);
+    EXPECT_NE(solved.status & status::kAmbiguous, 0);
+    // On the segment the distances to its two ends add up to its length.
+    EXPECT_NEAR(distance(truth, low) + distance(truth, high), distance(low, high), rounding);
+    EXPECT_NEAR(distance(middle, low), distance(middle, high), rounding);
+    EXPECT_LE(distance(truth, middle), distance(low, high) / 2 + rounding);
+  });
+}
+
+TYPED_TEST(DirectSolveSegment, ExplainsTheReadingsAllAlong) {
+  using Real = RealOf<TypeParam>;
+  TestFixture::for_random_region_three(2'000, [](const auto&, const auto& readings) {
+    const auto solved =
+        solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton);
+    const Real largest = *std::ranges::max_element(readings);
+    for (const double share : {0.0, 0.2, 0.5, 0.9, 1.0}) {
+      const auto force =
+          force_at(solved.diagonals, static_cast<Real>(share * solved.sum.high), solved.scale);
+      const oracle::Readings implied =
+          oracle::readings_of(to_exact(force), TestFixture::kCountsPerNewton);
+      for (std::size_t n = 0; n < 4; ++n) {
+        if (readings[n] > 0) {
+          EXPECT_LE(ulps<Real>(readings[n], implied[n], largest), 8);
+        } else {
+          EXPECT_LE(static_cast<double>(implied[n]), 8 * ulp_at<Real>(largest));
+        }
+      }
+    }
+  });
+}
+
+TYPED_TEST(DirectSolveSegment, KnowsTheShearAlongThePressedSideExactly) {
+  TestFixture::for_random_region_three(20'000, [](const auto& truth, const auto& readings) {
+    const auto solved =
+        solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton);
+    const double rounding = 8 * TestFixture::ulp_of(truth);
+    const bool above_or_below = (readings[0] > 0) == (readings[1] > 0);
+    if (above_or_below) {
+      EXPECT_NEAR(solved.force.shear_x, truth.shear_x, rounding);
+    } else {
+      EXPECT_NEAR(solved.force.shear_y, truth.shear_y, rounding);
+    }
+  });
+}
+
+TYPED_TEST(DirectSolveSegment, HasTheHalfWidthsOfTheDesign) {
+  using Real = RealOf<TypeParam>;
+  double worst_theta = 0;
+  double worst_phi = 0;
+  double ratio_theta = 0;
+  double ratio_phi = 0;
+  for (double ratio = 1; ratio < 20; ratio += 0.001) {
+    const auto solved =
+        solve<TypeParam>(pillar_of<TypeParam>({static_cast<Real>(ratio), 1, 0, 0}), 1);
+    const auto low = direction_of(solved.low());
+    const auto high = direction_of(solved.high());
+    const double theta = std::abs(static_cast<double>(high.theta) - low.theta) / 2;
+    const double phi = std::abs(static_cast<double>(high.phi) - low.phi) / 2;
+    if (theta > worst_theta) ratio_theta = ratio;
+    if (phi > worst_phi) ratio_phi = ratio;
+    worst_theta = std::max(worst_theta, theta);
+    worst_phi = std::max(worst_phi, phi);
+  }
+  std::printf("half widths: theta %.5f rad at R = %.2f, phi %.5f rad at R = %.2f\n", worst_theta,
+              ratio_theta, worst_phi, ratio_phi);
+  EXPECT_NEAR(worst_theta, std::atan(1 / std::numbers::sqrt2) / 2, 1e-6);
+  EXPECT_NEAR(worst_theta, 0.3077, 1e-4);
+  EXPECT_NEAR(ratio_theta, 1, 1e-3);
+  EXPECT_NEAR(worst_phi, 0.0709, 1e-4);
+  EXPECT_NEAR(ratio_phi, 2, 0.2);
+}
+
+TYPED_TEST(DirectSolveSegment, HoldsTheTruthBehindADeadZone) {
+  using Real = RealOf<TypeParam>;
+  const Real dead_zone = 20;
+  Random random(52);
+  int ambiguous = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const double k = TestFixture::kCountsPerNewton;
+    const auto truth = random.force(random.decades(0.05, 2));
+    const auto readings = rounded_readings<TypeParam>(truth, k);
+    const auto answer = [&](Real reading) {
+      return fill_dead_zone(classify(TypeParam::raw_sensel(reading - dead_zone), Real{0}),
+                            dead_zone);
+    };
+    const auto solved = solve<TypeParam>(
+        {answer(readings[0]), answer(readings[1]), answer(readings[2]), answer(readings[3])}, k);
+    if ((solved.status & status::kAmbiguous) == 0) continue;
+    ++ambiguous;
+    const double sum = 2 * k * truth.normal;
+    EXPECT_GE(sum, solved.sum.low);
+    EXPECT_LE(sum, solved.sum.high + 16 * TestFixture::ulp_of(truth) * k);
+  }
+  EXPECT_GT(ambiguous, 5'000);
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,298 @@
+// Every combination of usable, lifted, missing and saturated sensels has an answer and a status,
+// and the answer explains the readings.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "pillarfield/status.h"
+#include "pillars.h"
+
+namespace pillarfield {
+namespace {
+
+using enum State;
+
+struct Pattern {
+  const char* name;
+  std::array<int, 4> pressed;  ///< sensels 1 to 4
+  int flags;                   ///< expected beside the usable bits
+};
+
+constexpr std::array<Pattern, 16> kPatterns = {{
+    {"no contact", {0, 0, 0, 0}, 0},
+    {"region 4, sensel 1", {1, 0, 0, 0}, 0},
+    {"region 4, sensel 2", {0, 1, 0, 0}, 0},
+    {"region 3, upper two", {1, 1, 0, 0}, status::kAmbiguous},
+    {"region 4, sensel 3", {0, 0, 1, 0}, 0},
+    {"opposite, rising", {1, 0, 1, 0}, status::kInconsistent},
+    {"region 3, left two", {0, 1, 1, 0}, status::kAmbiguous},
+    {"region 2, sensel 4 lifted", {1, 1, 1, 0}, 0},
+    {"region 4, sensel 4", {0, 0, 0, 1}, 0},
+    {"region 3, right two", {1, 0, 0, 1}, status::kAmbiguous},
+    {"opposite, falling", {0, 1, 0, 1}, status::kInconsistent},
+    {"region 2, sensel 3 lifted", {1, 1, 0, 1}, 0},
+    {"region 3, lower two", {0, 0, 1, 1}, status::kAmbiguous},
+    {"region 2, sensel 2 lifted", {1, 0, 1, 1}, 0},
+    {"region 2, sensel 1 lifted", {0, 1, 1, 1}, 0},
+    {"region 1", {1, 1, 1, 1}, 0},
+}};
+
+template <class Precision>
+class DirectSolveStates : public testing::Test {
+ protected:
+  static constexpr double kCountsPerNewton = 50;
+
+  static bool is_zero(const ForceOf<Precision>& force) {
+    return force.shear_x == 0 && force.shear_y == 0 && force.normal == 0;
+  }
+
+  /// States that a pillar with these readings can have: lifted where they are not positive.
+  static bool fit(const States& states, const FourReadings<Precision>& readings) {
+    for (std::size_t n = 0; n < 4; ++n) {
+      if (states[n] != missing && (states[n] == lifted) != (readings[n] <= 0)) return false;
+    }
+    return true;
+  }
+
+  /// Saturated sensels stop at a share of what they should read.
+  static FourReadings<Precision> clipped(Random& random, const States& states,
+                                         FourReadings<Precision> readings) {
+    for (std::size_t n = 0; n < 4; ++n) {
+      if (states[n] == saturated)
+        readings[n] *= static_cast<RealOf<Precision>>(random.uniform(0.1, 0.95));
+    }
+    return readings;
+  }
+
+  /// Whether the readings of `force` are what sensels in these states would show.
+  static void expect_explained(const ForceOf<Precision>& force, const States& states,
+                               const FourReadings<Precision>& readings) {
+    const oracle::Readings implied = oracle::readings_of(to_exact(force), kCountsPerNewton);
+    RealOf<Precision> largest = 0;
+    for (std::size_t n = 0; n < 4; ++n) {
+      largest = std::max({largest, readings[n], static_cast<RealOf<Precision>>(implied[n])});
+    }
+    const double rounding = 16 * ulp_at<RealOf<Precision>>(largest);
+    for (std::size_t n = 0; n < 4; ++n) {
+      SCOPED_TRACE("sensel " + std::to_string(n + 1));
+      const double implies = static_cast<double>(implied[n]);
+      switch (states[n]) {
+        case usable:
+          EXPECT_NEAR(implies, readings[n], rounding);
+          break;
+        case lifted:
+          EXPECT_LE(implies, rounding);
+          break;
+        case saturated:
+          EXPECT_GE(implies, readings[n] - rounding);
+          break;
+        case missing:
+          break;
+      }
+    }
+  }
+};
+TYPED_TEST_SUITE(DirectSolveStates, Precisions, PrecisionNames);
+
+TYPED_TEST(DirectSolveStates, SixteenPatternsHaveTheirStatus) {
+  using Real = RealOf<TypeParam>;
+  Random random(61);
+  for (std::size_t bits = 0; bits < kPatterns.size(); ++bits) {
+    const Pattern& pattern = kPatterns[bits];
+    SCOPED_TRACE(pattern.name);
+    for (int i = 0; i < 100; ++i) {
+      FourReadings<TypeParam> readings;
+      for (std::size_t n = 0; n < 4; ++n) {
+        readings[n] = static_cast<Real>(pattern.pressed[n] * random.decades(0.1, 100));
+      }
+      const auto solved = solve<TypeParam>(pillar_of<TypeParam>(readings), 50);
+      EXPECT_EQ(solved.status, static_cast<int>(bits) | pattern.flags);
+      EXPECT_GE(solved.force.normal, 0);
+      EXPECT_EQ(TestFixture::is_zero(solved.force), bits == 0);
+    }
+  }
+}
+
+TYPED_TEST(DirectSolveStates, OneSenselAloneIsShearAlongItsDiagonal) {
+  using Force = ForceOf<TypeParam>;
+  using Real = RealOf<TypeParam>;
+  const double diagonal = 100 / 50 / std::numbers::sqrt2;
+  const std::array<std::array<int, 2>, 4> signs = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+  for (std::size_t n = 0; n < 4; ++n) {
+    FourReadings<TypeParam> readings{};
+    readings[n] = 100;
+    const Force force = solve<TypeParam>(pillar_of<TypeParam>(readings), 50).force;
+    EXPECT_EQ(force.normal, 0);
+    EXPECT_NEAR(force.shear_x, signs[n][0] * diagonal, 1e-6);
+    EXPECT_NEAR(force.shear_y, signs[n][1] * diagonal, 1e-6);
+    EXPECT_EQ(direction_of(force).theta, std::numbers::pi_v<Real> / 2);
+  }
+}
+
+/// The status bits of a pillar in these states, but for the ambiguous one.
+int expected_status(const States& states) {
+  static constexpr States kRisingAlone = {usable, lifted, usable, lifted};
+  static constexpr States kFallingAlone = {lifted, usable, lifted, usable};
+  int bits = 0;
+  for (std::size_t n = 0; n < 4; ++n) {
+    if (states[n] == usable) bits |= 1 << n;
+    if (states[n] == saturated) bits |= status::kSaturated;
+    if (states[n] == missing) bits |= status::kInconsistent;
+  }
+  if (states == kRisingAlone || states == kFallingAlone) bits |= status::kInconsistent;
+  return bits;
+}
+
+TYPED_TEST(DirectSolveStates, EveryCombinationIsFiniteAndHasItsBits) {
+  using Real = RealOf<TypeParam>;
+  Random random(62);
+  for (const States& states : all_states()) {
+    SCOPED_TRACE(name_of(states));
+    const int expected = expected_status(states);
+    const bool contact = (expected & (status::kUsable | status::kSaturated)) != 0;
+    for (int i = 0; i < 100; ++i) {
+      FourReadings<TypeParam> readings;
+      for (Real& reading : readings) reading = static_cast<Real>(random.decades(1e-6, 1e6));
+      const auto solved = solve<TypeParam>(pillar_in<TypeParam>(states, readings), 50);
+      EXPECT_TRUE(std::isfinite(solved.force.shear_x + solved.force.shear_y));
+      EXPECT_TRUE(std::isfinite(solved.force.normal));
+      EXPECT_GE(solved.force.normal, 0);
+      EXPECT_LE(solved.sum.low, solved.sum.high);
+      const bool ambiguous = solved.sum.low < solved.sum.high;
+      EXPECT_EQ(solved.status, expected | (ambiguous ? status::kAmbiguous : 0));
+      EXPECT_EQ(TestFixture::is_zero(solved.force), !contact);
+    }
+  }
+}
+
+TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
+  Random random(63);
+  const std::array<States, 256> all = all_states();
+  std::array<int, 256> seen{};
+  for (int i = 0; i < 2'000; ++i) {
+    const auto truth = random.force(random.decades(0.1, 10));
+    const auto readings = rounded_readings<TypeParam>(truth, TestFixture::kCountsPerNewton);
+    for (std::size_t c = 0; c < seen.size(); ++c) {
+      const States& states = all[c];
+      if (!TestFixture::fit(states, readings)) continue;
+      SCOPED_TRACE(name_of(states));
+      ++seen[c];
+      const auto shown = TestFixture::clipped(random, states, readings);
+      const auto solved =
+          solve<TypeParam>(pillar_in<TypeParam>(states, shown), TestFixture::kCountsPerNewton);
+      TestFixture::expect_explained(solved.force, states, shown);
+    }
+  }
+  // A diagonal that is lifted at both ends has no parity sum above zero: no force has that.
+  for (std::size_t c = 0; c < seen.size(); ++c) {
+    const States& states = all[c];
+    const bool impossible = (states[0] == lifted && states[2] == lifted) ||
+                            (states[1] == lifted && states[3] == lifted);
+    EXPECT_EQ(seen[c] == 0, impossible) << name_of(states);
+  }
+}
+
+TYPED_TEST(DirectSolveStates, ThreeUsableReadingsRecoverAnyFourth) {
+  Random random(64);
+  double worst = 0;
+  for (int i = 0; i < 50'000; ++i) {
+    const auto readings = rounded_readings<TypeParam>(random.force(random.decades(1e-3, 1e3)),
+                                                      TestFixture::kCountsPerNewton);
+    if (count_positive(readings) < 4) continue;
+    for (std::size_t n = 0; n < 4; ++n) {
+      for (const State state : {missing, saturated}) {
+        States states = {usable, usable, usable, usable};
+        states[n] = state;
+        const auto pillar =
+            pillar_in<TypeParam>(states, TestFixture::clipped(random, states, readings));
+        const oracle::Force expected =
+            oracle::least_squares(usable_readings(pillar), TestFixture::kCountsPerNewton);
+        const auto solved = solve<TypeParam>(pillar, TestFixture::kCountsPerNewton);
+        EXPECT_EQ(solved.status & status::kAmbiguous, 0);
+        worst = std::max(worst, force_ulps<TypeParam>(solved.force, expected));
+      }
+    }
+  }
+  std::printf("one sensel recovered: worst error %.3f ULP of the magnitude\n", worst);
+  EXPECT_LE(worst, 4);
+}
+
+TYPED_TEST(DirectSolveStates, SaturatedSenselsNeverReadLessThanFullScale) {
+  const auto at = [](const States& states, const FourReadings<TypeParam>& readings) {
+    return solve<TypeParam>(pillar_in<TypeParam>(states, readings), 1).sum;
+  };
+  // A lone diagonal at full scale: the sum is at least its two readings.
+  EXPECT_EQ(at({saturated, lifted, usable, lifted}, {255, 0, 40, 0}).low, 295);
+  // Two on one side: the diagonal with more decides, and leaves more for the other.
+  EXPECT_EQ(at({saturated, usable, usable, saturated}, {255, 140, 100, 255}).low, 395);
+  // A saturated reading that equals what parity leaves changes nothing.
+  EXPECT_EQ(at({saturated, usable, usable, usable}, {255, 150, 45, 150}).low, 300);
+}
+
+TYPED_TEST(DirectSolveStates, NothingBoundsTheSmallestForce) {
+  using Force = ForceOf<TypeParam>;
+  const auto norm = [](const Force& force) {
+    return std::hypot(static_cast<double>(force.shear_x), static_cast<double>(force.shear_y),
+                      static_cast<double>(force.normal));
+  };
+  for (const States& states :
+       {States{usable, usable, missing, missing}, States{usable, lifted, missing, missing},
+        States{missing, missing, usable, missing}}) {
+    SCOPED_TRACE(name_of(states));
+    const auto solved = solve<TypeParam>(pillar_in<TypeParam>(states, {90, 60, 30, 10}), 1);
+    EXPECT_NE(solved.status & status::kAmbiguous, 0);
+    for (const double factor : {0.0, 0.9, 0.99, 1.01, 1.1, 2.0}) {
+      const double sum = factor * (solved.sum.low + solved.sum.high) / 2;
+      const auto other =
+          force_at(solved.diagonals, static_cast<RealOf<TypeParam>>(sum), solved.scale);
+      EXPECT_LT(norm(solved.force), norm(other)) << "at " << factor << " of the sum";
+    }
+  }
+}
+
+TYPED_TEST(DirectSolveStates, UnequalDeadZonesAloneAreNoContact) {
+  using Real = RealOf<TypeParam>;
+  const auto silent = [](Real dead_zone) {
+    return fill_dead_zone(sensel_in<TypeParam>(lifted, 0), dead_zone);
+  };
+  const auto gone = sensel_in<TypeParam>(missing, 9);
+  for (const auto& pillar : {PillarOf<TypeParam>{silent(1), silent(2), silent(3), silent(4)},
+                             PillarOf<TypeParam>{silent(1), silent(2), gone, gone}}) {
+    const auto solved = solve<TypeParam>(pillar, 50);
+    EXPECT_TRUE(TestFixture::is_zero(solved.force));
+    EXPECT_EQ(solved.status & (status::kAmbiguous | status::kUsable), 0);
+  }
+}
+
+TYPED_TEST(DirectSolveStates, HostileReadingsAreMissingOrHarmless) {
+  using Real = RealOf<TypeParam>;
+  using Limits = std::numeric_limits<Real>;
+  const std::array<Real, 10> hostile = {Limits::quiet_NaN(),
+                                        Limits::infinity(),
+                                        -Limits::infinity(),
+                                        Limits::max(),
+                                        Limits::lowest(),
+                                        Real{-5},
+                                        -Real{0},
+                                        Limits::denorm_min(),
+                                        Limits::min(),
+                                        static_cast<Real>(1e33)};
+  const auto sensel = [](Real raw) {
+    return classify(reject_absurd(TypeParam::raw_sensel(raw), static_cast<Real>(1e33)), Real{0});
+  };
+  for (std::size_t i = 0; i < 10'000; ++i) {
+    const auto solved = solve<TypeParam>({sensel(hostile[i % 10]), sensel(hostile[i / 10 % 10]),
+                                          sensel(hostile[i / 100 % 10]), sensel(hostile[i / 1000])},
+                                         1e-2);
+    ASSERT_TRUE(std::isfinite(solved.force.shear_x)) << "case " << i;
+    ASSERT_TRUE(std::isfinite(solved.force.shear_y)) << "case " << i;
+    ASSERT_TRUE(std::isfinite(solved.force.normal)) << "case " << i;
+    ASSERT_GE(solved.force.normal, 0) << "case " << i;
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

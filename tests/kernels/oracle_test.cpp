@@ -1,0 +1,99 @@
+// The oracle itself, against what is known without it.
+
+#include "oracle.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace pillarfield::oracle {
+namespace {
+
+constexpr double kTiny = 1e-30;
+
+void expect_close(Exact actual, Exact expected) {
+  EXPECT_LE(static_cast<double>(exact::abs(actual - expected)), kTiny);
+}
+
+TEST(Exact, KnownAngles) {
+  EXPECT_EQ(static_cast<double>(exact::pi()), M_PI);
+  expect_close(exact::sin(exact::pi() / 6), Exact(1) / 2);
+  expect_close(exact::cos(exact::pi() / 3), Exact(1) / 2);
+  expect_close(exact::sin(-7 * exact::pi() / 6), Exact(1) / 2);
+  expect_close(exact::sqrt(2) * exact::sqrt(2), 2);
+  expect_close(2 * exact::cos(exact::pi() / 4), exact::sqrt(2));
+}
+
+TEST(Exact, CircleAndItsAngleAgree) {
+  for (int i = -31; i <= 31; ++i) {
+    const Exact angle = Exact(i) / 10;
+    const Exact sine = exact::sin(angle);
+    const Exact cosine = exact::cos(angle);
+    expect_close(sine * sine + cosine * cosine, 1);
+    expect_close(exact::atan2(3 * sine, 3 * cosine), angle);
+    EXPECT_NEAR(static_cast<double>(sine), std::sin(i / 10.0), 1e-15);
+    EXPECT_NEAR(static_cast<double>(cosine), std::cos(i / 10.0), 1e-15);
+  }
+}
+
+TEST(Oracle, PressingAloneReadsTheSameEverywhere) {
+  for (const Exact reading : readings_from(3, 0, 1, 10)) expect_close(reading, 30);
+}
+
+TEST(Oracle, AForceFromSenselThreePressesSenselOne) {
+  const Readings readings = readings_from(1, exact::pi() / 2, 5 * exact::pi() / 4, 1);
+  expect_close(readings[0], 1);
+  expect_close(readings[1], 0);
+  expect_close(readings[2], -1);
+  expect_close(readings[3], 0);
+}
+
+TEST(Oracle, AnglesAndComponentsGiveTheSameReadings) {
+  for (int i = 0; i < 40; ++i) {
+    const Exact theta = Exact(i) / 26;
+    const Exact phi = Exact(i * 7 % 63 - 31) / 10;
+    const Readings by_angles = readings_from(2, theta, phi, 5);
+    const Readings by_components = readings_of(force_from(2, theta, phi), 5);
+    for (std::size_t n = 0; n < 4; ++n) expect_close(by_angles[n], by_components[n]);
+  }
+}
+
+TEST(Oracle, EliminationFindsTheForceFromAnyThree) {
+  const Force force = force_from(2, Exact(1) / 3, Exact(5) / 4);
+  const Readings readings = readings_of(force, 7);
+  for (std::size_t absent = 0; absent <= 4; ++absent) {
+    SomeReadings usable;
+    for (std::size_t n = 0; n < 4; ++n) {
+      if (n != absent) usable[n] = readings[n];
+    }
+    const Force found = least_squares(usable, 7);
+    expect_close(found.shear_x, force.shear_x);
+    expect_close(found.shear_y, force.shear_y);
+    expect_close(found.normal, force.normal);
+  }
+}
+
+TEST(Oracle, ResidualsOfTheBestFitAreOrthogonalToTheModel) {
+  const SomeReadings usable = {Exact(5), Exact(1), Exact(3), Exact(6)};
+  const Readings fit = readings_of(least_squares(usable, 2), 2);
+  std::array<Exact, 4> residual;
+  for (std::size_t n = 0; n < 4; ++n) residual[n] = *usable[n] - fit[n];
+  expect_close(residual[0] + residual[1] + residual[2] + residual[3], 0);
+  expect_close(residual[0], residual[2]);
+  expect_close(residual[1], residual[3]);
+}
+
+TEST(Oracle, TheSegmentEndsWhereALiftedSenselWouldRead) {
+  const SomeReadings usable = {Exact(2), Exact(3), std::nullopt, std::nullopt};
+  const Segment segment = segment_of(usable, 1);
+  expect_close(segment.low.normal, 0);
+  expect_close(segment.high.normal, 1);
+  const Readings at_end = readings_of(segment.high, 1);
+  expect_close(at_end[0], 2);
+  expect_close(at_end[1], 3);
+  expect_close(at_end[2], 0);
+  expect_close(at_end[3], -1);
+}
+
+}  // namespace
+}  // namespace pillarfield::oracle

@@ -1,0 +1,96 @@
+// The two tests of consistency: the parity residual, and the surplus of a lifted sensel.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "pillars.h"
+
+namespace pillarfield {
+namespace {
+
+template <class Precision>
+class Parity : public testing::Test {
+ protected:
+  static bool fails(const PillarOf<Precision>& pillar, RealOf<Precision> threshold,
+                    RealOf<Precision> tolerance) {
+    const auto sum = parity_sum(pillar_diagonals(pillar));
+    return fails_parity(pillar, sum, threshold, tolerance) != 0;
+  }
+
+  /// Turned by so many quarters.
+  static FourReadings<Precision> turned(const FourReadings<Precision>& readings,
+                                        std::size_t turns) {
+    FourReadings<Precision> result;
+    for (std::size_t n = 0; n < 4; ++n) result[(n + turns) % 4] = readings[n];
+    return result;
+  }
+};
+TYPED_TEST_SUITE(Parity, Precisions, PrecisionNames);
+
+TYPED_TEST(Parity, ResidualPassesUpToItsTolerance) {
+  using Real = RealOf<TypeParam>;
+  // 30 + 22 - 20 - 24 = 8
+  for (std::size_t turns = 0; turns < 4; ++turns) {
+    const auto pillar = pillar_of<TypeParam>(TestFixture::turned({30, 20, 22, 24}, turns));
+    EXPECT_FALSE(TestFixture::fails(pillar, 0, 8));
+    EXPECT_TRUE(TestFixture::fails(pillar, 0, std::nextafter(Real{8}, Real{0})));
+    EXPECT_TRUE(TestFixture::fails(pillar, 100, 7)) << "the threshold hides no usable reading";
+  }
+}
+
+TYPED_TEST(Parity, SurplusPassesUpToThresholdAndTolerance) {
+  using Real = RealOf<TypeParam>;
+  // Sensel 1 is silent though parity leaves 20 + 24 - 33 = 11 counts for it.
+  for (std::size_t turns = 0; turns < 4; ++turns) {
+    const auto pillar = pillar_of<TypeParam>(TestFixture::turned({0, 20, 33, 24}, turns), Real{5});
+    EXPECT_FALSE(TestFixture::fails(pillar, 5, 6));
+    EXPECT_TRUE(TestFixture::fails(pillar, 5, Real{6 - 0x1p-20}));
+    EXPECT_TRUE(TestFixture::fails(pillar, 4, 6));
+  }
+}
+
+TYPED_TEST(Parity, ALiftedSenselMayLackAnyAmount) {
+  // Parity leaves 20 + 24 - 90 = -46 counts for sensel 1, as where a pillar lifts off.
+  for (std::size_t turns = 0; turns < 4; ++turns) {
+    const auto pillar = pillar_of<TypeParam>(TestFixture::turned({0, 20, 90, 24}, turns));
+    EXPECT_FALSE(TestFixture::fails(pillar, 0, 0));
+  }
+}
+
+TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
+  using Real = RealOf<TypeParam>;
+  auto pillar = pillar_of<TypeParam>({0, 20, 33, 24});
+  EXPECT_TRUE(TestFixture::fails(pillar, 0, 6));
+  pillar.s1 = fill_dead_zone(pillar.s1, Real{5});
+  EXPECT_FALSE(TestFixture::fails(pillar, 0, 6));
+}
+
+TYPED_TEST(Parity, NothingRedundantNeverFails) {
+  using Real = RealOf<TypeParam>;
+  for (const States& states : all_states()) {
+    const auto pillar = pillar_in<TypeParam>(states, {100, 1, 90, 2});
+    const auto usable = std::ranges::count(states, State::usable);
+    const auto lifted = std::ranges::count(states, State::lifted);
+    const bool redundant = usable == 4 || (usable == 3 && lifted == 1);
+    if (!redundant) {
+      EXPECT_FALSE(TestFixture::fails(pillar, Real{0}, Real{0})) << name_of(states);
+    }
+  }
+}
+
+TYPED_TEST(Parity, ConsistentForcesPassWithinRounding) {
+  using Real = RealOf<TypeParam>;
+  Random random(21);
+  for (int i = 0; i < 20'000; ++i) {
+    const double magnitude = random.decades(1e-6, 1e6);
+    const auto readings = rounded_readings<TypeParam>(random.force(magnitude), 100);
+    const Real tolerance = static_cast<Real>(4 * ulp_at<Real>(200 * magnitude));
+    EXPECT_FALSE(TestFixture::fails(pillar_of<TypeParam>(readings), 0, tolerance));
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

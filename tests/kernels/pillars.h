@@ -1,0 +1,152 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <numbers>
+#include <random>
+
+#include "precisions.h"
+
+/// Pillars to test with: sensels in any state, solved, and random ones.
+namespace pillarfield {
+
+enum class State { usable, lifted, missing, saturated };
+
+inline constexpr std::array<State, 4> kStates = {State::usable, State::lifted, State::missing,
+                                                 State::saturated};
+
+using States = std::array<State, 4>;
+
+/// All 256 of them.
+inline std::array<States, 256> all_states() {
+  std::array<States, 256> all;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i] = {kStates[i % 4], kStates[i / 4 % 4], kStates[i / 16 % 4], kStates[i / 64]};
+  }
+  return all;
+}
+
+/// "usable lifted missing saturated", say.
+inline std::string name_of(const States& states) {
+  static constexpr std::array<const char*, 4> kNames = {"usable", "lifted", "missing", "saturated"};
+  std::string name;
+  for (const State state : states) {
+    name += std::string(name.empty() ? "" : " ") + kNames[static_cast<std::size_t>(state)];
+  }
+  return name;
+}
+
+/// A sensel in a state that its stages gave it; `reading` is positive.
+template <class Precision>
+SenselOf<Precision> sensel_in(State state, RealOf<Precision> reading) {
+  using Real = RealOf<Precision>;
+  const auto raw = Precision::raw_sensel(state == State::lifted ? Real{0} : reading);
+  if (state == State::missing) return classify(apply_mask(raw, Real{0}), Real{0});
+  if (state == State::saturated) return classify(mark_saturated(raw, reading), Real{0});
+  return classify(raw, Real{0});
+}
+
+template <class Precision>
+using FourReadings = std::array<RealOf<Precision>, 4>;
+
+template <class Precision>
+PillarOf<Precision> pillar_in(const States& states, const FourReadings<Precision>& readings) {
+  return {
+      sensel_in<Precision>(states[0], readings[0]), sensel_in<Precision>(states[1], readings[1]),
+      sensel_in<Precision>(states[2], readings[2]), sensel_in<Precision>(states[3], readings[3])};
+}
+
+/// Readings above `threshold` are usable and the others lifted.
+template <class Precision>
+PillarOf<Precision> pillar_of(const FourReadings<Precision>& readings,
+                              RealOf<Precision> threshold = 0) {
+  return {classify(Precision::raw_sensel(readings[0]), threshold),
+          classify(Precision::raw_sensel(readings[1]), threshold),
+          classify(Precision::raw_sensel(readings[2]), threshold),
+          classify(Precision::raw_sensel(readings[3]), threshold)};
+}
+
+/// What the oracle may know of a pillar: its usable readings.
+template <class Pillar>
+oracle::SomeReadings usable_readings(const Pillar& pillar) {
+  oracle::SomeReadings some;
+  const std::array sensels = {pillar.s1, pillar.s2, pillar.s3, pillar.s4};
+  for (std::size_t n = 0; n < 4; ++n) {
+    if (sensels[n].usable) some[n] = sensels[n].reading;
+  }
+  return some;
+}
+
+/// A pillar and all that is solved of it.
+template <class Precision>
+struct Solved {
+  typename Precision::Diagonals diagonals;
+  typename Precision::ParitySum sum;
+  typename Precision::ForceScale scale;
+  ForceOf<Precision> force;
+  int status;
+
+  /// The ends of the segment of possible forces.
+  [[nodiscard]] ForceOf<Precision> low() const { return force_at(diagonals, sum.low, scale); }
+  [[nodiscard]] ForceOf<Precision> high() const { return force_at(diagonals, sum.high, scale); }
+};
+
+template <class Precision>
+Solved<Precision> solve(const PillarOf<Precision>& pillar, double k) {
+  using Real = RealOf<Precision>;
+  Solved<Precision> solved;
+  solved.diagonals = pillar_diagonals(pillar);
+  solved.sum = parity_sum(solved.diagonals);
+  solved.scale = {static_cast<Real>(1 / (2 * std::numbers::sqrt2_v<long double> * k)),
+                  static_cast<Real>(1 / (2 * static_cast<long double>(k)))};
+  solved.force = direct_force(solved.diagonals, solved.sum, solved.scale);
+  solved.status = direct_status(pillar, solved.sum);
+  return solved;
+}
+
+/// Random numbers that are the same on every run.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+
+  double uniform(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  /// Of every magnitude alike.
+  double decades(double low, double high) {
+    return std::exp(uniform(std::log(low), std::log(high)));
+  }
+  std::size_t below(std::size_t count) { return engine_() % count; }
+  double normal() { return normal_(engine_); }
+
+  /// A force of `magnitude` that presses, from every direction of the hemisphere alike.
+  double_precision::Force force(double magnitude) {
+    const double cosine = uniform(0, 1);
+    const double sine = std::sqrt(1 - cosine * cosine);
+    const double phi = uniform(-std::numbers::pi, std::numbers::pi);
+    return {-magnitude * sine * std::cos(phi), -magnitude * sine * std::sin(phi),
+            magnitude * cosine};
+  }
+
+ private:
+  std::mt19937_64 engine_;
+  std::normal_distribution<double> normal_;
+};
+
+/// The oracle's readings of a force, rounded; negative where the pillar lifts.
+template <class Precision>
+FourReadings<Precision> rounded_readings(const double_precision::Force& force, double k) {
+  const oracle::Readings exact_readings = oracle::readings_of(to_exact(force), k);
+  FourReadings<Precision> readings;
+  for (std::size_t n = 0; n < 4; ++n) {
+    readings[n] = static_cast<RealOf<Precision>>(exact_readings[n]);
+  }
+  return readings;
+}
+
+template <class Real>
+int count_positive(const std::array<Real, 4>& readings) {
+  return static_cast<int>(std::ranges::count_if(readings, [](Real v) { return v > 0; }));
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,143 @@
+// The stages of one sensel.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "pillars.h"
+
+namespace pillarfield {
+namespace {
+
+template <class Precision>
+class SenselStages : public testing::Test {
+ protected:
+  static RealOf<Precision> above(RealOf<Precision> x) {
+    return std::nextafter(x, std::numeric_limits<RealOf<Precision>>::infinity());
+  }
+  static RealOf<Precision> below(RealOf<Precision> x) {
+    return std::nextafter(x, -std::numeric_limits<RealOf<Precision>>::infinity());
+  }
+
+  static void expect_lifted(const SenselOf<Precision>& sensel, RealOf<Precision> reading = 0) {
+    EXPECT_TRUE(is_lifted(sensel));
+    EXPECT_EQ(sensel.reading, reading);
+  }
+  static void expect_missing(const SenselOf<Precision>& sensel) {
+    EXPECT_TRUE(sensel.missing);
+    EXPECT_FALSE(sensel.usable | sensel.saturated | is_lifted(sensel));
+    EXPECT_EQ(sensel.reading, 0);
+  }
+  static void expect_usable(const SenselOf<Precision>& sensel, RealOf<Precision> reading) {
+    EXPECT_TRUE(sensel.usable);
+    EXPECT_FALSE(sensel.missing | sensel.saturated | is_lifted(sensel));
+    EXPECT_EQ(sensel.reading, reading);
+  }
+  static void expect_saturated(const SenselOf<Precision>& sensel, RealOf<Precision> reading) {
+    EXPECT_TRUE(sensel.saturated);
+    EXPECT_FALSE(sensel.missing | sensel.usable | is_lifted(sensel));
+    EXPECT_EQ(sensel.reading, reading);
+  }
+};
+TYPED_TEST_SUITE(SenselStages, Precisions, PrecisionNames);
+
+TYPED_TEST(SenselStages, ARawSenselHasNothingWrong) {
+  using Limits = std::numeric_limits<RealOf<TypeParam>>;
+  for (const auto raw : {Limits::quiet_NaN(), Limits::infinity(), RealOf<TypeParam>{7}}) {
+    const auto sensel = TypeParam::raw_sensel(raw);
+    EXPECT_FALSE(sensel.usable | sensel.missing | sensel.saturated);
+  }
+}
+
+TYPED_TEST(SenselStages, AbsurdReadingsAreMissing) {
+  using Real = RealOf<TypeParam>;
+  using Limits = std::numeric_limits<Real>;
+  const Real largest = static_cast<Real>(1e33);
+  const std::vector<Real> absurd = {
+      Limits::quiet_NaN(), -Limits::quiet_NaN(), Limits::infinity(),         -Limits::infinity(),
+      Limits::max(),       -Limits::max(),       TestFixture::above(largest)};
+  for (const Real raw : absurd) {
+    TestFixture::expect_missing(
+        classify(reject_absurd(TypeParam::raw_sensel(raw), largest), Real{0}));
+  }
+  TestFixture::expect_usable(
+      classify(reject_absurd(TypeParam::raw_sensel(largest), largest), Real{0}), largest);
+  for (const Real raw : {-largest, Real{-1}, Real{0}, -Limits::denorm_min()}) {
+    TestFixture::expect_lifted(
+        classify(reject_absurd(TypeParam::raw_sensel(raw), largest), Real{0}));
+  }
+}
+
+TYPED_TEST(SenselStages, AThresholdIsNotAboveItself) {
+  using Real = RealOf<TypeParam>;
+  using Limits = std::numeric_limits<Real>;
+  for (const Real threshold : {Real{0}, Limits::denorm_min(), Real{3}, Real{250.5}}) {
+    TestFixture::expect_lifted(classify(TypeParam::raw_sensel(threshold), threshold));
+    TestFixture::expect_lifted(
+        classify(TypeParam::raw_sensel(TestFixture::below(threshold)), threshold));
+    const Real more = TestFixture::above(threshold);
+    TestFixture::expect_usable(classify(TypeParam::raw_sensel(more), threshold), more);
+  }
+}
+
+TYPED_TEST(SenselStages, AMaskedSenselIsMissing) {
+  using Real = RealOf<TypeParam>;
+  TestFixture::expect_missing(classify(apply_mask(TypeParam::raw_sensel(9), Real{0}), Real{0}));
+  TestFixture::expect_usable(classify(apply_mask(TypeParam::raw_sensel(9), Real{1}), Real{0}), 9);
+}
+
+TYPED_TEST(SenselStages, FullScaleAndMoreIsSaturated) {
+  using Real = RealOf<TypeParam>;
+  const Real full = 255;
+  const auto sensel = [&](Real raw) {
+    return classify(mark_saturated(TypeParam::raw_sensel(raw), full), Real{0});
+  };
+  TestFixture::expect_saturated(sensel(full), full);
+  TestFixture::expect_saturated(sensel(TestFixture::above(full)), TestFixture::above(full));
+  TestFixture::expect_usable(sensel(TestFixture::below(full)), TestFixture::below(full));
+  TestFixture::expect_lifted(sensel(0));
+}
+
+TYPED_TEST(SenselStages, AMissingSenselIsNotSaturated) {
+  using Real = RealOf<TypeParam>;
+  const auto masked = apply_mask(TypeParam::raw_sensel(255), Real{0});
+  TestFixture::expect_missing(classify(mark_saturated(masked, Real{255}), Real{0}));
+}
+
+TYPED_TEST(SenselStages, TareAndGainApplyInTheirOrder) {
+  using Real = RealOf<TypeParam>;
+  const auto sensel = apply_gain(subtract_tare(TypeParam::raw_sensel(30), Real{10}), Real{1.5});
+  TestFixture::expect_usable(classify(sensel, Real{29}), 30);
+  TestFixture::expect_lifted(classify(sensel, Real{30}));
+  const auto unloaded = subtract_tare(TypeParam::raw_sensel(8), Real{10});
+  TestFixture::expect_lifted(classify(unloaded, Real{0}));
+}
+
+TYPED_TEST(SenselStages, SaturationIsOfTheRawReading) {
+  using Real = RealOf<TypeParam>;
+  const auto marked = mark_saturated(TypeParam::raw_sensel(255), Real{255});
+  const auto sensel = apply_gain(subtract_tare(marked, Real{55}), Real{2});
+  TestFixture::expect_saturated(classify(sensel, Real{0}), 400);
+}
+
+TYPED_TEST(SenselStages, SaturationBelowTheThresholdTellsNothing) {
+  using Real = RealOf<TypeParam>;
+  const auto marked = mark_saturated(TypeParam::raw_sensel(10), Real{10});
+  TestFixture::expect_missing(classify(subtract_tare(marked, Real{30}), Real{0}));
+  TestFixture::expect_missing(classify(marked, Real{10}));
+}
+
+TYPED_TEST(SenselStages, ADeadZoneIsGivenBackAndHidesUnderSilence) {
+  using Real = RealOf<TypeParam>;
+  using Sensel = SenselOf<TypeParam>;
+  const auto filled = [](const Sensel& sensel) { return fill_dead_zone(sensel, Real{4}); };
+  TestFixture::expect_usable(filled(classify(TypeParam::raw_sensel(3), Real{2})), 7);
+  TestFixture::expect_saturated(filled(sensel_in<TypeParam>(State::saturated, 255)), 259);
+  TestFixture::expect_lifted(filled(classify(TypeParam::raw_sensel(2), Real{2})), 4);
+  TestFixture::expect_missing(filled(sensel_in<TypeParam>(State::missing, 9)));
+}
+
+}  // namespace
+}  // namespace pillarfield
