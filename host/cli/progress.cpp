@@ -11,7 +11,7 @@ Progress::Progress(std::string verb, std::uint64_t frames, bool quiet)
     : verb_(std::move(verb)), frames_(frames), visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) std::fputs("\r\033[K", stderr);
 }
 
 void Progress::show(std::uint64_t done) {

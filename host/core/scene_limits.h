@@ -50,8 +50,8 @@ inline constexpr int kMaxAdcBits = 16;
 /// A number of a contact, and the contacts that have it.
 struct ContactQuantity {
   Quantity<Contact> quantity;
-  bool required;
-  bool (*applies)(ContactShape shape, ContactMotion motion);
+  bool required = false;
+  bool (*applies)(ContactShape shape, ContactMotion motion) = nullptr;
 };
 
 /// Whether a motion pushes the skin in a direction.

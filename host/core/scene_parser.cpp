@@ -29,6 +29,7 @@ void read_quantities(TomlSection& section, const std::array<Quantity<Part>, coun
 template <class Names>
 std::string quoted(const Names& names) {
   std::vector<std::string> all;
+  all.reserve(names.size());
   for (const auto& name : names) all.push_back(fmt::format("\"{}\"", name.name));
   return fmt::format("{}", fmt::join(all, ", "));
 }
@@ -170,7 +171,7 @@ void read_skin(TomlSection section, Scene& scene) {
 
 /// A shape and a motion as the file writes them.
 std::string name_of(ContactShape shape, ContactMotion motion) {
-  return fmt::format("shape = \"{}\", motion = \"{}\"",
+  return fmt::format(R"(shape = "{}", motion = "{}")",
                      kShapes[static_cast<std::size_t>(shape)].name,
                      kMotions[static_cast<std::size_t>(motion)].name);
 }

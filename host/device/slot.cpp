@@ -17,7 +17,7 @@ cl::Buffer plane_buffer(const cl::Context& context, const std::vector<Value>& pl
 /// row as one loop; others spread it over work-items.
 struct Launch {
   Launch(std::uint32_t rows, std::uint32_t cols, int lanes) {
-    constexpr std::uint32_t kGroup = 64;
+    constexpr std::size_t kGroup = 64;
     if (lanes > 1) {
       global = cl::NDRange(1, rows);
       return;

@@ -6,7 +6,8 @@ namespace pillarfield {
 namespace {
 
 /// A buffer of the device and memory of the host from which the driver copies without a detour.
-struct Stage {
+// Moving one releases what it held, which throws for an invalid handle only.
+struct Stage {  // NOLINT(bugprone-exception-escape)
   Stage() = default;
   Stage(const cl::Context& context, const cl::CommandQueue& queue, cl_mem_flags access,
         std::size_t size)

@@ -1,4 +1,5 @@
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "io/force_format.h"
@@ -23,7 +24,7 @@ constexpr const char* kConvention =
 
 class Hdf5Sink final : public ForceSink {
  public:
-  Hdf5Sink(const std::filesystem::path& path, const ForceFileInfo& info);
+  Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info);
   ~Hdf5Sink() override;
 
   void append(const ForceFieldView& forces, double time_s) override;
@@ -47,8 +48,8 @@ class Hdf5Sink final : public ForceSink {
   std::uint64_t flushed_ = 0;
 };
 
-Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, const ForceFileInfo& info)
-    : info_(info), path_(path), part_(path), file_(hdf5::create(part_.path())) {
+Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info)
+    : info_(std::move(info)), path_(path), part_(path), file_(hdf5::create(part_.path())) {
   write_info();
   create_datasets();
   hdf5::start_appending(file_);
