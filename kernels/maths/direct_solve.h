@@ -47,19 +47,19 @@ static inline Mask is_pressed(Sensel sensel) { return sensel.usable | sensel.sat
 static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) & is_pressed(q); }
 
 /* Which sensels of a diagonal stand (D4): the usable; the saturated, whose reading is a lower
- * bound, unless the other diagonal has `more` and its parity sum leaves that for them; and the
- * lifted, whose reading is an upper bound, where the sensel opposite does not stand. Without
- * `contact` all read zero. */
+ * bound, unless the other diagonal has `more` and its parity sum leaves that for them; and on a
+ * pillar in `contact` the lifted, whose reading is an upper bound, where only they tell how to
+ * share the sum. */
 static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
-  const Mask p_follows = more & (q.usable | is_lifted(q));
-  const Mask q_follows = more & (p.usable | is_lifted(p));
-  const Mask p_answers = p.usable | (p.saturated & !p_follows);
-  const Mask q_answers = q.usable | (q.saturated & !q_follows);
+  const Mask p_follows = p.saturated & more & (q.usable | is_lifted(q));
+  const Mask q_follows = q.saturated & more & (p.usable | is_lifted(p));
+  const Mask p_answers = is_pressed(p) & !p_follows;
+  const Mask q_answers = is_pressed(q) & !q_follows;
   Diagonal d;
-  d.p = contact ? p.reading : PF_REAL(0.0);
-  d.q = contact ? q.reading : PF_REAL(0.0);
-  d.p_stands = p_answers | (is_lifted(p) & !q_answers);
-  d.q_stands = q_answers | (is_lifted(q) & !p_answers);
+  d.p = p.reading;
+  d.q = q.reading;
+  d.p_stands = p_answers | (contact & is_lifted(p) & (q.missing | q_follows));
+  d.q_stands = q_answers | (contact & is_lifted(q) & (p.missing | p_follows));
   d.full = p_answers & q_answers & !(more & p.saturated & q.saturated);
   d.open = p.missing | q.missing;
   return d;
@@ -82,15 +82,17 @@ static inline Diagonals pillar_diagonals(Pillar pillar) {
 
 /* The upper end of the interval where no diagonal is full (D5): the least that a diagonal without a
  * missing sensel allows. Where both have one, nothing bounds the sum; the interval then is the one
- * about the smallest force that explains the readings. */
+ * about the smallest force that explains the readings. Zero without contact: nothing stands. */
 static inline Real parity_bound(Diagonal a, Diagonal b) {
   const Real a_sum = a.p + a.q;
   const Real b_sum = b.p + b.q;
   const Real least = a_sum < b_sum ? a_sum : b_sum;
   const Real closed = a.open ? b_sum : (b.open ? a_sum : least);
-  const Mask both = (a.p_stands | a.q_stands) & (b.p_stands | b.q_stands);
-  const Real share = both ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
-  return (a.open & b.open) ? share * (a_sum + b_sum) : closed;
+  const Mask a_stands = a.p_stands | a.q_stands;
+  const Mask b_stands = b.p_stands | b.q_stands;
+  const Real share = (a_stands & b_stands) ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
+  const Real bound = (a.open & b.open) ? share * (a_sum + b_sum) : closed;
+  return (a_stands | b_stands) ? bound : PF_REAL(0.0);
 }
 
 /* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5). */

@@ -195,6 +195,29 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
   }
 }
 
+TYPED_TEST(DirectSolveStates, ABoundedParitySumHoldsTheTruth) {
+  const auto bounded = [](const States& states) {
+    const auto tells = [&](std::size_t n) { return states[n] == usable || states[n] == lifted; };
+    const bool measured = std::ranges::count(states, saturated) == 0;
+    return measured && ((tells(0) && tells(2)) || (tells(1) && tells(3)));
+  };
+  Random random(65);
+  for (const States& states : all_states()) {
+    if (!bounded(states)) continue;
+    SCOPED_TRACE(name_of(states));
+    for (int i = 0; i < 300; ++i) {
+      const double k = TestFixture::kCountsPerNewton;
+      const auto truth = random.force(1);
+      const auto readings = rounded_readings<TypeParam>(truth, k);
+      if (!TestFixture::fit(states, readings)) continue;
+      const auto sum = solve<TypeParam>(pillar_in<TypeParam>(states, readings), k).sum;
+      const double rounding = 4 * ulp_at<RealOf<TypeParam>>(2 * k);
+      EXPECT_GE(2 * k * truth.normal, sum.low - rounding);
+      EXPECT_LE(2 * k * truth.normal, sum.high + rounding);
+    }
+  }
+}
+
 TYPED_TEST(DirectSolveStates, ThreeUsableReadingsRecoverAnyFourth) {
   Random random(64);
   double worst = 0;
