@@ -6,12 +6,11 @@ add_library(pillarfield_all INTERFACE)
 add_library(pillarfield::pillarfield ALIAS pillarfield_all)
 set_target_properties(pillarfield_all PROPERTIES EXPORT_NAME pillarfield)
 
-set(libraries pillarfield_all)
 foreach(floor kernels core device io)
   target_link_libraries(pillarfield_all INTERFACE pillarfield_${floor})
-  list(APPEND libraries pillarfield_${floor})
+  install(TARGETS pillarfield_${floor} EXPORT pillarfield)
 endforeach()
-install(TARGETS ${libraries} EXPORT pillarfield)
+install(TARGETS pillarfield_all EXPORT pillarfield)
 install(TARGETS pillarfield)
 
 install(DIRECTORY host/include/pillarfield "${PROJECT_BINARY_DIR}/include/pillarfield"

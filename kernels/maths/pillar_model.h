@@ -20,10 +20,10 @@ typedef struct {
 /* What the four sensels would read if they answered pull as well as push: negative where the pillar
  * lifts off. `counts_per_newton` is k. Each reading is within 5 ULP of the largest of the four. */
 static inline Readings model_readings(Force force, Real counts_per_newton) {
-  const Real half_diagonal = PF_REAL(0.70710678118654752440);
+  const Real cos_45_deg = PF_REAL(0.70710678118654752440);
   const Real pressed = counts_per_newton * force.normal;
-  const Real rising = counts_per_newton * (half_diagonal * (force.shear_y + force.shear_x));
-  const Real falling = counts_per_newton * (half_diagonal * (force.shear_y - force.shear_x));
+  const Real rising = counts_per_newton * (cos_45_deg * (force.shear_y + force.shear_x));
+  const Real falling = counts_per_newton * (cos_45_deg * (force.shear_y - force.shear_x));
   Readings readings;
   readings.v1 = pressed + rising;
   readings.v2 = pressed + falling;
