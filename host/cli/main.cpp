@@ -1,7 +1,5 @@
 // The `pillarfield` command. Exit status: 0 done, 1 the work failed, 2 the command line was wrong.
 
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <exception>
 
@@ -21,8 +19,9 @@ Try:  pillarfield simulate scenes/demo.toml -o demo.h5
       pillarfield solve demo.h5 -o forces.h5
       pillarfield compare forces.h5 demo.h5)";
 
-int complain(const char* message) {
-  fmt::print(stderr, "pillarfield: {}\n", message);
+/// For use where nothing may throw any more.
+int complain(const char* message) noexcept {
+  std::fprintf(stderr, "pillarfield: %s\n", message);
   return kFailed;
 }
 
@@ -59,5 +58,7 @@ int main(int argc, char** argv) {
     return pillarfield::cli::complain("out of memory; take a smaller patch");
   } catch (const std::exception& error) {
     return pillarfield::cli::complain(error.what());
+  } catch (...) {
+    return pillarfield::cli::complain("an unknown failure; please report it");
   }
 }
