@@ -75,6 +75,8 @@ Calibration draw_calibration(const Scene& scene) {
 template <class Count>
 void round_to(std::span<const double> signal, double full_scale, std::span<Count> out) {
   std::transform(signal.begin(), signal.end(), out.begin(), [=](double value) {
+    // No call of a library for each sensel; it differs from lround just below a half.
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
     return static_cast<Count>(std::clamp(value, 0.0, full_scale) + 0.5);
   });
 }
