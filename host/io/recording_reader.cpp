@@ -40,7 +40,6 @@ class Recording final : public FileSource {
   hdf5::StoredFrames raw_;
   hdf5::StoredFrames time_;
   std::vector<hdf5::StoredFrames> truth_;  // none, or shear_x, shear_y, normal
-  hid_t memory_type_ = H5I_INVALID_HID;
 };
 
 SenselType sensel_type_of(const hdf5::StoredFrames& raw, const std::filesystem::path& path) {
@@ -65,7 +64,6 @@ Recording::Recording(const std::filesystem::path& path)
   time_ = {file_, layout::kTime, 0};
   require_floats(time_, path);
   type_ = sensel_type_of(raw_, path);
-  memory_type_ = layout::memory_type_of(type_);
   read_size();
   read_skin();
   read_calibration();
@@ -170,7 +168,7 @@ double Recording::read(std::uint64_t index, FrameBuffer& frame) {
     throw Error(place(layout::kTime), fmt::format("frame {} has the time {}", index, time_s),
                 "store finite seconds");
   }
-  raw_.get(index, memory_type_, frame.bytes().data());
+  raw_.get(index, layout::memory_type_of(type_), frame.bytes().data());
   return time_s;
 }
 

@@ -75,7 +75,7 @@ struct RecordingWriter::State {
   ~State();
 
   void create_datasets();
-  void check_frame(const FrameView& frame, double time_s, const ForceField* truth) const;
+  void check_frame(const FrameView& frame, double time_s, const ForceField* field) const;
   void put_truth(const ForceField& field);
   void require_open() const;
   void flush();

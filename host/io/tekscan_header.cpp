@@ -52,8 +52,8 @@ double spacing_mm(const std::string& place, std::string_view key, std::string_vi
   }};
   const std::size_t split = std::min(value.find_first_of(" \t"), value.size());
   const std::string unit = lower_case(trimmed(value.substr(split)));
-  const auto known = std::find_if(kMillimetres.begin(), kMillimetres.end(),
-                                  [&](const auto& entry) { return entry.first == unit; });
+  const auto* const known = std::find_if(kMillimetres.begin(), kMillimetres.end(),
+                                         [&](const auto& entry) { return entry.first == unit; });
   if (known == kMillimetres.end()) {
     refuse(place, key, value, "its unit must be mm, cm, inches or the same spelled out");
   }

@@ -146,10 +146,10 @@ TEST(ForceNpy, IsAHeaderOfWholeSixtyFoursAndTheRecords) {
   EXPECT_EQ(header % 64, 0u);
   EXPECT_EQ(bytes[header - 1], '\n');
   EXPECT_TRUE(has_all(bytes.substr(0, header), {"(12, 2, 3)", "('status', '|u1')"}));
-  ASSERT_EQ(bytes.size(), header + 12 * 6 * 13);
+  ASSERT_EQ(bytes.size(), header + std::size_t{12} * 6 * 13);
   const Field last(11, 2, 3);
   float normal = 0;
-  std::memcpy(&normal, &bytes[header + (11 * 6 + 5) * 13 + 8], sizeof normal);
+  std::memcpy(&normal, &bytes[header + std::size_t{11 * 6 + 5} * 13 + 8], sizeof normal);
   EXPECT_EQ(normal, last.forces.normal[5]);
   EXPECT_EQ(static_cast<std::uint8_t>(bytes.back()), last.forces.status[5]);
 }

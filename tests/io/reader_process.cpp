@@ -12,6 +12,7 @@
 
 namespace {
 
+// NOLINTNEXTLINE(google-build-using-namespace): a program of that namespace
 using namespace pillarfield;
 
 template <class T>

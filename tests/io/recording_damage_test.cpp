@@ -86,7 +86,7 @@ void replace(hid_t file, const char* name, hid_t type, const std::vector<hsize_t
 
 void set_first(hid_t file, const char* name, float value) {
   const hid_t dataset = H5Dopen2(file, name, H5P_DEFAULT);
-  std::vector<float> values(kSize * kSize);
+  std::vector<float> values(std::size_t{kSize} * kSize);
   H5Dread(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
   values[7] = value;
   H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());

@@ -204,10 +204,10 @@ TEST_F(Tekscan, TakesAnySize) {
 }
 
 TEST_F(Tekscan, KnowsTheUnitsOfSpacing) {
-  const std::map<std::string, double> kSpacings = {
+  const std::map<std::string, double> spacings = {
       {"0.127 centimeters", 1.27}, {"0.05 cm", 0.5}, {"1.5 mm", 1.5},  {"2 millimeters", 2},
       {"0.1 inches", 2.54},        {"0.1 in", 2.54}, {"0.05 CM", 0.5}, {"2.5  Millimeters", 2.5}};
-  for (const auto& [spacing, pitch_mm] : kSpacings) {
+  for (const auto& [spacing, pitch_mm] : spacings) {
     Export written;
     written.set("ROW_SPACING", "ROW_SPACING " + spacing);
     written.set("COL_SPACING", "COL_SPACING " + spacing);

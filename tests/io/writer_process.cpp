@@ -19,6 +19,7 @@
 
 namespace {
 
+// NOLINTNEXTLINE(google-build-using-namespace): a program of that namespace
 using namespace pillarfield;
 using io_test::fill_frame;
 using io_test::sample_forces;
