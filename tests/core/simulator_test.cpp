@@ -95,6 +95,7 @@ TEST(Simulator, OrderAndOldContentsDoNotMatter) {
 TEST(Simulator, SeveralThreadsMakeTheSameFrames) {
   const Simulator simulator(noisy_scene(4));
   std::vector<Rendered> frames;
+  frames.reserve(16);
   for (int i = 0; i < 16; ++i) frames.emplace_back(simulator);
   const auto render_part = [&](std::size_t part) {
     for (std::size_t i = part; i < frames.size(); i += 2) {
@@ -207,7 +208,7 @@ TEST(Simulator, AnOddRowOrColumnIsReadWithoutLoad) {
   const auto raw = frame.raw.readings<float>();
   EXPECT_GT(raw[0], 2);
   for (std::size_t row = 0; row < 33; ++row) EXPECT_EQ(raw[row * 27 + 26], 2);
-  for (std::size_t col = 0; col < 27; ++col) EXPECT_EQ(raw[32 * 27 + col], 2);
+  for (std::size_t col = 0; col < 27; ++col) EXPECT_EQ(raw[std::size_t{32} * 27 + col], 2);
 }
 
 TEST(Simulator, AConverterSetsTheFullScale) {

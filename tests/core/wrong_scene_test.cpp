@@ -192,7 +192,7 @@ TEST(WrongScene, Contacts) {
        "s.toml:3: key 'shape' in [[contact]] is \"cube\"; allowed: "
        "\"sphere\", \"flat_punch\", \"cylinder\""},
       {"[[contact]]\nshape = \"cylinder\"",
-       "s.toml:2: key 'motion' in [[contact]] is missing; allowed: \"press\", \"slide\", \"roll\""},
+       R"(s.toml:2: key 'motion' in [[contact]] is missing; allowed: "press", "slide", "roll")"},
       {"[[contact]]\nshape = \"cylinder\"\nmotion = \"spin\"",
        "s.toml:4: key 'motion' in [[contact]] does not go with the shape: shape = \"cylinder\", "
        "motion = \"spin\"; allowed: \"press\", \"slide\", \"roll\""},
