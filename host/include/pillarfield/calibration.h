@@ -19,9 +19,10 @@ struct Calibration {
   std::vector<float> gain;         ///< factor on (raw − tare) that makes sensels equal, > 0
   std::vector<float> dead_zone;    ///< counts, what a sensel swallows before it answers, >= 0
   std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
+  std::vector<float> noise;  ///< counts of the raw reading, standard deviation, unloaded, >= 0
 
   [[nodiscard]] bool empty() const {
-    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty();
+    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty() && noise.empty();
   }
 };
 
