@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace pillarfield::oracle {
 namespace {
+
+const Exact kNotANumber = std::numeric_limits<double>::quiet_NaN();
+const Force kZeroByZero = {kNotANumber, kNotANumber, kNotANumber};
 
 std::size_t count_of(const SomeReadings& usable) {
   return static_cast<std::size_t>(
@@ -53,8 +57,19 @@ Exact inclination(const SomeReadings& v, const PaperChoice& choice, Exact phi) {
   return exact::atan2(exact::abs(ratio - 1), exact::abs(denominator));
 }
 
+/// Then every tangent is 0/0.
+bool all_equal(const SomeReadings& usable) {
+  std::optional<Exact> first;
+  for (const auto& reading : usable) {
+    if (!first) first = reading;
+    if (reading && *reading != *first) return false;
+  }
+  return true;
+}
+
 /// Regions 1 and 2.
 Force from_three_or_four(const SomeReadings& v, Exact k, const PaperChoice& choice) {
+  if (all_equal(v)) return kZeroByZero;
   const Exact phi = azimuth(v);
   const Exact theta = inclination(v, choice, phi);
   const std::size_t m = choice.magnitude_from;
@@ -107,15 +122,18 @@ std::vector<PaperChoice> diagonals_along_shear(const SomeReadings& usable) {
   return pairs;
 }
 
-/// P2: the sensel opposite the silent one, and the weaker of its neighbours.
-std::vector<PaperChoice> opposite_and_weaker(const SomeReadings& usable) {
+/// P2: the sensel opposite the silent one, and that of its neighbours which differs more from it.
+std::vector<PaperChoice> opposite_and_neighbour(const SomeReadings& usable) {
   const std::size_t silent = first_silent(usable);
   const std::size_t opposite = (silent + 2) % 4;
+  const auto difference = [&](std::size_t neighbour) {
+    return exact::abs(*usable[opposite] - *usable[neighbour]);
+  };
   const std::size_t one = (silent + 1) % 4;
   const std::size_t other = (silent + 3) % 4;
   std::vector<PaperChoice> pairs;
-  if (*usable[one] <= *usable[other]) pairs.push_back({opposite, one, 0});
-  if (*usable[other] <= *usable[one]) pairs.push_back({opposite, other, 0});
+  if (difference(one) >= difference(other)) pairs.push_back({opposite, one, 0});
+  if (difference(other) >= difference(one)) pairs.push_back({opposite, other, 0});
   return pairs;
 }
 
@@ -127,7 +145,7 @@ std::vector<PaperChoice> paper_choices(const SomeReadings& usable) {
   for (const auto& reading : usable) largest = std::max(largest, reading.value_or(0));
   std::vector<PaperChoice> choices;
   const bool four = count_of(usable) == 4;
-  for (PaperChoice choice : four ? diagonals_along_shear(usable) : opposite_and_weaker(usable)) {
+  for (PaperChoice choice : four ? diagonals_along_shear(usable) : opposite_and_neighbour(usable)) {
     for (std::size_t n = 0; n < 4; ++n) {
       if (usable[n] != largest) continue;
       choice.magnitude_from = n;
