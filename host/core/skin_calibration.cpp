@@ -1,11 +1,14 @@
 #include "pillarfield/skin_calibration.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <ctime>
 #include <utility>
 
 #include "core/quantile.h"
 #include "pillarfield/error.h"
+#include "pillarfield/version.h"
 
 namespace pillarfield {
 namespace {
@@ -46,6 +49,19 @@ std::vector<double> corrected_noise(const Calibration& planes) {
 }
 
 }  // namespace
+
+CalibrationStep step_done(std::string step, std::vector<std::string> sources, std::uint64_t frames,
+                          std::string parameters) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return {std::move(step),
+          std::move(sources),
+          frames,
+          std::move(parameters),
+          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", utc),
+          kVersion};
+}
 
 SkinCalibration blank_calibration(const Skin& skin, const std::vector<std::uint8_t>& mask) {
   SkinCalibration calibration;

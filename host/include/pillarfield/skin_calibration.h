@@ -39,6 +39,10 @@ struct SkinCalibration {
 /// Limit of SkinCalibration::threshold_factor.
 inline constexpr double kMaxThresholdFactor = 1000;
 
+/// The step just done, by this version of the program and now.
+[[nodiscard]] CalibrationStep step_done(std::string step, std::vector<std::string> sources,
+                                        std::uint64_t frames, std::string parameters);
+
 /// A calibration of which nothing is known but the sensels that `skin` has and `mask` (as
 /// Calibration::mask) lets pass.
 [[nodiscard]] SkinCalibration blank_calibration(const Skin& skin,
