@@ -30,6 +30,9 @@ struct Calibration {
 inline constexpr double kMinGain = 1e-2;
 inline constexpr double kMaxGain = 1e2;
 
+/// Limit of Calibration::noise, and of noise elsewhere.
+inline constexpr double kMaxNoiseCounts = 1e6;
+
 /// Throws Error, its place being `where`, when a plane has not one value per sensel of `skin` or a
 /// value is out of its range.
 void check(const Calibration& calibration, const Skin& skin, std::string_view where);
