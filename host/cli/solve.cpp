@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/processor.h"
@@ -25,6 +26,7 @@ struct SolveOptions {
   std::string input;
   std::string output;
   std::string scene;
+  std::string calibration;
   std::optional<Estimator> estimator;
   std::vector<std::string> outputs;
   std::optional<double> threshold_counts;
@@ -48,7 +50,7 @@ bool asks_for(const SolveOptions& options, const char* output) {
   return std::ranges::find(options.outputs, output) != options.outputs.end();
 }
 
-/// The plan that the file asks for, then the scene, then the command line.
+/// The plan that the file asks for, then the scene, the calibration, and the command line.
 SolverPlan plan_of(const SolveOptions& options, const FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
@@ -60,6 +62,11 @@ SolverPlan plan_of(const SolveOptions& options, const FrameSource& source) {
     plan.skin.threshold_counts = scene.skin.threshold_counts;
     plan.skin.full_scale_counts = scene.skin.full_scale_counts;
     set_solver(plan, scene);
+  }
+  if (!options.calibration.empty()) {
+    const SkinCalibration calibration = read_calibration_file(options.calibration);
+    require_fitting(calibration, plan.skin, options.input);
+    apply(calibration, plan.skin, plan.calibration);
   }
   if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
   if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
@@ -247,6 +254,8 @@ void add_solve(CLI::App& app, Work& work) {
       ->required();
   command->add_option("--scene", options->scene,
                       "Take the sensor's constants and the parity test from a scene file");
+  command->add_option("--calibration", options->calibration,
+                      "Take planes and constants from a calibration made by calibrate");
   command
       ->add_option("--estimator", options->estimator,
                    "How forces are estimated: direct, or the paper's equations [direct]")

@@ -63,12 +63,15 @@ CalibrationStep step_done(std::string step, std::vector<std::string> sources, st
           kVersion};
 }
 
-SkinCalibration blank_calibration(const Skin& skin, const std::vector<std::uint8_t>& mask) {
+SkinCalibration blank_calibration(const Skin& skin) {
   SkinCalibration calibration;
   calibration.rows = skin.rows;
   calibration.cols = skin.cols;
-  calibration.planes.mask = mask;
   return calibration;
+}
+
+void mask_missing(SkinCalibration& calibration, const std::vector<std::uint8_t>& mask) {
+  calibration.planes.mask = both_good(mask, std::move(calibration.planes.mask));
 }
 
 void check(const SkinCalibration& calibration, std::string_view where) {

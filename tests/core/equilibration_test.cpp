@@ -34,7 +34,7 @@ SensorModel spread_sensor() {
 const double kNoise = std::sqrt(1 + 1 / 12.0);
 
 SkinCalibration tared(PressedSkin& skin) {
-  return take_tare(blank_calibration(skin.skin(), {}), skin.bare(kFrames), {}).calibration;
+  return take_tare(blank_calibration(skin.skin()), skin.bare(kFrames), {}).calibration;
 }
 
 double mean_of(const std::vector<float>& values) {
@@ -146,7 +146,7 @@ TEST(Equilibration, DeadAndSaturatedSenselsAreMasked) {
   PressedSkin skin(20, 20, sensor);
   const Calibration truth = skin.truth();
   // The tare does not know them: with a threshold of zero counts they may pass for quiet ones.
-  SkinCalibration before = blank_calibration(skin.skin(), {});
+  SkinCalibration before = blank_calibration(skin.skin());
   before.planes.tare = truth.tare;
   const FrameStatistics press = skin.press(0.4, kFrames);
   const UniformPress presses[] = {{press, skin.pressure_kpa(0.4)}};
@@ -231,11 +231,11 @@ TEST(Equilibration, RefusesWhatIsNotEnough) {
   };
   EXPECT_EQ(message(before, {few, 100}), "frames.h5: has 4 frames; give at least 5");
   EXPECT_EQ(message(before, {press, 0}), "frames.h5: its pressure is 0 kPa; it must be above zero");
-  EXPECT_EQ(message(blank_calibration(skin.skin(), {}), {press, 100}),
+  EXPECT_EQ(message(blank_calibration(skin.skin()), {press, 100}),
             "calibration: has no tare; take the tare of the unloaded skin first");
   Skin other = skin.skin();
   other.rows = 6;
-  SkinCalibration of_another = blank_calibration(other, {});
+  SkinCalibration of_another = blank_calibration(other);
   of_another.planes.tare.assign(other.sensels(), 0);
   EXPECT_NE(message(of_another, {press, 100}).find("one of 6 x 20"), std::string::npos);
   EXPECT_NE(message_of([&] { (void)equilibrate(before, {}, {}); }).find("no press"),

@@ -33,7 +33,7 @@ SensorModel common_sensor() {
 PressedSkin common_skin() { return {30, 30, common_sensor()}; }
 
 TareResult tare_of(const FrameStatistics& unloaded, const TareOptions& options = {}) {
-  return take_tare(blank_calibration(unloaded.skin(), {}), unloaded, options);
+  return take_tare(blank_calibration(unloaded.skin()), unloaded, options);
 }
 
 /// The noise of a rounded reading.
@@ -145,7 +145,7 @@ TEST(Tare, MasksWhatCannotBeRightAndSaysWhy) {
 
 TEST(Tare, KeepsWhatWasKnownBefore) {
   PressedSkin skin = common_skin();
-  SkinCalibration before = blank_calibration(skin.skin(), {});
+  SkinCalibration before = blank_calibration(skin.skin());
   before.counts_per_newton = 123;
   before.planes.gain.assign(skin.skin().sensels(), 2);
   before.planes.mask.assign(skin.skin().sensels(), 1);
@@ -184,7 +184,7 @@ TEST(Tare, RefusesTooFewFramesAndOtherSkins) {
   const FrameStatistics few = skin.bare(kLeastTareFrames - 1);
   EXPECT_EQ(message_of([&] { (void)tare_of(few); }), "frames.h5: has 9 frames; give at least 10");
   PressedSkin other(30, 31, common_sensor());
-  const SkinCalibration before = blank_calibration(other.skin(), {});
+  const SkinCalibration before = blank_calibration(other.skin());
   const std::string message = message_of([&] { (void)take_tare(before, few, {}); });
   EXPECT_NE(message.find("60 x 60"), std::string::npos) << message;
   EXPECT_NE(message.find("60 x 62"), std::string::npos) << message;

@@ -39,7 +39,7 @@ Calibration random_calibration(const Skin& skin, std::mt19937& random) {
   calibration.tare = plane(-1e6f, 1e6f);
   calibration.gain = plane(0.01f, 100.0f);
   calibration.dead_zone = plane(0.0f, 1e9f);
-  calibration.noise = plane(0.0f, 1e9f);
+  calibration.noise = plane(0.0f, 1e6f);
   calibration.mask.resize(coin() ? skin.sensels() : 0);
   for (auto& good : calibration.mask) good = coin() ? 1 : 0;
   return calibration;

@@ -43,10 +43,11 @@ inline constexpr double kMaxThresholdFactor = 1000;
 [[nodiscard]] CalibrationStep step_done(std::string step, std::vector<std::string> sources,
                                         std::uint64_t frames, std::string parameters);
 
-/// A calibration of which nothing is known but the sensels that `skin` has and `mask` (as
-/// Calibration::mask) lets pass.
-[[nodiscard]] SkinCalibration blank_calibration(const Skin& skin,
-                                                const std::vector<std::uint8_t>& mask);
+/// A calibration of which nothing is known but the size of the skin.
+[[nodiscard]] SkinCalibration blank_calibration(const Skin& skin);
+
+/// Masks the sensels that `mask` (as Calibration::mask, of the calibration's size) has as missing.
+void mask_missing(SkinCalibration& calibration, const std::vector<std::uint8_t>& mask);
 
 /// Throws Error, its place being `where`, when a plane or a constant is out of its range.
 void check(const SkinCalibration& calibration, std::string_view where);
