@@ -10,6 +10,7 @@ void add_calibrate(CLI::App& app, Work& work) {
   calibrate->require_subcommand(1);
   add_calibrate_tare(*calibrate, work);
   add_calibrate_equilibrate(*calibrate, work);
+  add_calibrate_load(*calibrate, work);
   add_calibrate_apply(*calibrate, work);
 }
 

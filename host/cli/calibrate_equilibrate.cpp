@@ -56,38 +56,22 @@ void print_text(const EquilibrateCommand& command, const EquilibrationResult& re
 }
 
 void run(const EquilibrateCommand& command) {
-  std::vector<FrameStatistics> statistics;
-  SkinCalibration before;
-  std::uint64_t frames = 0;
-  for (const std::string& file : command.files) {
-    const std::unique_ptr<FrameSource> source = open_for_step(file, command.step);
-    if (statistics.empty()) before = calibration_before(command.step, *source, file);
-    require_fitting(before, source->skin(), file);
-    statistics.push_back(statistics_of(*source, file, command.step));
-    frames += statistics.back().frames();
-  }
+  const StepInput input = read_input(command.files, command.step);
   std::vector<UniformPress> presses;
-  for (std::size_t i = 0; i < statistics.size(); ++i) {
-    presses.push_back({statistics[i], command.pressures_kpa[i]});
+  for (std::size_t i = 0; i < input.files.size(); ++i) {
+    presses.push_back({input.files[i], command.pressures_kpa[i]});
   }
-  EquilibrationResult result = equilibrate(before, presses, command.equilibration);
+  EquilibrationResult result = equilibrate(input.before, presses, command.equilibration);
   result.calibration.history.push_back(step_done(
-      "equilibrate", names_of(command.files), frames,
+      "equilibrate", names_of(command.files), input.frames,
       fmt::format("pressures_kpa = {}, most_unevenness = {}", fmt::join(command.pressures_kpa, " "),
                   command.equilibration.most_unevenness)));
   write_calibration_file(command.step.output, result.calibration);
   if (command.step.json) {
-    print_json(command, result, frames);
+    print_json(command, result, input.frames);
   } else {
-    print_text(command, result, frames);
+    print_text(command, result, input.frames);
   }
-}
-
-void require_pairs(const EquilibrateCommand& command) {
-  if (command.files.size() == command.pressures_kpa.size()) return;
-  throw CLI::ValidationError(
-      "--pressure-kpa", fmt::format("{} files and {} pressures; give one pressure for each file",
-                                    command.files.size(), command.pressures_kpa.size()));
 }
 
 }  // namespace
@@ -113,7 +97,7 @@ void add_calibrate_equilibrate(CLI::App& calibrate, Work& work) {
       ->capture_default_str();
   add_step_options(*command, options->step, "Calibration to write (HDF5)");
   command->callback([options, &work] {
-    require_pairs(*options);
+    require_one_each("--pressure-kpa", options->files, options->pressures_kpa);
     work = [options] { run(*options); };
   });
 }

@@ -40,10 +40,9 @@ void print_text(const TareCommand& command, const TareResult& result, std::uint3
 }
 
 void run(const TareCommand& command) {
-  const std::unique_ptr<FrameSource> source = open_for_step(command.unloaded, command.step);
-  const SkinCalibration before = calibration_before(command.step, *source, command.unloaded);
-  const FrameStatistics unloaded = statistics_of(*source, command.unloaded, command.step);
-  TareResult result = take_tare(before, unloaded, command.tare);
+  const StepInput input = read_input({command.unloaded}, command.step);
+  const FrameStatistics& unloaded = input.files.front();
+  TareResult result = take_tare(input.before, unloaded, command.tare);
   result.calibration.history.push_back(
       step_done("tare", names_of({command.unloaded}), unloaded.frames(),
                 fmt::format("threshold_factor = {}, preloaded = {}", command.tare.threshold_factor,

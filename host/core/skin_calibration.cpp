@@ -114,4 +114,13 @@ void set_threshold(SkinCalibration& calibration, double factor) {
   calibration.threshold_counts = law ? straightened(*law, threshold) : threshold;
 }
 
+void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law) {
+  const std::optional<PowerLaw> old = std::exchange(calibration.power_law, law);
+  std::optional<double>& threshold = calibration.threshold_counts;
+  if (threshold && old) {
+    threshold = straightened({1 / old->exponent, old->reference_counts}, *threshold);
+  }
+  if (threshold && law) threshold = straightened(*law, *threshold);
+}
+
 }  // namespace pillarfield

@@ -64,4 +64,8 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes);
 /// there is one. Needs the noise plane.
 void set_threshold(SkinCalibration& calibration, double factor);
 
+/// Gives the calibration this power law in place of what it has, and moves the threshold, where
+/// there is one, so that it stays at the same reading.
+void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law);
+
 }  // namespace pillarfield
