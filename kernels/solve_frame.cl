@@ -10,6 +10,8 @@
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
  *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
+ *   PF_EXPONENT, PF_REFERENCE       and counts; stage: the power law, of results up to
+ *   PF_LARGEST_STRAIGHT             counts
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
  *   PF_DOUBT                        counts by which noise may shift what parity says
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
@@ -112,6 +114,10 @@ static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zo
 #ifdef PF_GAIN
   sensel = apply_gain(sensel, gain);
 #endif
+#ifdef PF_EXPONENT
+  sensel = apply_power_law(sensel, (Real)(PF_EXPONENT), (Real)(PF_REFERENCE),
+                           (Real)(PF_LARGEST_STRAIGHT));
+#endif
   sensel = classify(sensel, (Real)(PF_THRESHOLD));
 #ifdef PF_DEAD_ZONE
   sensel = fill_dead_zone(sensel, dead_zone);
@@ -162,8 +168,8 @@ static inline SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes
 }
 
 #ifdef PF_UNCERTAINTY
-/* The noise of the sensels of one row after their gain, counts. */
-static inline RealPair read_noise(Planes planes, size_t offset, uint count) {
+/* The noise of the sensels of one row as it is in their V, counts. */
+static inline RealPair read_noise(SenselPair sensels, Planes planes, size_t offset, uint count) {
   RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
 #ifdef PF_NOISE
   noise = load_plane(planes.noise + offset, count);
@@ -172,6 +178,18 @@ static inline RealPair read_noise(Planes planes, size_t offset, uint count) {
   const RealPair gains = load_plane(planes.gain + offset, count);
   noise.left = noise.left * gains.left;
   noise.right = noise.right * gains.right;
+#endif
+#ifdef PF_EXPONENT
+  RealPair dead_zones = {(Real)(0.0f), (Real)(0.0f)};
+#ifdef PF_DEAD_ZONE
+  dead_zones = load_plane(planes.dead_zone + offset, count);
+#endif
+  const Real exponent = (Real)(PF_EXPONENT);
+  const Real reference = (Real)(PF_REFERENCE);
+  noise.left =
+      noise.left * power_law_slope(sensels.left.reading - dead_zones.left, exponent, reference);
+  noise.right =
+      noise.right * power_law_slope(sensels.right.reading - dead_zones.right, exponent, reference);
 #endif
   return noise;
 }
@@ -243,8 +261,8 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, 
     store_plane(direction.phi, phi + index, count);
 #endif
 #ifdef PF_UNCERTAINTY
-    const RealPair noise_top = read_noise(planes, offset, count);
-    const RealPair noise_bottom = read_noise(planes, offset + planes.stride, count);
+    const RealPair noise_top = read_noise(top, planes, offset, count);
+    const RealPair noise_bottom = read_noise(bottom, planes, offset + planes.stride, count);
     const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
     const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
     const Force deviations = force_deviations(pillar, diagonals, noises, scale);

@@ -61,6 +61,7 @@ SolverPlan plan_of(const SolveOptions& options, const FrameSource& source) {
     plan.skin.counts_per_newton = scene.skin.counts_per_newton;
     plan.skin.threshold_counts = scene.skin.threshold_counts;
     plan.skin.full_scale_counts = scene.skin.full_scale_counts;
+    plan.skin.power_law = scene.skin.power_law;
     set_solver(plan, scene);
   }
   if (!options.calibration.empty()) {

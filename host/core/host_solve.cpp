@@ -13,13 +13,19 @@ class SenselReader {
  public:
   SenselReader(const SolverPlan& plan, const FrameView& frame) : plan_(plan), frame_(frame) {}
 
-  /// Noise after the gain, counts.
-  [[nodiscard]] float noise(std::size_t row, std::size_t col) const {
+  /// Noise as it is in the V of a sensel, counts.
+  [[nodiscard]] float noise(const maths::Sensel& sensel, std::size_t row, std::size_t col) const {
     const Calibration& calibration = plan_.calibration;
     const std::size_t index = row * frame_.cols + col;
     const float raw_noise = calibration.noise.empty() ? static_cast<float>(reading_noise(plan_))
                                                       : calibration.noise[index];
-    return calibration.gain.empty() ? raw_noise : raw_noise * calibration.gain[index];
+    const float noise = calibration.gain.empty() ? raw_noise : raw_noise * calibration.gain[index];
+    if (!plan_.skin.power_law) return noise;
+    const float dead_zone = calibration.dead_zone.empty() ? 0 : calibration.dead_zone[index];
+    return noise *
+           maths::power_law_slope(sensel.reading - dead_zone,
+                                  static_cast<float>(plan_.skin.power_law->exponent),
+                                  static_cast<float>(plan_.skin.power_law->reference_counts));
   }
 
   [[nodiscard]] maths::Sensel operator()(std::size_t row, std::size_t col) const {
@@ -35,6 +41,11 @@ class SenselReader {
     }
     if (!calibration.tare.empty()) sensel = maths::subtract_tare(sensel, calibration.tare[index]);
     if (!calibration.gain.empty()) sensel = maths::apply_gain(sensel, calibration.gain[index]);
+    if (const auto& law = plan_.skin.power_law) {
+      sensel = maths::apply_power_law(sensel, static_cast<float>(law->exponent),
+                                      static_cast<float>(law->reference_counts),
+                                      static_cast<float>(kMaxCounts));
+    }
     sensel = maths::classify(sensel, static_cast<float>(plan_.skin.threshold_counts));
     if (!calibration.dead_zone.empty()) {
       sensel = maths::fill_dead_zone(sensel, calibration.dead_zone[index]);
@@ -87,8 +98,9 @@ class PillarSolver {
     field_.normal[index] = force.normal;
     field_.status[index] = static_cast<std::uint8_t>(status(pillar, sum));
     if (!plan_.uncertainty) return;
-    const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
-                                sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
+    const maths::Noise noise = {
+        sensel_.noise(pillar.s1, top, left + 1), sensel_.noise(pillar.s2, top, left),
+        sensel_.noise(pillar.s3, top + 1, left), sensel_.noise(pillar.s4, top + 1, left + 1)};
     store(maths::force_deviations(pillar, diagonals, noise, scale_), index);
     store(maths::direction_interval(pillar, diagonals, sum, scale_), index);
   }

@@ -19,6 +19,8 @@ constexpr double kSaturatedShare = 0.2;
 /// Loads that tell an exponent differ at least by this factor.
 constexpr double kDifferent = 1.1;
 constexpr double kExponentAccuracy = 1e-5;
+/// Loads that come out worse than this, root mean square, belong to other readings.
+constexpr double kMostMisfit = 0.5;
 
 /// The mean of the frames as one frame; a sensel that was ever at full scale is.
 FrameBuffer mean_frame(const FrameStatistics& frames) {
@@ -231,6 +233,18 @@ LoadResult result_of(const std::vector<Press>& presses, SkinCalibration calibrat
   return result;
 }
 
+void require_fit(const std::vector<Press>& presses, const LoadResult& result) {
+  if (result.misfit <= kMostMisfit) return;
+  const auto error = [](const LoadResidual& load) {
+    return std::abs(std::log(load.solved_n / load.load_n));
+  };
+  const auto worst = std::ranges::max_element(result.loads, {}, error);
+  const auto index = static_cast<std::size_t>(worst - result.loads.begin());
+  throw Error(presses[index].name(),
+              fmt::format("its load of {} N comes out as {:.4g} N", worst->load_n, worst->solved_n),
+              "check which load belongs to which file");
+}
+
 }  // namespace
 
 LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLoad> loads,
@@ -245,7 +259,9 @@ LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLo
     require_different(loads);
     set_power_law(calibration, fit_power_law(presses, calibration));
   }
-  return result_of(presses, std::move(calibration));
+  LoadResult result = result_of(presses, std::move(calibration));
+  require_fit(presses, result);
+  return result;
 }
 
 }  // namespace pillarfield

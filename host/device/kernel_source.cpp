@@ -49,6 +49,11 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
   }
   add(!calibration.tare.empty(), "PF_TARE", "", "tare");
   add(!calibration.gain.empty(), "PF_GAIN", "", "gain");
+  if (skin.power_law) {
+    add(true, "PF_EXPONENT", hex_float(skin.power_law->exponent), "power_law");
+    add(true, "PF_REFERENCE", hex_float(skin.power_law->reference_counts), nullptr);
+    add(true, "PF_LARGEST_STRAIGHT", hex_float(kMaxCounts), nullptr);
+  }
   add(true, "PF_THRESHOLD", hex_float(skin.threshold_counts), "classify");
   add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");
   const bool paper = plan.estimator == Estimator::paper;

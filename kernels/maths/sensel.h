@@ -49,6 +49,23 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
   return sensel;
 }
 
+/* A corrected reading r > 0 as the model's V: reference·(r / reference)^exponent, `largest` at
+ * most. pow is the library's: OpenCL allows a device 16 ULP. */
+static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference, Real largest) {
+  const Real straight = reference * pow(sensel.reading / reference, exponent);
+  const Real bounded = straight < largest ? straight : largest;
+  sensel.reading = sensel.reading > PF_REAL(0.0) ? bounded : sensel.reading;
+  return sensel;
+}
+
+/* By how much a power law has stretched small changes of a reading that is now V > 0 counts, dead
+ * zone apart: dV/dr = exponent·(V / reference)^(1 − 1/exponent). 1 where V is not positive. */
+static inline Real power_law_slope(Real v, Real exponent, Real reference) {
+  const Real one = PF_REAL(1.0);
+  const Real slope = exponent * pow(v / reference, one - one / exponent);
+  return v > PF_REAL(0.0) ? slope : one;
+}
+
 /* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
  * others are lifted, and read the threshold, which is the most that their silence can hide; or
  * missing, and read zero. A saturated sensel that its calibration brings down to the threshold

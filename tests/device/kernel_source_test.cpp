@@ -30,8 +30,9 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
   const std::string source = kernel_source(plan, 16);
   EXPECT_EQ(macro(source, "PF_LANES"), "16");
   EXPECT_EQ(macro(source, "PF_SENSEL"), "uchar");
-  for (const char* stage : {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN",
-                            "PF_DEAD_ZONE", "PF_MASK", "PF_PARITY_TOLERANCE", "PF_ANGLES"}) {
+  for (const char* stage :
+       {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN", "PF_DEAD_ZONE", "PF_MASK",
+        "PF_PARITY_TOLERANCE", "PF_ANGLES", "PF_EXPONENT"}) {
     EXPECT_EQ(macro(source, stage), "(none)") << stage;
   }
 }
@@ -39,8 +40,9 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
 TEST(KernelSource, EveryWishOfAPlanIsAStage) {
   SolverPlan plan = full_plan(8, 8, SenselType::f32, 1);
   plan.angles = true;
+  plan.skin.power_law = {1.3, 90};
   const std::vector<std::string> expected = {
-      "load",     "reject_absurd", "mask",         "saturation",  "tare",   "gain",
+      "load",     "reject_absurd", "mask",         "saturation",  "tare",   "gain", "power_law",
       "classify", "dead_zone",     "direct_solve", "parity_test", "angles", "store"};
   EXPECT_EQ(kernel_stages(plan), expected);
 }
