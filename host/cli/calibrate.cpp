@@ -11,6 +11,7 @@ void add_calibrate(CLI::App& app, Work& work) {
   add_calibrate_tare(*calibrate, work);
   add_calibrate_equilibrate(*calibrate, work);
   add_calibrate_load(*calibrate, work);
+  add_calibrate_faults(*calibrate, work);
   add_calibrate_apply(*calibrate, work);
 }
 
