@@ -56,7 +56,9 @@ void simulate(const SimulateOptions& options) {
   const Scene& scene = simulator.scene();
   FrameBuffer frame(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
   ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
-  RecordingWriter writer(options.output, scene.skin, simulator.sensel_type(),
+  Skin skin = scene.skin;
+  if (options.uncalibrated) skin.power_law.reset();
+  RecordingWriter writer(options.output, skin, simulator.sensel_type(),
                          options.uncalibrated ? Calibration() : simulator.calibration(),
                          {.truth = true});
   {

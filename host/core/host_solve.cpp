@@ -1,5 +1,7 @@
 #include "core/host_solve.h"
 
+#include <algorithm>
+
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
 #include "core/sensel_reader.h"
@@ -35,9 +37,8 @@ class PillarSolver {
     if (!plan_.uncertainty) return;
     const std::size_t top = 2 * row;
     const std::size_t left = 2 * col;
-    const maths::Noise noise = {
-        sensel_.noise(pillar.s1, top, left + 1), sensel_.noise(pillar.s2, top, left),
-        sensel_.noise(pillar.s3, top + 1, left), sensel_.noise(pillar.s4, top + 1, left + 1)};
+    const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
+                                sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
     store(maths::force_deviations(pillar, diagonals, noise, scale_), index);
     store(maths::direction_interval(pillar, diagonals, sum, scale_), index);
   }
@@ -76,7 +77,32 @@ class PillarSolver {
   maths::ForceScale scale_{};
 };
 
+/// Whether anything presses in the 3 x 3 pillars around one.
+bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
+  const std::size_t last_row = std::min<std::size_t>(row + 1, forces.rows - 1);
+  const std::size_t last_col = std::min<std::size_t>(col + 1, forces.cols - 1);
+  int bits = 0;
+  for (std::size_t r = row == 0 ? 0 : row - 1; r <= last_row; ++r) {
+    for (std::size_t c = col == 0 ? 0 : col - 1; c <= last_col; ++c) {
+      bits |= forces.status[r * forces.cols + c];
+    }
+  }
+  return (bits & PF_STATUS_PRESSED) != 0;
+}
+
 }  // namespace
+
+void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces) {
+  const SenselReader sensel(plan, frame);
+  const auto rate = static_cast<float>(plan.baseline_rate.value_or(0));
+  for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
+    for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
+      const int untouched = is_touched(forces, row / 2, col / 2) ? 0 : 1;
+      float& tare = plan.calibration.tare[row * frame.cols + col];
+      tare = maths::follow_tare(tare, sensel.judged(row, col), untouched, rate);
+    }
+  }
+}
 
 ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
   ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());

@@ -14,16 +14,22 @@ class SenselReader {
  public:
   SenselReader(const SolverPlan& plan, const FrameView& frame) : plan_(plan), frame_(frame) {}
 
+  /// After all stages.
   [[nodiscard]] single_precision::Sensel operator()(std::size_t row, std::size_t col) const;
 
-  /// The pillar in this row and column of pillars.
+  /// The four of the pillar in this row and column of pillars.
   [[nodiscard]] single_precision::Pillar pillar(std::size_t row, std::size_t col) const;
 
-  /// Noise as it is in the V of a sensel, counts.
-  [[nodiscard]] float noise(const single_precision::Sensel& sensel, std::size_t row,
-                            std::size_t col) const;
+  /// Before any calibration.
+  [[nodiscard]] single_precision::Sensel judged(std::size_t row, std::size_t col) const;
+
+  /// Noise as the corrections leave it, counts.
+  [[nodiscard]] float noise(std::size_t row, std::size_t col) const;
 
  private:
+  [[nodiscard]] single_precision::Sensel corrected(std::size_t row, std::size_t col) const;
+  [[nodiscard]] float exponent() const;
+  [[nodiscard]] float reference() const;
   [[nodiscard]] float raw(std::size_t row, std::size_t col) const;
 
   const SolverPlan& plan_;

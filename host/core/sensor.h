@@ -14,7 +14,8 @@ namespace pillarfield {
 /// The sensels of a scene: what stands between the model's V and the raw reading, in this order,
 /// each stage only where the scene lists it (docs/scenes.md):
 ///
-///     dead zone, power law, sensitivity, tare, noise, full scale and rounding, dead sensels.
+///     dead zone, power law, sensitivity, tare, drift, noise, full scale and rounding, dead
+///     sensels.
 class Sensor {
  public:
   /// Draws the planes that differ from sensel to sensel. Needs a scene that passes check().
@@ -30,6 +31,7 @@ class Sensor {
 
  private:
   void respond(std::uint32_t row, std::span<double> signal) const;
+  void add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void convert(std::uint32_t row, std::span<const double> signal, FrameBuffer& raw) const;
   void silence_dead(std::uint32_t row, std::span<double> signal) const;
@@ -38,6 +40,7 @@ class Sensor {
   double full_scale_counts_;
   std::optional<PowerLaw> bend_;  ///< the power law backwards: what a straight signal reads
   std::uint64_t seed_;
+  double rate_hz_;
   Calibration calibration_;
 };
 

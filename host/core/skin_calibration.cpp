@@ -99,8 +99,10 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) 
   planes = calibration.planes;
   planes.mask = std::move(mask);
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
-  skin.counts_per_newton = calibration.counts_per_newton.value_or(skin.counts_per_newton);
-  if (calibration.power_law) skin.power_law = calibration.power_law;
+  // A power law and the counts per newton are known together.
+  if (!calibration.counts_per_newton) return;
+  skin.counts_per_newton = *calibration.counts_per_newton;
+  skin.power_law = calibration.power_law;
 }
 
 void set_threshold(SkinCalibration& calibration, double factor) {

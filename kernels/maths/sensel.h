@@ -49,21 +49,25 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
   return sensel;
 }
 
-/* A corrected reading r > 0 as the model's V: reference·(r / reference)^exponent, `largest` at
- * most. pow is the library's: OpenCL allows a device 16 ULP. */
+/* Straightens a sensel that does not answer in proportion: a reading r above zero stands for
+ * V = reference (r / reference)^exponent, `largest` counts at most. */
 static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference, Real largest) {
-  const Real straight = reference * pow(sensel.reading / reference, exponent);
+  const Real straight = reference * pow(fabs(sensel.reading) / reference, exponent);
   const Real bounded = straight < largest ? straight : largest;
   sensel.reading = sensel.reading > PF_REAL(0.0) ? bounded : sensel.reading;
   return sensel;
 }
 
-/* By how much a power law has stretched small changes of a reading that is now V > 0 counts, dead
- * zone apart: dV/dr = exponent·(V / reference)^(1 − 1/exponent). 1 where V is not positive. */
-static inline Real power_law_slope(Real v, Real exponent, Real reference) {
-  const Real one = PF_REAL(1.0);
-  const Real slope = exponent * pow(v / reference, one - one / exponent);
-  return v > PF_REAL(0.0) ? slope : one;
+/* dV / dr of that law: what it does to small noise. */
+static inline Real power_law_slope(Real reading, Real exponent, Real reference) {
+  return exponent * pow(fabs(reading) / reference, exponent - PF_REAL(1.0));
+}
+
+/* The tare of a sensel after one more frame: `rate` of its distance from the raw reading is taken
+ * over, where nothing touches the sensel and the reading tells anything. */
+static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate) {
+  const Real followed = tare + rate * (raw.reading - tare);
+  return (untouched & !(raw.missing | raw.saturated)) ? followed : tare;
 }
 
 /* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All

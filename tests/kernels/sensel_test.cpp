@@ -153,12 +153,9 @@ TEST(PowerLaw, ItsSlopeIsItsDerivative) {
       const auto straight = [=](double r) { return 80 * std::pow(r / 80, exponent); };
       const double slope =
           (straight(1.0001 * reading) - straight(0.9999 * reading)) / (0.0002 * reading);
-      EXPECT_NEAR(double_precision::power_law_slope(straight(reading), exponent, 80), slope,
-                  1e-6 * slope);
+      EXPECT_NEAR(double_precision::power_law_slope(reading, exponent, 80), slope, 1e-6 * slope);
     }
   }
-  EXPECT_EQ(double_precision::power_law_slope(0, 1.3, 80), 1);
-  EXPECT_EQ(double_precision::power_law_slope(-2, 1.3, 80), 1);
 }
 
 TYPED_TEST(SenselStages, SaturationIsOfTheRawReading) {
