@@ -63,7 +63,10 @@ class SenselReader {
     maths::Sensel sensel = judged(row, col);
     if (!calibration.tare.empty()) sensel = maths::subtract_tare(sensel, calibration.tare[index]);
     if (!calibration.gain.empty()) sensel = maths::apply_gain(sensel, calibration.gain[index]);
-    if (plan_.skin.power_law) sensel = maths::apply_power_law(sensel, exponent(), reference());
+    if (plan_.skin.power_law) {
+      sensel =
+          maths::apply_power_law(sensel, exponent(), reference(), static_cast<float>(kMaxCounts));
+    }
     return sensel;
   }
 
