@@ -14,8 +14,7 @@ namespace pillarfield {
 /// The sensels of a scene: what stands between the model's V and the raw reading, in this order,
 /// each stage only where the scene lists it (docs/scenes.md):
 ///
-///     dead zone, power law, sensitivity, tare, drift, noise, full scale and rounding, dead
-///     sensels.
+///     dead zone, power law, sensitivity, tare, drift, noise, full scale and rounding, dead.
 class Sensor {
  public:
   /// Draws the planes that differ from sensel to sensel. Needs a scene that passes check().

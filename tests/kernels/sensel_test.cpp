@@ -156,6 +156,9 @@ TEST(PowerLaw, ItsSlopeIsItsDerivative) {
       EXPECT_NEAR(double_precision::power_law_slope(reading, exponent, 80), slope, 1e-6 * slope);
     }
   }
+  for (const double steep : {0.0, 1e-300}) {
+    EXPECT_EQ(double_precision::power_law_slope(steep, 0.5, 80), 1e6) << "its square stays finite";
+  }
 }
 
 TYPED_TEST(SenselStages, SaturationIsOfTheRawReading) {
