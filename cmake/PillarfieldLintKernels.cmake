@@ -14,16 +14,17 @@ foreach(path IN LISTS kernel_paths)
   endif()
 endforeach()
 set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
-  -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES)
+  -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE)
 
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" "${lint_all_stages}")
+    foreach(stages "" -DPF_PAPER "${lint_all_stages}")
       list(APPEND lint_commands COMMAND ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
         -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
         -Wno-unused-function -Werror -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f -DPF_THRESHOLD=1.0f ${stages} ${lint_includes}
+        -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f
+        ${stages} ${lint_includes}
         ${PROJECT_SOURCE_DIR}/kernels/solve_frame.cl)
     endforeach()
   endforeach()

@@ -15,8 +15,8 @@
  *
  * What may stand in kernels/maths is what means the same in all three: masks joined by & and |,
  * negated by !; choices written c ? x : y with both sides of lane type; structs passed by value;
- * + - * /, comparisons, fabs, sqrt, hypot, atan2. No contraction: the device and a host built with
- * -ffp-contract=off then agree bit for bit in all but atan2.
+ * + - * /, comparisons, fabs, sqrt, hypot, sin, cos, asin, atan, atan2. No contraction: the device
+ * and a host built with -ffp-contract=off then agree bit for bit in all but the last five.
  */
 #ifndef __cplusplus /* OpenCL C */
 
@@ -51,9 +51,13 @@ using Mask = int;
 using Bits = int;
 #define PF_BITS(x) (x)
 
+using std::asin;
+using std::atan;
 using std::atan2;
+using std::cos;
 using std::fabs;
 using std::hypot;
+using std::sin;
 using std::sqrt;
 
 #endif

@@ -10,8 +10,13 @@
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
  *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
+ *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
+ *   PF_DOUBT                        counts by which noise may shift what parity says
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
  *   PF_ANGLES                       stage: magnitude, theta and phi are written too
+ *   PF_UNCERTAINTY                  counts of noise of a raw reading; stage: what is uncertain is
+ *                                   written too
+ *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from the plane instead
  *
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
 
@@ -114,32 +119,40 @@ static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zo
   return sensel;
 }
 
+/* The calibration planes [rows, stride]; null where the plan has none. */
+typedef struct {
+  global const float* tare;
+  global const float* gain;
+  global const float* dead_zone;
+  global const uchar* mask;
+  global const float* noise;
+  size_t stride;
+} Planes;
+
 typedef struct {
   Sensel left;
   Sensel right;
 } SenselPair;
 
-/* The sensels of one row under `count` pillars. `offset` is the first one's place in the
- * calibration planes; planes that the plan does not have are null and not touched. */
-static inline SenselPair read_sensels(global const PF_SENSEL* raw, size_t offset, uint count,
-                                      global const float* tare, global const float* gain,
-                                      global const float* dead_zone, global const uchar* mask) {
+/* The sensels of one row under `count` pillars. `offset` is the first one's place in the planes. */
+static inline SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset,
+                                      uint count) {
   const RealPair readings = load_readings(raw, count);
   RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
   RealPair gains = tares;
   RealPair dead_zones = tares;
   RealPair good = tares;
 #ifdef PF_TARE
-  tares = load_plane(tare + offset, count);
+  tares = load_plane(planes.tare + offset, count);
 #endif
 #ifdef PF_GAIN
-  gains = load_plane(gain + offset, count);
+  gains = load_plane(planes.gain + offset, count);
 #endif
 #ifdef PF_DEAD_ZONE
-  dead_zones = load_plane(dead_zone + offset, count);
+  dead_zones = load_plane(planes.dead_zone + offset, count);
 #endif
 #ifdef PF_MASK
-  good = load_mask(mask + offset, count);
+  good = load_mask(planes.mask + offset, count);
 #endif
   SenselPair pair;
   pair.left = prepare_sensel(readings.left, tares.left, gains.left, dead_zones.left, good.left);
@@ -148,51 +161,103 @@ static inline SenselPair read_sensels(global const PF_SENSEL* raw, size_t offset
   return pair;
 }
 
+#ifdef PF_UNCERTAINTY
+/* The noise of the sensels of one row after their gain, counts. */
+static inline RealPair read_noise(Planes planes, size_t offset, uint count) {
+  RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
+#ifdef PF_NOISE
+  noise = load_plane(planes.noise + offset, count);
+#endif
+#ifdef PF_GAIN
+  const RealPair gains = load_plane(planes.gain + offset, count);
+  noise.left = noise.left * gains.left;
+  noise.right = noise.right * gains.right;
+#endif
+  return noise;
+}
+#endif
+
+static inline Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
+  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+#ifdef PF_PAPER
+  return paper_force(pillar, diagonals, sum, scale);
+#else
+  return direct_force(diagonals, sum, scale);
+#endif
+}
+
+static inline Bits status_of(Pillar pillar, ParitySum sum) {
+  Bits status = direct_status(pillar, sum, (Real)(PF_DOUBT));
+#ifdef PF_PARITY_TOLERANCE
+  status = status |
+           (fails_parity(pillar, sum, (Real)(PF_PARITY_TOLERANCE)) ? PF_BITS(PF_STATUS_INCONSISTENT)
+                                                                   : PF_BITS(0));
+#endif
+  return status;
+}
+
 /* One work-item solves every get_global_size(0)-th block of PF_LANES pillars of its pillar row.
  *
- * raw          readings, `row_stride` apart from one row of sensels to the next
- * tare .. mask calibration planes [rows, plane_stride], or null
- * shear_x ..   results [get_global_size(1), pillar_cols]; magnitude, theta and phi may be null */
+ * raw           readings, `row_stride` apart from one row of sensels to the next
+ * tare .. noise calibration planes [rows, plane_stride], or null
+ * shear_x ..    results [get_global_size(1), pillar_cols]; those from magnitude on may be null */
 kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, uint pillar_cols,
                         global const float* restrict tare, global const float* restrict gain,
                         global const float* restrict dead_zone, global const uchar* restrict mask,
-                        ulong plane_stride, global float* restrict shear_x,
-                        global float* restrict shear_y, global float* restrict normal,
-                        global uchar* restrict status, global float* restrict magnitude,
-                        global float* restrict theta, global float* restrict phi) {
+                        global const float* restrict noise, ulong plane_stride,
+                        global float* restrict shear_x, global float* restrict shear_y,
+                        global float* restrict normal, global uchar* restrict status,
+                        global float* restrict magnitude, global float* restrict theta,
+                        global float* restrict phi, global float* restrict deviation_x,
+                        global float* restrict deviation_y, global float* restrict deviation_normal,
+                        global float* restrict theta_low, global float* restrict theta_high,
+                        global float* restrict phi_low, global float* restrict phi_high,
+                        global float* restrict magnitude_low,
+                        global float* restrict magnitude_high) {
   const size_t row = get_global_id(1);
   const uint step = (uint)get_global_size(0) * PF_LANES;
-  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+  const Planes planes = {tare, gain, dead_zone, mask, noise, plane_stride};
 
   for (uint col = (uint)get_global_id(0) * PF_LANES; col < pillar_cols; col += step) {
     const uint count = min(pillar_cols - col, (uint)PF_LANES);
     global const PF_SENSEL* const first = raw + 2 * row * row_stride + 2 * col;
-    const size_t offset = 2 * row * plane_stride + 2 * col;
-    const SenselPair top = read_sensels(first, offset, count, tare, gain, dead_zone, mask);
+    const size_t offset = 2 * row * planes.stride + 2 * col;
+    const SenselPair top = read_sensels(first, planes, offset, count);
     const SenselPair bottom =
-        read_sensels(first + row_stride, offset + plane_stride, count, tare, gain, dead_zone, mask);
+        read_sensels(first + row_stride, planes, offset + planes.stride, count);
     const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
 
     const Diagonals diagonals = pillar_diagonals(pillar);
     const ParitySum sum = parity_sum(diagonals);
-    const Force force = direct_force(diagonals, sum, scale);
-    Bits bits = direct_status(pillar, sum);
-#ifdef PF_PARITY_TOLERANCE
-    bits = bits | (fails_parity(pillar, sum, (Real)(PF_THRESHOLD), (Real)(PF_PARITY_TOLERANCE))
-                       ? PF_BITS(PF_STATUS_INCONSISTENT)
-                       : PF_BITS(0));
-#endif
+    const Force force = estimate(pillar, diagonals, sum);
 
     const size_t index = row * pillar_cols + col;
     store_plane(force.shear_x, shear_x + index, count);
     store_plane(force.shear_y, shear_y + index, count);
     store_plane(force.normal, normal + index, count);
-    store_status(bits, status + index, count);
+    store_status(status_of(pillar, sum), status + index, count);
 #ifdef PF_ANGLES
     const Direction direction = direction_of(force);
     store_plane(direction.magnitude, magnitude + index, count);
     store_plane(direction.theta, theta + index, count);
     store_plane(direction.phi, phi + index, count);
+#endif
+#ifdef PF_UNCERTAINTY
+    const RealPair noise_top = read_noise(planes, offset, count);
+    const RealPair noise_bottom = read_noise(planes, offset + planes.stride, count);
+    const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
+    const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+    const Force deviations = force_deviations(pillar, diagonals, noises, scale);
+    const DirectionInterval interval = direction_interval(pillar, diagonals, sum, scale);
+    store_plane(deviations.shear_x, deviation_x + index, count);
+    store_plane(deviations.shear_y, deviation_y + index, count);
+    store_plane(deviations.normal, deviation_normal + index, count);
+    store_plane(interval.theta_low, theta_low + index, count);
+    store_plane(interval.theta_high, theta_high + index, count);
+    store_plane(interval.phi_low, phi_low + index, count);
+    store_plane(interval.phi_high, phi_high + index, count);
+    store_plane(interval.magnitude_low, magnitude_low + index, count);
+    store_plane(interval.magnitude_high, magnitude_high + index, count);
 #endif
   }
 }

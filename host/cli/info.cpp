@@ -88,6 +88,7 @@ Json facts_of_forces(const std::string& file) {
           {"device", info.device},
           {"source", info.source},
           {"angles", info.angles},
+          {"uncertainty", info.uncertainty},
           {"remarks", reader.remarks()}};
 }
 
@@ -146,7 +147,7 @@ void print_kernel(const std::string& scene_file) {
   plan.skin = scene.skin;
   plan.sensel_type = simulator.sensel_type();
   plan.calibration = simulator.calibration();
-  plan.parity_tolerance_counts = scene.parity_tolerance_counts;
+  set_solver(plan, scene);
   const DeviceInfo device = open_device().info();
   fmt::print("// Stages on {}:", device.name);
   for (const std::string& stage : kernel_stages(plan)) fmt::print(" {}", stage);

@@ -25,12 +25,13 @@ struct SolveOptions {
   std::string input;
   std::string output;
   std::string scene;
-  std::string estimator = "direct";
-  std::vector<std::string> outputs = {"forces"};
+  std::optional<Estimator> estimator;
+  std::vector<std::string> outputs;
   std::optional<double> threshold_counts;
   std::optional<double> counts_per_newton;
   std::optional<double> full_scale_counts;
   std::optional<double> parity_tolerance_counts;
+  std::optional<double> noise_counts;
   DeviceOptions device;
   bool json = false;
   bool quiet = false;
@@ -43,25 +44,34 @@ struct SolveSummary {
   double seconds_in_solver = 0;
 };
 
+bool asks_for(const SolveOptions& options, const char* output) {
+  return std::ranges::find(options.outputs, output) != options.outputs.end();
+}
+
 /// The plan that the file asks for, then the scene, then the command line.
 SolverPlan plan_of(const SolveOptions& options, const FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
   plan.sensel_type = source.sensel_type();
   plan.calibration = source.calibration();
-  plan.angles = std::ranges::find(options.outputs, "angles") != options.outputs.end();
   if (!options.scene.empty()) {
     const Scene scene = load_scene(options.scene);
     plan.skin.counts_per_newton = scene.skin.counts_per_newton;
     plan.skin.threshold_counts = scene.skin.threshold_counts;
     plan.skin.full_scale_counts = scene.skin.full_scale_counts;
-    plan.parity_tolerance_counts = scene.parity_tolerance_counts;
+    set_solver(plan, scene);
   }
   if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
   if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
   if (options.full_scale_counts) plan.skin.full_scale_counts = options.full_scale_counts;
   if (options.parity_tolerance_counts) {
     plan.parity_tolerance_counts = options.parity_tolerance_counts;
+  }
+  if (options.noise_counts) plan.noise_counts = options.noise_counts;
+  if (options.estimator) plan.estimator = *options.estimator;
+  if (!options.outputs.empty()) {
+    plan.angles = asks_for(options, "angles");
+    plan.uncertainty = asks_for(options, "uncertainty");
   }
   return plan;
 }
@@ -71,10 +81,11 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.rows = plan.skin.pillar_rows();
   info.cols = plan.skin.pillar_cols();
   info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
-  info.estimator = options.estimator;
+  info.estimator = name_of(plan.estimator);
   info.device = device.info().name;
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
+  info.uncertainty = plan.uncertainty;
   return info;
 }
 
@@ -144,7 +155,7 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
   const nlohmann::ordered_json json = {
       {"input", options.input},
       {"output", options.output},
-      {"estimator", options.estimator},
+      {"estimator", name_of(plan.estimator)},
       {"device", processor.device().info().name},
       {"zero_copy", processor.shares_memory()},
       {"stages", kernel_stages(plan)},
@@ -236,15 +247,18 @@ void add_solve(CLI::App& app, Work& work) {
       ->required();
   command->add_option("--scene", options->scene,
                       "Take the sensor's constants and the parity test from a scene file");
-  command->add_option("--estimator", options->estimator, "How forces are estimated")
-      ->check(CLI::IsMember({"direct"}))
-      ->capture_default_str();
+  command
+      ->add_option("--estimator", options->estimator,
+                   "How forces are estimated: direct, or the paper's equations [direct]")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Estimator>{
+          {"direct", Estimator::direct}, {"paper", Estimator::paper}}))
+      ->type_name("direct|paper");
   command
       ->add_option("--outputs", options->outputs,
-                   "What is written: forces; angles adds magnitude, theta and phi")
-      ->check(CLI::IsMember({"forces", "angles"}))
-      ->delimiter(',')
-      ->capture_default_str();
+                   "What is written: forces; angles adds magnitude, theta and phi; uncertainty "
+                   "adds standard deviations and the ends of ambiguous forces [forces]")
+      ->check(CLI::IsMember({"forces", "angles", "uncertainty"}))
+      ->delimiter(',');
   command->add_option("--threshold", options->threshold_counts,
                       "Readings above so many counts are usable [the file's]");
   command->add_option("--counts-per-newton", options->counts_per_newton,
@@ -253,6 +267,8 @@ void add_solve(CLI::App& app, Work& work) {
                       "Readings of so many counts or more are saturated [the file's]");
   command->add_option("--parity-tolerance", options->parity_tolerance_counts,
                       "Flag pillars whose redundant reading is off by more counts [not tested]");
+  command->add_option("--noise", options->noise_counts,
+                      "Standard deviation of a reading, counts [the calibration's or scene's]");
   add_device_options(*command, options->device);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");

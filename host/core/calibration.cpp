@@ -35,6 +35,7 @@ void check(const Calibration& calibration, const Skin& skin, std::string_view wh
   check_plane(calibration.gain, "gain", skin, where, kMinGain, kMaxGain);
   check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, kMaxCounts);
   check_plane(calibration.mask, "mask", skin, where, 0, 1);
+  check_plane(calibration.noise, "noise", skin, where, 0, kMaxNoiseCounts);
 }
 
 }  // namespace pillarfield

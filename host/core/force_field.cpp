@@ -1,5 +1,7 @@
 #include "pillarfield/force_field.h"
 
+#include <algorithm>
+
 namespace pillarfield {
 
 ForceField::ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols)
@@ -11,7 +13,16 @@ ForceField::ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols)
       status(pillars()) {}
 
 ForceFieldView ForceField::view() const {
-  return {rows, cols, shear_x, shear_y, normal, status, {}, {}, {}};
+  ForceFieldView view = {rows, cols, shear_x, shear_y, normal, status, {}, {}, {}, {}};
+  std::ranges::copy(uncertainty, view.uncertainty.begin());
+  return view;
+}
+
+const char* name_of(Uncertainty plane) {
+  static constexpr std::array<const char*, kUncertaintyPlanes> kNames = {
+      "shear_x", "shear_y",  "normal",        "theta_low",     "theta_high",
+      "phi_low", "phi_high", "magnitude_low", "magnitude_high"};
+  return kNames[static_cast<std::size_t>(plane)];
 }
 
 }  // namespace pillarfield

@@ -13,6 +13,15 @@ class SenselReader {
  public:
   SenselReader(const SolverPlan& plan, const FrameView& frame) : plan_(plan), frame_(frame) {}
 
+  /// Noise after the gain, counts.
+  [[nodiscard]] float noise(std::size_t row, std::size_t col) const {
+    const Calibration& calibration = plan_.calibration;
+    const std::size_t index = row * frame_.cols + col;
+    const float raw_noise = calibration.noise.empty() ? static_cast<float>(reading_noise(plan_))
+                                                      : calibration.noise[index];
+    return calibration.gain.empty() ? raw_noise : raw_noise * calibration.gain[index];
+  }
+
   [[nodiscard]] maths::Sensel operator()(std::size_t row, std::size_t col) const {
     const Calibration& calibration = plan_.calibration;
     const std::size_t index = row * frame_.cols + col;
@@ -51,33 +60,80 @@ class SenselReader {
   const FrameView& frame_;
 };
 
+/// Solves one pillar after the other into a field.
+class PillarSolver {
+ public:
+  PillarSolver(const SolverPlan& plan, const FrameView& frame, ForceField& field)
+      : plan_(plan), sensel_(plan, frame), field_(field) {
+    const ForceScale scale = force_scale(plan.skin.counts_per_newton);
+    scale_ = {static_cast<float>(scale.shear), static_cast<float>(scale.normal)};
+    if (!plan.uncertainty) return;
+    for (auto& plane : field.uncertainty) plane.resize(field.pillars());
+  }
+
+  void solve(std::size_t row, std::size_t col) {
+    const std::size_t top = 2 * row;
+    const std::size_t left = 2 * col;
+    const maths::Pillar pillar = {sensel_(top, left + 1), sensel_(top, left),
+                                  sensel_(top + 1, left), sensel_(top + 1, left + 1)};
+    const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
+    const maths::ParitySum sum = maths::parity_sum(diagonals);
+    const std::size_t index = row * field_.cols + col;
+    const maths::Force force = plan_.estimator == Estimator::paper
+                                   ? maths::paper_force(pillar, diagonals, sum, scale_)
+                                   : maths::direct_force(diagonals, sum, scale_);
+    field_.shear_x[index] = force.shear_x;
+    field_.shear_y[index] = force.shear_y;
+    field_.normal[index] = force.normal;
+    field_.status[index] = static_cast<std::uint8_t>(status(pillar, sum));
+    if (!plan_.uncertainty) return;
+    const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
+                                sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
+    store(maths::force_deviations(pillar, diagonals, noise, scale_), index);
+    store(maths::direction_interval(pillar, diagonals, sum, scale_), index);
+  }
+
+ private:
+  [[nodiscard]] maths::Bits status(const maths::Pillar& pillar, const maths::ParitySum& sum) const {
+    const auto doubt = static_cast<float>(region_doubt(plan_));
+    maths::Bits bits = maths::direct_status(pillar, sum, doubt);
+    if (plan_.parity_tolerance_counts) {
+      const auto tolerance = static_cast<float>(*plan_.parity_tolerance_counts);
+      bits |= maths::fails_parity(pillar, sum, tolerance) != 0 ? PF_STATUS_INCONSISTENT : 0;
+    }
+    return bits;
+  }
+
+  void store(const maths::Force& deviations, std::size_t index) {
+    auto& planes = field_.uncertainty;
+    planes[Uncertainty::shear_x][index] = deviations.shear_x;
+    planes[Uncertainty::shear_y][index] = deviations.shear_y;
+    planes[Uncertainty::normal][index] = deviations.normal;
+  }
+
+  void store(const maths::DirectionInterval& interval, std::size_t index) {
+    auto& planes = field_.uncertainty;
+    planes[Uncertainty::theta_low][index] = interval.theta_low;
+    planes[Uncertainty::theta_high][index] = interval.theta_high;
+    planes[Uncertainty::phi_low][index] = interval.phi_low;
+    planes[Uncertainty::phi_high][index] = interval.phi_high;
+    planes[Uncertainty::magnitude_low][index] = interval.magnitude_low;
+    planes[Uncertainty::magnitude_high][index] = interval.magnitude_high;
+  }
+
+  const SolverPlan& plan_;
+  SenselReader sensel_;
+  ForceField& field_;
+  maths::ForceScale scale_{};
+};
+
 }  // namespace
 
 ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
-  const SenselReader sensel(plan, frame);
-  const ForceScale scale = force_scale(plan.skin.counts_per_newton);
-  const maths::ForceScale single_scale = {static_cast<float>(scale.shear),
-                                          static_cast<float>(scale.normal)};
   ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  std::size_t index = 0;
+  PillarSolver solver(plan, frame, field);
   for (std::size_t row = 0; row < field.rows; ++row) {
-    for (std::size_t col = 0; col < field.cols; ++col, ++index) {
-      const maths::Pillar pillar = {sensel(2 * row, 2 * col + 1), sensel(2 * row, 2 * col),
-                                    sensel(2 * row + 1, 2 * col), sensel(2 * row + 1, 2 * col + 1)};
-      const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
-      const maths::ParitySum sum = maths::parity_sum(diagonals);
-      const maths::Force force = maths::direct_force(diagonals, sum, single_scale);
-      maths::Bits bits = maths::direct_status(pillar, sum);
-      if (plan.parity_tolerance_counts &&
-          maths::fails_parity(pillar, sum, static_cast<float>(plan.skin.threshold_counts),
-                              static_cast<float>(*plan.parity_tolerance_counts)) != 0) {
-        bits |= PF_STATUS_INCONSISTENT;
-      }
-      field.shear_x[index] = force.shear_x;
-      field.shear_y[index] = force.shear_y;
-      field.normal[index] = force.normal;
-      field.status[index] = static_cast<std::uint8_t>(bits);
-    }
+    for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
   }
   return field;
 }

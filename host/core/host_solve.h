@@ -7,8 +7,9 @@
 namespace pillarfield {
 
 /// What the kernel computes, as a plain C++ loop over the same mathematics in single precision: the
-/// same bits, save for theta and phi, whose atan2 is the library's. It is the measure that devices
-/// are tested against. The planes of `plan.angles` are not made.
+/// same bits, save for what goes through functions of a library: angles and hypotenuses, and all of
+/// the paper's estimator. It is the measure that devices are tested against. The planes of
+/// `plan.angles` are not made.
 ///
 /// `frame` is of the plan's size and type; the result is [pillar rows, pillar cols].
 ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);

@@ -15,6 +15,9 @@ namespace pillarfield::single_precision {
 // and what is made of them
 #include "kernels/maths/angles.h"
 #include "kernels/maths/direct_solve.h"
+// and the rest
+#include "kernels/maths/paper_solve.h"
+#include "kernels/maths/uncertainty.h"
 #undef PF_PRECISION
 }  // namespace pillarfield::single_precision
 
@@ -27,5 +30,8 @@ namespace pillarfield::double_precision {
 // as above
 #include "kernels/maths/angles.h"
 #include "kernels/maths/direct_solve.h"
+// as above
+#include "kernels/maths/paper_solve.h"
+#include "kernels/maths/uncertainty.h"
 #undef PF_PRECISION
 }  // namespace pillarfield::double_precision

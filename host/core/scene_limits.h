@@ -120,6 +120,11 @@ inline constexpr std::array<Named<ContactMotion>, 5> kMotions = {{
     {"roll", ContactMotion::roll},
 }};
 
+inline constexpr std::array<Named<Estimator>, 2> kEstimators = {{
+    {"direct", Estimator::direct},
+    {"paper", Estimator::paper},
+}};
+
 /// Whether the closed forms know this motion of this shape.
 [[nodiscard]] bool is_possible(ContactShape shape, ContactMotion motion);
 

@@ -48,6 +48,11 @@ void check(const Skin& skin, std::string_view where) {
   check_range(where, "counts_per_newton", skin.counts_per_newton, kMinCountsPerNewton,
               kMaxCountsPerNewton);
   check_range(where, "threshold_counts", skin.threshold_counts, 0, kMaxCounts);
+  if (skin.power_law) {
+    check_range(where, "power_law_exponent", skin.power_law->exponent, kMinExponent, kMaxExponent);
+    check_range(where, "power_law_reference_counts", skin.power_law->reference_counts,
+                kMinReferenceCounts, kMaxReferenceCounts);
+  }
   if (!skin.full_scale_counts) return;
   check_range(where, "full_scale_counts", *skin.full_scale_counts, 0, kMaxCounts);
   if (*skin.full_scale_counts <= skin.threshold_counts) {

@@ -51,12 +51,19 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
   add(!calibration.gain.empty(), "PF_GAIN", "", "gain");
   add(true, "PF_THRESHOLD", hex_float(skin.threshold_counts), "classify");
   add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");
-  add(true, "PF_SHEAR_SCALE", hex_float(scale.shear), "direct_solve");
+  const bool paper = plan.estimator == Estimator::paper;
+  add(true, "PF_SHEAR_SCALE", hex_float(scale.shear), paper ? "paper_solve" : "direct_solve");
   add(true, "PF_NORMAL_SCALE", hex_float(scale.normal), nullptr);
+  add(paper, "PF_PAPER", "", nullptr);
+  add(true, "PF_DOUBT", hex_float(region_doubt(plan)), nullptr);
   if (plan.parity_tolerance_counts) {
     add(true, "PF_PARITY_TOLERANCE", hex_float(*plan.parity_tolerance_counts), "parity_test");
   }
   add(plan.angles, "PF_ANGLES", "", "angles");
+  if (plan.uncertainty) {
+    add(true, "PF_UNCERTAINTY", hex_float(reading_noise(plan)), "uncertainty");
+    add(!calibration.noise.empty(), "PF_NOISE", "", nullptr);
+  }
   return all;
 }
 

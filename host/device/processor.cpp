@@ -24,17 +24,6 @@ void check_options(const Processor::Options& options) {
   }
 }
 
-void check_plan(const SolverPlan& plan) {
-  check(plan.skin, "solver plan");
-  check(plan.calibration, plan.skin, "solver plan");
-  if (plan.parity_tolerance_counts &&
-      !(*plan.parity_tolerance_counts >= 0 && *plan.parity_tolerance_counts <= kMaxCounts)) {
-    throw Error("solver plan",
-                fmt::format("parity_tolerance_counts is {}", *plan.parity_tolerance_counts),
-                fmt::format("it must lie in [0, {}]", kMaxCounts));
-  }
-}
-
 bool decide_sharing(Memory memory, const Device& device) {
   if (memory == Memory::automatic) return device.info().shares_memory;
   if (memory == Memory::shared && !device.info().shares_memory) {
@@ -84,7 +73,7 @@ struct Processor::State {
 
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options) {
   check_options(options);
-  check_plan(plan);
+  check(plan, "solver plan");
   state_ = with_opencl_errors(device.info().name,
                               [&] { return std::make_unique<State>(device, plan, options); });
 }

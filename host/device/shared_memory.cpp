@@ -19,10 +19,10 @@ struct SharedPlane {
 
 class SharedMemory final : public SlotMemory {
  public:
-  SharedMemory(const cl::Context& context, std::size_t planes, std::size_t pillars)
-      : context_(context) {
-    for (std::size_t plane = 0; plane < planes; ++plane) {
-      const std::size_t bytes = pillars * value_size(plane);
+  SharedMemory(const cl::Context& context, const SolverPlan& plan) : context_(context) {
+    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+      if (!is_wanted(plan, plane)) continue;
+      const std::size_t bytes = plan.skin.pillars() * value_size(plane);
       SharedPlane& shared = planes_.at(plane);
       shared.bytes = bytes;
       shared.pages.reset(static_cast<std::byte*>(::operator new[](bytes, kPage)));
@@ -72,9 +72,8 @@ class SharedMemory final : public SlotMemory {
 
 }  // namespace
 
-std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, std::size_t planes,
-                                          std::size_t pillars) {
-  return std::make_unique<SharedMemory>(context, planes, pillars);
+std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const SolverPlan& plan) {
+  return std::make_unique<SharedMemory>(context, plan);
 }
 
 }  // namespace pillarfield

@@ -38,7 +38,8 @@ CalibrationBuffers::CalibrationBuffers(const cl::Context& context, const Calibra
     : tare(plane_buffer(context, calibration.tare)),
       gain(plane_buffer(context, calibration.gain)),
       dead_zone(plane_buffer(context, calibration.dead_zone)),
-      mask(plane_buffer(context, calibration.mask)) {}
+      mask(plane_buffer(context, calibration.mask)),
+      noise(plane_buffer(context, calibration.noise)) {}
 
 Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
            const CalibrationBuffers& calibration, bool shares_memory)
@@ -49,13 +50,12 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::P
   const Launch launch(rows_, cols_, lanes);
   global_ = launch.global;
   local_ = launch.local;
-  const std::size_t planes = plan.angles ? kAllPlanes : kForcePlanes;
-  memory_ = shares_memory ? shared_memory(device.context, planes, plan.skin.pillars())
-                          : staged_memory(device.context, queue_, plan, planes);
+  memory_ = shares_memory ? shared_memory(device.context, plan)
+                          : staged_memory(device.context, queue_, plan);
   cl_uint argument = kStrideArgument + 1;
   kernel_.setArg(argument++, cl_uint{cols_});
-  for (const cl::Buffer* plane :
-       {&calibration.tare, &calibration.gain, &calibration.dead_zone, &calibration.mask}) {
+  for (const cl::Buffer* plane : {&calibration.tare, &calibration.gain, &calibration.dead_zone,
+                                  &calibration.mask, &calibration.noise}) {
     kernel_.setArg(argument++, *plane);
   }
   kernel_.setArg(argument++, cl_ulong{plan.skin.cols});
@@ -86,21 +86,25 @@ void Slot::submit(const FrameView& frame) {
 
 ForceFieldView Slot::receive() {
   queue_.finish();
-  const auto plane = [&](ResultPlane which) -> std::span<const float> {
+  const auto plane = [&](std::size_t which) -> std::span<const float> {
     const std::byte* const host = memory_->host(which);
     if (host == nullptr) return {};
     return {reinterpret_cast<const float*>(host), std::size_t{rows_} * cols_};
   };
   const auto* const status = reinterpret_cast<const std::uint8_t*>(memory_->host(kStatus));
-  return {rows_,
-          cols_,
-          plane(kShearX),
-          plane(kShearY),
-          plane(kNormal),
-          {status, std::size_t{rows_} * cols_},
-          plane(kMagnitude),
-          plane(kTheta),
-          plane(kPhi)};
+  ForceFieldView forces = {rows_,
+                           cols_,
+                           plane(kShearX),
+                           plane(kShearY),
+                           plane(kNormal),
+                           {status, std::size_t{rows_} * cols_},
+                           plane(kMagnitude),
+                           plane(kTheta),
+                           plane(kPhi),
+                           {}};
+  std::size_t which = kUncertainty;
+  for (auto& span : forces.uncertainty) span = plane(which++);
+  return forces;
 }
 
 }  // namespace pillarfield

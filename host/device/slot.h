@@ -16,6 +16,7 @@ struct CalibrationBuffers {
   cl::Buffer gain;
   cl::Buffer dead_zone;
   cl::Buffer mask;
+  cl::Buffer noise;
 };
 
 /// One frame in flight: a queue of its own, a kernel with its arguments, and memory.

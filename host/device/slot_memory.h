@@ -11,10 +11,25 @@
 
 namespace pillarfield {
 
-/// The planes of a result, in the order of the kernel's arguments.
-enum ResultPlane : std::size_t { kShearX, kShearY, kNormal, kStatus, kMagnitude, kTheta, kPhi };
-inline constexpr std::size_t kForcePlanes = 4;  ///< without angles
-inline constexpr std::size_t kAllPlanes = 7;
+/// The planes of a result, in the order of the kernel's arguments; the planes of Uncertainty follow
+/// from kUncertainty on.
+enum ResultPlane : std::size_t {
+  kShearX,
+  kShearY,
+  kNormal,
+  kStatus,
+  kMagnitude,
+  kTheta,
+  kPhi,
+  kUncertainty
+};
+inline constexpr std::size_t kAllPlanes = kUncertainty + kUncertaintyPlanes;
+
+/// Whether a plan asks for a plane.
+constexpr bool is_wanted(const SolverPlan& plan, std::size_t plane) {
+  if (plane >= kUncertainty) return plan.uncertainty;
+  return plane < kMagnitude || plan.angles;
+}
 
 /// Bytes of one value of a plane.
 constexpr std::size_t value_size(std::size_t plane) { return plane == kStatus ? 1 : 4; }
@@ -48,11 +63,10 @@ class SlotMemory {
 };
 
 /// Zero copy: the kernel reads the caller's memory and writes the memory the caller reads.
-std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, std::size_t planes,
-                                          std::size_t pillars);
+std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const SolverPlan& plan);
 
 /// Through pinned memory of the driver: one copy by the host, one by the device, each way one.
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan, std::size_t planes);
+                                          const SolverPlan& plan);
 
 }  // namespace pillarfield

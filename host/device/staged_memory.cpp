@@ -25,11 +25,11 @@ struct Stage {  // NOLINT(bugprone-exception-escape)
 
 class StagedMemory final : public SlotMemory {
  public:
-  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan,
-               std::size_t planes)
+  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan)
       : queue_(queue),
         frame_(context, queue, CL_MEM_READ_ONLY, plan.skin.sensels() * size_of(plan.sensel_type)) {
-    for (std::size_t plane = 0; plane < planes; ++plane) {
+    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+      if (!is_wanted(plan, plane)) continue;
       planes_.at(plane) =
           Stage(context, queue, CL_MEM_WRITE_ONLY, plan.skin.pillars() * value_size(plane));
     }
@@ -87,8 +87,8 @@ class StagedMemory final : public SlotMemory {
 }  // namespace
 
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan, std::size_t planes) {
-  return std::make_unique<StagedMemory>(context, queue, plan, planes);
+                                          const SolverPlan& plan) {
+  return std::make_unique<StagedMemory>(context, queue, plan);
 }
 
 }  // namespace pillarfield

@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "io/force_planes.h"
 #include "io/force_sink.h"
 #include "io/output_file.h"
 #include "io/part_file.h"
@@ -27,6 +28,7 @@ class CsvSink final : public ForceSink {
   void require_open() const;
 
   ForceFileInfo info_;
+  std::vector<ForcePlane> further_;
   std::filesystem::path path_;
   PartFile part_;
   OutputFile file_;
@@ -36,9 +38,12 @@ class CsvSink final : public ForceSink {
 };
 
 CsvSink::CsvSink(const std::filesystem::path& path, const ForceFileInfo& info)
-    : info_(info), path_(path), part_(path), file_(part_.path()) {
+    : info_(info), further_(further_planes(info)), path_(path), part_(path), file_(part_.path()) {
   file_.write("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status");
-  file_.write(info.angles ? ",magnitude_n,theta_rad,phi_rad\n" : "\n");
+  for (const ForcePlane& plane : further_) {
+    file_.write(fmt::format(",{}_{}", plane.field(), plane.unit));
+  }
+  file_.write("\n");
 }
 
 void CsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
@@ -47,9 +52,8 @@ void CsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
   fmt::format_to(out, "{},{},{},{},{},{}", pillar / info_.cols, pillar % info_.cols,
                  forces.shear_x[pillar], forces.shear_y[pillar], forces.normal[pillar],
                  forces.status[pillar]);
-  if (info_.angles) {
-    fmt::format_to(out, ",{},{},{}", forces.magnitude[pillar], forces.theta[pillar],
-                   forces.phi[pillar]);
+  for (const ForcePlane& plane : further_) {
+    fmt::format_to(out, ",{}", plane.values(forces)[pillar]);
   }
   text_.push_back('\n');
 }

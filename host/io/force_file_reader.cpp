@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "io/file_kind.h"
 #include "io/force_format.h"
+#include "io/force_planes.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
 #include "io/hdf5_frames.h"
@@ -25,7 +25,7 @@ struct ForceFileReader::State {
   void count_frames();
 
   hdf5::File file;
-  std::vector<hdf5::StoredFrames> planes;  // shear_x, shear_y, normal
+  std::vector<hdf5::StoredFrames> planes;  // shear_x, shear_y, normal, and the uncertainty if any
   hdf5::StoredFrames status;
   hdf5::StoredFrames time;
   ForceFileInfo info;
@@ -34,6 +34,11 @@ struct ForceFileReader::State {
 };
 
 namespace {
+
+/// The angles are not: they follow from the force.
+bool is_read(const ForcePlane& plane) {
+  return plane.group == "uncertainty" || plane.index < component_planes().size();
+}
 
 void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const char* kind_name,
                    const std::filesystem::path& path) {
@@ -46,8 +51,11 @@ void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const cha
 
 ForceFileReader::State::State(const std::filesystem::path& path) : file(hdf5::open_to_read(path)) {
   hdf5::require_format(file, layout::kName, layout::kVersion);
-  for (const char* name : layout::kPlanes) {
-    planes.emplace_back(file, name, 2);
+  info.angles = hdf5::exists(file, layout::kMagnitude);
+  info.uncertainty = hdf5::exists(file, layout::kUncertainty);
+  for (const ForcePlane& plane : all_planes(info)) {
+    if (!is_read(plane)) continue;
+    planes.emplace_back(file, ("/" + plane.group + "/" + plane.name).c_str(), 2);
     require_class(planes.back(), H5T_FLOAT, "floats", path);
   }
   status = {file, layout::kStatus, 2};
@@ -81,7 +89,6 @@ void ForceFileReader::State::read_info() {
   info.estimator = hdf5::read_text(file, root, layout::kEstimator).value_or("");
   info.device = hdf5::read_text(file, root, layout::kDevice).value_or("");
   info.source = hdf5::read_text(file, root, layout::kSource).value_or("");
-  info.angles = hdf5::exists(file, layout::kMagnitude);
   const auto pitch_mm = hdf5::read_number(file, root, layout::kPillarPitch);
   if (!pitch_mm) {
     info.pillar_pitch_mm = Skin().pillar_pitch_mm();
@@ -129,7 +136,11 @@ double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   if (forces.rows != state_->info.rows || forces.cols != state_->info.cols) {
     forces = ForceField(state_->info.rows, state_->info.cols);
   }
-  const std::array targets = {&forces.shear_x, &forces.shear_y, &forces.normal};
+  std::vector<std::vector<float>*> targets = {&forces.shear_x, &forces.shear_y, &forces.normal};
+  for (auto& plane : forces.uncertainty) {
+    plane.clear();
+    if (state_->info.uncertainty) targets.push_back(&plane);
+  }
   for (std::size_t plane = 0; plane < targets.size(); ++plane) {
     targets[plane]->resize(forces.pillars());
     state_->planes[plane].get(index, H5T_NATIVE_FLOAT, targets[plane]->data());

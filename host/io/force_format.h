@@ -18,7 +18,6 @@ inline constexpr const char* kForce = "/force";
 inline constexpr const char* kTime = "/force/time";
 inline constexpr const char* kStatus = "/force/status";
 inline constexpr const char* kMagnitude = "/force/magnitude";
-inline constexpr const char* kPlanes[] = {"/force/shear_x", "/force/shear_y", "/force/normal"};
-inline constexpr const char* kAnglePlanes[] = {kMagnitude, "/force/theta", "/force/phi"};
+inline constexpr const char* kUncertainty = "/uncertainty";
 
 }  // namespace pillarfield::force_format

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "io/force_format.h"
+#include "io/force_planes.h"
 #include "io/force_sink.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
@@ -41,7 +42,7 @@ class Hdf5Sink final : public ForceSink {
   std::filesystem::path path_;
   PartFile part_;
   hdf5::File file_;
-  std::vector<hdf5::GrowingDataset> planes_;  // shear_x, shear_y, normal, and the angles if any
+  std::vector<hdf5::GrowingDataset> planes_;  // those of all_planes(), in that order
   hdf5::GrowingDataset status_;
   hdf5::GrowingDataset time_;
   std::uint64_t frames_ = 0;
@@ -78,13 +79,13 @@ void Hdf5Sink::write_info() {
 }
 
 void Hdf5Sink::create_datasets() {
-  const hdf5::Handle group = hdf5::create_group(file_, layout::kForce);
+  const hdf5::Handle force = hdf5::create_group(file_, layout::kForce);
+  const hdf5::Handle uncertainty =
+      info_.uncertainty ? hdf5::create_group(file_, layout::kUncertainty) : hdf5::Handle();
   const hdf5::FrameShape shape = {info_.rows, info_.cols};
-  for (const char* name : layout::kPlanes) planes_.emplace_back(file_, name, H5T_IEEE_F32LE, shape);
-  if (info_.angles) {
-    for (const char* name : layout::kAnglePlanes) {
-      planes_.emplace_back(file_, name, H5T_IEEE_F32LE, shape);
-    }
+  for (const ForcePlane& plane : all_planes(info_)) {
+    const std::string name = "/" + plane.group + "/" + plane.name;
+    planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, shape);
   }
   status_ = {file_, layout::kStatus, H5T_STD_U8LE, shape};
   time_ = {file_, layout::kTime, H5T_IEEE_F64LE, {}};
@@ -96,10 +97,9 @@ void Hdf5Sink::require_open() const {
 }
 
 void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
-  const std::span<const float> sources[] = {forces.shear_x,   forces.shear_y, forces.normal,
-                                            forces.magnitude, forces.theta,   forces.phi};
-  for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
-    planes_[plane].put(frames_, H5T_NATIVE_FLOAT, sources[plane].data());
+  std::size_t index = 0;
+  for (const ForcePlane& plane : all_planes(info_)) {
+    planes_[index++].put(frames_, H5T_NATIVE_FLOAT, plane.values(forces).data());
   }
   status_.put(frames_, H5T_NATIVE_UINT8, forces.status.data());
   time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);

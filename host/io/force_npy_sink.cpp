@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/force_planes.h"
 #include "io/force_sink.h"
 #include "io/output_file.h"
 #include "io/part_file.h"
@@ -15,19 +16,23 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little-endian");
 
-constexpr std::size_t kHeaderBytes = 256;  // a multiple of 64, with room for any number of frames
+constexpr std::size_t kHeaderBytes =
+    1024;  // a multiple of 64, with room for all planes and any number of frames
+constexpr std::size_t kStatusEnd = 13;  // of a pillar's record: three components, the status
 
 /// NumPy's format 1.0: the magic, the length of what follows, and a Python dictionary padded with
 /// blanks, of the same size for every number of frames.
 std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
   constexpr std::size_t kPreludeBytes = 10;
   constexpr std::size_t kDictionaryBytes = kHeaderBytes - kPreludeBytes;
-  const std::string fields = fmt::format(
-      "[('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1'){}]",
-      info.angles ? ", ('magnitude', '<f4'), ('theta', '<f4'), ('phi', '<f4')" : "");
+  std::string fields =
+      "('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1')";
+  for (const ForcePlane& plane : further_planes(info)) {
+    fields += fmt::format(", ('{}', '<f4')", plane.field());
+  }
   std::string dictionary =
-      fmt::format("{{'descr': {}, 'fortran_order': False, 'shape': ({}, {}, {})}}", fields, frames,
-                  info.rows, info.cols);
+      fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({}, {}, {})}}", fields,
+                  frames, info.rows, info.cols);
   dictionary.resize(kDictionaryBytes - 1, ' ');
   std::string header = "\x93NUMPY";
   header += {'\x01', '\x00', static_cast<char>(kDictionaryBytes & 0xff),
@@ -48,6 +53,7 @@ class NpySink final : public ForceSink {
   void require_open() const;
 
   ForceFileInfo info_;
+  std::vector<ForcePlane> further_;
   std::filesystem::path path_;
   PartFile part_;
   OutputFile file_;
@@ -58,10 +64,11 @@ class NpySink final : public ForceSink {
 
 NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info)
     : info_(info),
+      further_(further_planes(info)),
       path_(path),
       part_(path),
       file_(part_.path()),
-      record_bytes_(info.angles ? 25 : 13),
+      record_bytes_(kStatusEnd + 4 * further_.size()),
       records_(record_bytes_ * info.rows * info.cols) {
   file_.write(npy_header(info_, 0));
 }
@@ -87,10 +94,10 @@ void NpySink::append(const ForceFieldView& forces, double time_s) {
   interleave(forces.shear_y, 4);
   interleave(forces.normal, 8);
   interleave(forces.status, 12);
-  if (info_.angles) {
-    interleave(forces.magnitude, 13);
-    interleave(forces.theta, 17);
-    interleave(forces.phi, 21);
+  std::size_t offset = kStatusEnd;
+  for (const ForcePlane& plane : further_) {
+    interleave(plane.values(forces), offset);
+    offset += 4;
   }
   file_.write(records_);
   ++frames_;

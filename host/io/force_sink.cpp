@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "io/force_planes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 
@@ -42,10 +43,10 @@ void check(const ForceFieldView& forces, double time_s, const ForceFileInfo& inf
     throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
                 fmt::format("the file takes whole frames of {} x {}", info.rows, info.cols));
   }
-  if (info.angles &&
-      !(complete(forces.magnitude) && complete(forces.theta) && complete(forces.phi))) {
-    throw Error(where, "a frame without magnitude and angles",
-                "solve with angles, or leave them out");
+  for (const ForcePlane& plane : further_planes(info)) {
+    if (complete(plane.values(forces))) continue;
+    throw Error(where, fmt::format("a frame without {}", plane.field()),
+                "solve with all outputs that the file shall have");
   }
   if (!std::isfinite(time_s))
     throw Error(where, fmt::format("its time is {}", time_s), "give seconds");

@@ -138,9 +138,20 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
   return force_at(diagonals, PF_REAL(0.5) * (sum.low + sum.high), scale);
 }
 
-/* The status byte, bits 0 to 6. Two opposite sensels usable while the other two are lifted
- * contradict the model and are inconsistent. */
-static inline Bits direct_status(Pillar pillar, ParitySum sum) {
+/* Whether one of two opposite sensels is silent and parity leaves it more than -`doubt` counts: it
+ * may press, and then three usable readings are those of region 1. Without threshold and dead zone
+ * silence hides nothing. (D9) */
+static inline Mask may_press(Sensel p, Sensel q, Real sum, Real doubt) {
+  const Real zero = PF_REAL(0.0);
+  const Mask p_may = is_lifted(p) & q.usable & (p.reading > zero) & (sum - q.reading > -doubt);
+  const Mask q_may = is_lifted(q) & p.usable & (q.reading > zero) & (sum - p.reading > -doubt);
+  return p_may | q_may;
+}
+
+/* The status byte, bits 0 to 6. Ambiguous are a force that is one of a segment, and a region that
+ * is 1 or 2; what parity says of the latter is off by `doubt` counts at most. Two opposite sensels
+ * usable while the other two are lifted contradict the model and are inconsistent. */
+static inline Bits direct_status(Pillar pillar, ParitySum sum, Real doubt) {
   const Bits none = PF_BITS(0);
   const Mask missing =
       pillar.s1.missing | pillar.s2.missing | pillar.s3.missing | pillar.s4.missing;
@@ -151,11 +162,16 @@ static inline Bits direct_status(Pillar pillar, ParitySum sum) {
   const Mask falling_alone =
       pillar.s2.usable & pillar.s4.usable & is_lifted(pillar.s1) & is_lifted(pillar.s3);
   const Mask inconsistent = missing | rising_alone | falling_alone;
+  const Mask rising_hides =
+      pillar.s2.usable & pillar.s4.usable & may_press(pillar.s1, pillar.s3, sum.high, doubt);
+  const Mask falling_hides =
+      pillar.s1.usable & pillar.s3.usable & may_press(pillar.s2, pillar.s4, sum.high, doubt);
+  const Mask ambiguous = (sum.low < sum.high) | rising_hides | falling_hides;
   return (pillar.s1.usable ? PF_BITS(PF_STATUS_SENSEL_1) : none) |
          (pillar.s2.usable ? PF_BITS(PF_STATUS_SENSEL_2) : none) |
          (pillar.s3.usable ? PF_BITS(PF_STATUS_SENSEL_3) : none) |
          (pillar.s4.usable ? PF_BITS(PF_STATUS_SENSEL_4) : none) |
-         (sum.low < sum.high ? PF_BITS(PF_STATUS_AMBIGUOUS) : none) |
+         (ambiguous ? PF_BITS(PF_STATUS_AMBIGUOUS) : none) |
          (saturated ? PF_BITS(PF_STATUS_SATURATED) : none) |
          (inconsistent ? PF_BITS(PF_STATUS_INCONSISTENT) : none);
 }
@@ -166,17 +182,16 @@ static inline Mask one_lifted(Sensel p, Sensel q) {
 }
 
 /* Whether a redundant reading disagrees by more than `tolerance` counts: with four usable, the
- * parity residual (D7); with three, what parity leaves for the lifted sensel beyond the dead zone
- * and `threshold` that can hide it (D8). */
-static inline Mask fails_parity(Pillar pillar, ParitySum sum, Real threshold, Real tolerance) {
+ * parity residual (D7); with three, what parity leaves for the lifted sensel beyond what its
+ * silence can hide (D8). */
+static inline Mask fails_parity(Pillar pillar, ParitySum sum, Real tolerance) {
   const Mask rising_usable = pillar.s1.usable & pillar.s3.usable;
   const Mask falling_usable = pillar.s2.usable & pillar.s4.usable;
   const Real rising = pillar.s1.reading + pillar.s3.reading;
   const Real falling = pillar.s2.reading + pillar.s4.reading;
-  const Real allowed = threshold + tolerance;
   const Mask rising_hides = falling_usable & one_lifted(pillar.s1, pillar.s3);
   const Mask falling_hides = rising_usable & one_lifted(pillar.s2, pillar.s4);
   return (rising_usable & falling_usable & (fabs(rising - falling) > tolerance)) |
-         (rising_hides & (sum.high - rising > allowed)) |
-         (falling_hides & (sum.high - falling > allowed));
+         (rising_hides & (sum.high - rising > tolerance)) |
+         (falling_hides & (sum.high - falling > tolerance));
 }

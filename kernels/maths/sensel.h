@@ -49,26 +49,28 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
   return sensel;
 }
 
-/* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated; all
- * others read zero, and are lifted or missing. A saturated sensel that its calibration brings down
- * to the threshold tells nothing. */
+/* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
+ * others are lifted, and read the threshold, which is the most that their silence can hide; or
+ * missing, and read zero. A saturated sensel that its calibration brings down to the threshold
+ * tells nothing. */
 static inline Sensel classify(Sensel sensel, Real threshold) {
   const Mask answers = (sensel.reading > threshold) & !sensel.missing;
-  sensel.missing = sensel.missing | (sensel.saturated & !answers);
+  const Mask tells_nothing = sensel.missing | (sensel.saturated & !answers);
+  sensel.missing = tells_nothing;
   sensel.usable = answers & !sensel.saturated;
   sensel.saturated = answers & sensel.saturated;
-  sensel.reading = answers ? sensel.reading : PF_REAL(0.0);
+  sensel.reading = answers ? sensel.reading : (tells_nothing ? PF_REAL(0.0) : threshold);
   return sensel;
 }
 
-/* Gives back the `dead_zone` counts that a sensel swallows before it answers. A lifted one then
- * reads the most that its silence can hide. */
+/* Gives back the `dead_zone` counts that a sensel swallows before it answers, and that the silence
+ * of a lifted one can hide as well. */
 static inline Sensel fill_dead_zone(Sensel sensel, Real dead_zone) {
   sensel.reading = sensel.missing ? sensel.reading : sensel.reading + dead_zone;
   return sensel;
 }
 
-/* Silent and not missing: V is at most the reading, which is the dead zone or zero. */
+/* Silent and not missing: V is at most the reading, which is threshold and dead zone together. */
 static inline Mask is_lifted(Sensel sensel) {
   return !(sensel.usable | sensel.saturated | sensel.missing);
 }

@@ -18,35 +18,52 @@ def sensels_of(frame):
                     axis=-1)
 
 
-def solve_pattern(usable, readings):
-    """Forces (X, Y, N) in counts, k = 1, of pillars [n, 4] that all have the same usable sensels."""
+def solve_pattern(usable, readings, threshold):
+    """Forces (X, Y, N) in counts, k = 1, of pillars [n, 4] that all have the same usable sensels. Silent
+    ones may read up to the threshold."""
     chosen = [n for n in range(4) if usable[n]]
     known = readings[:, chosen]
     if len(chosen) >= 3:
         return known @ np.linalg.pinv(MODEL[chosen]).T
     normal = np.zeros(len(readings))
     if len(chosen) == 2 and (chosen[1] - chosen[0]) % 2 == 1:  # adjacent: the middle of the segment
-        normal = known.min(axis=1) / 4
+        normal = (known.min(axis=1) + threshold) / 4
     elif len(chosen) == 2:  # opposite: a fault; the two alone give the normal force
         normal = known.mean(axis=1)
-    elif len(chosen) == 1:  # both neighbours at zero
+    elif len(chosen) == 1:  # the middle again; both neighbours alike
+        normal[:] = threshold / 2
         chosen = [n for n in range(4) if n != (chosen[0] + 2) % 4]
-        known = readings[:, chosen] * usable[chosen]
+        known = np.where(usable[chosen], readings[:, chosen], normal[:, None])
     else:
         return np.zeros((len(readings), 3))
     shear = (known - normal[:, None]) @ np.linalg.pinv(MODEL[chosen][:, :2]).T
     return np.concatenate([shear, normal[:, None]], axis=1)
 
 
+def may_be_region_one(usable, readings, threshold):
+    """Whether parity leaves the silent one of four sensels [n, 4] more than zero."""
+    if usable.sum() != 3 or threshold == 0:
+        return np.zeros(len(readings), dtype=bool)
+    silent = int(np.flatnonzero(~usable)[0])
+    sign = np.array([1, -1, 1, -1]) * (1 if silent % 2 else -1)
+    return readings @ sign > 0
+
+
 def solve(frame, threshold, counts_per_newton):
-    """Forces [rows, cols, 3] in newtons and the usable bits [rows, cols] of a frame."""
+    """Forces [rows, cols, 3] in newtons, the usable bits [rows, cols] of a frame, and whether its
+    pillars are ambiguous."""
     readings = sensels_of(frame)
     usable = readings > threshold  # False for NaN
     bits = (usable * [1, 2, 4, 8]).sum(axis=-1)
     forces = np.zeros(readings.shape[:2] + (3,))
+    ambiguous = np.zeros(readings.shape[:2], dtype=bool)
     for pattern in range(16):
         here = bits == pattern
         if here.any():
             mask = np.array([(pattern >> n) & 1 for n in range(4)], dtype=bool)
-            forces[here] = solve_pattern(mask, np.where(mask, readings[here], 0))
-    return forces / counts_per_newton, bits
+            known = np.where(mask, readings[here], 0)
+            forces[here] = solve_pattern(mask, known, threshold)
+            adjacent = mask.sum() == 2 and mask[0] != mask[2]
+            alone = mask.sum() == 1 and threshold > 0
+            ambiguous[here] = may_be_region_one(mask, known, threshold) | adjacent | alone
+    return forces / counts_per_newton, bits, ambiguous

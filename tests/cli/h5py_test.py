@@ -52,7 +52,7 @@ class RecordingsOfH5py(CommandTest):
 
     def compare(self, frame, forces, status, threshold, counts_per_newton):
         # The program compares in single precision.
-        expected, bits = solve(frame, np.float32(threshold), counts_per_newton)
+        expected, bits, ambiguous = solve(frame, np.float32(threshold), counts_per_newton)
         missing = np.isnan(sensels_of(frame)).any(axis=-1)
         usable = sum((bits >> n) & 1 for n in range(4))
         opposite = (bits == 5) | (bits == 10)
@@ -60,8 +60,8 @@ class RecordingsOfH5py(CommandTest):
         np.testing.assert_array_equal((status & 64) != 0, missing | opposite)
         # A missing sensel may hold anything: only three usable ones determine the force then.
         known = ~missing | (usable >= 3)
-        np.testing.assert_array_equal((status[known] & 16) != 0,
-                                      ((usable == 2) & ~opposite)[known])
+        np.testing.assert_array_equal((status[~missing] & 16) != 0, ambiguous[~missing])
+        self.assertFalse((status[missing & (usable == 3)] & 16).any())
         self.assertTrue(np.isfinite(forces).all())
         size = np.linalg.norm(expected, axis=-1, keepdims=True)
         error = np.abs(forces - expected) / np.where(size > 0, size, 1)
@@ -89,19 +89,29 @@ class RecordingsOfH5py(CommandTest):
         write_recording(recording, raw, 5, 320)
         for ending in ("h5", "npy", "csv"):
             run("solve", recording, "-o", self.folder / f"forces.{ending}", "--outputs",
-                "forces,angles")
+                "forces,angles,uncertainty", "--noise", "1.5")
         array = np.load(self.folder / "forces.npy")
         table = np.genfromtxt(self.folder / "forces.csv", delimiter=",", names=True)
         places = tuple(table[name].astype(int) for name in ("frame", "row", "col"))
         columns = {"shear_x": "shear_x_n", "shear_y": "shear_y_n", "normal": "normal_n",
                    "status": "status", "magnitude": "magnitude_n", "theta": "theta_rad",
                    "phi": "phi_rad"}
+        uncertainty = {"shear_x": "n", "shear_y": "n", "normal": "n", "theta_low": "rad",
+                       "theta_high": "rad", "phi_low": "rad", "phi_high": "rad",
+                       "magnitude_low": "n", "magnitude_high": "n"}
         with h5py.File(self.folder / "forces.h5") as file:
             for plane, column in columns.items():
                 expected = file["/force"][plane][:]
                 np.testing.assert_array_equal(array[plane], expected)
                 np.testing.assert_array_equal(table[column].astype(np.float32), expected[places])
+            for plane, unit in uncertainty.items():
+                expected = file["/uncertainty"][plane][:]
+                name = f"uncertainty_{plane}"
+                np.testing.assert_array_equal(array[name], expected)
+                np.testing.assert_array_equal(table[f"{name}_{unit}"].astype(np.float32),
+                                              expected[places])
             status = file["/force/status"][:]
+            self.assertEqual(file.attrs["estimator"].decode(), "direct")
         self.assertEqual(len(table), np.count_nonzero(status))
 
 

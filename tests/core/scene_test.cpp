@@ -57,6 +57,9 @@ frames = 12
 seed = 99
 [solver]
 parity_tolerance_counts = 4
+estimator = "direct"
+angles = true
+uncertainty = true
 [[contact]]
 shape = "cylinder"
 motion = "roll"
@@ -95,6 +98,9 @@ load_n = 0.5
   EXPECT_EQ(scene.frames, 12U);
   EXPECT_EQ(scene.seed, 99U);
   EXPECT_EQ(scene.parity_tolerance_counts, 4);
+  EXPECT_EQ(scene.estimator, Estimator::direct);
+  EXPECT_TRUE(scene.angles);
+  EXPECT_TRUE(scene.uncertainty);
   const auto& contacts = std::get<std::vector<Contact>>(scene.load);
   ASSERT_EQ(contacts.size(), 2U);
   const Contact& roller = contacts[0];
@@ -124,6 +130,9 @@ TEST(Scene, WhatIsNotListedIsAbsent) {
   EXPECT_FALSE(scene.skin.full_scale_counts);
   EXPECT_FALSE(scene.sensor.adc_bits);
   EXPECT_FALSE(scene.parity_tolerance_counts);
+  EXPECT_EQ(scene.estimator, Estimator::direct);
+  EXPECT_FALSE(scene.angles);
+  EXPECT_FALSE(scene.uncertainty);
   EXPECT_EQ(scene.skin.counts_per_newton, 320);
   EXPECT_EQ(scene.rate_hz, 100);
   EXPECT_TRUE(Simulator(scene).calibration().empty());
@@ -306,7 +315,10 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "max_theta_deg",
                                    "magnitudes_n",
                                    "full_scale_counts",
-                                   "parity_tolerance_counts"};
+                                   "parity_tolerance_counts",
+                                   "estimator",
+                                   "angles",
+                                   "uncertainty"};
   for (const auto& quantity : kSkinQuantities) keys.emplace_back(quantity.key);
   for (const auto& quantity : kSensorQuantities) keys.emplace_back(quantity.key);
   for (const auto& [quantity, required, applies] : kContactQuantities) {

@@ -46,6 +46,18 @@ TEST(Skin, RefusesWhatIsOutOfRangeByName) {
       {"counts_per_newton", [](Skin& s) { s.counts_per_newton = INFINITY; }},
       {"threshold_counts", [](Skin& s) { s.threshold_counts = -0.5; }},
       {"full_scale_counts", [](Skin& s) { s.full_scale_counts = kNan; }},
+      {"power_law_exponent",
+       [](Skin& s) {
+         s.power_law = {0.1, 100};
+       }},
+      {"power_law_exponent",
+       [](Skin& s) {
+         s.power_law = {kNan, 100};
+       }},
+      {"power_law_reference_counts",
+       [](Skin& s) {
+         s.power_law = {1.2, 0};
+       }},
       {"full_scale_counts", [](Skin& s) { s.full_scale_counts = s.threshold_counts; }},
   };
   for (const Case& wrong : cases) {

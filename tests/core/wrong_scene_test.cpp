@@ -73,6 +73,11 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[time]\nseed = -1",
        "s.toml:3: key 'seed' in [time] is -1; allowed: a whole number from 0 to "
        "9223372036854775807"},
+      {"[solver]\nestimator = \"magic\"",
+       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper")"},
+      {"[solver]\nestimator = \"paper\"\nuncertainty = true",
+       "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
+       "allowed: estimator = \"direct\""},
       {"[solver]\nparity_tolerance_counts = true",
        "s.toml:3: key 'parity_tolerance_counts' in [solver] is true; allowed: a number in [0, "
        "1e+33]"},

@@ -7,6 +7,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <numbers>
 #include <optional>
 
 #include "core/host_solve.h"
@@ -28,6 +30,8 @@ class DeviceForTests : public testing::Environment {
 const testing::Environment* const kEnvironment =
     testing::AddGlobalTestEnvironment(new DeviceForTests);
 
+constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
+
 const Device& test_device() { return DeviceForTests::device.value(); }
 
 void expect_same_bits(std::span<const float> actual, std::span<const float> expected,
@@ -47,6 +51,53 @@ void expect_same_bits(const ForceFieldView& actual, const ForceFieldView& expect
   expect_same_bits(actual.normal, expected.normal, "normal");
   for (std::size_t i = 0; i < actual.status.size(); ++i) {
     ASSERT_EQ(actual.status[i], expected.status[i]) << "status of pillar " << i;
+  }
+}
+
+/// Within so many units in the last place of `scale`, which is at least |expected|.
+void expect_near(float actual, float expected, float scale, float ulps, const char* plane,
+                 std::size_t pillar) {
+  const float tolerance = ulps * std::max(std::numeric_limits<float>::epsilon() * scale, kSmallest);
+  ASSERT_LE(std::abs(actual - expected), tolerance)
+      << plane << " of pillar " << pillar << ": " << actual << " is not " << expected;
+}
+
+/// An angle in the plane may come out on either side of the cut.
+void expect_same_turn(float actual, float expected, float ulps, const char* plane,
+                      std::size_t pillar) {
+  const auto turn = static_cast<float>(std::remainder(actual - expected, 2 * std::numbers::pi));
+  expect_near(turn, 0, 4, ulps, plane, pillar);
+}
+
+/// Where functions of a library take part: 8 ULP of the value, of a half turn for phi.
+void expect_same_uncertainty(const ForceFieldView& actual, const ForceFieldView& expected) {
+  constexpr float kUlps = 8;
+  for (std::size_t index = 0; index < kUncertaintyPlanes; ++index) {
+    const auto which = static_cast<Uncertainty>(index);
+    const bool in_plane = which == Uncertainty::phi_low || which == Uncertainty::phi_high;
+    const auto plane = actual.uncertainty[which];
+    const auto other = expected.uncertainty[which];
+    ASSERT_EQ(plane.size(), other.size());
+    for (std::size_t i = 0; i < plane.size(); ++i) {
+      if (in_plane) {
+        expect_same_turn(plane[i], other[i], kUlps, name_of(which), i);
+      } else {
+        expect_near(plane[i], other[i], std::abs(other[i]), kUlps, name_of(which), i);
+      }
+    }
+  }
+}
+
+/// The paper's estimator, all of which goes through trigonometry of the library: 64 ULP of the
+/// force.
+void expect_same_paper_forces(const ForceFieldView& actual, const ForceFieldView& expected) {
+  constexpr float kUlps = 64;
+  for (std::size_t i = 0; i < actual.normal.size(); ++i) {
+    const float scale = std::hypot(expected.shear_x[i], expected.shear_y[i], expected.normal[i]);
+    expect_near(actual.shear_x[i], expected.shear_x[i], scale, kUlps, "shear_x", i);
+    expect_near(actual.shear_y[i], expected.shear_y[i], scale, kUlps, "shear_y", i);
+    expect_near(actual.normal[i], expected.normal[i], scale, kUlps, "normal", i);
+    ASSERT_EQ(actual.status[i], expected.status[i]);
   }
 }
 
@@ -100,6 +151,37 @@ TEST_P(EveryPath, BareSolveHasTheBitsOfTheHost) {
 
 TEST_P(EveryPath, AllStagesHaveTheBitsOfTheHost) {
   expect_host_bits(full_plan(22, 2 * 39, GetParam().type, 7), 0);
+}
+
+TEST_P(EveryPath, UncertaintyIsThatOfTheHost) {
+  SolverPlan known = full_plan(14, 2 * 21, GetParam().type, 9);
+  known.uncertainty = true;
+  SolverPlan plain = bare_plan(12, 2 * 19, GetParam().type);
+  plain.uncertainty = true;
+  plain.noise_counts = 0.7;
+  for (const SolverPlan& plan : {known, plain}) {
+    Processor processor(test_device(), plan,
+                        {.memory = GetParam().memory, .lanes = GetParam().lanes});
+    const RandomFrame frame(plan, 3, 1);
+    processor.submit(frame.view());
+    const ForceFieldView forces = processor.receive();
+    const ForceField expected = solve_on_host(plan, frame.view());
+    expect_same_bits(forces, expected.view());
+    expect_same_uncertainty(forces, expected.view());
+  }
+}
+
+TEST_P(EveryPath, PaperSolveIsThatOfTheHost) {
+  SolverPlan all_stages = full_plan(14, 2 * 21, GetParam().type, 10);
+  SolverPlan bare = bare_plan(12, 2 * 37, GetParam().type);
+  for (SolverPlan* plan : {&all_stages, &bare}) {
+    plan->estimator = Estimator::paper;
+    Processor processor(test_device(), *plan,
+                        {.memory = GetParam().memory, .lanes = GetParam().lanes});
+    const RandomFrame frame(*plan, 0, 2);
+    processor.submit(frame.view());
+    expect_same_paper_forces(processor.receive(), solve_on_host(*plan, frame.view()).view());
+  }
 }
 
 TEST_P(EveryPath, OddAndStridedFramesHaveTheBitsOfTheHost) {
@@ -209,6 +291,7 @@ TEST(Processor, AnglesAreThoseOfTheForces) {
                       forces.status,
                       {},
                       {},
+                      {},
                       {}},
                      solve_on_host(plan, frame.view()).view());
     ASSERT_EQ(forces.theta.size(), forces.normal.size());
@@ -295,6 +378,14 @@ TEST(Processor, RefusesPlansOutOfRange) {
   refuses([](SolverPlan& plan) { plan.skin.threshold_counts = -1; });
   refuses([](SolverPlan& plan) { plan.skin.full_scale_counts = 0; });
   refuses([](SolverPlan& plan) { plan.parity_tolerance_counts = -1; });
+  refuses([](SolverPlan& plan) { plan.noise_counts = -1; });
+  refuses([](SolverPlan& plan) { plan.uncertainty = true; });
+  refuses([](SolverPlan& plan) {
+    plan.uncertainty = true;
+    plan.noise_counts = 1;
+    plan.estimator = Estimator::paper;
+  });
+  refuses([](SolverPlan& plan) { plan.calibration.noise.assign(64, -1.0F); });
   refuses([](SolverPlan& plan) { plan.calibration.tare = {1, 2}; });
   refuses([](SolverPlan& plan) { plan.calibration.gain.assign(64, 0.0F); });
   refuses([](SolverPlan& plan) { plan.calibration.dead_zone.assign(64, std::nanf("")); });

@@ -28,7 +28,7 @@ class RandomFrame {
 /// A plan for a skin of so many sensels with no stage but the bare solve.
 SolverPlan bare_plan(std::uint32_t rows, std::uint32_t cols, SenselType type);
 
-/// The same with saturation, parity test and all four calibration planes.
+/// The same with saturation, parity test and all calibration planes.
 SolverPlan full_plan(std::uint32_t rows, std::uint32_t cols, SenselType type, std::uint32_t seed);
 
 }  // namespace pillarfield

@@ -14,10 +14,9 @@ namespace {
 template <class Precision>
 class Parity : public testing::Test {
  protected:
-  static bool fails(const PillarOf<Precision>& pillar, RealOf<Precision> threshold,
-                    RealOf<Precision> tolerance) {
+  static bool fails(const PillarOf<Precision>& pillar, RealOf<Precision> tolerance) {
     const auto sum = parity_sum(pillar_diagonals(pillar));
-    return fails_parity(pillar, sum, threshold, tolerance) != 0;
+    return fails_parity(pillar, sum, tolerance) != 0;
   }
 
   /// Turned by so many quarters.
@@ -35,9 +34,11 @@ TYPED_TEST(Parity, ResidualPassesUpToItsTolerance) {
   // 30 + 22 - 20 - 24 = 8
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto pillar = pillar_of<TypeParam>(TestFixture::turned({30, 20, 22, 24}, turns));
-    EXPECT_FALSE(TestFixture::fails(pillar, 0, 8));
-    EXPECT_TRUE(TestFixture::fails(pillar, 0, std::nextafter(Real{8}, Real{0})));
-    EXPECT_TRUE(TestFixture::fails(pillar, 100, 7)) << "the threshold hides no usable reading";
+    EXPECT_FALSE(TestFixture::fails(pillar, 8));
+    EXPECT_TRUE(TestFixture::fails(pillar, std::nextafter(Real{8}, Real{0})));
+    const auto threshold =
+        pillar_of<TypeParam>(TestFixture::turned({30, 20, 22, 24}, turns), Real{19});
+    EXPECT_TRUE(TestFixture::fails(threshold, 7)) << "the threshold hides no usable reading";
   }
 }
 
@@ -45,10 +46,12 @@ TYPED_TEST(Parity, SurplusPassesUpToThresholdAndTolerance) {
   using Real = RealOf<TypeParam>;
   // Sensel 1 is silent though parity leaves 20 + 24 - 33 = 11 counts for it.
   for (std::size_t turns = 0; turns < 4; ++turns) {
-    const auto pillar = pillar_of<TypeParam>(TestFixture::turned({0, 20, 33, 24}, turns), Real{5});
-    EXPECT_FALSE(TestFixture::fails(pillar, 5, 6));
-    EXPECT_TRUE(TestFixture::fails(pillar, 5, Real{6 - 0x1p-20}));
-    EXPECT_TRUE(TestFixture::fails(pillar, 4, 6));
+    const auto under = [&](Real threshold) {
+      return pillar_of<TypeParam>(TestFixture::turned({0, 20, 33, 24}, turns), threshold);
+    };
+    EXPECT_FALSE(TestFixture::fails(under(5), 6));
+    EXPECT_TRUE(TestFixture::fails(under(5), Real{6 - 0x1p-20}));
+    EXPECT_TRUE(TestFixture::fails(under(4), 6));
   }
 }
 
@@ -56,16 +59,16 @@ TYPED_TEST(Parity, ALiftedSenselMayLackAnyAmount) {
   // Parity leaves 20 + 24 - 90 = -46 counts for sensel 1, as where a pillar lifts off.
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto pillar = pillar_of<TypeParam>(TestFixture::turned({0, 20, 90, 24}, turns));
-    EXPECT_FALSE(TestFixture::fails(pillar, 0, 0));
+    EXPECT_FALSE(TestFixture::fails(pillar, 0));
   }
 }
 
 TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
   using Real = RealOf<TypeParam>;
   auto pillar = pillar_of<TypeParam>({0, 20, 33, 24});
-  EXPECT_TRUE(TestFixture::fails(pillar, 0, 6));
+  EXPECT_TRUE(TestFixture::fails(pillar, 6));
   pillar.s1 = fill_dead_zone(pillar.s1, Real{5});
-  EXPECT_FALSE(TestFixture::fails(pillar, 0, 6));
+  EXPECT_FALSE(TestFixture::fails(pillar, 6));
 }
 
 TYPED_TEST(Parity, NothingRedundantNeverFails) {
@@ -76,7 +79,7 @@ TYPED_TEST(Parity, NothingRedundantNeverFails) {
     const auto lifted = std::ranges::count(states, State::lifted);
     const bool redundant = usable == 4 || (usable == 3 && lifted == 1);
     if (!redundant) {
-      EXPECT_FALSE(TestFixture::fails(pillar, Real{0}, Real{0})) << name_of(states);
+      EXPECT_FALSE(TestFixture::fails(pillar, Real{0})) << name_of(states);
     }
   }
 }
@@ -88,7 +91,7 @@ TYPED_TEST(Parity, ConsistentForcesPassWithinRounding) {
     const double magnitude = random.decades(1e-6, 1e6);
     const auto readings = rounded_readings<TypeParam>(random.force(magnitude), 100);
     const Real tolerance = static_cast<Real>(4 * ulp_at<Real>(200 * magnitude));
-    EXPECT_FALSE(TestFixture::fails(pillar_of<TypeParam>(readings), 0, tolerance));
+    EXPECT_FALSE(TestFixture::fails(pillar_of<TypeParam>(readings), tolerance));
   }
 }
 

@@ -70,13 +70,13 @@ TYPED_TEST(SenselStages, AbsurdReadingsAreMissing) {
   }
 }
 
-TYPED_TEST(SenselStages, AThresholdIsNotAboveItself) {
+TYPED_TEST(SenselStages, AThresholdIsNotAboveItselfAndHidesUnderSilence) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   for (const Real threshold : {Real{0}, Limits::denorm_min(), Real{3}, Real{250.5}}) {
-    TestFixture::expect_lifted(classify(TypeParam::raw_sensel(threshold), threshold));
+    TestFixture::expect_lifted(classify(TypeParam::raw_sensel(threshold), threshold), threshold);
     TestFixture::expect_lifted(
-        classify(TypeParam::raw_sensel(TestFixture::below(threshold)), threshold));
+        classify(TypeParam::raw_sensel(TestFixture::below(threshold)), threshold), threshold);
     const Real more = TestFixture::above(threshold);
     TestFixture::expect_usable(classify(TypeParam::raw_sensel(more), threshold), more);
   }
@@ -110,7 +110,7 @@ TYPED_TEST(SenselStages, TareAndGainApplyInTheirOrder) {
   using Real = RealOf<TypeParam>;
   const auto sensel = apply_gain(subtract_tare(TypeParam::raw_sensel(30), Real{10}), Real{1.5});
   TestFixture::expect_usable(classify(sensel, Real{29}), 30);
-  TestFixture::expect_lifted(classify(sensel, Real{30}));
+  TestFixture::expect_lifted(classify(sensel, Real{30}), 30);
   const auto unloaded = subtract_tare(TypeParam::raw_sensel(8), Real{10});
   TestFixture::expect_lifted(classify(unloaded, Real{0}));
 }
@@ -135,7 +135,7 @@ TYPED_TEST(SenselStages, ADeadZoneIsGivenBackAndHidesUnderSilence) {
   const auto filled = [](const Sensel& sensel) { return fill_dead_zone(sensel, Real{4}); };
   TestFixture::expect_usable(filled(classify(TypeParam::raw_sensel(3), Real{2})), 7);
   TestFixture::expect_saturated(filled(sensel_in<TypeParam>(State::saturated, 255)), 259);
-  TestFixture::expect_lifted(filled(classify(TypeParam::raw_sensel(2), Real{2})), 4);
+  TestFixture::expect_lifted(filled(classify(TypeParam::raw_sensel(2), Real{2})), 6);
   TestFixture::expect_missing(filled(sensel_in<TypeParam>(State::missing, 9)));
 }
 

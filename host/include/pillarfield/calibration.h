@@ -19,15 +19,19 @@ struct Calibration {
   std::vector<float> gain;         ///< factor on (raw − tare) that makes sensels equal, > 0
   std::vector<float> dead_zone;    ///< counts, what a sensel swallows before it answers, >= 0
   std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
+  std::vector<float> noise;  ///< counts of the raw reading, standard deviation, unloaded, >= 0
 
   [[nodiscard]] bool empty() const {
-    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty();
+    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty() && noise.empty();
   }
 };
 
 /// Limits of Calibration::gain.
 inline constexpr double kMinGain = 1e-2;
 inline constexpr double kMaxGain = 1e2;
+
+/// Limit of Calibration::noise, and of noise elsewhere.
+inline constexpr double kMaxNoiseCounts = 1e6;
 
 /// Throws Error, its place being `where`, when a plane has not one value per sensel of `skin` or a
 /// value is out of its range.

@@ -15,10 +15,11 @@ struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
   double pillar_pitch_mm = 0;
-  std::string estimator;  ///< "direct"
-  std::string device;     ///< name of the device that solved it
-  std::string source;     ///< name of the file the frames came from
-  bool angles = false;    ///< with magnitude, theta and phi
+  std::string estimator;     ///< "direct" or "paper"
+  std::string device;        ///< name of the device that solved it
+  std::string source;        ///< name of the file the frames came from
+  bool angles = false;       ///< with magnitude, theta and phi
+  bool uncertainty = false;  ///< with the planes of Uncertainty
 };
 
 /// Takes solved frames one by one. Like recordings, files are written under `path` + ".part" and
@@ -52,7 +53,8 @@ class ForceFileReader {
   [[nodiscard]] std::uint64_t frames() const;
   [[nodiscard]] const std::vector<std::string>& remarks() const;
 
-  /// Reads frame `index` and returns its time in seconds.
+  /// Reads frame `index`, with its uncertainty where the file has it, and returns its time in
+  /// seconds.
   double read(std::uint64_t index, ForceField& forces) const;
 
  private:

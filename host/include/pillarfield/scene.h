@@ -10,6 +10,7 @@
 
 #include "pillarfield/contact.h"
 #include "pillarfield/skin.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
 
@@ -42,9 +43,15 @@ struct Scene {
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
-  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan
+  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan, as the three that follow
+  Estimator estimator = Estimator::direct;
+  bool angles = false;
+  bool uncertainty = false;
   std::variant<std::vector<Contact>, Chart> load;
 };
+
+/// Sets what a scene asks of the solver, and the sensor's noise where the scene has any.
+void set_solver(SolverPlan& plan, const Scene& scene);
 
 /// Reads a scene from a TOML file. Throws Error with file, line, key and the allowed values.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);

@@ -16,6 +16,14 @@ enum class SenselType : std::uint8_t { u8, u16, f32 };
 /// "uint8", "uint16" or "float32", as in recordings and in messages.
 [[nodiscard]] const char* name_of(SenselType type);
 
+/// How a sensel that does not answer in proportion is straightened: a corrected reading r > 0
+/// stands for V = reference_counts · (r / reference_counts)^exponent, so that one of
+/// reference_counts stays.
+struct PowerLaw {
+  double exponent = 1;          ///< 0.2..5
+  double reference_counts = 1;  ///< 1e-3..1e6
+};
+
 /// A patch of skin: its size and the sensor's constants, the same for every sensel.
 ///
 /// Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at
@@ -27,6 +35,7 @@ struct Skin {
   double counts_per_newton = 320;           ///< k of equation (2): counts per newton and pillar
   double threshold_counts = 0;              ///< a reading above it is usable
   std::optional<double> full_scale_counts;  ///< a reading at or above it is saturated
+  std::optional<PowerLaw> power_law;        ///< unset: readings are in proportion to the force
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
@@ -40,6 +49,12 @@ inline constexpr std::uint32_t kMaxSensels = 65534;  ///< rows or columns of a s
 inline constexpr double kMaxCounts = 1e33;           ///< readings, threshold, full scale
 inline constexpr double kMinCountsPerNewton = 1e-2;
 inline constexpr double kMaxCountsPerNewton = 1e6;
+
+/// Limits of PowerLaw.
+inline constexpr double kMinExponent = 0.2;
+inline constexpr double kMaxExponent = 5;
+inline constexpr double kMinReferenceCounts = 1e-3;
+inline constexpr double kMaxReferenceCounts = 1e6;
 
 /// Throws Error, its place being `where`, when a member of `skin` is out of its range.
 void check(const Skin& skin, std::string_view where);

@@ -1,11 +1,23 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
+
+/// How forces are estimated from readings.
+enum class Estimator : std::uint8_t {
+  direct,  ///< linear, on the Cramér–Rao bound in regions 1 and 2
+           ///< (docs/derivations/direct_solve.md)
+  paper,   ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
+};
+
+/// "direct" or "paper".
+[[nodiscard]] const char* name_of(Estimator estimator);
 
 /// What is computed, and from which sensor. Each member that is set or not empty adds its
 /// stage to the kernel; what is not named costs nothing.
@@ -16,7 +28,24 @@ struct SolverPlan {
   /// Largest parity residual, and largest surplus of a lifted sensel, that the status byte passes
   /// as consistent, in counts; unset: not tested.
   std::optional<double> parity_tolerance_counts;
-  bool angles = false;  ///< also magnitude, theta and phi
+  /// Standard deviation of a raw reading over frames, counts, converter's rounding apart. Used
+  /// where the calibration has no noise plane of its own. Unset without one: noise is not known.
+  std::optional<double> noise_counts;
+  Estimator estimator = Estimator::direct;
+  bool angles = false;       ///< also magnitude, theta and phi
+  bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, and `direct`
 };
+
+/// Throws Error, its place being `where`, when a member of `plan` is out of its range or two do not
+/// go together.
+void check(const SolverPlan& plan, std::string_view where);
+
+/// Standard deviation of a raw reading of sensels without a noise plane, counts: that of the plan,
+/// and of rounding to whole counts, 1/√12, where the sensel type has no fractions.
+[[nodiscard]] double reading_noise(const SolverPlan& plan);
+
+/// By how many counts noise may shift what parity leaves for a silent sensel, five standard
+/// deviations: what direct_status takes as doubt. Zero where the noise is not known.
+[[nodiscard]] double region_doubt(const SolverPlan& plan);
 
 }  // namespace pillarfield

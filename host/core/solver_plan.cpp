@@ -1,0 +1,76 @@
+#include "pillarfield/solver_plan.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "pillarfield/error.h"
+#include "pillarfield/scene.h"
+
+namespace pillarfield {
+namespace {
+
+/// Throws where a value that may be absent lies outside [0, high].
+void check_counts(std::optional<double> value, const char* name, double high,
+                  std::string_view where) {
+  if (!value || (*value >= 0 && *value <= high)) return;
+  throw Error(where, fmt::format("{} is {}", name, *value),
+              fmt::format("it must lie in [0, {}]", high));
+}
+
+/// Root mean square of the noise of the sensels that are not masked.
+double mean_noise(const Calibration& calibration) {
+  double squares = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < calibration.noise.size(); ++i) {
+    if (!calibration.mask.empty() && calibration.mask[i] == 0) continue;
+    squares += double{calibration.noise[i]} * calibration.noise[i];
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
+}
+
+}  // namespace
+
+void set_solver(SolverPlan& plan, const Scene& scene) {
+  plan.parity_tolerance_counts = scene.parity_tolerance_counts;
+  plan.estimator = scene.estimator;
+  plan.angles = scene.angles;
+  plan.uncertainty = scene.uncertainty;
+  if (scene.sensor.noise_counts > 0) plan.noise_counts = scene.sensor.noise_counts;
+}
+
+const char* name_of(Estimator estimator) {
+  return estimator == Estimator::paper ? "paper" : "direct";
+}
+
+void check(const SolverPlan& plan, std::string_view where) {
+  check(plan.skin, where);
+  check(plan.calibration, plan.skin, where);
+  check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
+  check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
+  if (!plan.uncertainty) return;
+  if (plan.estimator != Estimator::direct) {
+    throw Error(where, "the paper's estimator has no uncertainty", "use the direct estimator");
+  }
+  if (!plan.noise_counts && plan.calibration.noise.empty()) {
+    throw Error(where, "uncertainty is asked for, and the noise of the sensels is not known",
+                "give noise_counts, or a calibration with a noise plane");
+  }
+}
+
+double reading_noise(const SolverPlan& plan) {
+  const double noise = plan.noise_counts.value_or(0);
+  const double rounding = plan.sensel_type == SenselType::f32 ? 0 : 1.0 / 12;
+  return std::sqrt(noise * noise + rounding);
+}
+
+double region_doubt(const SolverPlan& plan) {
+  // Parity leaves V_p + V_q - V_r, three readings, each with its noise.
+  const double deviations = 5 * std::sqrt(3.0);
+  if (!plan.calibration.noise.empty()) return deviations * mean_noise(plan.calibration);
+  return plan.noise_counts ? deviations * reading_noise(plan) : 0;
+}
+
+}  // namespace pillarfield
