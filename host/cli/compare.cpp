@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
 #include "cli/progress.h"
 #include "pillarfield/comparison.h"
+#include "pillarfield/coverage.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/recording.h"
@@ -38,7 +41,10 @@ std::vector<Row> rows_of(const Comparison& comparison) {
   return rows;
 }
 
-void print_json(const std::vector<Row>& rows, std::uint64_t frames) {
+constexpr std::array kCoveredRegions = {Region::one, Region::two, Region::three, Region::four};
+
+void print_json(const std::vector<Row>& rows, const std::optional<Coverage>& coverage,
+                std::uint64_t frames) {
   nlohmann::ordered_json regions;
   for (const auto& [name, errors] : rows) {
     regions[name] = {{"pillars", errors.pillars},
@@ -50,7 +56,18 @@ void print_json(const std::vector<Row>& rows, std::uint64_t frames) {
                      {"theta_rms_rad", errors.theta_rms_rad},
                      {"phi_rms_rad", errors.phi_rms_rad}};
   }
-  fmt::print("{}\n", nlohmann::ordered_json{{"frames", frames}, {"regions", regions}}.dump());
+  nlohmann::ordered_json json = {{"frames", frames}, {"regions", regions}};
+  if (coverage) {
+    for (const Region region : kCoveredRegions) {
+      const RegionCoverage of_region = coverage->region(region);
+      json["coverage"][name_of(region)] = {{"pillars", of_region.pillars},
+                                           {"shear_x", of_region.shear_x},
+                                           {"shear_y", of_region.shear_y},
+                                           {"normal", of_region.normal},
+                                           {"ends", of_region.ends}};
+    }
+  }
+  fmt::print("{}\n", json.dump());
 }
 
 void print_row(const Row& row) {
@@ -86,6 +103,23 @@ void print_text(const std::vector<Row>& rows, std::uint64_t frames, const Compar
       "Region 3 is ambiguous in itself: two readings, three unknowns.\n");
 }
 
+void print_coverage(const Coverage& coverage) {
+  fmt::print("\n{:<8} {:>10} {:^29} {:>12}\n", "solved", "", "truths within 1.96 deviations",
+             "between");
+  fmt::print("{:<8} {:>10} {:>9} {:>9} {:>9} {:>12}\n", "region", "pillars", "shear_x", "shear_y",
+             "normal", "the ends");
+  for (const Region region : kCoveredRegions) {
+    const RegionCoverage of_region = coverage.region(region);
+    fmt::print("{:<8} {:>10} {:>8.2f}% {:>8.2f}% {:>8.2f}% {:>11.2f}%\n", name_of(region),
+               of_region.pillars, 100 * of_region.shear_x, 100 * of_region.shear_y,
+               100 * of_region.normal, 100 * of_region.ends);
+  }
+  fmt::print(
+      "\n95 % are due in regions 1 and 2. Ends: of theta, phi and magnitude, widened by three\n"
+      "deviations, since they are stated noise apart. Pillars with flagged sensels are left "
+      "out.\n");
+}
+
 /// Whether the two files are of one patch, and how many frames they share.
 std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& recording,
                             const CompareOptions& options) {
@@ -117,6 +151,8 @@ void compare(const CompareOptions& options) {
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
+  std::optional<Coverage> coverage;
+  if (info.uncertainty) coverage.emplace();
   {
     Progress progress("Comparing", frames, options.quiet);
     for (std::uint64_t index = 0; index < frames; ++index) {
@@ -124,14 +160,16 @@ void compare(const CompareOptions& options) {
       forces.read(index, solved);
       recording->read_truth(index, truth);
       comparison.add(solved.view(), truth.view());
+      if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
   }
   const std::vector<Row> rows = rows_of(comparison);
   if (options.json) {
-    print_json(rows, frames);
+    print_json(rows, coverage, frames);
   } else {
     print_text(rows, frames, options);
+    if (coverage) print_coverage(*coverage);
   }
 }
 

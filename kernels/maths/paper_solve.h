@@ -110,10 +110,13 @@ static inline Ratios turned_ratios(Real v1, Real v2, Real v3, Real v4, Turn turn
  * that sensel, its components by M2, turned back. */
 static inline Force turned_force(Ratios v, Angles angles, Real largest, Turn turn,
                                  ForceScale scale) {
+  const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const SenselCosines cosines = sensel_cosines(angles.phi);
-  const Real cosine =
+  const Real at_largest =
       v.a == one ? cosines.a : (v.b == one ? cosines.b : (v.c == one ? -cosines.a : -cosines.b));
+  /* Shear presses the sensel that it points to; a product that underflowed may say otherwise. */
+  const Real cosine = at_largest > zero ? zero : at_largest;
   const Real cos_theta = cos(angles.theta);
   const Real sin_theta = sin(angles.theta);
   const Real response = cos_theta - sin_theta * cosine;

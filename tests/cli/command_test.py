@@ -78,6 +78,33 @@ class Work(CommandTest):
         self.assertLess(regions["1"]["rms_n"], 1.5 / 320)
         self.assertGreater(regions["1"]["rms_n"], 0.3 / 320)
 
+    def test_estimators_and_uncertainty(self):
+        self.scene.write_text(SMALL_SCENE.replace("threshold_counts = 2", "threshold_counts = 3"))
+        run("simulate", self.scene, "-o", self.recording)
+        errors = {}
+        for estimator in ("direct", "paper"):
+            solved = run_json("solve", self.recording, "-o", self.forces, "--estimator", estimator)
+            self.assertEqual(solved["estimator"], estimator)
+            self.assertIn(estimator + "_solve", solved["stages"])
+            self.assertEqual(run_json("info", self.forces)["estimator"], estimator)
+            regions = run_json("compare", self.forces, self.recording)["regions"]
+            errors[estimator] = regions["1"]["rms_n"]
+        self.assertLess(errors["direct"], errors["paper"])
+        solve = ("solve", self.recording, "-o", self.forces)
+        complaint = run(*solve, "--outputs", "uncertainty", expect=1).stderr
+        self.assertIn("noise", complaint)
+        complaint = run(*solve, "--outputs", "uncertainty", "--noise", 1, "--estimator", "paper",
+                        expect=1).stderr
+        self.assertIn("the paper's estimator has no uncertainty", complaint)
+        run(*solve, "--outputs", "uncertainty", "--scene", self.scene)
+        coverage = run_json("compare", self.forces, self.recording)["coverage"]
+        self.assertGreater(coverage["1"]["pillars"], 300)
+        for component in ("shear_x", "shear_y", "normal"):
+            self.assertGreater(coverage["1"][component], 0.93)
+            self.assertLess(coverage["1"][component], 0.97)
+        self.assertGreater(coverage["3"]["ends"], 0.98)
+        self.assertIn("between", run("compare", self.forces, self.recording).stdout)
+
     def test_text_names_what_was_done(self):
         text = run("simulate", self.scene, "-o", self.recording).stdout
         self.assertIn("6 frames", text)

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "pillarfield/status.h"
 #include "pillars.h"
 
 namespace pillarfield {
@@ -69,6 +70,27 @@ TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
   EXPECT_TRUE(TestFixture::fails(pillar, 6));
   pillar.s1 = fill_dead_zone(pillar.s1, Real{5});
   EXPECT_FALSE(TestFixture::fails(pillar, 6));
+}
+
+TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
+  using Real = RealOf<TypeParam>;
+  const auto open = [](const PillarOf<TypeParam>& pillar, Real doubt) {
+    const auto sum = parity_sum(pillar_diagonals(pillar));
+    return (direct_status(pillar, sum, doubt) & status::kAmbiguous) != 0;
+  };
+  for (std::size_t turns = 0; turns < 4; ++turns) {
+    const auto under = [&](Real opposite, Real threshold) {
+      return pillar_of<TypeParam>(TestFixture::turned({0, 20, opposite, 24}, turns), threshold);
+    };
+    // Parity leaves 44 - 41 = 3 counts for sensel 1, then -3.
+    EXPECT_TRUE(open(under(41, 5), 0));
+    EXPECT_FALSE(open(under(47, 5), 0));
+    EXPECT_FALSE(open(under(47, 5), 3)) << "at the doubt, not within it";
+    EXPECT_TRUE(open(under(47, 5), Real{3.25}));
+    EXPECT_FALSE(open(under(41, 0), 9)) << "silence hides nothing here";
+  }
+  const auto four = pillar_of<TypeParam>({20, 20, 20, 20}, 5);
+  EXPECT_FALSE(open(four, 9));
 }
 
 TYPED_TEST(Parity, NothingRedundantNeverFails) {

@@ -1,0 +1,322 @@
+// Deviations against derivatives taken by differences; the ends against sampled sets of forces.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "pillars.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kCountsPerNewton = 50;
+using Components = std::array<double, 3>;
+
+template <class Force>
+Components components(const Force& force) {
+  return {static_cast<double>(force.shear_x), static_cast<double>(force.shear_y),
+          static_cast<double>(force.normal)};
+}
+
+template <class Precision>
+class Deviations : public testing::Test {
+ protected:
+  using Real = RealOf<Precision>;
+  static Components of(const PillarOf<Precision>& pillar, const std::array<Real, 4>& noise) {
+    const auto solved = solve<Precision>(pillar, kCountsPerNewton);
+    return components(force_deviations(pillar, solved.diagonals,
+                                       {noise[0], noise[1], noise[2], noise[3]}, solved.scale));
+  }
+};
+TYPED_TEST_SUITE(Deviations, Precisions, PrecisionNames);
+
+TYPED_TEST(Deviations, AreTheClosedFormsOfRegionsOneToThree) {
+  const double unit = 2 / kCountsPerNewton;
+  const auto region_1 = TestFixture::of(pillar_of<TypeParam>({30, 20, 25, 35}), {2, 2, 2, 2});
+  EXPECT_NEAR(region_1[0], unit / std::numbers::sqrt2, 1e-8);
+  EXPECT_NEAR(region_1[1], unit / std::numbers::sqrt2, 1e-8);
+  EXPECT_NEAR(region_1[2], unit / 2, 1e-8);
+  const auto region_2 = TestFixture::of(pillar_of<TypeParam>({30, 60, 25, 0}), {2, 2, 2, 2});
+  EXPECT_NEAR(region_2[0], unit, 1e-8);
+  EXPECT_NEAR(region_2[1], unit, 1e-8);
+  EXPECT_NEAR(region_2[2], unit / std::numbers::sqrt2, 1e-8);
+  const auto region_3 = TestFixture::of(pillar_of<TypeParam>({30, 60, 0, 0}), {2, 2, 2, 2});
+  EXPECT_NEAR(region_3[0], unit, 1e-8);
+  EXPECT_NEAR(region_3[1], unit * std::sqrt(5.0 / 8), 1e-8);
+  EXPECT_NEAR(region_3[2], unit / 4, 1e-8);
+}
+
+/// The estimate is linear where it has no kink: differences of it are its derivatives.
+Components deviations_by_differences(const States& states, const std::array<double, 4>& readings,
+                                     const std::array<double, 4>& noise) {
+  constexpr double kStep = 1e-3;
+  Components variances{};
+  for (std::size_t n = 0; n < 4; ++n) {
+    auto more = readings;
+    auto less = readings;
+    more[n] += kStep;
+    less[n] -= kStep;
+    const auto high =
+        components(solve<Double>(pillar_in<Double>(states, more), kCountsPerNewton).force);
+    const auto low =
+        components(solve<Double>(pillar_in<Double>(states, less), kCountsPerNewton).force);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double part = (high[i] - low[i]) / (2 * kStep) * noise[n];
+      variances[i] += part * part;
+    }
+  }
+  return {std::sqrt(variances[0]), std::sqrt(variances[1]), std::sqrt(variances[2])};
+}
+
+TEST(Deviations, AreThoseOfTheEstimateForAllStates) {
+  Random random(71);
+  for (const States& states : all_states()) {
+    for (int i = 0; i < 20; ++i) {
+      std::array<double, 4> readings{};
+      std::array<double, 4> noise{};
+      for (auto& reading : readings) reading = random.uniform(10, 100);
+      for (auto& sigma : noise) sigma = random.uniform(0.1, 3);
+      const auto pillar = pillar_in<Double>(states, readings);
+      const auto solved = solve<Double>(pillar, kCountsPerNewton);
+      const auto actual = components(force_deviations(
+          pillar, solved.diagonals, {noise[0], noise[1], noise[2], noise[3]}, solved.scale));
+      const auto expected = deviations_by_differences(states, readings, noise);
+      for (std::size_t part = 0; part < 3; ++part) {
+        EXPECT_NEAR(actual[part], expected[part], 1e-9) << name_of(states) << ", part " << part;
+      }
+    }
+  }
+}
+
+/// A force that explains readings, in the terms of docs/derivations/pillar_model.md (M4, M5).
+struct Explanation {
+  double sum;
+  double rising;
+  double falling;
+
+  [[nodiscard]] double theta() const { return std::atan2(std::hypot(rising, falling), sum); }
+  [[nodiscard]] double phi() const { return std::atan2(-(rising + falling), falling - rising); }
+  [[nodiscard]] double magnitude() const {
+    return std::hypot(sum, rising, falling) / (2 * kCountsPerNewton);
+  }
+  [[nodiscard]] std::array<double, 4> readings() const {
+    return {(sum + rising) / 2, (sum + falling) / 2, (sum - rising) / 2, (sum - falling) / 2};
+  }
+};
+
+constexpr double kHidden = 20;  // what silence hides: a threshold of 8 and a dead zone of 12
+
+template <class Precision>
+PillarOf<Precision> hiding_pillar(const std::array<double, 4>& readings) {
+  using Real = RealOf<Precision>;
+  const auto sensel = [](double reading) {
+    return fill_dead_zone(
+        classify(Precision::raw_sensel(static_cast<Real>(reading) - Real{12}), Real{8}), Real{12});
+  };
+  return {sensel(readings[0]), sensel(readings[1]), sensel(readings[2]), sensel(readings[3])};
+}
+
+template <class Precision>
+struct Ends {
+  decltype(direction_interval(PillarOf<Precision>{}, {}, {}, {})) interval;
+  double slack;
+
+  explicit Ends(const PillarOf<Precision>& pillar)
+      : slack(64 * std::numeric_limits<RealOf<Precision>>::epsilon()) {
+    const auto solved = solve<Precision>(pillar, kCountsPerNewton);
+    interval = direction_interval(pillar, solved.diagonals, solved.sum, solved.scale);
+  }
+
+  /// How far phi lies counter-clockwise of phi_low, and how far phi_high does.
+  [[nodiscard]] double turn(double phi) const {
+    const double angle = std::remainder(phi - static_cast<double>(interval.phi_low), 2 * kPi);
+    return angle < -slack ? angle + 2 * kPi : angle;
+  }
+  [[nodiscard]] double turn_high() const {
+    if (interval.phi_high - interval.phi_low > 6) return 2 * kPi;
+    return turn(static_cast<double>(interval.phi_high));
+  }
+};
+
+template <class Precision>
+class DirectionIntervals : public testing::Test {
+ protected:
+  static void expect_holds(const Ends<Precision>& ends, const Explanation& truth) {
+    const auto& interval = ends.interval;
+    EXPECT_GE(truth.theta(), static_cast<double>(interval.theta_low) - ends.slack);
+    EXPECT_LE(truth.theta(), static_cast<double>(interval.theta_high) + ends.slack);
+    EXPECT_GE(truth.magnitude(), static_cast<double>(interval.magnitude_low) * (1 - ends.slack));
+    EXPECT_LE(truth.magnitude(), static_cast<double>(interval.magnitude_high) * (1 + ends.slack));
+    if (truth.theta() < 1e-3) return;  // phi means nothing.
+    EXPECT_LE(ends.turn(truth.phi()), ends.turn_high() + ends.slack / truth.theta());
+  }
+};
+TYPED_TEST_SUITE(DirectionIntervals, Precisions, PrecisionNames);
+
+Explanation random_truth(Random& random) {
+  const auto force = random.force(random.decades(0.05, 4));
+  const double k = kCountsPerNewton;
+  return {2 * k * force.normal, std::numbers::sqrt2 * k * (force.shear_x + force.shear_y),
+          std::numbers::sqrt2 * k * (force.shear_y - force.shear_x)};
+}
+
+TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsSilent) {
+  Random random(72);
+  std::array<int, 5> usable{};
+  for (int i = 0; i < 100'000; ++i) {
+    const Explanation truth = random_truth(random);
+    const auto readings = truth.readings();
+    ++usable[static_cast<std::size_t>(
+        std::ranges::count_if(readings, [](double v) { return v > kHidden; }))];
+    TestFixture::expect_holds(Ends<TypeParam>(hiding_pillar<TypeParam>(readings)), truth);
+  }
+  for (const int cases : usable) EXPECT_GT(cases, 1'000);
+}
+
+/// The extremes that explanations reach: those with the same usable readings and silence elsewhere.
+struct Reached {
+  double theta_low = kPi;
+  double theta_high = 0;
+  double turn_low = 2 * kPi;
+  double turn_high = 0;
+  double magnitude_low = std::numeric_limits<double>::infinity();
+  double magnitude_high = 0;
+
+  void add(const Explanation& force, const Ends<Double>& ends) {
+    theta_low = std::min(theta_low, force.theta());
+    theta_high = std::max(theta_high, force.theta());
+    magnitude_low = std::min(magnitude_low, force.magnitude());
+    magnitude_high = std::max(magnitude_high, force.magnitude());
+    turn_low = std::min(turn_low, std::abs(ends.turn(force.phi())));
+    turn_high = std::max(turn_high, ends.turn(force.phi()));
+  }
+};
+
+/// Whether a force gives the usable readings back and leaves the others silent.
+bool explains(const Explanation& force, const std::array<double, 4>& readings) {
+  const auto back = force.readings();
+  for (std::size_t n = 0; n < 4; ++n) {
+    const bool usable = readings[n] > kHidden;
+    if (usable ? std::abs(back[n] - readings[n]) > 1e-9 : back[n] > kHidden) return false;
+  }
+  return true;
+}
+
+/// Scans the forces that explain readings: every parity sum, and where a diagonal is silent every
+/// difference.
+Reached scan(const std::array<double, 4>& readings, const Ends<Double>& ends) {
+  constexpr int kSteps = 400;
+  Reached reached;
+  const auto differences = [&](double sum, double p, double q) {
+    if (p > kHidden) return std::vector<double>{2 * p - sum};
+    if (q > kHidden) return std::vector<double>{sum - 2 * q};
+    std::vector<double> all;
+    const double most = 2 * kHidden - sum;
+    for (int i = -20; i <= 20; ++i) all.push_back(most * i / 20);
+    return all;
+  };
+  for (int i = 0; i <= kSteps; ++i) {
+    const double sum = 4.0 * kHidden * i / kSteps;
+    for (const double rising : differences(sum, readings[0], readings[2])) {
+      for (const double falling : differences(sum, readings[1], readings[3])) {
+        const Explanation force = {sum, rising, falling};
+        if (explains(force, readings)) reached.add(force, ends);
+      }
+    }
+  }
+  return reached;
+}
+
+TEST(DirectionIntervals, EndWhereTheExplanationsEnd) {
+  const std::array<std::array<double, 4>, 7> silent_somewhere = {{
+      {30, 40, 0, 0},
+      {0, 50, 21, 0},
+      {38, 0, 0, 38},
+      {60, 0, 0, 0},
+      {0, 0, 25, 0},
+      {0, 0, 0, 200},
+      {0, 0, 0, 0},
+  }};
+  for (const auto& readings : silent_somewhere) {
+    SCOPED_TRACE(testing::Message()
+                 << readings[0] << ' ' << readings[1] << ' ' << readings[2] << ' ' << readings[3]);
+    const Ends<Double> ends(hiding_pillar<Double>(readings));
+    const Reached reached = scan(readings, ends);
+    EXPECT_NEAR(ends.interval.theta_low, reached.theta_low, 0.01);
+    EXPECT_NEAR(ends.interval.theta_high, reached.theta_high, 1e-9);
+    EXPECT_NEAR(ends.interval.magnitude_low, reached.magnitude_low, 0.01);
+    EXPECT_NEAR(ends.interval.magnitude_high, reached.magnitude_high, 1e-9);
+    EXPECT_NEAR(0, reached.turn_low, 0.02);
+    EXPECT_NEAR(ends.turn_high(), reached.turn_high, 0.05);
+  }
+}
+
+TYPED_TEST(DirectionIntervals, AreTheEstimateWhereTheForceIsDetermined) {
+  Random random(73);
+  for (int i = 0; i < 10'000; ++i) {
+    const auto readings = rounded_readings<TypeParam>(random.force(1), kCountsPerNewton);
+    if (count_positive(readings) < 3) continue;
+    const auto pillar = pillar_of<TypeParam>(readings);
+    const Ends<TypeParam> ends(pillar);
+    const auto direction = direction_of(solve<TypeParam>(pillar, kCountsPerNewton).force);
+    EXPECT_NEAR(ends.interval.theta_low, direction.theta, ends.slack);
+    EXPECT_NEAR(ends.interval.theta_high, direction.theta, ends.slack);
+    EXPECT_NEAR(ends.interval.magnitude_low, direction.magnitude, ends.slack);
+    EXPECT_NEAR(ends.interval.magnitude_high, direction.magnitude, ends.slack);
+    EXPECT_EQ(ends.interval.phi_low, ends.interval.phi_high);
+  }
+}
+
+TYPED_TEST(DirectionIntervals, HaveTheHalfWidthsOfTheDesign) {
+  using Real = RealOf<TypeParam>;
+  double theta = 0;
+  double phi = 0;
+  for (int i = 0; i <= 4'000; ++i) {
+    const auto ratio = static_cast<Real>(std::pow(10, i / 1'000.0));
+    for (const FourReadings<TypeParam>& readings :
+         {FourReadings<TypeParam>{ratio, 1, 0, 0}, FourReadings<TypeParam>{0, 1, ratio, 0}}) {
+      const Ends<TypeParam> ends(pillar_of<TypeParam>(readings));
+      theta = std::max<double>(theta, (ends.interval.theta_high - ends.interval.theta_low) / 2);
+      phi = std::max(phi, ends.turn_high() / 2);
+    }
+  }
+  EXPECT_NEAR(theta, 0.3077, 5e-5);
+  EXPECT_NEAR(phi, 0.0709, 5e-5 + 1e-6);
+}
+
+TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
+  using Real = RealOf<TypeParam>;
+  const std::array<Real, 6> odd = {std::numeric_limits<Real>::denorm_min(),
+                                   static_cast<Real>(1e-30),
+                                   1,
+                                   100,
+                                   static_cast<Real>(1e30),
+                                   static_cast<Real>(1e33)};
+  Random random(74);
+  for (const States& states : all_states()) {
+    for (int i = 0; i < 50; ++i) {
+      FourReadings<TypeParam> readings;
+      for (auto& reading : readings) reading = odd[random.below(odd.size())];
+      const auto pillar = pillar_in<TypeParam>(states, readings);
+      const auto solved = solve<TypeParam>(pillar, kCountsPerNewton);
+      const auto interval = direction_interval(pillar, solved.diagonals, solved.sum, solved.scale);
+      const Real most = static_cast<Real>(1e6);
+      const auto deviations =
+          force_deviations(pillar, solved.diagonals, {most, most, most, most}, solved.scale);
+      for (const Real value : {interval.theta_low, interval.theta_high, interval.phi_low,
+                               interval.phi_high, interval.magnitude_low, interval.magnitude_high,
+                               deviations.shear_x, deviations.shear_y, deviations.normal}) {
+        ASSERT_TRUE(std::isfinite(value)) << name_of(states);
+      }
+      ASSERT_LE(interval.theta_low, interval.theta_high + 1e-6F) << name_of(states);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
