@@ -46,7 +46,7 @@ plot $borders using 1:6:(top) with filledcurves fillcolor '#E2EFF8', \
      '' using 1:(lifts($4)) with lines linetype 4, \
      '' using 1:(lifts($5)) with lines linetype 8, \
      $corners using 1:2:3 with labels offset 0,0.9, \
-     '' using 1:2 with points linetype 1 pointsize 1
+     '' using 1:2 with points linetype 1 pointtype 7 pointsize 1
 )";
 
 /// phi, the borders of sensels 1 to 4, and the two lowest of these: where regions 2 and 3 begin.
@@ -88,7 +88,7 @@ set border 15
 set label 'V_2 = 0' at 1.12, 1.04 center textcolor linetype 7
 set label 'V_1 = 0' at pi - 1.12, 1.04 center textcolor linetype 6
 set label 'contours: R = V_3 / V_4' at pi/4 - 0.03, 0.86
-set key at 3*pi/4 + 0.04, 0.92 samplen 1
+set key at 3*pi/4 + 0.04, 0.93 samplen 1
 plot $border using 1:4:(pi/2) with filledcurves fillcolor '#FAE6BE', \
      '' using 1:($1 > 1.57 ? $2 : NaN) with lines linetype 6, \
      '' using 1:($1 < 1.571 ? $3 : NaN) with lines linetype 7, \
@@ -172,7 +172,7 @@ std::string uncertainty() {
 }
 
 constexpr const char* kMagnitudeScript = R"(
-set multiplot layout 1,3 margins 0.095, 0.795, 0.22, 0.9 spacing 0.025
+set multiplot layout 1,3 margins 0.095, 0.795, 0.24, 0.9 spacing 0.025
 set xrange [0 : 108]
 set yrange [0 : 108]
 set xtics 20
@@ -223,7 +223,7 @@ void draw_uncertainty(const std::filesystem::path& stem) {
 }
 
 void draw_magnitude(const std::filesystem::path& stem, const Parameters& parameters) {
-  gnuplot::draw(stem, magnitudes(parameters) + kMagnitudeScript, {1040, 360});
+  gnuplot::draw(stem, magnitudes(parameters) + kMagnitudeScript, {1040, 370});
 }
 
 void draw_figures(const std::filesystem::path& folder, const Parameters& parameters) {

@@ -47,7 +47,7 @@ struct Format {
 
 Format svg_format(Size size) {
   return {".svg",
-          fmt::format("set terminal svg enhanced size {},{} dynamic font 'sans-serif,13' "
+          fmt::format("set terminal svg enhanced size {},{} dynamic font 'sans-serif,14' "
                       "background '#ffffff'\n",
                       size.width_px, size.height_px),
           "</svg>"};
@@ -56,7 +56,7 @@ Format svg_format(Size size) {
 Format png_format(Size size) {
   return {".png",
           fmt::format("set terminal pngcairo enhanced size {},{} font 'sans-serif,13' fontscale 2 "
-                      "linewidth 2 pointscale 2 background '#ffffff'\n",
+                      "linewidth 2 pointscale 2.6 background '#ffffff'\n",
                       2 * size.width_px, 2 * size.height_px),
           "IEND"};
 }

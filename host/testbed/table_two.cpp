@@ -131,6 +131,15 @@ Reproduced reproduced(const Row& row) {
   return {near(&Statistics::mean), near(&Statistics::deviation), near(&Statistics::mean_error)};
 }
 
+double rms_difference(const TableTwo& table) {
+  double squares = 0;
+  for (const Row& row : table.rows) {
+    const double apart = distance(row.published, row.paper.expected);
+    squares += apart * apart;
+  }
+  return std::sqrt(squares / (3 * kRows));
+}
+
 std::string as_printed(double figure) {
   const bool three = std::abs(std::remainder(figure, 1e-3)) < 1e-9;
   return fmt::format("{:.{}f}", figure, three ? 3 : 4);

@@ -64,6 +64,10 @@ struct TableTwo {
   Audit audit;
 };
 
+/// Root mean square, over the paper's 18 figures, of the difference between what it prints and what
+/// is expected of its equations here, rad.
+[[nodiscard]] double rms_difference(const TableTwo& table);
+
 /// Makes Table II from `runs` runs, at least 2; some 15 µs each.
 [[nodiscard]] TableTwo table_two(const Parameters& parameters, std::uint64_t runs);
 

@@ -45,6 +45,12 @@ Force true_force(const Parameters& parameters, const Site& site, const Misalignm
                     site.phi_rad + error.phi_rad + share * error.phi_play_rad);
 }
 
+/// What the direct solve knows: the sensor, rounding to whole counts being noise as well.
+PillarSensor calibrated(PillarSensor sensor) {
+  sensor.noise_counts = std::hypot(sensor.noise_counts, 1 / std::sqrt(12.0));
+  return sensor;
+}
+
 Trial measure(const PillarSensor& sensor, double applied_n, Force truth,
               std::span<const float, 4> noise) {
   Trial trial;
@@ -52,7 +58,7 @@ Trial measure(const PillarSensor& sensor, double applied_n, Force truth,
   trial.truth = truth;
   trial.raw = read_sensels(truth, sensor, noise);
   trial.paper = estimate_pillar(trial.raw, without_calibration(sensor), Estimator::paper);
-  trial.direct = estimate_pillar(trial.raw, sensor, Estimator::direct);
+  trial.direct = estimate_pillar(trial.raw, calibrated(sensor), Estimator::direct);
   return trial;
 }
 
