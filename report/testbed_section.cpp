@@ -116,8 +116,8 @@ std::string scan_table(const Parameters& parameters) {
 }
 
 constexpr const char* kVerdict = R"(
-What this sensor reproduces of θ in region 1 is the scatter (SD {deviation:.3f}, printed 0.240) and the error ({error:.3f}, printed 0.177), but
-its mean is {mean:.3f}, printed 0.551: a dead zone that is the same for all four sensels shortens the normal force, so every force
+The scatter of θ in region 1 comes near (SD {deviation:.3f}, printed 0.240), and so does the error ({error:.3f}, printed 0.177), but
+the mean is {mean:.3f}, printed 0.551: a dead zone that is the same for all four sensels shortens the normal force, so every force
 comes out flatter, and errors of one sign cannot average to 0.080 and be 0.177 in size. (A single outlier at 10 N, of 0.8 rad,
 would give the printed mean and SD, with an error of 0.08.) Not reproduced are the scatter of φ in regions 1 and 2, since φ is read
 from differences, in which a dead zone of all sensels cancels, and θ in region 2, which comes out too large here and
@@ -129,8 +129,9 @@ near mean and SD of both angles in region 1 ({threshold_mean:.3f} and {threshold
 silent. Then no solve can know the force, and ours says so: such forces are flagged as ambiguous.
 (`pillarfield testbed --dead-zone 0 --threshold {threshold_counts:.0f}`)
 
-With the dead zone known, the SD of θ in region 1 is {direct_deviation:.3f} in this run and {direct_expected:.3f} on average: the run's mean
-shows the probe's lean, not the solve's error. What is left in regions 2 and 3 is of ambiguous forces, at 10 N and up to some 50 N. {wrong} of {forces} forces show another region than they have in
+With the dead zone known, the SD of θ in region 1 is {direct_deviation:.3f} in this run and {direct_expected:.3f} on average, which is that of the few runs where the
+probe leans so far that a second sensel is silent at 10 N; the mean shows the lean, not an error of the solve. What is left in regions 2
+and 3 is of ambiguous forces, at 10 N and up to some 50 N. {wrong} of {forces} forces show another region than they have in
 the ideal model; {unflagged} of these bear no status bit that says so.
 )";
 
