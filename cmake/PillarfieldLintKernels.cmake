@@ -8,13 +8,17 @@ if(NOT PILLARFIELD_CLANG)
 endif()
 
 set(lint_includes "")
+set(lint_kernels "")
 foreach(path IN LISTS kernel_paths)
   if(NOT path MATCHES "\\.cl$")
     list(APPEND lint_includes -include ${path})
+  else()
+    list(APPEND lint_kernels ${path})
   endif()
 endforeach()
 set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
-  -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE)
+  -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
+  -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_BASELINE)
 
 set(lint_commands "")
 foreach(sensel uchar ushort float)
@@ -25,7 +29,7 @@ foreach(sensel uchar ushort float)
         -Wno-unused-function -Werror -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
         -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f
         ${stages} ${lint_includes}
-        ${PROJECT_SOURCE_DIR}/kernels/solve_frame.cl)
+        ${lint_kernels})
     endforeach()
   endforeach()
 endforeach()

@@ -15,8 +15,8 @@
  *
  * What may stand in kernels/maths is what means the same in all three: masks joined by & and |,
  * negated by !; choices written c ? x : y with both sides of lane type; structs passed by value;
- * + - * /, comparisons, fabs, sqrt, hypot, sin, cos, asin, atan, atan2. No contraction: the device
- * and a host built with -ffp-contract=off then agree bit for bit in all but the last five.
+ * + - * /, comparisons, fabs, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction: the
+ * device and a host built with -ffp-contract=off then agree bit for bit in all but the last six.
  */
 #ifndef __cplusplus /* OpenCL C */
 
@@ -57,6 +57,7 @@ using std::atan2;
 using std::cos;
 using std::fabs;
 using std::hypot;
+using std::pow;
 using std::sin;
 using std::sqrt;
 

@@ -10,6 +10,7 @@
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
  *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
+ *   PF_POWER_EXPONENT, PF_POWER_REFERENCE   stage: readings are straightened by a power law
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
  *   PF_DOUBT                        counts by which noise may shift what parity says
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
@@ -19,163 +20,6 @@
  *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from the plane instead
  *
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
-
-/* The values of `PF_LANES` pillars in one row of sensels. */
-typedef struct {
-  Real left;
-  Real right;
-} RealPair;
-
-#define PF_LANE_TYPE(type) PF_JOIN(type, PF_LANES)
-#define PF_VLOAD PF_JOIN(vload, PF_LANES)
-#define PF_VSTORE PF_JOIN(vstore, PF_LANES)
-
-/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. At the end of a
- * row `count` is below PF_LANES, nothing beyond it is read, and the other lanes are zero. */
-#if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type)                                         \
-  static inline RealPair load_##name(global const type* row, uint count) { \
-    RealPair pair;                                                         \
-    pair.left = (Real)row[0];                                              \
-    pair.right = (Real)row[1];                                             \
-    return pair;                                                           \
-  }
-#else
-#define PF_DEFINE_LOAD(name, type)                                                           \
-  static inline RealPair load_##name(global const type* row, uint count) {                   \
-    PF_LANE_TYPE(type) low, high;                                                            \
-    if (count == PF_LANES) {                                                                 \
-      low = PF_VLOAD(0, row);                                                                \
-      high = PF_VLOAD(1, row);                                                               \
-    } else {                                                                                 \
-      type padded[2 * PF_LANES];                                                             \
-      for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0;  \
-      low = PF_VLOAD(0, padded);                                                             \
-      high = PF_VLOAD(1, padded);                                                            \
-    }                                                                                        \
-    RealPair pair;                                                                           \
-    pair.left = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.even, high.even)); \
-    pair.right = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.odd, high.odd));  \
-    return pair;                                                                             \
-  }
-#endif
-
-PF_DEFINE_LOAD(readings, PF_SENSEL)
-PF_DEFINE_LOAD(plane, float)
-PF_DEFINE_LOAD(mask, uchar)
-
-/* Writes the first `count` lanes. */
-static inline void store_plane(Real value, global float* plane, uint count) {
-#if PF_LANES == 1
-  *plane = value;
-#else
-  if (count == PF_LANES) {
-    PF_VSTORE(value, 0, plane);
-  } else {
-    float lanes[PF_LANES];
-    PF_VSTORE(value, 0, lanes);
-    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
-  }
-#endif
-}
-
-static inline void store_status(Bits value, global uchar* plane, uint count) {
-#if PF_LANES == 1
-  *plane = (uchar)value;
-#else
-  const PF_LANE_TYPE(uchar) bytes = PF_JOIN(convert_uchar, PF_LANES)(value);
-  if (count == PF_LANES) {
-    PF_VSTORE(bytes, 0, plane);
-  } else {
-    uchar lanes[PF_LANES];
-    PF_VSTORE(bytes, 0, lanes);
-    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
-  }
-#endif
-}
-
-/* A raw reading through the stages of the plan. */
-static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, Real good) {
-  Sensel sensel = raw_sensel(raw);
-#ifdef PF_LARGEST_READING
-  sensel = reject_absurd(sensel, (Real)(PF_LARGEST_READING));
-#endif
-#ifdef PF_MASK
-  sensel = apply_mask(sensel, good);
-#endif
-#ifdef PF_FULL_SCALE
-  sensel = mark_saturated(sensel, (Real)(PF_FULL_SCALE));
-#endif
-#ifdef PF_TARE
-  sensel = subtract_tare(sensel, tare);
-#endif
-#ifdef PF_GAIN
-  sensel = apply_gain(sensel, gain);
-#endif
-  sensel = classify(sensel, (Real)(PF_THRESHOLD));
-#ifdef PF_DEAD_ZONE
-  sensel = fill_dead_zone(sensel, dead_zone);
-#endif
-  return sensel;
-}
-
-/* The calibration planes [rows, stride]; null where the plan has none. */
-typedef struct {
-  global const float* tare;
-  global const float* gain;
-  global const float* dead_zone;
-  global const uchar* mask;
-  global const float* noise;
-  size_t stride;
-} Planes;
-
-typedef struct {
-  Sensel left;
-  Sensel right;
-} SenselPair;
-
-/* The sensels of one row under `count` pillars. `offset` is the first one's place in the planes. */
-static inline SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset,
-                                      uint count) {
-  const RealPair readings = load_readings(raw, count);
-  RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
-  RealPair gains = tares;
-  RealPair dead_zones = tares;
-  RealPair good = tares;
-#ifdef PF_TARE
-  tares = load_plane(planes.tare + offset, count);
-#endif
-#ifdef PF_GAIN
-  gains = load_plane(planes.gain + offset, count);
-#endif
-#ifdef PF_DEAD_ZONE
-  dead_zones = load_plane(planes.dead_zone + offset, count);
-#endif
-#ifdef PF_MASK
-  good = load_mask(planes.mask + offset, count);
-#endif
-  SenselPair pair;
-  pair.left = prepare_sensel(readings.left, tares.left, gains.left, dead_zones.left, good.left);
-  pair.right =
-      prepare_sensel(readings.right, tares.right, gains.right, dead_zones.right, good.right);
-  return pair;
-}
-
-#ifdef PF_UNCERTAINTY
-/* The noise of the sensels of one row after their gain, counts. */
-static inline RealPair read_noise(Planes planes, size_t offset, uint count) {
-  RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
-#ifdef PF_NOISE
-  noise = load_plane(planes.noise + offset, count);
-#endif
-#ifdef PF_GAIN
-  const RealPair gains = load_plane(planes.gain + offset, count);
-  noise.left = noise.left * gains.left;
-  noise.right = noise.right * gains.right;
-#endif
-  return noise;
-}
-#endif
 
 static inline Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
@@ -243,8 +87,9 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, 
     store_plane(direction.phi, phi + index, count);
 #endif
 #ifdef PF_UNCERTAINTY
-    const RealPair noise_top = read_noise(planes, offset, count);
-    const RealPair noise_bottom = read_noise(planes, offset + planes.stride, count);
+    const RealPair noise_top = read_noise(first, planes, offset, count);
+    const RealPair noise_bottom =
+        read_noise(first + row_stride, planes, offset + planes.stride, count);
     const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
     const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
     const Force deviations = force_deviations(pillar, diagonals, noises, scale);

@@ -32,6 +32,7 @@ struct SolveOptions {
   std::optional<double> full_scale_counts;
   std::optional<double> parity_tolerance_counts;
   std::optional<double> noise_counts;
+  std::optional<double> baseline_time_s;
   DeviceOptions device;
   bool json = false;
   bool quiet = false;
@@ -48,24 +49,43 @@ bool asks_for(const SolveOptions& options, const char* output) {
   return std::ranges::find(options.outputs, output) != options.outputs.end();
 }
 
+/// Seconds from one frame to the next; throws where the file does not tell.
+double frame_interval(const SolveOptions& options, FrameSource& source) {
+  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+  if (source.frames() >= 2) {
+    const double first = source.read(0, frame);
+    const double interval = (source.read(source.frames() - 1, frame) - first) /
+                            static_cast<double>(source.frames() - 1);
+    if (interval > 0) return interval;
+  }
+  throw Error(options.input, "its frames do not tell the time from one to the next",
+              "solve without following the baseline");
+}
+
 /// The plan that the file asks for, then the scene, then the command line.
-SolverPlan plan_of(const SolveOptions& options, const FrameSource& source) {
+SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
   plan.sensel_type = source.sensel_type();
   plan.calibration = source.calibration();
+  std::optional<double> baseline_time_s;
   if (!options.scene.empty()) {
     const Scene scene = load_scene(options.scene);
     plan.skin.counts_per_newton = scene.skin.counts_per_newton;
     plan.skin.threshold_counts = scene.skin.threshold_counts;
     plan.skin.full_scale_counts = scene.skin.full_scale_counts;
     set_solver(plan, scene);
+    baseline_time_s = scene.baseline_time_s;
   }
   if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
   if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
   if (options.full_scale_counts) plan.skin.full_scale_counts = options.full_scale_counts;
   if (options.parity_tolerance_counts) {
     plan.parity_tolerance_counts = options.parity_tolerance_counts;
+  }
+  if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
+  if (baseline_time_s) {
+    plan.baseline_rate = baseline_rate(*baseline_time_s, frame_interval(options, source));
   }
   if (options.noise_counts) plan.noise_counts = options.noise_counts;
   if (options.estimator) plan.estimator = *options.estimator;
@@ -269,6 +289,11 @@ void add_solve(CLI::App& app, Work& work) {
                       "Flag pillars whose redundant reading is off by more counts [not tested]");
   command->add_option("--noise", options->noise_counts,
                       "Standard deviation of a reading, counts [the calibration's or scene's]");
+  command
+      ->add_option("--follow-baseline", options->baseline_time_s,
+                   "Let the tare of untouched sensels follow a drift, time constant in seconds "
+                   "[stays]")
+      ->check(CLI::Range(1e-6, 1e9).description("SECONDS"));
   add_device_options(*command, options->device);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");

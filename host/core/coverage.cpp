@@ -94,7 +94,8 @@ void Coverage::add(const ForceFieldView& solved, const ForceFieldView& truth) {
       counts.within[component] += std::abs(errors[component]) <= band ? 1U : 0U;
     }
     const Force force = {truth.shear_x[i], truth.shear_y[i], truth.normal[i]};
-    counts.between_ends += lies_between_ends(double_precision::direction_of(force), stated) ? 1U : 0U;
+    counts.between_ends +=
+        lies_between_ends(double_precision::direction_of(force), stated) ? 1U : 0U;
   }
 }
 

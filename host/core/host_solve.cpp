@@ -1,5 +1,7 @@
 #include "core/host_solve.h"
 
+#include <algorithm>
+
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
 
@@ -13,16 +15,22 @@ class SenselReader {
  public:
   SenselReader(const SolverPlan& plan, const FrameView& frame) : plan_(plan), frame_(frame) {}
 
-  /// Noise after the gain, counts.
+  /// Noise as the corrections leave it, counts.
   [[nodiscard]] float noise(std::size_t row, std::size_t col) const {
     const Calibration& calibration = plan_.calibration;
     const std::size_t index = row * frame_.cols + col;
-    const float raw_noise = calibration.noise.empty() ? static_cast<float>(reading_noise(plan_))
-                                                      : calibration.noise[index];
-    return calibration.gain.empty() ? raw_noise : raw_noise * calibration.gain[index];
+    float noise = calibration.noise.empty() ? static_cast<float>(reading_noise(plan_))
+                                            : calibration.noise[index];
+    if (!calibration.gain.empty()) noise = noise * calibration.gain[index];
+    if (!plan_.skin.power_law) return noise;
+    float reading = raw(row, col);
+    if (!calibration.tare.empty()) reading = reading - calibration.tare[index];
+    if (!calibration.gain.empty()) reading = reading * calibration.gain[index];
+    return noise * maths::power_law_slope(reading, exponent(), reference());
   }
 
-  [[nodiscard]] maths::Sensel operator()(std::size_t row, std::size_t col) const {
+  /// Before any calibration.
+  [[nodiscard]] maths::Sensel judged(std::size_t row, std::size_t col) const {
     const Calibration& calibration = plan_.calibration;
     const std::size_t index = row * frame_.cols + col;
     maths::Sensel sensel = maths::raw_sensel(raw(row, col));
@@ -33,8 +41,13 @@ class SenselReader {
     if (plan_.skin.full_scale_counts) {
       sensel = maths::mark_saturated(sensel, static_cast<float>(*plan_.skin.full_scale_counts));
     }
-    if (!calibration.tare.empty()) sensel = maths::subtract_tare(sensel, calibration.tare[index]);
-    if (!calibration.gain.empty()) sensel = maths::apply_gain(sensel, calibration.gain[index]);
+    return sensel;
+  }
+
+  [[nodiscard]] maths::Sensel operator()(std::size_t row, std::size_t col) const {
+    const Calibration& calibration = plan_.calibration;
+    const std::size_t index = row * frame_.cols + col;
+    maths::Sensel sensel = corrected(row, col);
     sensel = maths::classify(sensel, static_cast<float>(plan_.skin.threshold_counts));
     if (!calibration.dead_zone.empty()) {
       sensel = maths::fill_dead_zone(sensel, calibration.dead_zone[index]);
@@ -43,6 +56,24 @@ class SenselReader {
   }
 
  private:
+  /// Up to the classification.
+  [[nodiscard]] maths::Sensel corrected(std::size_t row, std::size_t col) const {
+    const Calibration& calibration = plan_.calibration;
+    const std::size_t index = row * frame_.cols + col;
+    maths::Sensel sensel = judged(row, col);
+    if (!calibration.tare.empty()) sensel = maths::subtract_tare(sensel, calibration.tare[index]);
+    if (!calibration.gain.empty()) sensel = maths::apply_gain(sensel, calibration.gain[index]);
+    if (plan_.skin.power_law) sensel = maths::apply_power_law(sensel, exponent(), reference());
+    return sensel;
+  }
+
+  [[nodiscard]] float exponent() const {
+    return static_cast<float>(plan_.skin.power_law->exponent);
+  }
+  [[nodiscard]] float reference() const {
+    return static_cast<float>(plan_.skin.power_law->reference_counts);
+  }
+
   [[nodiscard]] float raw(std::size_t row, std::size_t col) const {
     const std::size_t index = row * frame_.row_stride + col;
     switch (frame_.type) {
@@ -127,7 +158,32 @@ class PillarSolver {
   maths::ForceScale scale_{};
 };
 
+/// Whether anything presses in the 3 x 3 pillars around one.
+bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
+  const std::size_t last_row = std::min<std::size_t>(row + 1, forces.rows - 1);
+  const std::size_t last_col = std::min<std::size_t>(col + 1, forces.cols - 1);
+  int bits = 0;
+  for (std::size_t r = row == 0 ? 0 : row - 1; r <= last_row; ++r) {
+    for (std::size_t c = col == 0 ? 0 : col - 1; c <= last_col; ++c) {
+      bits |= forces.status[r * forces.cols + c];
+    }
+  }
+  return (bits & PF_STATUS_PRESSED) != 0;
+}
+
 }  // namespace
+
+void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces) {
+  const SenselReader sensel(plan, frame);
+  const auto rate = static_cast<float>(plan.baseline_rate.value_or(0));
+  for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
+    for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
+      const int untouched = is_touched(forces, row / 2, col / 2) ? 0 : 1;
+      float& tare = plan.calibration.tare[row * frame.cols + col];
+      tare = maths::follow_tare(tare, sensel.judged(row, col), untouched, rate);
+    }
+  }
+}
 
 ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
   ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());

@@ -14,4 +14,8 @@ namespace pillarfield {
 /// `frame` is of the plan's size and type; the result is [pillar rows, pillar cols].
 ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
 
+/// Lets `plan.calibration.tare` follow a frame that was just solved into `forces`, as the device
+/// does where `plan.baseline_rate` is set. The tare must be there.
+void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces);
+
 }  // namespace pillarfield

@@ -115,6 +115,9 @@ void check(const Scene& scene, const char* where) {
     check_range(where, "parity_tolerance_counts", *scene.parity_tolerance_counts,
                 kParityToleranceCounts);
   }
+  if (scene.baseline_time_s) {
+    check_range(where, "baseline_time_s", *scene.baseline_time_s, kBaselineTimeS);
+  }
   if (const Chart* chart = std::get_if<Chart>(&scene.load)) {
     check_chart(*chart, scene.skin, where);
     return;

@@ -37,11 +37,12 @@ inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
 }};
 inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
 
-inline constexpr std::array<Quantity<SensorModel>, 6> kSensorQuantities = {{
+inline constexpr std::array<Quantity<SensorModel>, 7> kSensorQuantities = {{
     {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},
     {"gain_spread", &SensorModel::gain_spread, {0, 0.3, false, true}},
     {"tare_counts", &SensorModel::tare_counts, {0, 1e6}},
     {"tare_spread_counts", &SensorModel::tare_spread_counts, {0, 1e6}},
+    {"drift_counts_per_s", &SensorModel::drift_counts_per_s, {0, 1e6}},
     {"noise_counts", &SensorModel::noise_counts, {0, 1e6}},
     {"dead_share", &SensorModel::dead_share, {0, 1}},
 }};
@@ -94,6 +95,7 @@ inline constexpr Range kPathLoadN = {0, 1e6};
 inline constexpr Range kRateHz = {1e-6, 1e6};
 inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
+inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};

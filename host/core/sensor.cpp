@@ -88,6 +88,7 @@ Sensor::Sensor(const Scene& scene)
       full_scale_counts_(
           scene.skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity())),
       seed_(scene.seed),
+      rate_hz_(scene.rate_hz),
       calibration_(draw_calibration(scene)) {}
 
 SenselType Sensor::sensel_type() const {
@@ -98,6 +99,7 @@ SenselType Sensor::sensel_type() const {
 void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
                       FrameBuffer& raw) const {
   respond(row, signal);
+  if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
   if (model_.noise_counts > 0) add_noise(frame, row, signal);
   if (!calibration_.mask.empty()) silence_dead(row, signal);
   convert(row, signal, raw);
@@ -117,6 +119,13 @@ void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
     const auto tare = row_of(calibration_.tare, row, signal.size());
     for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += tare[i];
   }
+}
+
+void Sensor::add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
+  std::vector<float> speed(signal.size());
+  random::fill_normal({seed_, random::Stream::drift, 0, row}, speed);
+  const double spread_counts = model_.drift_counts_per_s * static_cast<double>(frame) / rate_hz_;
+  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += spread_counts * speed[i];
 }
 
 void Sensor::add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {

@@ -13,7 +13,7 @@ namespace pillarfield {
 /// The sensels of a scene: what stands between the model's V and the raw reading, in this order,
 /// each stage only where the scene lists it (docs/scenes.md):
 ///
-///     dead zone, sensitivity, tare, noise, full scale and rounding, dead sensels.
+///     dead zone, sensitivity, tare, drift, noise, full scale and rounding, dead sensels.
 class Sensor {
  public:
   /// Draws the planes that differ from sensel to sensel. Needs a scene that passes check().
@@ -29,6 +29,7 @@ class Sensor {
 
  private:
   void respond(std::uint32_t row, std::span<double> signal) const;
+  void add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void convert(std::uint32_t row, std::span<const double> signal, FrameBuffer& raw) const;
   void silence_dead(std::uint32_t row, std::span<double> signal) const;
@@ -36,6 +37,7 @@ class Sensor {
   SensorModel model_;
   double full_scale_counts_;
   std::uint64_t seed_;
+  double rate_hz_;
   Calibration calibration_;
 };
 

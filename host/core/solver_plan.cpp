@@ -38,6 +38,9 @@ void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.estimator = scene.estimator;
   plan.angles = scene.angles;
   plan.uncertainty = scene.uncertainty;
+  if (scene.baseline_time_s) {
+    plan.baseline_rate = baseline_rate(*scene.baseline_time_s, 1 / scene.rate_hz);
+  }
   if (scene.sensor.noise_counts > 0) plan.noise_counts = scene.sensor.noise_counts;
 }
 
@@ -50,6 +53,10 @@ void check(const SolverPlan& plan, std::string_view where) {
   check(plan.calibration, plan.skin, where);
   check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
   check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
+  if (plan.baseline_rate && !(*plan.baseline_rate > 0 && *plan.baseline_rate <= 1)) {
+    throw Error(where, fmt::format("baseline_rate is {}", *plan.baseline_rate),
+                "it must lie in (0, 1]");
+  }
   if (!plan.uncertainty) return;
   if (plan.estimator != Estimator::direct) {
     throw Error(where, "the paper's estimator has no uncertainty", "use the direct estimator");
@@ -58,6 +65,10 @@ void check(const SolverPlan& plan, std::string_view where) {
     throw Error(where, "uncertainty is asked for, and the noise of the sensels is not known",
                 "give noise_counts, or a calibration with a noise plane");
   }
+}
+
+double baseline_rate(double time_constant_s, double frame_interval_s) {
+  return -std::expm1(-frame_interval_s / time_constant_s);
 }
 
 double reading_noise(const SolverPlan& plan) {

@@ -47,8 +47,12 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
   if (skin.full_scale_counts) {
     add(true, "PF_FULL_SCALE", hex_float(*skin.full_scale_counts), "saturation");
   }
-  add(!calibration.tare.empty(), "PF_TARE", "", "tare");
+  add(!calibration.tare.empty() || plan.baseline_rate, "PF_TARE", "", "tare");
   add(!calibration.gain.empty(), "PF_GAIN", "", "gain");
+  if (skin.power_law) {
+    add(true, "PF_POWER_EXPONENT", hex_float(skin.power_law->exponent), "power_law");
+    add(true, "PF_POWER_REFERENCE", hex_float(skin.power_law->reference_counts), nullptr);
+  }
   add(true, "PF_THRESHOLD", hex_float(skin.threshold_counts), "classify");
   add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");
   const bool paper = plan.estimator == Estimator::paper;
@@ -64,6 +68,7 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
     add(true, "PF_UNCERTAINTY", hex_float(reading_noise(plan)), "uncertainty");
     add(!calibration.noise.empty(), "PF_NOISE", "", nullptr);
   }
+  add(plan.baseline_rate.has_value(), "PF_BASELINE", "", nullptr);
   return all;
 }
 
@@ -75,6 +80,7 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
     if (definition.stage != nullptr) stages.emplace_back(definition.stage);
   }
   stages.emplace_back("store");
+  if (plan.baseline_rate) stages.emplace_back("follow_baseline");
   return stages;
 }
 

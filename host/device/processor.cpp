@@ -33,6 +33,15 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
+/// The calibration of a plan, with a tare where there is one to follow.
+Calibration calibration_of(const SolverPlan& plan) {
+  Calibration calibration = plan.calibration;
+  if (plan.baseline_rate && calibration.tare.empty()) {
+    calibration.tare.assign(plan.skin.sensels(), 0.0F);
+  }
+  return calibration;
+}
+
 }  // namespace
 
 struct Processor::State {
@@ -41,18 +50,21 @@ struct Processor::State {
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
         shares_memory(decide_sharing(options.memory, opened)),
-        calibration(opened.state().context, wanted.calibration) {
+        calibration(opened.state().context, calibration_of(wanted)) {
+    baseline.follows = wanted.baseline_rate.has_value();
     const int lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
     const cl::Program program = device.state().program(kernel_source(wanted, lanes));
     slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
     for (int i = 0; i < options.frames_in_flight; ++i) {
-      slots.emplace_back(device.state(), wanted, lanes, program, calibration, shares_memory);
+      slots.emplace_back(device.state(), wanted, lanes, program, calibration, shares_memory,
+                         baseline);
     }
     warm_up();
+    baseline.rate = static_cast<float>(wanted.baseline_rate.value_or(0));
   }
 
   /// Solves an empty frame: drivers finish compiling and make their buffers at the first launch,
-  /// which no real frame shall wait for.
+  /// which no real frame shall wait for. The baseline's rate is still zero: the tare stays.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front().submit(frame.view());
@@ -66,6 +78,7 @@ struct Processor::State {
   SenselType sensel_type;
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
+  Baseline baseline;               ///< as well
   std::vector<Slot> slots;
   std::uint64_t submitted = 0;
   std::uint64_t received = 0;
@@ -118,6 +131,18 @@ ForceFieldView Processor::receive() {
 }
 
 int Processor::in_flight() const { return static_cast<int>(state_->submitted - state_->received); }
+
+std::vector<float> Processor::tare() const {
+  return with_opencl_errors(state_->device.info().name, [&] {
+    if (state_->calibration.tare() == nullptr) return std::vector<float>();
+    std::vector<float> tare(state_->skin.sensels());
+    const cl::CommandQueue queue(state_->device.state().context, state_->device.state().device);
+    if (state_->baseline.left() != nullptr) state_->baseline.left.wait();
+    queue.enqueueReadBuffer(state_->calibration.tare, CL_TRUE, 0, tare.size() * sizeof(float),
+                            tare.data());
+    return tare;
+  });
+}
 
 bool Processor::shares_memory() const { return state_->shares_memory; }
 

@@ -27,7 +27,7 @@ class SharedMemory final : public SlotMemory {
       shared.bytes = bytes;
       shared.pages.reset(static_cast<std::byte*>(::operator new[](bytes, kPage)));
       shared.buffer =
-          cl::Buffer(context, CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, bytes, shared.pages.get());
+          cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, shared.pages.get());
     }
   }
 

@@ -10,7 +10,7 @@ template <class Value>
 cl::Buffer plane_buffer(const cl::Context& context, const std::vector<Value>& plane) {
   if (plane.empty()) return {};
   void* const values = const_cast<Value*>(plane.data());  // Only read, but OpenCL wants it so.
-  return {context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, plane.size() * sizeof(Value), values};
+  return {context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, plane.size() * sizeof(Value), values};
 }
 
 /// Work-items per pillar row, and their grouping. Devices that solve several pillars at once run a
@@ -31,6 +31,7 @@ struct Launch {
 
 constexpr cl_uint kRawArgument = 0;
 constexpr cl_uint kStrideArgument = 1;
+constexpr cl_uint kRateArgument = 7;  // of follow_baseline
 
 }  // namespace
 
@@ -42,11 +43,12 @@ CalibrationBuffers::CalibrationBuffers(const cl::Context& context, const Calibra
       noise(plane_buffer(context, calibration.noise)) {}
 
 Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
-           const CalibrationBuffers& calibration, bool shares_memory)
+           const CalibrationBuffers& calibration, bool shares_memory, Baseline& baseline)
     : rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
-      kernel_(program, "solve_frame") {
+      kernel_(program, "solve_frame"),
+      baseline_(&baseline) {
   const Launch launch(rows_, cols_, lanes);
   global_ = launch.global;
   local_ = launch.local;
@@ -62,6 +64,14 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::P
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
     kernel_.setArg(argument++, memory_->buffer(plane));
   }
+  if (!baseline.follows) return;
+  follow_ = cl::Kernel(program, "follow_baseline");
+  argument = kStrideArgument + 1;
+  follow_.setArg(argument++, cl_uint{cols_});
+  follow_.setArg(argument++, calibration.mask);
+  follow_.setArg(argument++, cl_ulong{plan.skin.cols});
+  follow_.setArg(argument++, memory_->buffer(kStatus));
+  follow_.setArg(argument++, calibration.tare);
 }
 
 Slot::~Slot() {
@@ -77,11 +87,26 @@ void Slot::submit(const FrameView& frame) {
   DeviceFrame on_device = memory_->take(queue_, frame);
   frame_ = on_device.readings;
   kernel_.setArg(kRawArgument, frame_);
-  kernel_.setArg(kStrideArgument, on_device.row_stride);
+  row_stride_ = on_device.row_stride;
+  kernel_.setArg(kStrideArgument, row_stride_);
   memory_->release(queue_);
-  queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, global_, local_);
+  if (baseline_->follows) {
+    launch_in_order();
+  } else {
+    queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, global_, local_);
+  }
   memory_->fetch(queue_);
   queue_.flush();
+}
+
+void Slot::launch_in_order() {
+  std::vector<cl::Event> before;
+  if (baseline_->left() != nullptr) before.push_back(baseline_->left);
+  queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, global_, local_, &before);
+  follow_.setArg(kRawArgument, frame_);
+  follow_.setArg(kStrideArgument, row_stride_);
+  follow_.setArg(kRateArgument, baseline_->rate);
+  queue_.enqueueNDRangeKernel(follow_, cl::NullRange, global_, local_, nullptr, &baseline_->left);
 }
 
 ForceFieldView Slot::receive() {

@@ -19,11 +19,19 @@ struct CalibrationBuffers {
   cl::Buffer noise;
 };
 
+/// How the tare follows the readings from frame to frame, where a plan asks for it. Each frame
+/// needs the tare that the one before left, so frames in flight wait for each other.
+struct Baseline {
+  bool follows = false;
+  float rate = 0;
+  cl::Event left;  ///< the last frame's tare is written; null before the first
+};
+
 /// One frame in flight: a queue of its own, a kernel with its arguments, and memory.
 class Slot {
  public:
   Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
-       const CalibrationBuffers& calibration, bool shares_memory);
+       const CalibrationBuffers& calibration, bool shares_memory, Baseline& baseline);
   ~Slot();
   Slot(Slot&&) noexcept = default;
   Slot& operator=(Slot&&) noexcept = default;
@@ -37,13 +45,19 @@ class Slot {
   ForceFieldView receive();
 
  private:
+  /// Solves and follows after the frame before has.
+  void launch_in_order();
+
   std::uint32_t rows_;  ///< pillars
   std::uint32_t cols_;
   cl::NDRange global_;
   cl::NDRange local_;
   cl::CommandQueue queue_;
   cl::Kernel kernel_;
+  cl::Kernel follow_;  ///< null where the baseline stays
+  Baseline* baseline_;
   cl::Buffer frame_;  ///< keeps the frame in flight alive
+  cl_ulong row_stride_ = 0;
   std::unique_ptr<SlotMemory> memory_;
 };
 

@@ -60,7 +60,7 @@ struct Audit {
 
 /// Table II, and the audit of the direct solve over the trials of all runs.
 struct TableTwo {
-  std::array<Row, 2 * kSites.size()> rows;  ///< phi and theta, site by site
+  std::array<Row, 2 * kSites.size()> rows{};  ///< phi and theta, site by site
   Audit audit;
 };
 

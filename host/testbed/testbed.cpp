@@ -53,13 +53,10 @@ PillarSensor calibrated(PillarSensor sensor) {
 
 Trial measure(const PillarSensor& sensor, double applied_n, Force truth,
               std::span<const float, 4> noise) {
-  Trial trial;
-  trial.applied_n = applied_n;
-  trial.truth = truth;
-  trial.raw = read_sensels(truth, sensor, noise);
-  trial.paper = estimate_pillar(trial.raw, without_calibration(sensor), Estimator::paper);
-  trial.direct = estimate_pillar(trial.raw, calibrated(sensor), Estimator::direct);
-  return trial;
+  const std::array<double, 4> raw = read_sensels(truth, sensor, noise);
+  return {applied_n, truth, raw,
+          estimate_pillar(raw, without_calibration(sensor), Estimator::paper),
+          estimate_pillar(raw, calibrated(sensor), Estimator::direct)};
 }
 
 Series run_series(const Parameters& parameters, std::uint64_t run, std::uint32_t site) {

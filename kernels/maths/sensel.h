@@ -49,6 +49,26 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
   return sensel;
 }
 
+/* Straightens a sensel that does not answer in proportion: a reading r above zero stands for
+ * V = reference (r / reference)^exponent. */
+static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference) {
+  const Real straight = reference * pow(fabs(sensel.reading) / reference, exponent);
+  sensel.reading = sensel.reading > PF_REAL(0.0) ? straight : sensel.reading;
+  return sensel;
+}
+
+/* dV / dr of that law: what it does to small noise. */
+static inline Real power_law_slope(Real reading, Real exponent, Real reference) {
+  return exponent * pow(fabs(reading) / reference, exponent - PF_REAL(1.0));
+}
+
+/* The tare of a sensel after one more frame: `rate` of its distance from the raw reading is taken
+ * over, where nothing touches the sensel and the reading tells anything. */
+static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate) {
+  const Real followed = tare + rate * (raw.reading - tare);
+  return (untouched & !(raw.missing | raw.saturated)) ? followed : tare;
+}
+
 /* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
  * others are lifted, and read the threshold, which is the most that their silence can hide; or
  * missing, and read zero. A saturated sensel that its calibration brings down to the threshold

@@ -50,6 +50,7 @@ dead_zone_counts = 2
 gain_spread = 0.125
 tare_counts = 5
 tare_spread_counts = 0.75
+drift_counts_per_s = 0.375
 dead_share = 0.0625
 [time]
 rate_hz = 250
@@ -57,6 +58,7 @@ frames = 12
 seed = 99
 [solver]
 parity_tolerance_counts = 4
+baseline_time_s = 30
 estimator = "direct"
 angles = true
 uncertainty = true
@@ -93,11 +95,13 @@ load_n = 0.5
   EXPECT_EQ(scene.sensor.gain_spread, 0.125);
   EXPECT_EQ(scene.sensor.tare_counts, 5);
   EXPECT_EQ(scene.sensor.tare_spread_counts, 0.75);
+  EXPECT_EQ(scene.sensor.drift_counts_per_s, 0.375);
   EXPECT_EQ(scene.sensor.dead_share, 0.0625);
   EXPECT_EQ(scene.rate_hz, 250);
   EXPECT_EQ(scene.frames, 12U);
   EXPECT_EQ(scene.seed, 99U);
   EXPECT_EQ(scene.parity_tolerance_counts, 4);
+  EXPECT_EQ(scene.baseline_time_s, 30);
   EXPECT_EQ(scene.estimator, Estimator::direct);
   EXPECT_TRUE(scene.angles);
   EXPECT_TRUE(scene.uncertainty);
@@ -316,6 +320,7 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "magnitudes_n",
                                    "full_scale_counts",
                                    "parity_tolerance_counts",
+                                   "baseline_time_s",
                                    "estimator",
                                    "angles",
                                    "uncertainty"};

@@ -43,7 +43,8 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",
        "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: dead_zone_counts, gain_spread, "
-       "tare_counts, tare_spread_counts, noise_counts, dead_share, adc_bits, full_scale_counts"},
+       "tare_counts, tare_spread_counts, drift_counts_per_s, noise_counts, dead_share, adc_bits, "
+       "full_scale_counts"},
       {"[sensor]\nnoise_counts = -1",
        "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
       {"[sensor]\nnoise_counts = nan",
@@ -73,6 +74,9 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[time]\nseed = -1",
        "s.toml:3: key 'seed' in [time] is -1; allowed: a whole number from 0 to "
        "9223372036854775807"},
+      {"[solver]\nbaseline_time_s = 0",
+       "s.toml:3: key 'baseline_time_s' in [solver] is 0; allowed: a number in [1e-06, "
+       "1000000000]"},
       {"[solver]\nestimator = \"magic\"",
        R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",

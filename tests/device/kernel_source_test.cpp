@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -30,8 +31,10 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
   const std::string source = kernel_source(plan, 16);
   EXPECT_EQ(macro(source, "PF_LANES"), "16");
   EXPECT_EQ(macro(source, "PF_SENSEL"), "uchar");
-  for (const char* stage : {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN",
-                            "PF_DEAD_ZONE", "PF_MASK", "PF_PARITY_TOLERANCE", "PF_ANGLES"}) {
+  for (const char* stage :
+       {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN", "PF_DEAD_ZONE", "PF_MASK",
+        "PF_PARITY_TOLERANCE", "PF_ANGLES", "PF_PAPER", "PF_UNCERTAINTY", "PF_NOISE",
+        "PF_POWER_EXPONENT", "PF_BASELINE"}) {
     EXPECT_EQ(macro(source, stage), "(none)") << stage;
   }
 }
@@ -39,10 +42,29 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
 TEST(KernelSource, EveryWishOfAPlanIsAStage) {
   SolverPlan plan = full_plan(8, 8, SenselType::f32, 1);
   plan.angles = true;
+  plan.uncertainty = true;
+  plan.baseline_rate = 0.1;
+  plan.skin.power_law = PowerLaw{0.9, 50};
   const std::vector<std::string> expected = {
-      "load",     "reject_absurd", "mask",         "saturation",  "tare",   "gain",
-      "classify", "dead_zone",     "direct_solve", "parity_test", "angles", "store"};
+      "load",        "reject_absurd", "mask",        "saturation", "tare",
+      "gain",        "power_law",     "classify",    "dead_zone",  "direct_solve",
+      "parity_test", "angles",        "uncertainty", "store",      "follow_baseline"};
   EXPECT_EQ(kernel_stages(plan), expected);
+}
+
+TEST(KernelSource, TheDoubtIsFiveDeviationsOfThreeReadings) {
+  SolverPlan plan = bare_plan(8, 8, SenselType::f32);
+  const auto doubt = [&] {
+    return std::strtof(macro(kernel_source(plan, 1), "PF_DOUBT").c_str(), nullptr);
+  };
+  EXPECT_EQ(doubt(), 0) << "the noise is not known";
+  plan.noise_counts = 2;
+  EXPECT_FLOAT_EQ(doubt(), 5 * std::sqrt(3.0F) * 2);
+  plan.calibration.noise.assign(64, 4.0F);
+  EXPECT_FLOAT_EQ(doubt(), 5 * std::sqrt(3.0F) * 4);
+  plan.calibration.noise.clear();
+  plan.sensel_type = SenselType::u8;
+  EXPECT_FLOAT_EQ(doubt(), 5 * std::sqrt(3.0F) * std::sqrt(4 + 1 / 12.0F));
 }
 
 TEST(KernelSource, ConstantsAreExact) {
@@ -64,7 +86,7 @@ TEST(KernelSource, EmbeddedFilesAreThoseOfTheTree) {
     EXPECT_EQ(text.str(), embedded.text) << embedded.name;
   }
   EXPECT_EQ(kernel_files().front().name, "portable.h");
-  EXPECT_EQ(kernel_files().back().name, "solve_frame.cl");
+  EXPECT_EQ(kernel_files().back().name, "follow_baseline.cl");
 }
 
 }  // namespace

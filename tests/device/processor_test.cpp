@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -88,15 +89,13 @@ void expect_same_uncertainty(const ForceFieldView& actual, const ForceFieldView&
   }
 }
 
-/// The paper's estimator, all of which goes through trigonometry of the library: 64 ULP of the
-/// force.
-void expect_same_paper_forces(const ForceFieldView& actual, const ForceFieldView& expected) {
-  constexpr float kUlps = 64;
+/// Where functions of a library come first: so many ULP of the force's magnitude.
+void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected, float ulps) {
   for (std::size_t i = 0; i < actual.normal.size(); ++i) {
     const float scale = std::hypot(expected.shear_x[i], expected.shear_y[i], expected.normal[i]);
-    expect_near(actual.shear_x[i], expected.shear_x[i], scale, kUlps, "shear_x", i);
-    expect_near(actual.shear_y[i], expected.shear_y[i], scale, kUlps, "shear_y", i);
-    expect_near(actual.normal[i], expected.normal[i], scale, kUlps, "normal", i);
+    expect_near(actual.shear_x[i], expected.shear_x[i], scale, ulps, "shear_x", i);
+    expect_near(actual.shear_y[i], expected.shear_y[i], scale, ulps, "shear_y", i);
+    expect_near(actual.normal[i], expected.normal[i], scale, ulps, "normal", i);
     ASSERT_EQ(actual.status[i], expected.status[i]);
   }
 }
@@ -180,8 +179,54 @@ TEST_P(EveryPath, PaperSolveIsThatOfTheHost) {
                         {.memory = GetParam().memory, .lanes = GetParam().lanes});
     const RandomFrame frame(*plan, 0, 2);
     processor.submit(frame.view());
-    expect_same_paper_forces(processor.receive(), solve_on_host(*plan, frame.view()).view());
+    expect_same_forces(processor.receive(), solve_on_host(*plan, frame.view()).view(), 64);
   }
+}
+
+/// Of random readings few exceed this: many pillars are untouched.
+SolverPlan following_plan(std::uint32_t rows, std::uint32_t cols, SenselType type) {
+  SolverPlan plan = full_plan(rows, cols, type, 11);
+  const double largest = type == SenselType::u16 ? 4095 : (type == SenselType::u8 ? 255 : 300);
+  plan.skin.full_scale_counts = 0.999 * largest;
+  plan.skin.threshold_counts = 0.98 * largest;
+  plan.calibration.gain.clear();
+  plan.baseline_rate = 0.125;
+  return plan;
+}
+
+TEST_P(EveryPath, BaselineFollowsAsOnTheHost) {
+  for (const std::uint32_t cols : {2U * 37, 2U * 3 + 1}) {
+    SolverPlan plan = following_plan(23, cols, GetParam().type);
+    const std::vector<float> before = plan.calibration.tare;
+    Processor processor(
+        test_device(), plan,
+        {.memory = GetParam().memory, .frames_in_flight = 3, .lanes = GetParam().lanes});
+    ASSERT_EQ(processor.tare(), before) << "making a processor moves the tare";
+    std::vector<RandomFrame> frames;
+    for (std::uint32_t seed = 0; seed < 6; ++seed) frames.emplace_back(plan, 5, seed);
+    for (std::size_t first = 0; first < frames.size(); first += 3) {
+      for (std::size_t i = first; i < first + 3; ++i) processor.submit(frames[i].view());
+      for (std::size_t i = first; i < first + 3; ++i) {
+        const ForceField expected = solve_on_host(plan, frames[i].view());
+        expect_same_bits(processor.receive(), expected.view());
+        follow_baseline_on_host(plan, frames[i].view(), expected);
+      }
+    }
+    expect_same_bits(processor.tare(), plan.calibration.tare, "tare");
+    EXPECT_NE(before, plan.calibration.tare) << "nothing was followed";
+  }
+}
+
+TEST_P(EveryPath, PowerLawIsThatOfTheHost) {
+  SolverPlan plan = full_plan(14, 2 * 21, GetParam().type, 12);
+  plan.calibration.dead_zone.clear();
+  plan.skin.power_law = PowerLaw{0.8, 100};
+  plan.uncertainty = true;
+  Processor processor(test_device(), plan,
+                      {.memory = GetParam().memory, .lanes = GetParam().lanes});
+  const RandomFrame frame(plan, 0, 3);
+  processor.submit(frame.view());
+  expect_same_forces(processor.receive(), solve_on_host(plan, frame.view()).view(), 64);
 }
 
 TEST_P(EveryPath, OddAndStridedFramesHaveTheBitsOfTheHost) {
@@ -379,6 +424,10 @@ TEST(Processor, RefusesPlansOutOfRange) {
   refuses([](SolverPlan& plan) { plan.skin.full_scale_counts = 0; });
   refuses([](SolverPlan& plan) { plan.parity_tolerance_counts = -1; });
   refuses([](SolverPlan& plan) { plan.noise_counts = -1; });
+  refuses([](SolverPlan& plan) { plan.baseline_rate = 0; });
+  refuses([](SolverPlan& plan) { plan.baseline_rate = 1.5; });
+  refuses([](SolverPlan& plan) { plan.baseline_rate = std::nan(""); });
+  refuses([](SolverPlan& plan) { plan.skin.power_law = PowerLaw{0, 1}; });
   refuses([](SolverPlan& plan) { plan.uncertainty = true; });
   refuses([](SolverPlan& plan) {
     plan.uncertainty = true;

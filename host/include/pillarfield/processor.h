@@ -56,7 +56,7 @@ class Device {
 /// The stages that kernel_source holds, in their order, one name each.
 [[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
 
-/// Solves frames on a device by the direct method (docs/derivations/direct_solve.md).
+/// Solves frames on a device, by the estimator and with the stages that a plan names.
 ///
 /// A ring of `frames_in_flight` slots: submit() starts a frame and returns; receive() waits for the
 /// oldest. Not for use by two threads at once.
@@ -88,6 +88,10 @@ class Processor {
   /// Waits for the oldest frame in flight. Its spans stay valid until `frames_in_flight` further
   /// frames were submitted. Throws Error when none is in flight.
   [[nodiscard]] ForceFieldView receive();
+
+  /// The tare [sensel rows, cols] as the frames submitted so far leave it, in counts; waits for
+  /// them. Empty where the plan has none and follows none.
+  [[nodiscard]] std::vector<float> tare() const;
 
   [[nodiscard]] int in_flight() const;
   [[nodiscard]] bool shares_memory() const;

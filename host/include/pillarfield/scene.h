@@ -15,13 +15,15 @@
 namespace pillarfield {
 
 /// What makes a sensor differ from the model, each absent (zero or unset) unless the scene lists
-/// it. The order is that of the signal: dead zone, sensitivity, tare, noise, converter, dead.
+/// it. The order is that of the signal: dead zone, sensitivity, tare, drift, noise, converter,
+/// dead.
 struct SensorModel {
   double dead_zone_counts = 0;  ///< what a sensel swallows before it answers
   double gain_spread = 0;       ///< relative standard deviation of the sensels' sensitivity, < 0.3
   double tare_counts = 0;       ///< mean reading of an unloaded sensel
   double tare_spread_counts = 0;  ///< its standard deviation over sensels
   double noise_counts = 0;        ///< standard deviation of a reading over frames
+  double drift_counts_per_s = 0;  ///< standard deviation over sensels of their constant drift
   std::optional<int> adc_bits;    ///< 1..16; readings are rounded to whole counts; unset: float32
   double dead_share = 0;          ///< share of the sensels that always read zero, 0..1
 };
@@ -47,6 +49,7 @@ struct Scene {
   Estimator estimator = Estimator::direct;
   bool angles = false;
   bool uncertainty = false;
+  std::optional<double> baseline_time_s;  ///< time constant with which the tare follows a drift
   std::variant<std::vector<Contact>, Chart> load;
 };
 

@@ -32,6 +32,10 @@ struct SolverPlan {
   /// where the calibration has no noise plane of its own. Unset without one: noise is not known.
   std::optional<double> noise_counts;
   Estimator estimator = Estimator::direct;
+  /// Share of its distance from the reading that the tare of an untouched sensel takes over after
+  /// each frame, (0, 1]; unset: the tare stays. Untouched is a sensel whose pillar and the eight
+  /// around it have no usable and no saturated sensel in that frame.
+  std::optional<double> baseline_rate;
   bool angles = false;       ///< also magnitude, theta and phi
   bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, and `direct`
 };
@@ -39,6 +43,10 @@ struct SolverPlan {
 /// Throws Error, its place being `where`, when a member of `plan` is out of its range or two do not
 /// go together.
 void check(const SolverPlan& plan, std::string_view where);
+
+/// The baseline_rate with which a tare follows a drift with a time constant, both in seconds and
+/// above zero: 1 − exp(−interval / time constant).
+[[nodiscard]] double baseline_rate(double time_constant_s, double frame_interval_s);
 
 /// Standard deviation of a raw reading of sensels without a noise plane, counts: that of the plan,
 /// and of rounding to whole counts, 1/√12, where the sensel type has no fractions.

@@ -1,0 +1,117 @@
+/* How values of PF_LANES pillars at once come from memory and go there. For the entry points;
+ * PF_LANES and PF_SENSEL are of the program's first lines. */
+
+/* The values of `PF_LANES` pillars in one row of sensels. */
+typedef struct {
+  Real left;
+  Real right;
+} RealPair;
+
+#define PF_LANE_TYPE(type) PF_JOIN(type, PF_LANES)
+#define PF_VLOAD PF_JOIN(vload, PF_LANES)
+#define PF_VSTORE PF_JOIN(vstore, PF_LANES)
+
+/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. At the end of a
+ * row `count` is below PF_LANES, nothing beyond it is read, and the other lanes are zero. */
+#if PF_LANES == 1
+#define PF_DEFINE_LOAD(name, type)                                         \
+  static inline RealPair load_##name(global const type* row, uint count) { \
+    RealPair pair;                                                         \
+    pair.left = (Real)row[0];                                              \
+    pair.right = (Real)row[1];                                             \
+    return pair;                                                           \
+  }
+#else
+#define PF_DEFINE_LOAD(name, type)                                                           \
+  static inline RealPair load_##name(global const type* row, uint count) {                   \
+    PF_LANE_TYPE(type) low, high;                                                            \
+    if (count == PF_LANES) {                                                                 \
+      low = PF_VLOAD(0, row);                                                                \
+      high = PF_VLOAD(1, row);                                                               \
+    } else {                                                                                 \
+      type padded[2 * PF_LANES];                                                             \
+      for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0;  \
+      low = PF_VLOAD(0, padded);                                                             \
+      high = PF_VLOAD(1, padded);                                                            \
+    }                                                                                        \
+    RealPair pair;                                                                           \
+    pair.left = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.even, high.even)); \
+    pair.right = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.odd, high.odd));  \
+    return pair;                                                                             \
+  }
+#endif
+
+PF_DEFINE_LOAD(readings, PF_SENSEL)
+PF_DEFINE_LOAD(plane, float)
+PF_DEFINE_LOAD(mask, uchar)
+
+/* Writes what load_plane reads. */
+static inline void store_pair(RealPair pair, global float* row, uint count) {
+#if PF_LANES == 1
+  row[0] = pair.left;
+  row[1] = pair.right;
+#else
+  PF_LANE_TYPE(float) low, high;
+  low.even = pair.left.lo;
+  low.odd = pair.right.lo;
+  high.even = pair.left.hi;
+  high.odd = pair.right.hi;
+  if (count == PF_LANES) {
+    PF_VSTORE(low, 0, row);
+    PF_VSTORE(high, 1, row);
+  } else {
+    float values[2 * PF_LANES];
+    PF_VSTORE(low, 0, values);
+    PF_VSTORE(high, 1, values);
+    for (uint i = 0; i < 2 * count; ++i) row[i] = values[i];
+  }
+#endif
+}
+
+/* Writes the first `count` lanes. */
+static inline void store_plane(Real value, global float* plane, uint count) {
+#if PF_LANES == 1
+  *plane = value;
+#else
+  if (count == PF_LANES) {
+    PF_VSTORE(value, 0, plane);
+  } else {
+    float lanes[PF_LANES];
+    PF_VSTORE(value, 0, lanes);
+    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
+  }
+#endif
+}
+
+static inline void store_status(Bits value, global uchar* plane, uint count) {
+#if PF_LANES == 1
+  *plane = (uchar)value;
+#else
+  const PF_LANE_TYPE(uchar) bytes = PF_JOIN(convert_uchar, PF_LANES)(value);
+  if (count == PF_LANES) {
+    PF_VSTORE(bytes, 0, plane);
+  } else {
+    uchar lanes[PF_LANES];
+    PF_VSTORE(bytes, 0, lanes);
+    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
+  }
+#endif
+}
+
+/* The status bytes of PF_LANES pillars from column `col` on, which may lie outside the row: what is
+ * beyond its ends is zero. */
+static inline Bits load_status(global const uchar* row, int col, uint cols) {
+#if PF_LANES == 1
+  return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
+#else
+  if (col >= 0 && (uint)col + PF_LANES <= cols) {
+    return PF_JOIN(convert_int, PF_LANES)(PF_VLOAD(0, row + col));
+  }
+  uchar padded[PF_LANES];
+  for (uint i = 0; i < PF_LANES; ++i) {
+    const int at = col + (int)i;
+    padded[i] = at >= 0 && (uint)at < cols ? row[at] : (uchar)0;
+  }
+  return PF_JOIN(convert_int, PF_LANES)(PF_VLOAD(0, padded));
+#endif
+}

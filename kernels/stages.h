@@ -1,0 +1,111 @@
+/* A frame's sensels through the stages that the plan asks for; shared by the entry points. The
+ * macros are listed in solve_frame.cl. */
+
+/* A raw reading, and what is wrong with it before any calibration. */
+static inline Sensel judge_reading(Real raw, Real good) {
+  Sensel sensel = raw_sensel(raw);
+#ifdef PF_LARGEST_READING
+  sensel = reject_absurd(sensel, (Real)(PF_LARGEST_READING));
+#endif
+#ifdef PF_MASK
+  sensel = apply_mask(sensel, good);
+#endif
+#ifdef PF_FULL_SCALE
+  sensel = mark_saturated(sensel, (Real)(PF_FULL_SCALE));
+#endif
+  return sensel;
+}
+
+/* A raw reading through the stages of the plan. */
+static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, Real good) {
+  Sensel sensel = judge_reading(raw, good);
+#ifdef PF_TARE
+  sensel = subtract_tare(sensel, tare);
+#endif
+#ifdef PF_GAIN
+  sensel = apply_gain(sensel, gain);
+#endif
+#ifdef PF_POWER_EXPONENT
+  sensel = apply_power_law(sensel, (Real)(PF_POWER_EXPONENT), (Real)(PF_POWER_REFERENCE));
+#endif
+  sensel = classify(sensel, (Real)(PF_THRESHOLD));
+#ifdef PF_DEAD_ZONE
+  sensel = fill_dead_zone(sensel, dead_zone);
+#endif
+  return sensel;
+}
+
+/* The calibration planes [rows, stride]; null where the plan has none. */
+typedef struct {
+  global const float* tare;
+  global const float* gain;
+  global const float* dead_zone;
+  global const uchar* mask;
+  global const float* noise;
+  size_t stride;
+} Planes;
+
+typedef struct {
+  Sensel left;
+  Sensel right;
+} SenselPair;
+
+/* The sensels of one row under `count` pillars. `offset` is the first one's place in the planes. */
+static inline SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset,
+                                      uint count) {
+  const RealPair readings = load_readings(raw, count);
+  RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
+  RealPair gains = tares;
+  RealPair dead_zones = tares;
+  RealPair good = tares;
+#ifdef PF_TARE
+  tares = load_plane(planes.tare + offset, count);
+#endif
+#ifdef PF_GAIN
+  gains = load_plane(planes.gain + offset, count);
+#endif
+#ifdef PF_DEAD_ZONE
+  dead_zones = load_plane(planes.dead_zone + offset, count);
+#endif
+#ifdef PF_MASK
+  good = load_mask(planes.mask + offset, count);
+#endif
+  SenselPair pair;
+  pair.left = prepare_sensel(readings.left, tares.left, gains.left, dead_zones.left, good.left);
+  pair.right =
+      prepare_sensel(readings.right, tares.right, gains.right, dead_zones.right, good.right);
+  return pair;
+}
+
+#ifdef PF_UNCERTAINTY
+/* The noise of those sensels as the corrections leave it, counts. */
+static inline RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t offset,
+                                  uint count) {
+  RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
+#ifdef PF_NOISE
+  noise = load_plane(planes.noise + offset, count);
+#endif
+#ifdef PF_GAIN
+  const RealPair gains = load_plane(planes.gain + offset, count);
+  noise.left = noise.left * gains.left;
+  noise.right = noise.right * gains.right;
+#endif
+#ifdef PF_POWER_EXPONENT
+  RealPair readings = load_readings(raw, count);
+#ifdef PF_TARE
+  const RealPair tares = load_plane(planes.tare + offset, count);
+  readings.left = readings.left - tares.left;
+  readings.right = readings.right - tares.right;
+#endif
+#ifdef PF_GAIN
+  readings.left = readings.left * gains.left;
+  readings.right = readings.right * gains.right;
+#endif
+  const Real exponent = (Real)(PF_POWER_EXPONENT);
+  const Real reference = (Real)(PF_POWER_REFERENCE);
+  noise.left = noise.left * power_law_slope(readings.left, exponent, reference);
+  noise.right = noise.right * power_law_slope(readings.right, exponent, reference);
+#endif
+  return noise;
+}
+#endif
