@@ -21,7 +21,6 @@ using testbed::Statistics;
 using testbed::TableTwo;
 
 constexpr std::uint64_t kRuns = 1000;
-constexpr std::uint64_t kScanRuns = 200;
 
 constexpr const char* kIntroduction = R"(## The paper's testbed
 
@@ -97,7 +96,7 @@ the summed squares of the differences.
 
 /// Every tenth point, and those about the nearest.
 std::string scan_table(const Parameters& parameters) {
-  const std::vector<testbed::ScanPoint> points = testbed::scan_dead_zones(parameters, kScanRuns);
+  const std::vector<testbed::ScanPoint> points = testbed::scan_dead_zones(parameters, kRuns);
   const auto nearest = std::min_element(
       points.begin(), points.end(), [](const testbed::ScanPoint& a, const testbed::ScanPoint& b) {
         return a.distance_rad < b.distance_rad;
@@ -143,7 +142,7 @@ Parameters nearest_threshold(const Parameters& parameters) {
     Parameters tried = parameters;
     tried.sensor.dead_zone_counts = 0;
     tried.sensor.threshold_counts = threshold_n * tried.sensor.counts_per_newton;
-    const double difference = testbed::rms_difference(testbed::table_two(tried, kScanRuns));
+    const double difference = testbed::rms_difference(testbed::table_two(tried, kRuns));
     if (difference < least) nearest = tried;
     least = std::min(least, difference);
   }
