@@ -138,7 +138,8 @@ the ideal model; {unflagged} of these bear no status bit that says so.
 Parameters nearest_threshold(const Parameters& parameters) {
   Parameters nearest = parameters;
   double least = 1;
-  for (double threshold_n = 0.5; threshold_n <= 10; threshold_n += 0.5) {
+  for (int halves = 1; halves <= 20; ++halves) {
+    const double threshold_n = 0.5 * halves;
     Parameters tried = parameters;
     tried.sensor.dead_zone_counts = 0;
     tried.sensor.threshold_counts = threshold_n * tried.sensor.counts_per_newton;
