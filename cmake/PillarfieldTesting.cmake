@@ -45,7 +45,7 @@ function(pillarfield_device_test name)
   pillarfield_test_program(${name} ${ARGN})
   string(REGEX REPLACE "_.*" "" label ${name})
   add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${name} --gtest_brief=1)
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS ${label} TIMEOUT 240
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS ${label} TIMEOUT 600
     ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
 endfunction()
 

@@ -10,14 +10,15 @@
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
  *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
- *   PF_POWER_EXPONENT, PF_POWER_REFERENCE   stage: readings are straightened by a power law
+ *   PF_POWER_EXPONENT               stage: readings are straightened by a power law, with
+ *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
  *   PF_DOUBT                        counts by which noise may shift what parity says
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
  *   PF_ANGLES                       stage: magnitude, theta and phi are written too
- *   PF_UNCERTAINTY                  counts of noise of a raw reading; stage: what is uncertain is
- *                                   written too
- *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from the plane instead
+ *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: uncertainty is written
+ *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from its plane instead
+ *   PF_BASELINE                     stage: follow_baseline.cl
  *
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
 

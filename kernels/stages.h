@@ -26,7 +26,8 @@ static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zo
   sensel = apply_gain(sensel, gain);
 #endif
 #ifdef PF_POWER_EXPONENT
-  sensel = apply_power_law(sensel, (Real)(PF_POWER_EXPONENT), (Real)(PF_POWER_REFERENCE));
+  sensel = apply_power_law(sensel, (Real)(PF_POWER_EXPONENT), (Real)(PF_POWER_REFERENCE),
+                           (Real)(PF_POWER_LARGEST));
 #endif
   sensel = classify(sensel, (Real)(PF_THRESHOLD));
 #ifdef PF_DEAD_ZONE

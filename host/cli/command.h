@@ -12,6 +12,8 @@ using Work = std::function<void()>;
 void add_simulate(CLI::App& app, Work& work);
 void add_solve(CLI::App& app, Work& work);
 void add_compare(CLI::App& app, Work& work);
+void add_calibrate(CLI::App& app, Work& work);
+void add_testbed(CLI::App& app, Work& work);
 void add_info(CLI::App& app, Work& work);
 void add_completion(CLI::App& app, Work& work);
 

@@ -27,23 +27,30 @@ std::string names_of_subcommands(const CLI::App& app) {
   return words;
 }
 
-/// A bash function; words that are not flags are file names.
-std::string bash_script(const CLI::App& app) {
+/// Cases of a shell's `case` for what stands before the word to complete: those of the subcommands
+/// first, for the shell takes the first that fits. `words` is how `app` is called.
+std::string bash_cases(const CLI::App& app, const std::string& words) {
   std::string cases;
   for (const CLI::App* command : subcommands_of(app)) {
-    cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), flags_of(*command));
+    const std::string separator = words.empty() ? "" : " ";
+    cases += bash_cases(*command, words + separator + command->get_name());
   }
+  return cases + fmt::format("    '{}'*) flags=\"{}\" names=\"{}\" ;;\n", words, flags_of(app),
+                             names_of_subcommands(app));
+}
+
+/// A bash function; words that are neither flags nor subcommands are file names.
+std::string bash_script(const CLI::App& app) {
   return fmt::format(R"(_pillarfield() {{
-  local current=${{COMP_WORDS[COMP_CWORD]}} words
-  case ${{COMP_WORDS[1]}} in
-{}    *) words="{}{}" ;;
-  esac
-  if [[ $COMP_CWORD -gt 1 && $current != -* ]]; then words=; fi
-  COMPREPLY=($(compgen -W "$words" -- "$current"))
+  local current=${{COMP_WORDS[COMP_CWORD]}} flags names
+  case "${{COMP_WORDS[*]:1:COMP_CWORD-1}}" in
+{}  esac
+  if [[ $current == -* ]]; then names=$flags; fi
+  COMPREPLY=($(compgen -W "$names" -- "$current"))
 }}
 complete -o default -F _pillarfield pillarfield
 )",
-                     cases, names_of_subcommands(app), flags_of(app));
+                     bash_cases(app, ""));
 }
 
 std::string zsh_script(const CLI::App& app) {
@@ -61,19 +68,26 @@ std::string fish_line(const std::string& condition, const std::string& word,
   return fmt::format("complete -c pillarfield -n '{}' {} -d '{}'\n", condition, word, quoted);
 }
 
-std::string fish_script(const CLI::App& app) {
-  std::string script;
+/// The lines of all subcommands of `app`; `called` is the condition that it is the one called, and
+/// empty for the program itself.
+std::string fish_lines(const CLI::App& app, const std::string& called) {
+  const std::string none_yet = called.empty()
+                                   ? "__fish_use_subcommand"
+                                   : fmt::format("{}; and not __fish_seen_subcommand_from {}",
+                                                 called, names_of_subcommands(app));
+  std::string lines;
   for (const CLI::App* command : subcommands_of(app)) {
-    script += fish_line("__fish_use_subcommand", "-f -a " + command->get_name(),
-                        command->get_description());
-    const std::string condition = "__fish_seen_subcommand_from " + command->get_name();
+    lines += fish_line(none_yet, "-f -a " + command->get_name(), command->get_description());
+    const std::string condition = fmt::format("{}{}__fish_seen_subcommand_from {}", called,
+                                              called.empty() ? "" : "; and ", command->get_name());
     for (const CLI::Option* option : command->get_options()) {
       for (const std::string& name : option->get_lnames()) {
-        script += fish_line(condition, "-l " + name, option->get_description());
+        lines += fish_line(condition, "-l " + name, option->get_description());
       }
     }
+    lines += fish_lines(*command, condition);
   }
-  return script;
+  return lines;
 }
 
 }  // namespace
@@ -87,7 +101,7 @@ void add_completion(CLI::App& app, Work& work) {
       ->check(CLI::IsMember({"bash", "zsh", "fish"}));
   command->callback([shell, &app, &work] {
     work = [shell, &app] {
-      const std::string script = *shell == "fish"  ? fish_script(app)
+      const std::string script = *shell == "fish"  ? fish_lines(app, "")
                                  : *shell == "zsh" ? zsh_script(app)
                                                    : bash_script(app);
       fmt::print("{}", script);

@@ -1,11 +1,13 @@
 // pillarfield info: what a file holds, which devices there are, which kernel a scene makes.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/command.h"
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/processor.h"
@@ -25,6 +27,15 @@ struct InfoOptions {
   bool json = false;
 };
 
+/// A value as text; of an object or a list, the values of its members.
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_structured()) return value.dump();
+  std::vector<std::string> parts;
+  for (const Json& part : value) parts.push_back(text_of(part));
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 /// Prints `facts` as JSON, or one "key value" line each.
 void print_facts(const Json& facts, bool json) {
   if (json) {
@@ -33,9 +44,9 @@ void print_facts(const Json& facts, bool json) {
   }
   for (const auto& [key, value] : facts.items()) {
     if (value.is_array()) {
-      for (const Json& item : value) fmt::print("{:<20} {}\n", key, item.get<std::string>());
+      for (const Json& item : value) fmt::print("{:<20} {}\n", key, text_of(item));
     } else {
-      fmt::print("{:<20} {}\n", key, value.is_string() ? value.get<std::string>() : value.dump());
+      fmt::print("{:<20} {}\n", key, text_of(value));
     }
   }
 }
@@ -46,7 +57,14 @@ std::vector<std::string> plane_names(const Calibration& calibration) {
   if (!calibration.gain.empty()) names.emplace_back("gain");
   if (!calibration.dead_zone.empty()) names.emplace_back("dead_zone");
   if (!calibration.mask.empty()) names.emplace_back("mask");
+  if (!calibration.noise.empty()) names.emplace_back("noise");
   return names;
+}
+
+void add_power_law(Json& facts, const std::optional<PowerLaw>& law) {
+  if (!law) return;
+  facts["power_law_exponent"] = law->exponent;
+  facts["power_law_reference_counts"] = law->reference_counts;
 }
 
 void add_skin(Json& facts, const Skin& skin) {
@@ -58,6 +76,7 @@ void add_skin(Json& facts, const Skin& skin) {
   facts["counts_per_newton"] = skin.counts_per_newton;
   facts["threshold_counts"] = skin.threshold_counts;
   if (skin.full_scale_counts) facts["full_scale_counts"] = *skin.full_scale_counts;
+  add_power_law(facts, skin.power_law);
 }
 
 Json facts_of_frames(const std::string& file) {
@@ -92,6 +111,33 @@ Json facts_of_forces(const std::string& file) {
           {"remarks", reader.remarks()}};
 }
 
+Json facts_of_step(const CalibrationStep& step) {
+  return {{"step", step.step},         {"sources", step.sources},
+          {"frames", step.frames},     {"parameters", step.parameters},
+          {"date_utc", step.date_utc}, {"program_version", step.program_version}};
+}
+
+Json facts_of_calibration(const std::string& file) {
+  const SkinCalibration calibration = read_calibration_file(file);
+  Json facts = {{"format", "calibration"},
+                {"sensel_rows", calibration.rows},
+                {"sensel_cols", calibration.cols},
+                {"planes", plane_names(calibration.planes)},
+                {"masked", count_masked(calibration.planes)}};
+  const auto add = [&](const char* key, const std::optional<double>& value) {
+    if (value) facts[key] = *value;
+  };
+  add("threshold_counts", calibration.threshold_counts);
+  add("threshold_factor", calibration.threshold_factor);
+  add("counts_per_newton", calibration.counts_per_newton);
+  add_power_law(facts, calibration.power_law);
+  facts["history"] = Json::array();
+  for (const CalibrationStep& step : calibration.history) {
+    facts["history"].push_back(facts_of_step(step));
+  }
+  return facts;
+}
+
 Json facts_of_scene(const std::string& file) {
   const Scene scene = load_scene(file);
   Json facts = {{"format", "scene"},
@@ -108,6 +154,7 @@ Json facts_of_scene(const std::string& file) {
 
 Json facts_of(const std::string& file) {
   if (file.ends_with(".toml")) return facts_of_scene(file);
+  if (is_calibration_file(file)) return facts_of_calibration(file);
   return is_force_file(file) ? facts_of_forces(file) : facts_of_frames(file);
 }
 
@@ -174,7 +221,8 @@ void add_info(CLI::App& app, Work& work) {
   CLI::App* const command =
       app.add_subcommand("info", "Describe a file, the OpenCL devices, or a scene's kernel");
   CLI::Option* const file = command->add_option(
-      "FILE", options->file, "Recording, Tekscan export, force fields or scene to describe");
+      "FILE", options->file,
+      "Recording, Tekscan export, force fields, calibration or scene to describe");
   CLI::Option* const devices =
       command->add_flag("--devices", options->devices, "List the OpenCL devices");
   CLI::Option* const kernel = command->add_option(

@@ -29,4 +29,9 @@ void stop_if_interrupted(std::uint64_t frames, const std::filesystem::path& outp
               "an HDF5 output keeps them, under this name + \".part\"");
 }
 
+void stop_if_interrupted_before(const std::filesystem::path& output) {
+  if (interrupted == 0) return;
+  throw Error(output.string(), "interrupted before it was written", "start again");
+}
+
 }  // namespace pillarfield::cli

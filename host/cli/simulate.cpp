@@ -20,6 +20,7 @@ struct SimulateOptions {
   std::string output;
   std::optional<std::uint32_t> frames;
   std::optional<std::uint64_t> seed;
+  bool uncalibrated = false;
   bool json = false;
   bool quiet = false;
 };
@@ -55,8 +56,11 @@ void simulate(const SimulateOptions& options) {
   const Scene& scene = simulator.scene();
   FrameBuffer frame(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
   ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
-  RecordingWriter writer(options.output, scene.skin, simulator.sensel_type(),
-                         simulator.calibration(), {.truth = true});
+  Skin skin = scene.skin;
+  if (options.uncalibrated) skin.power_law.reset();
+  RecordingWriter writer(options.output, skin, simulator.sensel_type(),
+                         options.uncalibrated ? Calibration() : simulator.calibration(),
+                         {.truth = true});
   {
     Progress progress("Simulating", scene.frames, options.quiet);
     for (std::uint64_t index = 0; index < scene.frames; ++index) {
@@ -81,6 +85,8 @@ void add_simulate(CLI::App& app, Work& work) {
   command->add_option("--frames", options->frames, "Number of frames [the scene's]")
       ->check(CLI::Range(1U, 100'000'000U));
   command->add_option("--seed", options->seed, "Seed of the sensor's randomness [the scene's]");
+  command->add_flag("--uncalibrated", options->uncalibrated,
+                    "Leave out the sensor's calibration, as of a skin that is new");
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");
   command->callback([options, &work] { work = [options] { simulate(*options); }; });

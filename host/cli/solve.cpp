@@ -12,6 +12,7 @@
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/processor.h"
@@ -25,6 +26,7 @@ struct SolveOptions {
   std::string input;
   std::string output;
   std::string scene;
+  std::string calibration;
   std::optional<Estimator> estimator;
   std::vector<std::string> outputs;
   std::optional<double> threshold_counts;
@@ -62,7 +64,7 @@ double frame_interval(const SolveOptions& options, FrameSource& source) {
               "solve without following the baseline");
 }
 
-/// The plan that the file asks for, then the scene, then the command line.
+/// The plan that the file asks for, then the scene, the calibration, and the command line.
 SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
@@ -74,8 +76,14 @@ SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
     plan.skin.counts_per_newton = scene.skin.counts_per_newton;
     plan.skin.threshold_counts = scene.skin.threshold_counts;
     plan.skin.full_scale_counts = scene.skin.full_scale_counts;
+    plan.skin.power_law = scene.skin.power_law;
     set_solver(plan, scene);
     baseline_time_s = scene.baseline_time_s;
+  }
+  if (!options.calibration.empty()) {
+    const SkinCalibration calibration = read_calibration_file(options.calibration);
+    require_fitting(calibration, plan.skin, options.input);
+    apply(calibration, plan.skin, plan.calibration);
   }
   if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
   if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
@@ -267,6 +275,8 @@ void add_solve(CLI::App& app, Work& work) {
       ->required();
   command->add_option("--scene", options->scene,
                       "Take the sensor's constants and the parity test from a scene file");
+  command->add_option("--calibration", options->calibration,
+                      "Take planes and constants from a calibration made by calibrate");
   command
       ->add_option("--estimator", options->estimator,
                    "How forces are estimated: direct, or the paper's equations [direct]")

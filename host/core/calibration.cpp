@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "pillarfield/error.h"
@@ -29,6 +30,11 @@ void check_plane(const std::vector<Value>& plane, const char* name, const Skin& 
 }
 
 }  // namespace
+
+std::size_t count_masked(const Calibration& calibration) {
+  return static_cast<std::size_t>(
+      std::count(calibration.mask.begin(), calibration.mask.end(), std::uint8_t{0}));
+}
 
 void check(const Calibration& calibration, const Skin& skin, std::string_view where) {
   check_plane(calibration.tare, "tare", skin, where, -kMaxCounts, kMaxCounts);

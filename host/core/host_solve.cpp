@@ -4,92 +4,12 @@
 
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
+#include "core/sensel_reader.h"
 
 namespace pillarfield {
 namespace {
 
 namespace maths = single_precision;
-
-/// A frame's sensels after the stages of a plan.
-class SenselReader {
- public:
-  SenselReader(const SolverPlan& plan, const FrameView& frame) : plan_(plan), frame_(frame) {}
-
-  /// Noise as the corrections leave it, counts.
-  [[nodiscard]] float noise(std::size_t row, std::size_t col) const {
-    const Calibration& calibration = plan_.calibration;
-    const std::size_t index = row * frame_.cols + col;
-    float noise = calibration.noise.empty() ? static_cast<float>(reading_noise(plan_))
-                                            : calibration.noise[index];
-    if (!calibration.gain.empty()) noise = noise * calibration.gain[index];
-    if (!plan_.skin.power_law) return noise;
-    float reading = raw(row, col);
-    if (!calibration.tare.empty()) reading = reading - calibration.tare[index];
-    if (!calibration.gain.empty()) reading = reading * calibration.gain[index];
-    return noise * maths::power_law_slope(reading, exponent(), reference());
-  }
-
-  /// Before any calibration.
-  [[nodiscard]] maths::Sensel judged(std::size_t row, std::size_t col) const {
-    const Calibration& calibration = plan_.calibration;
-    const std::size_t index = row * frame_.cols + col;
-    maths::Sensel sensel = maths::raw_sensel(raw(row, col));
-    if (frame_.type == SenselType::f32) {
-      sensel = maths::reject_absurd(sensel, static_cast<float>(kMaxCounts));
-    }
-    if (!calibration.mask.empty()) sensel = maths::apply_mask(sensel, calibration.mask[index]);
-    if (plan_.skin.full_scale_counts) {
-      sensel = maths::mark_saturated(sensel, static_cast<float>(*plan_.skin.full_scale_counts));
-    }
-    return sensel;
-  }
-
-  [[nodiscard]] maths::Sensel operator()(std::size_t row, std::size_t col) const {
-    const Calibration& calibration = plan_.calibration;
-    const std::size_t index = row * frame_.cols + col;
-    maths::Sensel sensel = corrected(row, col);
-    sensel = maths::classify(sensel, static_cast<float>(plan_.skin.threshold_counts));
-    if (!calibration.dead_zone.empty()) {
-      sensel = maths::fill_dead_zone(sensel, calibration.dead_zone[index]);
-    }
-    return sensel;
-  }
-
- private:
-  /// Up to the classification.
-  [[nodiscard]] maths::Sensel corrected(std::size_t row, std::size_t col) const {
-    const Calibration& calibration = plan_.calibration;
-    const std::size_t index = row * frame_.cols + col;
-    maths::Sensel sensel = judged(row, col);
-    if (!calibration.tare.empty()) sensel = maths::subtract_tare(sensel, calibration.tare[index]);
-    if (!calibration.gain.empty()) sensel = maths::apply_gain(sensel, calibration.gain[index]);
-    if (plan_.skin.power_law) sensel = maths::apply_power_law(sensel, exponent(), reference());
-    return sensel;
-  }
-
-  [[nodiscard]] float exponent() const {
-    return static_cast<float>(plan_.skin.power_law->exponent);
-  }
-  [[nodiscard]] float reference() const {
-    return static_cast<float>(plan_.skin.power_law->reference_counts);
-  }
-
-  [[nodiscard]] float raw(std::size_t row, std::size_t col) const {
-    const std::size_t index = row * frame_.row_stride + col;
-    switch (frame_.type) {
-      case SenselType::u8:
-        return static_cast<const std::uint8_t*>(frame_.data)[index];
-      case SenselType::u16:
-        return static_cast<const std::uint16_t*>(frame_.data)[index];
-      case SenselType::f32:
-        break;
-    }
-    return static_cast<const float*>(frame_.data)[index];
-  }
-
-  const SolverPlan& plan_;
-  const FrameView& frame_;
-};
 
 /// Solves one pillar after the other into a field.
 class PillarSolver {
@@ -103,10 +23,7 @@ class PillarSolver {
   }
 
   void solve(std::size_t row, std::size_t col) {
-    const std::size_t top = 2 * row;
-    const std::size_t left = 2 * col;
-    const maths::Pillar pillar = {sensel_(top, left + 1), sensel_(top, left),
-                                  sensel_(top + 1, left), sensel_(top + 1, left + 1)};
+    const maths::Pillar pillar = sensel_.pillar(row, col);
     const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
     const maths::ParitySum sum = maths::parity_sum(diagonals);
     const std::size_t index = row * field_.cols + col;
@@ -118,6 +35,8 @@ class PillarSolver {
     field_.normal[index] = force.normal;
     field_.status[index] = static_cast<std::uint8_t>(status(pillar, sum));
     if (!plan_.uncertainty) return;
+    const std::size_t top = 2 * row;
+    const std::size_t left = 2 * col;
     const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
                                 sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
     store(maths::force_deviations(pillar, diagonals, noise, scale_), index);

@@ -47,6 +47,8 @@ inline constexpr std::array<Quantity<SensorModel>, 7> kSensorQuantities = {{
     {"dead_share", &SensorModel::dead_share, {0, 1}},
 }};
 inline constexpr int kMaxAdcBits = 16;
+inline constexpr Range kPowerLawExponent = {kMinExponent, kMaxExponent};
+inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceCounts};
 
 /// A number of a contact, and the contacts that have it.
 struct ContactQuantity {

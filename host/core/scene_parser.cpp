@@ -64,12 +64,24 @@ void check_full_scale(const TomlSection& section, const Skin& skin) {
                fmt::format("more than threshold_counts, {}", skin.threshold_counts));
 }
 
+std::optional<PowerLaw> read_power_law(TomlSection& section) {
+  constexpr std::string_view kExponent = "power_law_exponent";
+  constexpr std::string_view kReference = "power_law_reference_counts";
+  const auto exponent = section.number(kExponent, kPowerLawExponent);
+  const auto reference = section.number(kReference, kPowerLawReference);
+  if (!exponent && !reference) return std::nullopt;
+  if (!exponent) section.fail_missing(kExponent, kPowerLawExponent.text());
+  if (!reference) section.fail_missing(kReference, kPowerLawReference.text());
+  return PowerLaw{*exponent, *reference};
+}
+
 void read_sensor(TomlSection section, Scene& scene) {
   read_quantities(section, kSensorQuantities, scene.sensor);
   if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
     scene.sensor.adc_bits = static_cast<int>(*bits);
   }
   scene.skin.full_scale_counts = read_full_scale(section, scene.sensor);
+  scene.skin.power_law = read_power_law(section);
   section.finish();
   check_full_scale(section, scene.skin);
 }

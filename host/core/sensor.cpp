@@ -81,12 +81,18 @@ void round_to(std::span<const double> signal, double full_scale, std::span<Count
   });
 }
 
+std::optional<PowerLaw> inverse(const std::optional<PowerLaw>& law) {
+  if (!law) return std::nullopt;
+  return PowerLaw{1 / law->exponent, law->reference_counts};
+}
+
 }  // namespace
 
 Sensor::Sensor(const Scene& scene)
     : model_(scene.sensor),
       full_scale_counts_(
           scene.skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity())),
+      bend_(inverse(scene.skin.power_law)),
       seed_(scene.seed),
       rate_hz_(scene.rate_hz),
       calibration_(draw_calibration(scene)) {}
@@ -110,6 +116,9 @@ void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
     // The plane is single precision, and exact readings want the very number it holds.
     const double dead_zone = calibration_.dead_zone.front();
     for (double& value : signal) value = std::max(0.0, value - dead_zone);
+  }
+  if (bend_) {
+    for (double& value : signal) value = value > 0 ? straightened(*bend_, value) : value;
   }
   if (!calibration_.gain.empty()) {
     const auto gain = row_of(calibration_.gain, row, signal.size());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace pillarfield {
 /// The sensels of a scene: what stands between the model's V and the raw reading, in this order,
 /// each stage only where the scene lists it (docs/scenes.md):
 ///
-///     dead zone, sensitivity, tare, drift, noise, full scale and rounding, dead sensels.
+///     dead zone, power law, sensitivity, tare, drift, noise, full scale and rounding, dead.
 class Sensor {
  public:
   /// Draws the planes that differ from sensel to sensel. Needs a scene that passes check().
@@ -36,6 +37,7 @@ class Sensor {
 
   SensorModel model_;
   double full_scale_counts_;
+  std::optional<PowerLaw> bend_;  ///< the power law backwards: what a straight signal reads
   std::uint64_t seed_;
   double rate_hz_;
   Calibration calibration_;

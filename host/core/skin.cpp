@@ -41,6 +41,10 @@ const char* name_of(SenselType type) {
   return "float32";
 }
 
+double straightened(const PowerLaw& law, double reading) {
+  return law.reference_counts * std::pow(reading / law.reference_counts, law.exponent);
+}
+
 void check(const Skin& skin, std::string_view where) {
   check_range(where, "rows", skin.rows, 2, kMaxSensels);
   check_range(where, "cols", skin.cols, 2, kMaxSensels);

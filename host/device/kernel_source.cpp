@@ -52,6 +52,7 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
   if (skin.power_law) {
     add(true, "PF_POWER_EXPONENT", hex_float(skin.power_law->exponent), "power_law");
     add(true, "PF_POWER_REFERENCE", hex_float(skin.power_law->reference_counts), nullptr);
+    add(true, "PF_POWER_LARGEST", hex_float(kMaxCounts), nullptr);
   }
   add(true, "PF_THRESHOLD", hex_float(skin.threshold_counts), "classify");
   add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");

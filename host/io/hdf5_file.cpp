@@ -14,12 +14,16 @@ namespace {
 constexpr const char* kLayout = "docs/formats.md describes the file that is expected";
 constexpr const char* kCannotWrite = "cannot be written";
 
-std::string advice_for(std::string_view found_format) {
-  if (found_format == "pillarfield-forces") {
+std::string advice_for(std::string_view found, std::string_view wanted) {
+  if (found == "pillarfield-forces") {
     return "it holds solved forces; give the recording they were solved from";
   }
-  if (found_format == "pillarfield-recording") return "it holds readings; solve it first";
-  return kLayout;
+  if (found == "pillarfield-calibration") {
+    return "it holds a calibration; give the recording it is for";
+  }
+  if (found != "pillarfield-recording") return kLayout;
+  return wanted == "pillarfield-calibration" ? "it holds readings; calibrate with them first"
+                                             : "it holds readings; solve it first";
 }
 
 /// HDF5 reads what a live writer may just be changing up to 100 times, twice as long after each
@@ -58,7 +62,7 @@ void require_format(const File& file, std::string_view format, int version) {
   }
   if (*found != format) {
     throw Error(file.path.string(), fmt::format("its format is '{:.60}', not '{}'", *found, format),
-                advice_for(*found));
+                advice_for(*found, format));
   }
   const auto found_version = read_number(file, file.id.get(), "version");
   if (!found_version) throw Error(file.path.string(), "has no attribute 'version'", kLayout);

@@ -19,12 +19,15 @@ inline constexpr const char* kPitch = "sensel_pitch_mm";
 inline constexpr const char* kCountsPerNewton = "counts_per_newton";
 inline constexpr const char* kThreshold = "threshold_counts";
 inline constexpr const char* kFullScale = "full_scale_counts";
+inline constexpr const char* kExponent = "power_law_exponent";
+inline constexpr const char* kReference = "power_law_reference_counts";
 
 inline constexpr const char* kCalibration = "/calibration";
 inline constexpr const char* kTare = "/calibration/tare";
 inline constexpr const char* kGain = "/calibration/gain";
 inline constexpr const char* kDeadZone = "/calibration/dead_zone";
 inline constexpr const char* kMask = "/calibration/mask";
+inline constexpr const char* kNoise = "/calibration/noise";
 
 inline constexpr const char* kTruth = "/truth";
 inline constexpr const char* kTruthPlanes[] = {"/truth/shear_x", "/truth/shear_y", "/truth/normal"};

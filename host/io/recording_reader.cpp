@@ -8,11 +8,10 @@
 #include <utility>
 
 #include "io/file_source.h"
-#include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
 #include "io/hdf5_frames.h"
-#include "io/hdf5_layout.h"
 #include "io/recording_format.h"
+#include "io/stored_skin.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -30,8 +29,7 @@ class Recording final : public FileSource {
 
  private:
   void read_size();
-  void read_skin();
-  void read_calibration();
+  void take_skin();
   void open_truth();
   void count_frames();
   [[nodiscard]] std::string place(const char* object) const;
@@ -65,8 +63,8 @@ Recording::Recording(const std::filesystem::path& path)
   require_floats(time_, path);
   type_ = sensel_type_of(raw_, path);
   read_size();
-  read_skin();
-  read_calibration();
+  take_skin();
+  calibration_ = read_planes(file_, skin_);
   open_truth();
   count_frames();
   remark_on_size();
@@ -87,44 +85,21 @@ void Recording::read_size() {
   skin_.cols = static_cast<std::uint32_t>(shape[1]);
 }
 
-void Recording::read_skin() {
-  hdf5::Handle object;
-  if (hdf5::exists(file_, layout::kSkin)) {
-    object = hdf5::own(H5Oopen(file_.id.get(), layout::kSkin, H5P_DEFAULT), path_,
-                       "/skin cannot be opened", hdf5::kDamaged);
-  }
-  const auto constant = [&](const char* name) {
-    return object.valid() ? hdf5::read_number(file_, object.get(), name) : std::nullopt;
-  };
-  const auto read = [&](const char* name, double& value) {
-    if (const auto stored = constant(name)) {
-      value = *stored;
+void Recording::take_skin() {
+  const StoredSkin stored = read_skin(file_);
+  const auto take = [&](const char* name, const std::optional<double>& constant, double& value) {
+    if (constant) {
+      value = *constant;
     } else {
       remarks_.push_back(fmt::format("The file gives no {}; {} is assumed.", name, value));
     }
   };
-  read(layout::kPitch, skin_.sensel_pitch_mm);
-  read(layout::kCountsPerNewton, skin_.counts_per_newton);
-  read(layout::kThreshold, skin_.threshold_counts);
-  skin_.full_scale_counts = constant(layout::kFullScale);
+  take(layout::kPitch, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
+  take(layout::kCountsPerNewton, stored.counts_per_newton, skin_.counts_per_newton);
+  take(layout::kThreshold, stored.threshold_counts, skin_.threshold_counts);
+  skin_.full_scale_counts = stored.full_scale_counts;
+  skin_.power_law = stored.power_law;
   check(skin_, place(layout::kSkin).c_str());
-}
-
-void Recording::read_calibration() {
-  const auto plane = [&](const char* name) {
-    if (!hdf5::exists(file_, name)) return std::vector<float>();
-    return hdf5::read_plane(file_, name, skin_.rows, skin_.cols);
-  };
-  calibration_.tare = plane(layout::kTare);
-  calibration_.gain = plane(layout::kGain);
-  calibration_.dead_zone = plane(layout::kDeadZone);
-  const std::vector<float> mask = plane(layout::kMask);
-  calibration_.mask.resize(mask.size());
-  // What is neither 0 nor 1 becomes 2, which the check below refuses.
-  std::transform(mask.begin(), mask.end(), calibration_.mask.begin(), [](float good) {
-    return static_cast<std::uint8_t>(good == 0.0f ? 0 : good == 1.0f ? 1 : 2);
-  });
-  check(calibration_, skin_, place(layout::kCalibration).c_str());
 }
 
 void Recording::open_truth() {

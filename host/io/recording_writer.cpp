@@ -7,9 +7,9 @@
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
 #include "io/hdf5_frames.h"
-#include "io/hdf5_layout.h"
 #include "io/part_file.h"
 #include "io/recording_format.h"
+#include "io/stored_skin.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 
@@ -30,31 +30,6 @@ void require_no_frames_in(const std::filesystem::path& part) {
   throw Error(part.string(),
               fmt::format("holds {} frames of a recording that was cut short", frames),
               "rename or remove it");
-}
-
-void write_skin(const hdf5::File& file, const Skin& skin) {
-  const hdf5::Handle group = hdf5::create_group(file, layout::kSkin);
-  hdf5::write_attribute(file, group.get(), layout::kPitch, skin.sensel_pitch_mm);
-  hdf5::write_attribute(file, group.get(), layout::kCountsPerNewton, skin.counts_per_newton);
-  hdf5::write_attribute(file, group.get(), layout::kThreshold, skin.threshold_counts);
-  if (!skin.full_scale_counts) return;
-  hdf5::write_attribute(file, group.get(), layout::kFullScale, *skin.full_scale_counts);
-}
-
-void write_calibration(const hdf5::File& file, const Skin& skin, const Calibration& calibration) {
-  if (calibration.empty()) return;
-  const hdf5::Handle group = hdf5::create_group(file, layout::kCalibration);
-  const auto write_floats = [&](const char* name, const std::vector<float>& plane) {
-    if (plane.empty()) return;
-    hdf5::write_plane(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, skin.rows, skin.cols,
-                      plane.data());
-  };
-  write_floats(layout::kTare, calibration.tare);
-  write_floats(layout::kGain, calibration.gain);
-  write_floats(layout::kDeadZone, calibration.dead_zone);
-  if (calibration.mask.empty()) return;
-  hdf5::write_plane(file, layout::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows, skin.cols,
-                    calibration.mask.data());
 }
 
 std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin,
@@ -105,8 +80,9 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
       file(hdf5::create(part.path())) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));
   hdf5::write_attribute(file, file.id.get(), "version", layout::kVersion);
-  write_skin(file, skin);
-  write_calibration(file, skin, calibration);
+  write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
+                    skin.full_scale_counts, skin.power_law});
+  write_planes(file, skin, calibration);
   create_datasets();
   hdf5::start_appending(file);
 }

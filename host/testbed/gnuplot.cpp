@@ -23,18 +23,19 @@ namespace {
 
 constexpr const char* kStyle = R"(
 set encoding utf8
+set minussign
 set border 3 linecolor '#444444' linewidth 1
 set tics out nomirror textcolor '#000000'
 set key noautotitle samplen 2 spacing 1.2
 set style fill solid noborder
-set linetype 1 linecolor '#000000' linewidth 2 pointtype 7
+set linetype 1 linecolor '#000000' linewidth 2 pointtype 6
 set linetype 2 linecolor '#E69F00' linewidth 2 pointtype 5
 set linetype 3 linecolor '#56B4E9' linewidth 2 pointtype 9
 set linetype 4 linecolor '#009E73' linewidth 2 pointtype 13
 set linetype 5 linecolor '#F0E442' linewidth 2 pointtype 11
-set linetype 6 linecolor '#0072B2' linewidth 2 pointtype 15
+set linetype 6 linecolor '#0072B2' linewidth 2 pointtype 7
 set linetype 7 linecolor '#D55E00' linewidth 2 pointtype 4
-set linetype 8 linecolor '#CC79A7' linewidth 2 pointtype 6
+set linetype 8 linecolor '#CC79A7' linewidth 2 pointtype 15
 )";
 
 /// A format of pictures.
@@ -46,7 +47,7 @@ struct Format {
 
 Format svg_format(Size size) {
   return {".svg",
-          fmt::format("set terminal svg enhanced size {},{} dynamic font 'sans-serif,13' "
+          fmt::format("set terminal svg enhanced size {},{} dynamic font 'sans-serif,14' "
                       "background '#ffffff'\n",
                       size.width_px, size.height_px),
           "</svg>"};
@@ -55,7 +56,7 @@ Format svg_format(Size size) {
 Format png_format(Size size) {
   return {".png",
           fmt::format("set terminal pngcairo enhanced size {},{} font 'sans-serif,13' fontscale 2 "
-                      "linewidth 2 pointscale 2 background '#ffffff'\n",
+                      "linewidth 2 pointscale 2.6 background '#ffffff'\n",
                       2 * size.width_px, 2 * size.height_px),
           "IEND"};
 }

@@ -50,16 +50,20 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
 }
 
 /* Straightens a sensel that does not answer in proportion: a reading r above zero stands for
- * V = reference (r / reference)^exponent. */
-static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference) {
+ * V = reference (r / reference)^exponent, `largest` at most. */
+static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference, Real largest) {
   const Real straight = reference * pow(fabs(sensel.reading) / reference, exponent);
-  sensel.reading = sensel.reading > PF_REAL(0.0) ? straight : sensel.reading;
+  const Real bounded = straight < largest ? straight : largest;
+  sensel.reading = sensel.reading > PF_REAL(0.0) ? bounded : sensel.reading;
   return sensel;
 }
 
-/* dV / dr of that law: what it does to small noise. */
+/* dV / dr of that law, by which small noise grows; a million at most, so that its square is finite.
+ */
 static inline Real power_law_slope(Real reading, Real exponent, Real reference) {
-  return exponent * pow(fabs(reading) / reference, exponent - PF_REAL(1.0));
+  const Real most = PF_REAL(1e6);
+  const Real slope = exponent * pow(fabs(reading) / reference, exponent - PF_REAL(1.0));
+  return slope < most ? slope : most;
 }
 
 /* The tare of a sensel after one more frame: `rate` of its distance from the raw reading is taken

@@ -52,6 +52,8 @@ tare_counts = 5
 tare_spread_counts = 0.75
 drift_counts_per_s = 0.375
 dead_share = 0.0625
+power_law_exponent = 1.25
+power_law_reference_counts = 90
 [time]
 rate_hz = 250
 frames = 12
@@ -97,6 +99,9 @@ load_n = 0.5
   EXPECT_EQ(scene.sensor.tare_spread_counts, 0.75);
   EXPECT_EQ(scene.sensor.drift_counts_per_s, 0.375);
   EXPECT_EQ(scene.sensor.dead_share, 0.0625);
+  ASSERT_TRUE(scene.skin.power_law);
+  EXPECT_EQ(scene.skin.power_law->exponent, 1.25);
+  EXPECT_EQ(scene.skin.power_law->reference_counts, 90);
   EXPECT_EQ(scene.rate_hz, 250);
   EXPECT_EQ(scene.frames, 12U);
   EXPECT_EQ(scene.seed, 99U);

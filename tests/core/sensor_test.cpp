@@ -124,6 +124,17 @@ TEST(Sensor, TheDeadZoneSwallowsItsCounts) {
   EXPECT_EQ(reading_of(1, scene_with(model)).readings<float>()[0], 0);
 }
 
+TEST(Sensor, APowerLawBendsAfterTheDeadZone) {
+  SensorModel model;
+  model.dead_zone_counts = 2;
+  Scene scene = scene_with(model);
+  scene.skin.power_law = {1.25, 64};
+  EXPECT_FLOAT_EQ(reading_of(66, scene).readings<float>()[0], 64);
+  const float read = reading_of(18, scene).readings<float>()[0];
+  EXPECT_NEAR(64 * std::pow(read / 64, 1.25), 16, 1e-4);
+  EXPECT_EQ(reading_of(1, scene).readings<float>()[0], 0);
+}
+
 TEST(Sensor, AConverterRoundsAndClips) {
   SensorModel model;
   model.adc_bits = 8;

@@ -44,7 +44,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[sensor]\n\nnoise = 1",
        "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: dead_zone_counts, gain_spread, "
        "tare_counts, tare_spread_counts, drift_counts_per_s, noise_counts, dead_share, adc_bits, "
-       "full_scale_counts"},
+       "full_scale_counts, power_law_exponent, power_law_reference_counts"},
       {"[sensor]\nnoise_counts = -1",
        "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
       {"[sensor]\nnoise_counts = nan",
@@ -55,6 +55,11 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:3: key 'gain_spread' in [sensor] is 0.3; allowed: a number in [0, 0.3)"},
       {"[sensor]\ndead_share = 1.5",
        "s.toml:3: key 'dead_share' in [sensor] is 1.5; allowed: a number in [0, 1]"},
+      {"[sensor]\npower_law_exponent = 6\npower_law_reference_counts = 80",
+       "s.toml:3: key 'power_law_exponent' in [sensor] is 6; allowed: a number in [0.2, 5]"},
+      {"[sensor]\npower_law_exponent = 1.2",
+       "s.toml:2: key 'power_law_reference_counts' in [sensor] is missing; allowed: a number in "
+       "[0.001, 1000000]"},
       {"[sensor]\nadc_bits = 8.0",
        "s.toml:3: key 'adc_bits' in [sensor] is 8; allowed: a whole number from 1 to 16"},
       {"[sensor]\nadc_bits = 17",

@@ -144,6 +144,9 @@ class EveryPath : public testing::TestWithParam<Path> {
   }
 };
 
+/// Stages that are whole programs more: not on all paths, for compiling takes its time.
+class FurtherStages : public EveryPath {};
+
 TEST_P(EveryPath, BareSolveHasTheBitsOfTheHost) {
   expect_host_bits(bare_plan(34, 2 * 53, GetParam().type), 0);
 }
@@ -152,7 +155,7 @@ TEST_P(EveryPath, AllStagesHaveTheBitsOfTheHost) {
   expect_host_bits(full_plan(22, 2 * 39, GetParam().type, 7), 0);
 }
 
-TEST_P(EveryPath, UncertaintyIsThatOfTheHost) {
+TEST_P(FurtherStages, UncertaintyIsThatOfTheHost) {
   SolverPlan known = full_plan(14, 2 * 21, GetParam().type, 9);
   known.uncertainty = true;
   SolverPlan plain = bare_plan(12, 2 * 19, GetParam().type);
@@ -170,7 +173,7 @@ TEST_P(EveryPath, UncertaintyIsThatOfTheHost) {
   }
 }
 
-TEST_P(EveryPath, PaperSolveIsThatOfTheHost) {
+TEST_P(FurtherStages, PaperSolveIsThatOfTheHost) {
   SolverPlan all_stages = full_plan(14, 2 * 21, GetParam().type, 10);
   SolverPlan bare = bare_plan(12, 2 * 37, GetParam().type);
   for (SolverPlan* plan : {&all_stages, &bare}) {
@@ -194,7 +197,7 @@ SolverPlan following_plan(std::uint32_t rows, std::uint32_t cols, SenselType typ
   return plan;
 }
 
-TEST_P(EveryPath, BaselineFollowsAsOnTheHost) {
+TEST_P(FurtherStages, BaselineFollowsAsOnTheHost) {
   for (const std::uint32_t cols : {2U * 37, 2U * 3 + 1}) {
     SolverPlan plan = following_plan(23, cols, GetParam().type);
     const std::vector<float> before = plan.calibration.tare;
@@ -217,7 +220,7 @@ TEST_P(EveryPath, BaselineFollowsAsOnTheHost) {
   }
 }
 
-TEST_P(EveryPath, PowerLawIsThatOfTheHost) {
+TEST_P(FurtherStages, PowerLawIsThatOfTheHost) {
   SolverPlan plan = full_plan(14, 2 * 21, GetParam().type, 12);
   plan.calibration.dead_zone.clear();
   plan.skin.power_law = PowerLaw{0.8, 100};
@@ -239,6 +242,16 @@ TEST_P(EveryPath, SmallestSkinHasTheBitsOfTheHost) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, EveryPath, testing::ValuesIn(all_paths()), name_of_path);
+
+/// Every type, lane width and memory once or twice.
+INSTANTIATE_TEST_SUITE_P(Paths, FurtherStages,
+                         testing::Values(Path{SenselType::u8, 1, Memory::shared},
+                                         Path{SenselType::u8, 16, Memory::staged},
+                                         Path{SenselType::u16, 2, Memory::staged},
+                                         Path{SenselType::u16, 8, Memory::shared},
+                                         Path{SenselType::f32, 4, Memory::shared},
+                                         Path{SenselType::f32, 16, Memory::staged}),
+                         name_of_path);
 
 TEST(Processor, SolvesAMillionPillarsBitForBit) {
   const SolverPlan plan = bare_plan(2048, 2048, SenselType::u8);

@@ -239,6 +239,16 @@ const Damage kDamages[] = {
      [](hid_t f) { set_first(f, "/calibration/dead_zone", -1); },
      {"dead_zone", "is -1"}},
     {"mask 2", [](hid_t f) { set_first(f, "/calibration/mask", 2); }, {"mask", "[0, 1]"}},
+    {"noise negative", [](hid_t f) { set_first(f, "/calibration/noise", -1); }, {"noise", "is -1"}},
+    {"half a power law",
+     [](hid_t f) { set_number(f, "/skin", "power_law_exponent", 1.2); },
+     {"/skin", "'power_law_reference_counts'", "both"}},
+    {"power law of exponent 9",
+     [](hid_t f) {
+       set_number(f, "/skin", "power_law_exponent", 9);
+       set_number(f, "/skin", "power_law_reference_counts", 100);
+     },
+     {"/skin", "power_law_exponent is 9"}},
     {"truth of other size",
      [](hid_t f) {
        replace(f, "/truth/normal", H5T_IEEE_F32LE, {5, 3, 2});

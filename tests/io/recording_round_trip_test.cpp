@@ -39,6 +39,7 @@ Calibration random_calibration(const Skin& skin, std::mt19937& random) {
   calibration.tare = plane(-1e6f, 1e6f);
   calibration.gain = plane(0.01f, 100.0f);
   calibration.dead_zone = plane(0.0f, 1e9f);
+  calibration.noise = plane(0.0f, 1e6f);
   calibration.mask.resize(coin() ? skin.sensels() : 0);
   for (auto& good : calibration.mask) good = coin() ? 1 : 0;
   return calibration;
@@ -51,6 +52,10 @@ void expect_equal(const Skin& read, const Skin& written) {
   EXPECT_EQ(read.counts_per_newton, written.counts_per_newton);
   EXPECT_EQ(read.threshold_counts, written.threshold_counts);
   EXPECT_EQ(read.full_scale_counts, written.full_scale_counts);
+  ASSERT_EQ(read.power_law.has_value(), written.power_law.has_value());
+  if (!read.power_law) return;
+  EXPECT_EQ(read.power_law->exponent, written.power_law->exponent);
+  EXPECT_EQ(read.power_law->reference_counts, written.power_law->reference_counts);
 }
 
 void expect_equal(const Calibration& read, const Calibration& written) {
@@ -58,6 +63,7 @@ void expect_equal(const Calibration& read, const Calibration& written) {
   EXPECT_EQ(read.gain, written.gain);
   EXPECT_EQ(read.dead_zone, written.dead_zone);
   EXPECT_EQ(read.mask, written.mask);
+  EXPECT_EQ(read.noise, written.noise);
 }
 
 /// What goes into a recording comes out of it, bit for bit.
@@ -109,6 +115,7 @@ TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {
       skin.counts_per_newton = pick(1, 1000) / 7.0;
       skin.threshold_counts = pick(0, 20) / 3.0;
       if (trial % 2 == 0) skin.full_scale_counts = 200 + pick(0, 10) / 3.0;
+      if (trial % 3 == 0) skin.power_law = {1 + pick(0, 10) / 7.0, 50 + pick(0, 10) / 3.0};
       SCOPED_TRACE(testing::Message() << skin.rows << " x " << skin.cols << " " << name_of(type));
       expect_round_trip(skin, type, random_calibration(skin, random), trial % 3 == 0,
                         trial == 1 ? 0 : pick(1, 20));

@@ -115,6 +115,52 @@ TYPED_TEST(SenselStages, TareAndGainApplyInTheirOrder) {
   TestFixture::expect_lifted(classify(unloaded, Real{0}));
 }
 
+TYPED_TEST(SenselStages, APowerLawStraightensToItsAccuracy) {
+  using Real = RealOf<TypeParam>;
+  const Real largest = static_cast<Real>(1e33);
+  for (const Real exponent : {Real{0.25}, Real{0.75}, Real{1}, Real{1.25}, Real{5}}) {
+    for (const Real reading : {Real{0.125}, Real{2.75}, Real{90}, Real{254}, Real{65535}}) {
+      const Real reference = 90;
+      const auto sensel =
+          apply_power_law(TypeParam::raw_sensel(reading), exponent, reference, largest);
+      const double expected = 90 * std::pow(double{reading} / 90, double{exponent});
+      // The quotient's rounding grows with the exponent; pow and the product add theirs.
+      const double epsilon = std::numeric_limits<Real>::epsilon();
+      EXPECT_NEAR(sensel.reading, expected, (0.5 * exponent + 3) * epsilon * expected);
+    }
+  }
+}
+
+TYPED_TEST(SenselStages, APowerLawKeepsItsReferenceAndWhatDoesNotAnswer) {
+  using Real = RealOf<TypeParam>;
+  using Limits = std::numeric_limits<Real>;
+  const auto straight = [](Real reading, Real exponent) {
+    return apply_power_law(TypeParam::raw_sensel(reading), exponent, Real{80},
+                           static_cast<Real>(1e33))
+        .reading;
+  };
+  EXPECT_EQ(straight(80, Real{1.75}), 80);
+  for (const Real reading : {Real{0}, Real{-3}, static_cast<Real>(-1e35)}) {
+    EXPECT_EQ(straight(reading, Real{1.75}), reading);
+  }
+  EXPECT_TRUE(std::isnan(straight(Limits::quiet_NaN(), Real{1.75})));
+  EXPECT_EQ(straight(static_cast<Real>(2e35), 5), static_cast<Real>(1e33));
+}
+
+TEST(PowerLaw, ItsSlopeIsItsDerivative) {
+  for (const double exponent : {0.5, 1.0, 1.3, 3.0}) {
+    for (const double reading : {0.5, 20.0, 80.0, 250.0}) {
+      const auto straight = [=](double r) { return 80 * std::pow(r / 80, exponent); };
+      const double slope =
+          (straight(1.0001 * reading) - straight(0.9999 * reading)) / (0.0002 * reading);
+      EXPECT_NEAR(double_precision::power_law_slope(reading, exponent, 80), slope, 1e-6 * slope);
+    }
+  }
+  for (const double steep : {0.0, 1e-300}) {
+    EXPECT_EQ(double_precision::power_law_slope(steep, 0.5, 80), 1e6) << "its square stays finite";
+  }
+}
+
 TYPED_TEST(SenselStages, SaturationIsOfTheRawReading) {
   using Real = RealOf<TypeParam>;
   const auto marked = mark_saturated(TypeParam::raw_sensel(255), Real{255});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,9 @@ struct Calibration {
     return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty() && noise.empty();
   }
 };
+
+/// The number of sensels that the mask has as missing.
+[[nodiscard]] std::size_t count_masked(const Calibration& calibration);
 
 /// Limits of Calibration::gain.
 inline constexpr double kMinGain = 1e-2;

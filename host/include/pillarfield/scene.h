@@ -15,8 +15,8 @@
 namespace pillarfield {
 
 /// What makes a sensor differ from the model, each absent (zero or unset) unless the scene lists
-/// it. The order is that of the signal: dead zone, sensitivity, tare, drift, noise, converter,
-/// dead.
+/// it. The order is that of the signal: dead zone, the skin's power law, sensitivity, tare, drift,
+/// noise, converter, dead.
 struct SensorModel {
   double dead_zone_counts = 0;  ///< what a sensel swallows before it answers
   double gain_spread = 0;       ///< relative standard deviation of the sensels' sensitivity, < 0.3

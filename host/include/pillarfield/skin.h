@@ -24,6 +24,9 @@ struct PowerLaw {
   double reference_counts = 1;  ///< 1e-3..1e6
 };
 
+/// What a corrected reading of zero counts or more stands for.
+[[nodiscard]] double straightened(const PowerLaw& law, double reading);
+
 /// A patch of skin: its size and the sensor's constants, the same for every sensel.
 ///
 /// Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at

@@ -1,0 +1,91 @@
+#include "cli/calibrate_input.h"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield::cli {
+namespace {
+
+FrameStatistics statistics_of(FrameSource& source, const std::string& file,
+                              const StepOptions& options) {
+  FrameStatistics statistics(file, source.skin(), source.sensel_type());
+  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+  Progress progress("Reading", source.frames(), options.quiet);
+  for (std::uint64_t index = 0; index < source.frames(); ++index) {
+    stop_if_interrupted_before(options.output);
+    source.read(index, frame);
+    statistics.add(frame.view());
+    progress.show(index + 1);
+  }
+  return statistics;
+}
+
+}  // namespace
+
+void add_step_options(CLI::App& command, StepOptions& options, const char* wrote) {
+  command.add_option("-o,--output", options.output, wrote)->required();
+  command.add_flag("--json", options.json, "Print the summary as JSON");
+  command.add_flag("-q,--quiet", options.quiet, "Show no progress");
+}
+
+void add_calibration_option(CLI::App& command, StepOptions& options) {
+  command
+      .add_option("--calibration", options.calibration, "Calibration that this step goes on from")
+      ->required();
+}
+
+std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
+  std::unique_ptr<FrameSource> source = open_frames(file);
+  for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
+  std::error_code absent;
+  if (std::filesystem::equivalent(file, options.output, absent)) {
+    throw Error(options.output, "holds the frames that are read", "write to another file");
+  }
+  return source;
+}
+
+SkinCalibration calibration_before(const StepOptions& options, const FrameSource& source,
+                                   const std::string& file) {
+  SkinCalibration calibration = options.calibration.empty()
+                                    ? blank_calibration(source.skin())
+                                    : read_calibration_file(options.calibration);
+  require_fitting(calibration, source.skin(), file);
+  mask_missing(calibration, source.calibration().mask);
+  return calibration;
+}
+
+StepInput read_input(const std::vector<std::string>& files, const StepOptions& options) {
+  StepInput input;
+  for (const std::string& file : files) {
+    const std::unique_ptr<FrameSource> source = open_for_step(file, options);
+    if (input.files.empty()) input.before = calibration_before(options, *source, file);
+    require_fitting(input.before, source->skin(), file);
+    mask_missing(input.before, source->calibration().mask);
+    input.files.push_back(statistics_of(*source, file, options));
+    input.frames += source->frames();
+  }
+  return input;
+}
+
+void require_one_each(const char* option, const std::vector<std::string>& files,
+                      const std::vector<double>& values) {
+  if (files.size() == values.size()) return;
+  throw CLI::ValidationError(option, fmt::format("{} files and {} values; give one for each file",
+                                                 files.size(), values.size()));
+}
+
+std::vector<std::string> names_of(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  for (const std::string& file : files) {
+    names.push_back(std::filesystem::path(file).filename().string());
+  }
+  return names;
+}
+
+}  // namespace pillarfield::cli

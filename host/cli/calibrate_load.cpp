@@ -1,0 +1,140 @@
+// pillarfield calibrate load: counts per newton, and a power law, from known loads.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/calibrate.h"
+#include "cli/calibrate_input.h"
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/load_calibration.h"
+
+namespace pillarfield::cli {
+namespace {
+
+/// Beyond this share the load stands on pillars that are ambiguous.
+constexpr double kMuchAmbiguous = 0.05;
+
+struct LoadCommand {
+  std::vector<std::string> files;
+  std::vector<double> loads_n;
+  LoadModel model = LoadModel::linear;
+  StepOptions step;
+};
+
+const char* name_of(LoadModel model) { return model == LoadModel::power ? "power" : "linear"; }
+
+void print_json(const LoadCommand& command, const LoadResult& result, std::uint64_t frames) {
+  const SkinCalibration& calibration = result.calibration;
+  nlohmann::ordered_json json = {{"output", command.step.output},
+                                 {"frames", frames},
+                                 {"model", name_of(command.model)},
+                                 {"counts_per_newton", *calibration.counts_per_newton},
+                                 {"least_counts_per_newton", result.least_counts_per_newton},
+                                 {"most_counts_per_newton", result.most_counts_per_newton},
+                                 {"misfit", result.misfit}};
+  if (calibration.power_law) {
+    json["power_law_exponent"] = calibration.power_law->exponent;
+    json["power_law_reference_counts"] = calibration.power_law->reference_counts;
+  }
+  json["loads"] = nlohmann::ordered_json::array();
+  for (const LoadResidual& load : result.loads) {
+    json["loads"].push_back({{"load_n", load.load_n},
+                             {"solved_n", load.solved_n},
+                             {"ambiguous_share", load.ambiguous_share},
+                             {"saturated", load.saturated}});
+  }
+  fmt::print("{}\n", json.dump());
+}
+
+void print_text(const LoadCommand& command, const LoadResult& result, std::uint64_t frames) {
+  const SkinCalibration& calibration = result.calibration;
+  fmt::print(
+      "Calibrated with {} load{}, {} frames\n"
+      "  sensitivity  {:8.2f} counts per newton and pillar, {:.2f} to {:.2f} as ambiguous pillars "
+      "allow\n",
+      result.loads.size(), result.loads.size() == 1 ? "" : "s", frames,
+      *calibration.counts_per_newton, result.least_counts_per_newton,
+      result.most_counts_per_newton);
+  if (calibration.power_law) {
+    fmt::print("  power law    exponent {:.4f}, reference {:.2f} counts\n",
+               calibration.power_law->exponent, calibration.power_law->reference_counts);
+  }
+  for (const LoadResidual& load : result.loads) {
+    fmt::print("  {:8.3f} N is solved as {:8.3f} N ({:+.2f} %), {:.1f} % of it ambiguous\n",
+               load.load_n, load.solved_n, 100 * (load.solved_n / load.load_n - 1),
+               100 * load.ambiguous_share);
+  }
+  fmt::print("Wrote {}\n", command.step.output);
+}
+
+void print_remarks(const LoadCommand& command, const LoadResult& result) {
+  for (std::size_t i = 0; i < result.loads.size(); ++i) {
+    const LoadResidual& load = result.loads[i];
+    if (load.ambiguous_share > kMuchAmbiguous) {
+      fmt::print(stderr,
+                 "{}: {:.0f} % of the load stands on ambiguous pillars; press flat and without "
+                 "shear\n",
+                 command.files[i], 100 * load.ambiguous_share);
+    }
+    if (load.saturated > 0) {
+      fmt::print(stderr, "{}: {} pillars have a saturated sensel and lack force; press less\n",
+                 command.files[i], load.saturated);
+    }
+  }
+}
+
+void run(const LoadCommand& command) {
+  const StepInput input = read_input(command.files, command.step);
+  std::vector<KnownLoad> loads;
+  for (std::size_t i = 0; i < input.files.size(); ++i) {
+    loads.push_back({input.files[i], command.loads_n[i]});
+  }
+  LoadResult result = calibrate_load(input.before, loads, command.model);
+  result.calibration.history.push_back(
+      step_done("load", names_of(command.files), input.frames,
+                fmt::format("loads_n = {}, model = {}", fmt::join(command.loads_n, " "),
+                            name_of(command.model))));
+  write_calibration_file(command.step.output, result.calibration);
+  print_remarks(command, result);
+  if (command.step.json) {
+    print_json(command, result, input.frames);
+  } else {
+    print_text(command, result, input.frames);
+  }
+}
+
+}  // namespace
+
+void add_calibrate_load(CLI::App& calibrate, Work& work) {
+  static const std::map<std::string, LoadModel> models = {{"linear", LoadModel::linear},
+                                                          {"power", LoadModel::power}};
+  const auto options = std::make_shared<LoadCommand>();
+  CLI::App* const command = calibrate.add_subcommand(
+      "load", "Counts per newton, and a power law, from known normal loads");
+  command
+      ->add_option("FRAMES", options->files, "Frames under a load that stands still, a file each")
+      ->required();
+  command
+      ->add_option("--load-n", options->loads_n,
+                   "Normal load of each file, in their order: L1,L2,... or given again for each")
+      ->required()
+      ->check(CLI::PositiveNumber)
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  command
+      ->add_option("--model", options->model,
+                   "linear: in proportion; power: by a power law, from two loads or more [linear]")
+      ->transform(CLI::CheckedTransformer(models))
+      ->type_name("linear|power");
+  add_calibration_option(*command, options->step);
+  add_step_options(*command, options->step, "Calibration to write (HDF5)");
+  command->callback([options, &work] {
+    require_one_each("--load-n", options->files, options->loads_n);
+    work = [options] { run(*options); };
+  });
+}
+
+}  // namespace pillarfield::cli

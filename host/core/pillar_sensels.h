@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+/// Where the sensels 1 to 4 of the pillar in this row and column stand in a plane of the skin.
+inline std::array<std::size_t, 4> pillar_sensels(const Skin& skin, std::size_t pillar_row,
+                                                 std::size_t pillar_col) {
+  const std::size_t upper_left = 2 * pillar_row * skin.cols + 2 * pillar_col;
+  const std::size_t lower_left = upper_left + skin.cols;
+  return {upper_left + 1, upper_left, lower_left, lower_left + 1};
+}
+
+/// Calls `use(row, col, sensels)` for each pillar of the skin.
+template <class Use>
+void for_each_pillar(const Skin& skin, Use use) {
+  for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
+    for (std::uint32_t col = 0; col < skin.pillar_cols(); ++col) {
+      use(row, col, pillar_sensels(skin, row, col));
+    }
+  }
+}
+
+}  // namespace pillarfield

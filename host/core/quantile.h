@@ -1,0 +1,25 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace pillarfield {
+
+/// The smallest of the values that at least `share` (0..1) of them do not exceed; `values` are
+/// finite, not empty, and put into another order.
+template <class Value>
+Value quantile(std::vector<Value>& values, double share) {
+  const auto rank = std::ceil(share * static_cast<double>(values.size())) - 1;
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max(0.0, rank));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+template <class Value>
+Value median(std::vector<Value>& values) {
+  return quantile(values, 0.5);
+}
+
+}  // namespace pillarfield

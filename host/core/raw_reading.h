@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+
+#include "pillarfield/frame.h"
+
+namespace pillarfield {
+
+/// Calls `use(row, readings)` for each row of sensels, `readings` being a pointer to the first of
+/// them in the frame's own type.
+template <class Use>
+void for_each_row(const FrameView& frame, Use use) {
+  const auto rows_of = [&](const auto* readings) {
+    for (std::size_t row = 0; row < frame.rows; ++row) use(row, readings + row * frame.row_stride);
+  };
+  switch (frame.type) {
+    case SenselType::u8:
+      return rows_of(static_cast<const std::uint8_t*>(frame.data));
+    case SenselType::u16:
+      return rows_of(static_cast<const std::uint16_t*>(frame.data));
+    case SenselType::f32:
+      break;
+  }
+  rows_of(static_cast<const float*>(frame.data));
+}
+
+/// Throws Error, its place being `where`, unless the frame is of this size and type.
+void require_frame(const FrameView& frame, const Skin& skin, SenselType type,
+                   const std::string& where);
+
+}  // namespace pillarfield

@@ -1,0 +1,25 @@
+#include "pillarfield/sensel_finding.h"
+
+namespace pillarfield {
+
+const char* name_of(SenselFault fault) {
+  switch (fault) {
+    case SenselFault::not_a_number:
+      return "not a number";
+    case SenselFault::saturated:
+      return "saturated";
+    case SenselFault::stuck:
+      return "stuck";
+    case SenselFault::noisy:
+      return "noisy";
+    case SenselFault::silent:
+      return "silent";
+    case SenselFault::unequal:
+      return "unequal";
+    case SenselFault::undecided:
+      break;
+  }
+  return "undecided";
+}
+
+}  // namespace pillarfield

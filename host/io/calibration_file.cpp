@@ -1,0 +1,172 @@
+#include "pillarfield/calibration_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "io/calibration_format.h"
+#include "io/file_kind.h"
+#include "io/hdf5_attribute.h"
+#include "io/hdf5_file.h"
+#include "io/part_file.h"
+#include "io/recording_format.h"
+#include "io/stored_skin.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+namespace layout = calibration_format;
+
+/// A history has some ten steps; a damaged file must not make anyone read for ever.
+constexpr int kMostSteps = 10000;
+
+Skin size_of_skin(const SkinCalibration& calibration) {
+  Skin skin;
+  skin.rows = calibration.rows;
+  skin.cols = calibration.cols;
+  return skin;
+}
+
+std::string group_of_step(int number) { return fmt::format("{}/{}", layout::kHistory, number); }
+
+// Writing
+
+void write_step(const hdf5::File& file, const std::string& name, const CalibrationStep& step) {
+  const hdf5::Handle group = hdf5::create_group(file, name.c_str());
+  const auto write = [&](const char* attribute, const auto& value) {
+    hdf5::write_attribute(file, group.get(), attribute, value);
+  };
+  write(layout::kStep, step.step);
+  write(layout::kSources, fmt::format("{}", fmt::join(step.sources, "\n")));
+  constexpr std::uint64_t kMostFrames = std::numeric_limits<int>::max();
+  write(layout::kStepFrames, static_cast<int>(std::min(step.frames, kMostFrames)));
+  write(layout::kParameters, step.parameters);
+  write(layout::kDate, step.date_utc);
+  write(layout::kProgramVersion, step.program_version);
+}
+
+void write_history(const hdf5::File& file, const std::vector<CalibrationStep>& history) {
+  if (history.empty()) return;
+  const hdf5::Handle group = hdf5::create_group(file, layout::kHistory);
+  int number = 0;
+  for (const CalibrationStep& step : history) write_step(file, group_of_step(++number), step);
+}
+
+void write_all(const hdf5::File& file, const SkinCalibration& calibration) {
+  hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));
+  hdf5::write_attribute(file, file.id.get(), "version", layout::kVersion);
+  const hdf5::Handle skin =
+      write_skin(file, {std::nullopt, calibration.counts_per_newton, calibration.threshold_counts,
+                        std::nullopt, calibration.power_law});
+  hdf5::write_attribute(file, skin.get(), layout::kRows, static_cast<int>(calibration.rows));
+  hdf5::write_attribute(file, skin.get(), layout::kCols, static_cast<int>(calibration.cols));
+  if (calibration.threshold_factor) {
+    hdf5::write_attribute(file, skin.get(), layout::kThresholdFactor,
+                          *calibration.threshold_factor);
+  }
+  write_planes(file, size_of_skin(calibration), calibration.planes);
+  write_history(file, calibration.history);
+}
+
+// Reading
+
+std::uint32_t read_size(const hdf5::File& file, hid_t skin, const char* name) {
+  const auto size = hdf5::read_number(file, skin, name);
+  if (size && *size >= 2 && *size <= kMaxSensels && *size == std::floor(*size)) {
+    return static_cast<std::uint32_t>(*size);
+  }
+  const std::string what =
+      size ? fmt::format("{} is {}", name, *size) : fmt::format("has no attribute '{}'", name);
+  throw Error(fmt::format("{}: {}", file.path.string(), recording_format::kSkin), what,
+              fmt::format("it must be a whole number in [2, {}]", kMaxSensels));
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+CalibrationStep read_step(const hdf5::File& file, const std::string& name) {
+  const hdf5::Handle group =
+      hdf5::own(H5Gopen2(file.id.get(), name.c_str(), H5P_DEFAULT), file.path,
+                fmt::format("{} cannot be opened", name), hdf5::kDamaged);
+  const auto text = [&](const char* attribute) {
+    return hdf5::read_text(file, group.get(), attribute).value_or("");
+  };
+  CalibrationStep step;
+  step.step = text(layout::kStep);
+  step.sources = lines_of(text(layout::kSources));
+  const double frames = hdf5::read_number(file, group.get(), layout::kStepFrames).value_or(0);
+  // Beyond 2^53 it is no count, and NaN is none either.
+  step.frames = frames >= 0 && frames < 0x1p53 ? static_cast<std::uint64_t>(frames) : 0;
+  step.parameters = text(layout::kParameters);
+  step.date_utc = text(layout::kDate);
+  step.program_version = text(layout::kProgramVersion);
+  return step;
+}
+
+std::vector<CalibrationStep> read_history(const hdf5::File& file) {
+  std::vector<CalibrationStep> history;
+  for (int number = 1; number <= kMostSteps; ++number) {
+    const std::string name = group_of_step(number);
+    if (!hdf5::exists(file, name)) break;
+    history.push_back(read_step(file, name));
+  }
+  return history;
+}
+
+}  // namespace
+
+bool is_calibration_file(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  try {
+    if (kind_of(path) != FileKind::hdf5) return false;
+    const hdf5::File file = hdf5::open_to_read(path);
+    return hdf5::read_text(file, file.id.get(), "format") == layout::kName;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+SkinCalibration read_calibration_file(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  const hdf5::File file = hdf5::open_to_read(path);
+  hdf5::require_format(file, layout::kName, layout::kVersion);
+  const hdf5::Handle skin = open_skin(file);
+  if (!skin.valid()) throw Error(path.string(), "has no /skin", hdf5::kDamaged);
+  SkinCalibration calibration;
+  calibration.rows = read_size(file, skin.get(), layout::kRows);
+  calibration.cols = read_size(file, skin.get(), layout::kCols);
+  const StoredSkin constants = read_skin(file);
+  calibration.counts_per_newton = constants.counts_per_newton;
+  calibration.threshold_counts = constants.threshold_counts;
+  calibration.power_law = constants.power_law;
+  calibration.threshold_factor = hdf5::read_number(file, skin.get(), layout::kThresholdFactor);
+  calibration.planes = read_planes(file, size_of_skin(calibration));
+  calibration.history = read_history(file);
+  check(calibration, path.c_str());
+  return calibration;
+}
+
+void write_calibration_file(const std::filesystem::path& path, const SkinCalibration& calibration) {
+  const hdf5::QuietErrors quiet;
+  check(calibration, path.c_str());
+  PartFile part(path);
+  hdf5::File file = hdf5::create(part.path());
+  write_all(file, calibration);
+  hdf5::flush(file);
+  hdf5::close(file);
+  part.commit();
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+
+#include "pillarfield/frame_statistics.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
+
+namespace pillarfield::core_test {
+
+/// A simulated skin that lies bare or under a uniform pressure. The sensels are the same in each of
+/// its presses; the noise is another.
+class PressedSkin {
+ public:
+  PressedSkin(std::uint32_t pillar_rows, std::uint32_t pillar_cols, const SensorModel& sensor) {
+    scene_.skin.rows = 2 * pillar_rows;
+    scene_.skin.cols = 2 * pillar_cols;
+    scene_.sensor = sensor;
+  }
+
+  [[nodiscard]] Scene& scene() { return scene_; }
+  [[nodiscard]] const Skin& skin() const { return scene_.skin; }
+
+  /// What a faultless calibration would find.
+  [[nodiscard]] Calibration truth() const { return Simulator(scene_).calibration(); }
+
+  /// Statistics of `frames` frames in which each pillar carries `force_n` straight down.
+  FrameStatistics press(double force_n, std::uint32_t frames) {
+    Scene scene = scene_;
+    if (force_n > 0) {
+      scene.load = Chart{.directions = scene.skin.pillar_cols(),
+                         .inclinations = scene.skin.pillar_rows(),
+                         .max_theta_deg = 0,
+                         .magnitudes_n = {force_n}};
+    }
+    return statistics_of(Simulator(scene), frames);
+  }
+
+  FrameStatistics bare(std::uint32_t frames) { return press(0, frames); }
+
+  FrameStatistics statistics_of(const Simulator& simulator, std::uint32_t frames) {
+    const Skin& skin = simulator.scene().skin;
+    FrameStatistics statistics("frames.h5", skin, simulator.sensel_type());
+    FrameBuffer frame(simulator.sensel_type(), skin.rows, skin.cols);
+    ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+    for (std::uint32_t i = 0; i < frames; ++i) {
+      simulator.render(next_frame_++, frame, truth);
+      statistics.add(frame.view());
+    }
+    return statistics;
+  }
+
+  /// The pressure that puts `force_n` on each pillar.
+  [[nodiscard]] double pressure_kpa(double force_n) const {
+    return 1000 * force_n / (skin().pillar_pitch_mm() * skin().pillar_pitch_mm());
+  }
+
+ private:
+  Scene scene_;
+  std::uint64_t next_frame_ = 0;
+};
+
+}  // namespace pillarfield::core_test

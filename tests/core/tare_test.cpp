@@ -1,0 +1,204 @@
+// The tare: what it finds, with its error, and what it refuses.
+
+#include "pillarfield/tare.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pillarfield/error.h"
+#include "tests/core/message.h"
+#include "tests/core/pressed_skin.h"
+
+namespace pillarfield {
+namespace {
+
+using core_test::message_of;
+using core_test::PressedSkin;
+
+constexpr std::uint32_t kFrames = 100;
+
+/// 900 pillars of 12 counts of tare and one of noise, 8 bits.
+SensorModel common_sensor() {
+  SensorModel sensor;
+  sensor.tare_counts = 12;
+  sensor.tare_spread_counts = 1.5;
+  sensor.noise_counts = 1;
+  sensor.adc_bits = 8;
+  return sensor;
+}
+
+PressedSkin common_skin() { return {30, 30, common_sensor()}; }
+
+TareResult tare_of(const FrameStatistics& unloaded, const TareOptions& options = {}) {
+  return take_tare(blank_calibration(unloaded.skin()), unloaded, options);
+}
+
+/// The noise of a rounded reading.
+const double kNoise = std::sqrt(1 + 1 / 12.0);
+
+TEST(Tare, IsTheMeanWithinItsStandardError) {
+  PressedSkin skin = common_skin();
+  const Calibration truth = skin.truth();
+  const TareResult result = tare_of(skin.bare(kFrames));
+  const std::vector<float>& tare = result.calibration.planes.tare;
+  double squares = 0;
+  for (std::size_t i = 0; i < tare.size(); ++i) {
+    const double error = tare[i] - truth.tare[i];
+    EXPECT_LT(std::abs(error), 5 * kNoise / std::sqrt(kFrames)) << i;
+    squares += error * error;
+  }
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(tare.size())), kNoise / std::sqrt(kFrames),
+              0.01);
+  EXPECT_TRUE(result.findings.empty());
+  EXPECT_TRUE(result.calibration.planes.mask.empty());
+}
+
+TEST(Tare, NoiseIsTheStandardDeviationAndMakesTheThreshold) {
+  PressedSkin skin = common_skin();
+  const TareResult result = tare_of(skin.bare(kFrames), {.threshold_factor = 3});
+  const std::vector<float>& noise = result.calibration.planes.noise;
+  // The standard error of a standard deviation of n readings is a share 1/sqrt(2 (n - 1)) of it.
+  const double error = kNoise / std::sqrt(2.0 * (kFrames - 1));
+  for (const float value : noise) EXPECT_NEAR(value, kNoise, 5.5 * error);
+  EXPECT_NEAR(result.noise_counts, kNoise, error / 10);
+  const double threshold = result.calibration.threshold_counts.value();
+  EXPECT_NEAR(threshold, 3 * (kNoise + 2.33 * error), 3 * 0.3 * error);
+  const auto above = std::ranges::count_if(noise, [&](float n) { return 3 * n > threshold; });
+  EXPECT_LE(above, static_cast<long>(noise.size() / 100));
+  EXPECT_GT(above, 0);
+}
+
+TEST(Tare, WholeCountsHaveAtLeastTheirRoundingError) {
+  SensorModel sensor = common_sensor();
+  sensor.noise_counts = 0;
+  PressedSkin skin(4, 4, sensor);
+  for (const float value : tare_of(skin.bare(kFrames)).calibration.planes.noise) {
+    EXPECT_FLOAT_EQ(value, static_cast<float>(1 / std::sqrt(12.0)));
+  }
+  sensor.adc_bits.reset();
+  PressedSkin exact(4, 4, sensor);
+  const TareResult result = tare_of(exact.bare(kFrames));
+  for (const float value : result.calibration.planes.noise) EXPECT_EQ(value, 0);
+  EXPECT_EQ(result.calibration.threshold_counts, 0);
+}
+
+/// Statistics of frames that a function fills, sensel by sensel, frame by frame.
+template <class Reading>
+FrameStatistics frames_of(std::uint32_t rows, std::uint32_t cols, std::uint32_t frames,
+                          Reading reading, std::optional<double> full_scale = {}) {
+  Skin skin;
+  skin.rows = rows;
+  skin.cols = cols;
+  skin.full_scale_counts = full_scale;
+  FrameStatistics statistics("frames.h5", skin, SenselType::f32);
+  FrameBuffer frame(SenselType::f32, rows, cols);
+  for (std::uint32_t t = 0; t < frames; ++t) {
+    for (std::size_t i = 0; i < skin.sensels(); ++i) {
+      frame.readings<float>()[i] = static_cast<float>(reading(i, t));
+    }
+    statistics.add(frame.view());
+  }
+  return statistics;
+}
+
+/// A tare of 10 counts, and one count up and down.
+double flicker(std::size_t sensel, std::uint32_t frame) {
+  return (sensel + frame) % 2 == 0 ? 9 : 11;
+}
+
+TEST(Tare, MasksWhatCannotBeRightAndSaysWhy) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const auto reading = [](std::size_t i, std::uint32_t t) -> double {
+    if (i == 3) return t % 3 == 0 ? flicker(i, t) : kNan;
+    if (i == 10) return 250;                            // at full scale
+    if (i == 20) return 100;                            // stuck high
+    if (i == 30) return -7;                             // stuck low
+    if (i == 40) return t % 2 == 0 ? 0 : 40;            // comes and goes
+    if (i == 50) return 10;                             // constant where it may be
+    if (i == 60) return 30 + flicker(i, t);             // a high tare, and alive
+    if (i == 70) return t == 5 ? kNan : flicker(i, t);  // one reading lost
+    return flicker(i, t);
+  };
+  const TareResult result = tare_of(frames_of(10, 10, 60, reading, 250));
+  ASSERT_EQ(result.findings.size(), 5U);
+  const std::vector<std::pair<std::size_t, SenselFault>> expected = {{3, SenselFault::not_a_number},
+                                                                     {10, SenselFault::saturated},
+                                                                     {20, SenselFault::stuck},
+                                                                     {30, SenselFault::stuck},
+                                                                     {40, SenselFault::noisy}};
+  for (const auto& [sensel, fault] : expected) {
+    const auto found = std::ranges::find_if(result.findings, [&](const SenselFinding& finding) {
+      return finding.row * 10 + finding.col == sensel;
+    });
+    ASSERT_NE(found, result.findings.end()) << sensel;
+    EXPECT_EQ(found->fault, fault) << sensel;
+    EXPECT_TRUE(found->masked);
+    EXPECT_EQ(result.calibration.planes.mask[sensel], 0);
+  }
+  EXPECT_EQ(std::ranges::count(result.calibration.planes.mask, 0), 5);
+  EXPECT_FLOAT_EQ(result.calibration.planes.tare[60], 40);
+  EXPECT_NO_THROW(check(result.calibration, "result"));
+}
+
+TEST(Tare, KeepsWhatWasKnownBefore) {
+  PressedSkin skin = common_skin();
+  SkinCalibration before = blank_calibration(skin.skin());
+  before.counts_per_newton = 123;
+  before.planes.gain.assign(skin.skin().sensels(), 2);
+  before.planes.mask.assign(skin.skin().sensels(), 1);
+  before.planes.mask[5] = 0;
+  const TareResult result = take_tare(before, skin.bare(kFrames), {});
+  EXPECT_EQ(result.calibration.counts_per_newton, 123);
+  EXPECT_EQ(result.calibration.planes.gain, before.planes.gain);
+  EXPECT_EQ(result.calibration.planes.mask, before.planes.mask);
+  EXPECT_TRUE(result.findings.empty()) << "a sensel that was masked is no finding";
+  // The threshold is compared with corrected readings, which the gain has made twice as noisy.
+  EXPECT_NEAR(result.calibration.threshold_counts.value(),
+              2 * tare_of(skin.bare(kFrames)).calibration.threshold_counts.value(), 0.2);
+}
+
+TEST(Tare, RefusesATouchedSkin) {
+  PressedSkin skin = common_skin();
+  Contact ball;
+  ball.contact_radius_mm = 5;
+  ball.reference_load_n = 20;
+  ball.path = {{0, 0, 0, 20}};
+  Scene touched = skin.scene();
+  touched.load = std::vector<Contact>{ball};
+  const FrameStatistics always = skin.statistics_of(Simulator(touched), 50);
+  EXPECT_NE(message_of([&] { (void)tare_of(always); }).find("frames.h5: "), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)tare_of(always); }).find("touched them"), std::string::npos);
+  EXPECT_NO_THROW((void)tare_of(always, {.preloaded = true}));
+
+  ball.path = {{0, 0, 0, 0}, {0.945, 0, 0, 0}, {0.95, 0, 0, 20}};
+  touched.load = std::vector<Contact>{ball};
+  const FrameStatistics at_the_end = skin.statistics_of(Simulator(touched), 50);
+  EXPECT_NE(message_of([&] { (void)tare_of(at_the_end); }).find("touched them"), std::string::npos);
+}
+
+TEST(Tare, RefusesTooFewFramesAndOtherSkins) {
+  PressedSkin skin = common_skin();
+  const FrameStatistics few = skin.bare(kLeastTareFrames - 1);
+  EXPECT_EQ(message_of([&] { (void)tare_of(few); }), "frames.h5: has 9 frames; give at least 10");
+  PressedSkin other(30, 31, common_sensor());
+  const SkinCalibration before = blank_calibration(other.skin());
+  const std::string message = message_of([&] { (void)take_tare(before, few, {}); });
+  EXPECT_NE(message.find("60 x 60"), std::string::npos) << message;
+  EXPECT_NE(message.find("60 x 62"), std::string::npos) << message;
+}
+
+TEST(Tare, RefusesASensorOfWhichLittleIsRight) {
+  const FrameStatistics broken =
+      frames_of(10, 10, 20, [](std::size_t i, std::uint32_t t) -> double {
+        return i % 8 < 5 ? std::nan("") : flicker(i, t);
+      });
+  EXPECT_NE(message_of([&] { (void)tare_of(broken); }).find("cannot be right"), std::string::npos);
+  const FrameStatistics dead = frames_of(10, 10, 20, [](auto...) { return std::nan(""); });
+  EXPECT_NE(message_of([&] { (void)tare_of(dead); }).find("no sensel"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,226 @@
+#include "pillarfield/calibration_file.h"
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <functional>
+#include <limits>
+
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+/// HDF5 1.10 does not free what it had made of an object's header when that turns out damaged.
+/// LeakSanitizer calls this function by its name.
+// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::has_all;
+using io_test::number_at;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+using Names = std::vector<std::string>;
+
+/// All that a calibration can have, of 6 x 8 sensels.
+SkinCalibration full_calibration() {
+  SkinCalibration calibration;
+  calibration.rows = 6;
+  calibration.cols = 8;
+  const auto plane = [](float first) {
+    std::vector<float> values(48);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = first + static_cast<float>(i) / 7.0F;
+    }
+    return values;
+  };
+  calibration.planes = {plane(-3), plane(0.5F), plane(0), std::vector<std::uint8_t>(48, 1),
+                        plane(0.3F)};
+  calibration.planes.mask[7] = 0;
+  calibration.threshold_counts = 4.125;
+  calibration.threshold_factor = 4;
+  calibration.counts_per_newton = 317.4;
+  calibration.power_law = {1.2, 96.5};
+  calibration.history = {
+      {"tare", {"bare.h5"}, 100, "threshold_factor = 4", "2026-01-31T12:34:56Z", "0.1.0"},
+      {"equilibrate", {"a b.h5", "ü,.h5"}, 200, "", "2026-02-01T00:00:00Z", "0.2.0"}};
+  return calibration;
+}
+
+void expect_equal(const SkinCalibration& read, const SkinCalibration& written) {
+  EXPECT_EQ(read.rows, written.rows);
+  EXPECT_EQ(read.cols, written.cols);
+  EXPECT_EQ(read.planes.tare, written.planes.tare);
+  EXPECT_EQ(read.planes.gain, written.planes.gain);
+  EXPECT_EQ(read.planes.dead_zone, written.planes.dead_zone);
+  EXPECT_EQ(read.planes.mask, written.planes.mask);
+  EXPECT_EQ(read.planes.noise, written.planes.noise);
+  EXPECT_EQ(read.threshold_counts, written.threshold_counts);
+  EXPECT_EQ(read.threshold_factor, written.threshold_factor);
+  EXPECT_EQ(read.counts_per_newton, written.counts_per_newton);
+  ASSERT_EQ(read.power_law.has_value(), written.power_law.has_value());
+  if (read.power_law) {
+    EXPECT_EQ(read.power_law->exponent, written.power_law->exponent);
+    EXPECT_EQ(read.power_law->reference_counts, written.power_law->reference_counts);
+  }
+  ASSERT_EQ(read.history.size(), written.history.size());
+  for (std::size_t i = 0; i < read.history.size(); ++i) {
+    EXPECT_EQ(read.history[i].step, written.history[i].step);
+    EXPECT_EQ(read.history[i].sources, written.history[i].sources);
+    EXPECT_EQ(read.history[i].frames, written.history[i].frames);
+    EXPECT_EQ(read.history[i].parameters, written.history[i].parameters);
+    EXPECT_EQ(read.history[i].date_utc, written.history[i].date_utc);
+    EXPECT_EQ(read.history[i].program_version, written.history[i].program_version);
+  }
+}
+
+TEST(CalibrationFile, GivesBackWhatWasWritten) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "cal.h5";
+  write_calibration_file(path, full_calibration());
+  expect_equal(read_calibration_file(path), full_calibration());
+  EXPECT_TRUE(is_calibration_file(path));
+  EXPECT_EQ(directory.names(), Names{"cal.h5"});
+}
+
+TEST(CalibrationFile, MayHoldLittle) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "cal.h5";
+  SkinCalibration bare;
+  bare.rows = 2;
+  bare.cols = 3;
+  write_calibration_file(path, bare);
+  expect_equal(read_calibration_file(path), bare);
+}
+
+TEST(CalibrationFile, AFailureLeavesTheOldOne) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "cal.h5";
+  write_calibration_file(path, full_calibration());
+  const std::string before = bytes_of(path);
+  SkinCalibration wrong = full_calibration();
+  wrong.planes.gain[13] = 0;
+  EXPECT_TRUE(has_all(error_of([&] { write_calibration_file(path, wrong); }),
+                      {path.string(), "gain", "row 1, column 5"}));
+  EXPECT_EQ(bytes_of(path), before);
+  EXPECT_EQ(directory.names(), Names{"cal.h5"});
+  EXPECT_TRUE(has_all(
+      error_of([&] { write_calibration_file(directory / "no/cal.h5", full_calibration()); }),
+      {"no/cal.h5"}));
+}
+
+TEST(CalibrationFile, IsToldFromItsCousins) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "cal.h5";
+  write_calibration_file(path, full_calibration());
+  EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }),
+                      {"cal.h5", "pillarfield-calibration", "a calibration"}));
+  Skin skin;
+  skin.rows = skin.cols = 4;
+  RecordingWriter writer(directory / "r.h5", skin, SenselType::u8, {}, {});
+  writer.finish();
+  EXPECT_FALSE(is_calibration_file(directory / "r.h5"));
+  EXPECT_FALSE(is_calibration_file(directory / "absent.h5"));
+  EXPECT_TRUE(has_all(error_of([&] { (void)read_calibration_file(directory / "r.h5"); }),
+                      {"r.h5", "pillarfield-recording", "calibrate"}));
+  write_bytes(directory / "text", "tare = 3\n");
+  EXPECT_TRUE(has_all(error_of([&] { (void)read_calibration_file(directory / "text"); }),
+                      {"text", "is no HDF5 file"}));
+}
+
+// What the cases below do to the file, in the words of the HDF5 library.
+
+void set_number(hid_t file, const char* object, const char* name, double value) {
+  if (H5Aexists_by_name(file, object, name, H5P_DEFAULT) > 0) {
+    H5Adelete_by_name(file, object, name, H5P_DEFAULT);
+  }
+  const hid_t space = H5Screate(H5S_SCALAR);
+  const hid_t attribute = H5Acreate_by_name(file, object, name, H5T_IEEE_F64BE, space, H5P_DEFAULT,
+                                            H5P_DEFAULT, H5P_DEFAULT);
+  H5Awrite(attribute, H5T_NATIVE_DOUBLE, &value);
+  H5Aclose(attribute);
+  H5Sclose(space);
+}
+
+struct Damage {
+  std::string name;
+  std::function<void(hid_t)> action;
+  std::vector<std::string> message;
+};
+
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+
+const Damage kDamages[] = {
+    {"version 2", [](hid_t f) { set_number(f, "/", "version", 2); }, {"version is 2"}},
+    {"no skin", [](hid_t f) { H5Ldelete(f, "/skin", H5P_DEFAULT); }, {"has no /skin"}},
+    {"no rows",
+     [](hid_t f) { H5Adelete_by_name(f, "/skin", "rows", H5P_DEFAULT); },
+     {"/skin", "no attribute 'rows'"}},
+    {"half a column", [](hid_t f) { set_number(f, "/skin", "cols", 7.5); }, {"cols is 7.5"}},
+    {"NaN rows", [](hid_t f) { set_number(f, "/skin", "rows", kNan); }, {"rows is nan"}},
+    {"other size", [](hid_t f) { set_number(f, "/skin", "rows", 8); }, {"6 x 8", "8 x 8"}},
+    {"k of zero",
+     [](hid_t f) { set_number(f, "/skin", "counts_per_newton", 0); },
+     {"counts_per_newton is 0"}},
+    {"threshold below zero",
+     [](hid_t f) { set_number(f, "/skin", "threshold_counts", -1); },
+     {"threshold_counts is -1"}},
+    {"factor NaN",
+     [](hid_t f) { set_number(f, "/skin", "threshold_factor", kNan); },
+     {"threshold_factor is nan"}},
+    {"a step of text frames",
+     [](hid_t f) {
+       H5Ldelete(f, "/history/1", H5P_DEFAULT);
+       H5Gclose(H5Gcreate2(f, "/history/1", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+       set_number(f, "/history/1", "step", 1);
+     },
+     {"'step' is no string"}},
+};
+
+TEST(CalibrationFile, DamageIsToldInOneClearError) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "cal.h5";
+  for (const Damage& damage : kDamages) {
+    SCOPED_TRACE(damage.name);
+    write_calibration_file(path, full_calibration());
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    damage.action(file);
+    ASSERT_GE(H5Fclose(file), 0);
+    const std::string error = error_of([&] { (void)read_calibration_file(path); });
+    EXPECT_TRUE(has_all(error, {path.string()}));
+    EXPECT_TRUE(has_all(error, damage.message));
+  }
+}
+
+/// Whatever is broken, the answer is an Error or a calibration in range, and nothing worse.
+TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
+  const TemporaryDirectory directory;
+  write_calibration_file(directory / "whole.h5", full_calibration());
+  const std::string whole = bytes_of(directory / "whole.h5");
+  const auto path = directory / "broken.h5";
+  const auto try_to_read = [&](const std::string& bytes) {
+    write_bytes(path, bytes);
+    try {
+      check(read_calibration_file(path), "read");
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {path.string()}));
+    }
+  };
+  for (std::uint64_t trial = 0; trial < 300; ++trial) {
+    std::string bytes = whole;
+    bytes[number_at(trial, 0) % bytes.size()] = static_cast<char>(number_at(trial, 1));
+    try_to_read(bytes);
+  }
+  for (std::size_t part = 1; part < 100; ++part) {
+    write_bytes(path, whole.substr(0, whole.size() * part / 100));
+    EXPECT_TRUE(has_all(error_of([&] { (void)read_calibration_file(path); }), {path.string()}));
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
