@@ -124,7 +124,8 @@ struct ByRegion {
 /// One inclination, azimuths all round a quarter.
 std::vector<Force> forces_at(double theta_deg) {
   std::vector<Force> forces;
-  for (double phi_deg = 3.75; phi_deg < 90; phi_deg += 7.5) {
+  for (int i = 0; i < 12; ++i) {
+    const double phi_deg = 7.5 * (i + 0.5);
     forces.push_back(bound::force_from(kForceCounts, theta_deg * kDegree, phi_deg * kDegree));
   }
   return forces;
@@ -148,7 +149,7 @@ std::string table_of_ratios(ByRegion& all) {
   Table table("lrrrrrrr", {"θ", "regions", "noise 0.5: direct", "paper", "1: direct", "paper",
                            "2: direct", "paper"});
   std::uint64_t number = 0;
-  for (double theta_deg = 0; theta_deg < 85; theta_deg += 10) {
+  for (int theta_deg = 0; theta_deg <= 80; theta_deg += 10) {
     const std::vector<Force> forces = forces_at(theta_deg);
     std::vector<std::string> cells = {fmt::format("{}°", theta_deg),
                                       regions_of(forces, sensor_of(0.5))};
@@ -196,7 +197,7 @@ std::string data_of_plot() {
   std::uint64_t number = 1'000'000;
   std::string data;
   for (const double phi_deg : {45.0, 22.5}) {
-    for (double theta_deg = 0; theta_deg < 90; theta_deg += 1) {
+    for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
       const Force force = bound::force_from(kForceCounts, theta_deg * kDegree, phi_deg * kDegree);
       if (!has_bound(force, sensor)) continue;
       const auto [direct, with_misread, paper] = measure(force, sensor, ++number);

@@ -1,7 +1,5 @@
 // pillarfield_report DOCS: measures, and writes DOCS/accuracy.md with its pictures.
 
-#include <fmt/format.h>
-
 #include <array>
 #include <cstdio>
 #include <exception>
@@ -65,7 +63,7 @@ void write(const std::filesystem::path& path, const std::string& text) {
 int main(int count, char** words) {
   using namespace pillarfield::report;  // NOLINT(google-build-using-namespace)
   if (count != 2) {
-    fmt::print(stderr, "usage: pillarfield_report DOCS\n");
+    std::fputs("usage: pillarfield_report DOCS\n", stderr);
     return 2;
   }
   try {
@@ -73,7 +71,7 @@ int main(int count, char** words) {
     std::filesystem::create_directories(context.docs / "pictures/accuracy");
     write(context.docs / "accuracy.md", text_of_all(context));
   } catch (const std::exception& error) {
-    fmt::print(stderr, "pillarfield_report: {}\n", error.what());
+    std::fprintf(stderr, "pillarfield_report: %s\n", error.what());
     return 1;
   }
   return 0;

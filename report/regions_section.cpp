@@ -38,11 +38,12 @@ Figure 5, below, draws the half-widths over R.
 }  // namespace
 
 std::string regions_section(const Context& /*context*/) {
-  constexpr double kStep = 0.0005;
-  constexpr double kLargest = 50;
+  constexpr int kStepsToOne = 2000;
+  constexpr int kLargest = 50;
   Worst theta;
   Worst phi;
-  for (double ratio = 1; ratio <= kLargest; ratio += kStep) {
+  for (int step = kStepsToOne; step <= kLargest * kStepsToOne; ++step) {
+    const double ratio = static_cast<double>(step) / kStepsToOne;
     const auto ends = estimate_pillar<double>({ratio, 1, 0, 0}, {}, Estimator::direct).interval;
     theta.take(ends.theta_high - ends.theta_low, ratio);
     phi.take(ends.phi_high - ends.phi_low, ratio);
@@ -54,7 +55,8 @@ std::string regions_section(const Context& /*context*/) {
   table.add({"φ", "0.07", fmt::format("{:.4f}", phi.half_width_rad),
              fmt::format("{:.2f}", phi.ratio),
              fmt::format("arctan(1/7) / 2 = {:.4f}", std::atan(1.0 / 7) / 2)});
-  return fmt::format(kIntroduction, fmt::arg("largest", kLargest), fmt::arg("step", kStep)) +
+  return fmt::format(kIntroduction, fmt::arg("largest", kLargest),
+                     fmt::arg("step", 1.0 / kStepsToOne)) +
          table.text() + kEnd;
 }
 

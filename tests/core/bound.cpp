@@ -57,7 +57,7 @@ class NoisyReadings {
   [[nodiscard]] std::array<double, 4> next() {
     const std::size_t at = drawn_++ % kBlock;
     if (at == 0) draw_block();
-    std::array<double, 4> raw;
+    std::array<double, 4> raw{};
     for (std::size_t n = 0; n < 4; ++n) {
       raw[n] = std::max(0.0, v_[n]) + noise_counts_ * noise_[4 * at + n];
     }

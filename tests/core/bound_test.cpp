@@ -29,7 +29,8 @@ PillarSensor sensor_of(double noise_counts) {
 double integrated_information(double deviations) {
   constexpr double kStep = 1e-3;
   double sum = 0;
-  for (double u = -deviations; u < 12; u += kStep) {
+  for (int i = 0; - deviations + i * kStep < 12; ++i) {
+    const double u = -deviations + i * kStep;
     const double low = u * u * std::exp(-u * u / 2);
     const double high = (u + kStep) * (u + kStep) * std::exp(-(u + kStep) * (u + kStep) / 2);
     sum += kStep * (low + high) / 2;
@@ -41,7 +42,8 @@ double integrated_information(double deviations) {
 }
 
 TEST(Information, IsTheExpectedSquareOfTheScore) {
-  for (double deviations = -4; deviations <= 4; deviations += 0.5) {
+  for (int i = -8; i <= 8; ++i) {
+    const double deviations = i / 2.0;
     EXPECT_NEAR(information(deviations), integrated_information(deviations), 1e-5) << deviations;
   }
 }
@@ -50,7 +52,8 @@ TEST(Information, GrowsFromNothingToThatOfAReading) {
   EXPECT_NEAR(information(-8), 0, 1e-12);
   EXPECT_NEAR(information(8), 1, 1e-12);
   EXPECT_EQ(information(50), 1);
-  for (double deviations = -8; deviations < 8; deviations += 0.25) {
+  for (int i = -32; i < 32; ++i) {
+    const double deviations = i / 4.0;
     EXPECT_LT(information(deviations), information(deviations + 0.25) + 1e-14);
   }
 }
@@ -60,8 +63,8 @@ TEST(LeastError, IsThatOfFourAndOfThreeReadingsWhateverTheDirection) {
   sensor.counts_per_newton = 320;
   const double unit = 0.5 / 320;
   int in_two = 0;
-  for (double theta = 0; theta < 85; theta += 5) {
-    for (double phi = -180; phi < 180; phi += 15) {
+  for (int theta = 0; theta < 85; theta += 5) {
+    for (int phi = -180; phi < 180; phi += 15) {
       const Force force = force_from(1, theta * kDegree, phi * kDegree);
       if (!is_far_from_borders(force, sensor, 8)) continue;
       const int usable = usable_sensels(force, sensor);
@@ -104,8 +107,9 @@ class DirectSolve : public testing::TestWithParam<double> {
     constexpr int kDraws = 40'000;  // a standard error of 0.3 %
     const PillarSensor sensor = sensor_of(GetParam());
     std::uint64_t number = 0;
-    for (double theta = 0; theta < 90; theta += 5) {
-      for (double phi = 0; phi <= 90; phi += 11.25) {
+    for (int theta = 0; theta < 90; theta += 5) {
+      for (int eighth = 0; eighth <= 8; ++eighth) {
+        const double phi = 11.25 * eighth;
         const Force force = force_from(kForceCounts, theta * kDegree, phi * kDegree);
         if (usable_sensels(force, sensor) < 3) continue;
         if (!is_far_from_borders(force, sensor, deviations)) continue;

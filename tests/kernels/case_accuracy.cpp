@@ -85,7 +85,7 @@ Exact unit_of_error(Exact magnitude, Precision precision) {
 
 template <class Real>
 Outcome solve_in(const Example& example, Estimator estimator) {
-  std::array<Real, 4> raw;
+  std::array<Real, 4> raw{};
   std::ranges::transform(example.raw, raw.begin(), [](double v) { return static_cast<Real>(v); });
   const auto estimate = estimate_pillar<Real>(raw, example.sensor, estimator);
   const auto& [force, direction, status, deviations, interval] = estimate;

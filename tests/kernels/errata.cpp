@@ -34,8 +34,10 @@ struct Direction {
 /// Directions of which exactly the sensels in `lifted` do not read; none stands for region 1.
 std::vector<Direction> directions(std::size_t lifted) {
   std::vector<Direction> found;
-  for (double theta = 0.1; theta < 1.55; theta += 0.1) {
-    for (double phi = -3.1; phi < 3.1; phi += 0.1) {
+  for (int i = 1; i < 16; ++i) {
+    for (int j = -31; j < 31; ++j) {
+      const double theta = 0.1 * i;
+      const double phi = 0.1 * j;
       const Voltages v = voltages(theta, phi);
       bool in_region = true;
       for (std::size_t n = 1; n <= 4; ++n) in_region = in_region && (v[n] > 0) == (n != lifted);
@@ -110,7 +112,8 @@ template <class Theta>
 std::function<Deviation()> across_first_diagonal(Theta theta_of) {
   return [=] {
     std::vector<Direction> all;
-    for (double theta = 0.05; theta < 0.75; theta += 0.05) {
+    for (int i = 1; i < 15; ++i) {
+      const double theta = 0.05 * i;
       for (const double phi : {3 * pi / 4, -pi / 4}) all.push_back({theta, phi});
     }
     return deviation(all, [=](const Direction& direction, const Voltages& v) {

@@ -16,7 +16,7 @@ enum class Precision { single_precision, double_precision };
 
 /// A pillar that is to be solved.
 struct Example {
-  std::array<double, 4> raw;  ///< counts, sensels 1 to 4; numbers of the precision asked for
+  std::array<double, 4> raw{};  ///< counts, sensels 1 to 4; numbers of the precision asked for
   PillarSensor sensor;
 };
 

@@ -97,9 +97,11 @@ TEST(AllHardCases, HaveNamesOfTheirOwn) {
 
 /// Any reading: absurd, at a limit, or ordinary.
 double any_reading(std::mt19937_64& engine) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kLeast = std::numeric_limits<float>::denorm_min();
-  constexpr std::array<double, 12> kOdd = {NAN,     INFINITY, -INFINITY, 0,  -0.0, kLeast,
-                                           -kLeast, 1e33,     -1e33,     10, 255,  -1};
+  constexpr std::array<double, 12> kOdd = {kNan,    kInfinity, -kInfinity, 0,  -0.0, kLeast,
+                                           -kLeast, 1e33,      -1e33,      10, 255,  -1};
   const std::size_t pick = engine() % 24;
   if (pick < kOdd.size()) return kOdd[pick];
   return std::exp(static_cast<double>(engine() % 1000) / 50 - 8);

@@ -13,7 +13,7 @@ using Row = std::array<Exact, 3>;
 /// What equation (2) multiplies the unknowns of sensel 0..3 by, but for k.
 const std::array<Row, 4>& model_rows() {
   static const std::array<Row, 4> rows = [] {
-    std::array<Row, 4> made;
+    std::array<Row, 4> made{};
     for (std::size_t n = 0; n < 4; ++n) {
       made[n] = {-exact::cos(sensel_angle(n)), -exact::sin(sensel_angle(n)), 1};
     }
@@ -23,22 +23,22 @@ const std::array<Row, 4>& model_rows() {
 }
 
 /// Solves a square system given as rows of coefficients and right-hand side.
-template <std::size_t kSize>
-std::array<Exact, kSize> eliminate(std::array<std::array<Exact, kSize + 1>, kSize> rows) {
-  for (std::size_t col = 0; col < kSize; ++col) {
+template <std::size_t size>
+std::array<Exact, size> eliminate(std::array<std::array<Exact, size + 1>, size> rows) {
+  for (std::size_t col = 0; col < size; ++col) {
     std::size_t pivot = col;
-    for (std::size_t row = col + 1; row < kSize; ++row) {
+    for (std::size_t row = col + 1; row < size; ++row) {
       if (exact::abs(rows[row][col]) > exact::abs(rows[pivot][col])) pivot = row;
     }
     std::swap(rows[col], rows[pivot]);
-    for (std::size_t row = 0; row < kSize; ++row) {
+    for (std::size_t row = 0; row < size; ++row) {
       if (row == col) continue;
       const Exact factor = rows[row][col] / rows[col][col];
-      for (std::size_t i = col; i <= kSize; ++i) rows[row][i] -= factor * rows[col][i];
+      for (std::size_t i = col; i <= size; ++i) rows[row][i] -= factor * rows[col][i];
     }
   }
-  std::array<Exact, kSize> solution;
-  for (std::size_t i = 0; i < kSize; ++i) solution[i] = rows[i][kSize] / rows[i][i];
+  std::array<Exact, size> solution{};
+  for (std::size_t i = 0; i < size; ++i) solution[i] = rows[i][size] / rows[i][i];
   return solution;
 }
 
@@ -78,7 +78,7 @@ Force best_fit(const std::vector<Equation>& equations) {
 
 /// The force that fulfils two equations when its normal component is `normal`.
 Force force_at_normal(const std::vector<Equation>& equations, Exact normal) {
-  std::array<std::array<Exact, 3>, 2> rows;
+  std::array<std::array<Exact, 3>, 2> rows{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& [row, value] = equations[i];
     rows[i] = {row[0], row[1], value - row[2] * normal};
@@ -124,7 +124,7 @@ Force force_from(Exact magnitude, Exact theta, Exact phi) {
 }
 
 Readings readings_from(Exact magnitude, Exact theta, Exact phi, Exact k) {
-  Readings readings;
+  Readings readings{};
   for (std::size_t n = 0; n < 4; ++n) {
     readings[n] =
         magnitude * k * (exact::cos(theta) - exact::sin(theta) * exact::cos(sensel_angle(n) - phi));
@@ -133,7 +133,7 @@ Readings readings_from(Exact magnitude, Exact theta, Exact phi, Exact k) {
 }
 
 Readings readings_of(const Force& force, Exact k) {
-  Readings readings;
+  Readings readings{};
   for (std::size_t n = 0; n < 4; ++n) {
     const Row& row = model_rows()[n];
     readings[n] = k * (-row[0] * force.shear_x - row[1] * force.shear_y + row[2] * force.normal);

@@ -85,7 +85,7 @@ TEST(Oracle, EliminationFindsTheForceFromAnyThree) {
 TEST(Oracle, ResidualsOfTheBestFitAreOrthogonalToTheModel) {
   const SomeReadings usable = {Exact(5), Exact(1), Exact(3), Exact(6)};
   const Readings fit = readings_of(least_squares(usable, 2), 2);
-  std::array<Exact, 4> residual;
+  std::array<Exact, 4> residual{};
   for (std::size_t n = 0; n < 4; ++n) residual[n] = *usable[n] - fit[n];
   expect_close(residual[0] + residual[1] + residual[2] + residual[3], 0);
   expect_close(residual[0], residual[2]);
