@@ -13,6 +13,7 @@ void add_simulate(CLI::App& app, Work& work);
 void add_solve(CLI::App& app, Work& work);
 void add_compare(CLI::App& app, Work& work);
 void add_calibrate(CLI::App& app, Work& work);
+void add_testbed(CLI::App& app, Work& work);
 void add_info(CLI::App& app, Work& work);
 void add_completion(CLI::App& app, Work& work);
 

@@ -36,6 +36,7 @@ int run(int argc, char** argv) {
   add_solve(app, work);
   add_compare(app, work);
   add_calibrate(app, work);
+  add_testbed(app, work);
   add_info(app, work);
   add_completion(app, work);
   try {

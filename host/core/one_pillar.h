@@ -74,7 +74,7 @@ PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const Pilla
   const auto doubt = static_cast<Real>(5 * std::sqrt(3.0) * sensor.noise_counts);
   const auto diagonals = pillar_diagonals(pillar);
   const auto sum = parity_sum(diagonals);
-  PillarEstimate<Real> estimate;
+  PillarEstimate<Real> estimate{};
   estimate.force = estimator == Estimator::paper ? paper_force(pillar, diagonals, sum, scale)
                                                  : direct_force(diagonals, sum, scale);
   estimate.direction = direction_of(estimate.force);

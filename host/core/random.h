@@ -19,7 +19,15 @@ using Block = std::array<std::uint32_t, 4>;
 [[nodiscard]] Block philox(Block counter, std::array<std::uint32_t, 2> key);
 
 /// What numbers are drawn for; numbers of different streams are independent.
-enum class Stream : std::uint32_t { sensitivity, tare, dead, noise, drift };
+enum class Stream : std::uint32_t {
+  sensitivity,
+  tare,
+  dead,
+  noise,
+  drift,
+  positioner,
+  probe,
+};
 
 /// A row of sensels in a frame.
 struct Row {

@@ -50,25 +50,33 @@ static inline Real theta_of_pair(Real v_i, Real cos_i, Real v_j, Real cos_j) {
   return atan2(fabs(v_i - v_j), fabs(v_i * cos_j - v_j * cos_i));
 }
 
-/* Four usable: (7), then (5) with the diagonal along which the shear lies more (P1). */
+/* Four usable: (7), then (5) with the diagonal along which the shear lies more (P1). No shear where
+ * (7) is 0/0: under a force that only presses, and where its products vanish because a whole diagonal
+ * reads nearly nothing, which no force does. */
 static inline Angles paper_region_1(Ratios v) {
+  const Real zero = PF_REAL(0.0);
+  const Real up = v.c * v.d - v.a * v.b;
+  const Real right = v.b * v.c - v.a * v.d;
+  const Mask no_shear = (up == zero) & (right == zero);
   Angles angles;
-  angles.phi = atan2(v.c * v.d - v.a * v.b, v.b * v.c - v.a * v.d);
+  angles.phi = atan2(up, right);
   const SenselCosines cosines = sensel_cosines(angles.phi);
   const Mask along_a = fabs(cosines.a) >= fabs(cosines.b);
   const Real cosine = along_a ? cosines.a : cosines.b;
-  angles.theta = theta_of_pair(along_a ? v.a : v.b, cosine, along_a ? v.c : v.d, -cosine);
+  const Real theta = theta_of_pair(along_a ? v.a : v.b, cosine, along_a ? v.c : v.d, -cosine);
+  angles.theta = no_shear ? zero : theta;
   return angles;
 }
 
-/* All but d: (9), then (5) with the sensel opposite d and the weaker of its neighbours (P2). */
+/* All but d: (9), then (5) with the sensel opposite d and that of its neighbours which differs more
+ * from it (P2): the weaker one where d lifted, since b then reads most. Where d is missing the other
+ * one may read as much as b, and (5) is 0/0. */
 static inline Angles paper_region_2(Ratios v) {
   Angles angles;
   angles.phi = atan2(v.c - v.b, v.b - v.a);
   const SenselCosines cosines = sensel_cosines(angles.phi);
-  const Mask a_weaker = v.a < v.c;
-  angles.theta =
-      theta_of_pair(v.b, cosines.b, a_weaker ? v.a : v.c, a_weaker ? cosines.a : -cosines.a);
+  const Mask by_a = fabs(v.b - v.a) > fabs(v.b - v.c);
+  angles.theta = theta_of_pair(v.b, cosines.b, by_a ? v.a : v.c, by_a ? cosines.a : -cosines.a);
   return angles;
 }
 

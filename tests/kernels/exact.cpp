@@ -54,6 +54,10 @@ Exact sqrt(Exact x) {
 }
 
 Exact atan2(Exact y, Exact x) {
+  // The first guess is a double's, whose range is less than what arguments may have.
+  const Exact largest = abs(x) > abs(y) ? abs(x) : abs(y);
+  x /= largest;
+  y /= largest;
   const Exact radius = sqrt(x * x + y * y);
   Exact angle = std::atan2(static_cast<double>(y), static_cast<double>(x));
   for (int step = 0; step < 2; ++step) {

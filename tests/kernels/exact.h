@@ -25,7 +25,7 @@ static_assert(std::numeric_limits<long double>::digits >= 113, "the oracles need
 /// Relative error below 1e-32, for x within the range of double.
 [[nodiscard]] Exact sqrt(Exact x);
 
-/// The angle of (x, y), not both zero, in (-pi, pi]; relative error below 1e-31.
+/// The angle of (x, y) in (-pi, pi], relative error below 1e-31; not a number where both are zero.
 [[nodiscard]] Exact atan2(Exact y, Exact x);
 
 }  // namespace pillarfield::exact

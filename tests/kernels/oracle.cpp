@@ -1,17 +1,14 @@
 #include "oracle.h"
 
-#include <cstddef>
+#include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace pillarfield::oracle {
 namespace {
 
 /// Unknowns: F sin(theta) cos(phi), F sin(theta) sin(phi), F cos(theta).
 using Row = std::array<Exact, 3>;
-
-Exact sensel_angle(std::size_t sensel) {
-  return exact::pi() / 4 * static_cast<int>(2 * sensel + 1);
-}
 
 /// What equation (2) multiplies the unknowns of sensel 0..3 by, but for k.
 const std::array<Row, 4>& model_rows() {
@@ -45,28 +42,76 @@ std::array<Exact, kSize> eliminate(std::array<std::array<Exact, kSize + 1>, kSiz
   return solution;
 }
 
-/// The force that gives the two usable readings when its normal component is `normal`.
-Force force_at_normal(const SomeReadings& usable, Exact k, Exact normal) {
-  std::array<std::array<Exact, 3>, 2> rows;
-  std::size_t filled = 0;
+/// One linear equation of the unknowns.
+struct Equation {
+  Row row;
+  Exact value;
+};
+
+/// What the usable readings say, and that two opposite silent sensels read the same.
+std::vector<Equation> equations_of(const SomeReadings& usable, Exact k) {
+  std::vector<Equation> equations;
   for (std::size_t n = 0; n < 4; ++n) {
-    if (!usable[n]) continue;
-    const Row& row = model_rows()[n];
-    rows[filled++] = {row[0], row[1], *usable[n] / k - row[2] * normal};
+    if (usable[n]) equations.push_back({model_rows()[n], *usable[n] / k});
+  }
+  for (std::size_t n = 0; n < 2; ++n) {
+    if (usable[n] || usable[n + 2]) continue;
+    const Row& p = model_rows()[n];
+    const Row& q = model_rows()[n + 2];
+    equations.push_back({{p[0] - q[0], p[1] - q[1], p[2] - q[2]}, 0});
+  }
+  return equations;
+}
+
+/// The normal equations of three or more, eliminated.
+Force best_fit(const std::vector<Equation>& equations) {
+  std::array<std::array<Exact, 4>, 3> normal_equations{};
+  for (const auto& [row, value] : equations) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) normal_equations[i][j] += row[i] * row[j];
+      normal_equations[i][3] += row[i] * value;
+    }
+  }
+  const std::array<Exact, 3> from = eliminate<3>(normal_equations);
+  return {-from[0], -from[1], from[2]};
+}
+
+/// The force that fulfils two equations when its normal component is `normal`.
+Force force_at_normal(const std::vector<Equation>& equations, Exact normal) {
+  std::array<std::array<Exact, 3>, 2> rows;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [row, value] = equations[i];
+    rows[i] = {row[0], row[1], value - row[2] * normal};
   }
   const std::array<Exact, 2> from = eliminate<2>(rows);
   return {-from[0], -from[1], normal};
 }
 
-bool explains_lifted(const SomeReadings& usable, const Force& force, Exact k) {
+bool explains_silence(const SomeReadings& usable, const Force& force, Exact k, Exact hidden) {
   const Readings readings = readings_of(force, k);
   for (std::size_t n = 0; n < 4; ++n) {
-    if (!usable[n] && readings[n] > 0) return false;
+    if (!usable[n] && readings[n] > hidden) return false;
   }
   return true;
 }
 
+Force middle_of(const Segment& segment) {
+  return {(segment.low.shear_x + segment.high.shear_x) / 2,
+          (segment.low.shear_y + segment.high.shear_y) / 2,
+          (segment.low.normal + segment.high.normal) / 2};
+}
+
+/// `usable` with one reading changed by a share of itself.
+SomeReadings changed(SomeReadings usable, std::size_t sensel, Exact share) {
+  usable[sensel] = *usable[sensel] * (1 + share);
+  return usable;
+}
+
 }  // namespace
+
+Exact sensel_angle(std::size_t sensel) {
+  return exact::pi() / 4 * static_cast<int>(2 * sensel + 1);
+}
 
 Exact magnitude(const Force& force) {
   return exact::sqrt(force.shear_x * force.shear_x + force.shear_y * force.shear_y +
@@ -97,28 +142,47 @@ Readings readings_of(const Force& force, Exact k) {
 }
 
 Force least_squares(const SomeReadings& usable, Exact k) {
-  std::array<std::array<Exact, 4>, 3> normal_equations{};
-  for (std::size_t n = 0; n < 4; ++n) {
-    if (!usable[n]) continue;
-    const Row& row = model_rows()[n];
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) normal_equations[i][j] += row[i] * row[j];
-      normal_equations[i][3] += row[i] * *usable[n];
-    }
-  }
-  const std::array<Exact, 3> from = eliminate<3>(normal_equations);
-  return {-from[0] / k, -from[1] / k, from[2] / k};
+  return best_fit(equations_of(usable, k));
 }
 
-Segment segment_of(const SomeReadings& usable, Exact k) {
+Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden) {
+  const std::vector<Equation> equations = equations_of(usable, k);
   Exact low = 0;
-  Exact high = 0;
+  Exact high = hidden / k;
   for (const std::optional<Exact>& reading : usable) high += reading.value_or(0) / k;
   for (int step = 0; step < 115; ++step) {
     const Exact middle = (low + high) / 2;
-    (explains_lifted(usable, force_at_normal(usable, k, middle), k) ? low : high) = middle;
+    const Force force = force_at_normal(equations, middle);
+    (explains_silence(usable, force, k, hidden) ? low : high) = middle;
   }
-  return {force_at_normal(usable, k, 0), force_at_normal(usable, k, low)};
+  return {force_at_normal(equations, 0), force_at_normal(equations, low)};
+}
+
+Force direct_force(const SomeReadings& usable, Exact k, Exact hidden) {
+  const auto count = std::ranges::count_if(usable, [](const auto& v) { return v.has_value(); });
+  if (count == 0) return {0, 0, 0};
+  const bool whole_diagonal = (usable[0] && usable[2]) || (usable[1] && usable[3]);
+  return whole_diagonal ? least_squares(usable, k) : middle_of(segment_of(usable, k, hidden));
+}
+
+double condition_number(const SomeReadings& usable, const Estimate& estimate) {
+  const Exact step = 0x1p-40;
+  const Force force = estimate(usable);
+  std::array<Exact, 3> sums{};
+  for (std::size_t n = 0; n < 4; ++n) {
+    if (!usable[n]) continue;
+    const Force up = estimate(changed(usable, n, step));
+    const Force down = estimate(changed(usable, n, -step));
+    const auto largest = [&](Exact Force::*component) {
+      return std::max(exact::abs(up.*component - force.*component),
+                      exact::abs(down.*component - force.*component));
+    };
+    sums[0] += largest(&Force::shear_x);
+    sums[1] += largest(&Force::shear_y);
+    sums[2] += largest(&Force::normal);
+  }
+  const Exact worst = std::max({sums[0], sums[1], sums[2]});
+  return static_cast<double>(worst / step / magnitude(force));
 }
 
 }  // namespace pillarfield::oracle

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <functional>
 #include <optional>
 
 #include "exact.h"
@@ -23,6 +25,9 @@ using SomeReadings = std::array<std::optional<Exact>, 4>;  ///< absent where not
 
 [[nodiscard]] Exact magnitude(const Force& force);
 
+/// Where sensel 0..3 sits, radians.
+[[nodiscard]] Exact sensel_angle(std::size_t sensel);
+
 /// The force that comes from (theta, phi), radians.
 [[nodiscard]] Force force_from(Exact magnitude, Exact theta, Exact phi);
 
@@ -35,12 +40,25 @@ using SomeReadings = std::array<std::optional<Exact>, 4>;  ///< absent where not
 /// The force whose readings fit three or four usable ones best: the normal equations, eliminated.
 [[nodiscard]] Force least_squares(const SomeReadings& usable, Exact k);
 
-/// The forces with normal >= 0 that give two adjacent usable readings exactly and none of the other
-/// two a positive one: a segment from normal = 0 to the end that bisection finds.
+/// The forces with normal >= 0 that give one usable reading, or two adjacent ones, exactly, and
+/// none of the silent sensels more than `hidden` counts: a segment from normal = 0 to the end that
+/// bisection finds. Two opposite sensels that are both silent read the same.
 struct Segment {
   Force low;
   Force high;
 };
-[[nodiscard]] Segment segment_of(const SomeReadings& usable, Exact k);
+[[nodiscard]] Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden = 0);
+
+/// What docs/derivations/direct_solve.md promises for pillars whose other sensels are silent: least
+/// squares where the force is determined, the middle of the segment where it is not, and no force
+/// without usable readings. Two opposite usable ones are completed by two that read the same.
+[[nodiscard]] Force direct_force(const SomeReadings& usable, Exact k, Exact hidden = 0);
+
+/// By how much the largest component of `estimate(usable)` changes, relative to the force's
+/// magnitude, when every reading changes by the same small share of itself at the worst signs:
+/// the sum of the one-sided derivatives' magnitudes, by differences
+/// (docs/derivations/conditioning.md, C1). Not a number where the estimate is none.
+using Estimate = std::function<Force(const SomeReadings&)>;
+[[nodiscard]] double condition_number(const SomeReadings& usable, const Estimate& estimate);
 
 }  // namespace pillarfield::oracle

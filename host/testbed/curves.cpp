@@ -1,0 +1,64 @@
+#include "testbed/curves.h"
+
+#include <cstddef>
+
+namespace pillarfield::testbed {
+namespace {
+
+namespace maths = double_precision;
+
+/// A pillar in region 3.12 with V3 / V4 = ratio, raw.
+std::array<double, 4> raw_readings(double ratio) { return {0, 0, ratio, 1}; }
+
+Estimate estimate(double ratio, Estimator estimator) {
+  return estimate_pillar(raw_readings(ratio), PillarSensor{}, estimator);
+}
+
+Angles angles_of(maths::Direction direction) {
+  return {direction.theta, unwrapped(direction.phi, kPi / 2)};
+}
+
+}  // namespace
+
+double border_theta(int sensel, double phi_rad) {
+  const auto reading = [&](double theta) {
+    return brackets(theta, phi_rad).at(static_cast<std::size_t>(sensel - 1));
+  };
+  double usable = 0;
+  double lifted = kPi / 2;
+  if (reading(lifted) > 0) return lifted;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (usable + lifted) / 2;
+    (reading(middle) > 0 ? usable : lifted) = middle;
+  }
+  return lifted;
+}
+
+std::vector<Angles> contour(double ratio, int points) {
+  const PillarSensor sensor;
+  const std::array<double, 4> raw = raw_readings(ratio);
+  const maths::Diagonals diagonals =
+      maths::pillar_diagonals({prepare_sensel(raw[0], sensor), prepare_sensel(raw[1], sensor),
+                               prepare_sensel(raw[2], sensor), prepare_sensel(raw[3], sensor)});
+  const maths::ParitySum sum = maths::parity_sum(diagonals);
+  const ForceScale scale = force_scale(sensor.counts_per_newton);
+  std::vector<Angles> contour;
+  for (int i = 0; i < points; ++i) {
+    const double at = sum.low + (sum.high - sum.low) * i / (points - 1);
+    const maths::Force force = maths::force_at(diagonals, at, {scale.shear, scale.normal});
+    contour.push_back(angles_of(maths::direction_of(force)));
+  }
+  return contour;
+}
+
+Angles middle_of_contour(double ratio, Estimator estimator) {
+  return angles_of(estimate(ratio, estimator).direction);
+}
+
+Angles half_widths(double ratio) {
+  const auto interval = estimate(ratio, Estimator::direct).interval;
+  return {(interval.theta_high - interval.theta_low) / 2,
+          (interval.phi_high - interval.phi_low) / 2};
+}
+
+}  // namespace pillarfield::testbed

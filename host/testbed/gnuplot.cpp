@@ -1,0 +1,175 @@
+#include "testbed/gnuplot.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <string_view>
+
+#include "io/part_file.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield::gnuplot {
+namespace {
+
+constexpr const char* kStyle = R"(
+set encoding utf8
+set minussign
+set border 3 linecolor '#444444' linewidth 1
+set tics out nomirror textcolor '#000000'
+set key noautotitle samplen 2 spacing 1.2
+set style fill solid noborder
+set linetype 1 linecolor '#000000' linewidth 2 pointtype 6
+set linetype 2 linecolor '#E69F00' linewidth 2 pointtype 5
+set linetype 3 linecolor '#56B4E9' linewidth 2 pointtype 9
+set linetype 4 linecolor '#009E73' linewidth 2 pointtype 13
+set linetype 5 linecolor '#F0E442' linewidth 2 pointtype 11
+set linetype 6 linecolor '#0072B2' linewidth 2 pointtype 7
+set linetype 7 linecolor '#D55E00' linewidth 2 pointtype 4
+set linetype 8 linecolor '#CC79A7' linewidth 2 pointtype 15
+)";
+
+/// A format of pictures.
+struct Format {
+  const char* ending;
+  std::string terminal;       ///< gnuplot's command
+  std::string_view end_mark;  ///< stands among the last bytes of a whole file
+};
+
+Format svg_format(Size size) {
+  return {".svg",
+          fmt::format("set terminal svg enhanced size {},{} dynamic font 'sans-serif,14' "
+                      "background '#ffffff'\n",
+                      size.width_px, size.height_px),
+          "</svg>"};
+}
+
+Format png_format(Size size) {
+  return {".png",
+          fmt::format("set terminal pngcairo enhanced size {},{} font 'sans-serif,13' fontscale 2 "
+                      "linewidth 2 pointscale 2.6 background '#ffffff'\n",
+                      2 * size.width_px, 2 * size.height_px),
+          "IEND"};
+}
+
+struct Close {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using File = std::unique_ptr<std::FILE, Close>;
+
+/// A nameless file that holds `text`, at its beginning. Unlike a pipe it needs no second thread.
+File file_of(std::string_view text) {
+  File file(std::tmpfile());
+  if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
+      std::fflush(file.get()) != 0) {
+    throw Error("temporary file", std::strerror(errno), "make room for temporary files");
+  }
+  std::rewind(file.get());
+  return file;
+}
+
+class FileActions {
+ public:
+  FileActions() { posix_spawn_file_actions_init(&actions_); }
+  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
+  FileActions(const FileActions&) = delete;
+  FileActions& operator=(const FileActions&) = delete;
+
+  void connect(std::FILE* file, int descriptor) {
+    posix_spawn_file_actions_adddup2(&actions_, fileno(file), descriptor);
+  }
+  [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+pid_t start(std::FILE* input, std::FILE* output, std::FILE* messages) {
+  FileActions actions;
+  actions.connect(input, STDIN_FILENO);
+  actions.connect(output, STDOUT_FILENO);
+  actions.connect(messages, STDERR_FILENO);
+  std::string program = "gnuplot";
+  std::string plain = "--default-settings";  // without the user's own
+  const std::array<char*, 3> arguments = {program.data(), plain.data(), nullptr};
+  pid_t process = 0;
+  const int failure =
+      posix_spawnp(&process, program.c_str(), actions.get(), nullptr, arguments.data(), environ);
+  if (failure == 0) return process;
+  if (failure == ENOENT) {
+    throw Error("gnuplot", "is not installed", "install it; its Debian package is gnuplot-nox");
+  }
+  throw Error("gnuplot", fmt::format("cannot be started: {}", std::strerror(failure)));
+}
+
+int wait_for(pid_t process) {
+  int status = 0;
+  while (waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) throw Error("gnuplot", std::strerror(errno));
+  }
+  return status;
+}
+
+/// What gnuplot complains of, one line, or nothing. A warning means that data were skipped; a
+/// failure is told by the last line, after those that show the place.
+std::string complaint_in(std::FILE* messages, bool failed) {
+  std::rewind(messages);
+  std::array<char, 512> buffer{};
+  std::string last = "it does not say why";
+  while (std::fgets(buffer.data(), buffer.size(), messages) != nullptr) {
+    std::string line(buffer.data(), std::strcspn(buffer.data(), "\n"));
+    line.erase(0, line.find_first_not_of(' '));
+    if (line.find("warning:") != std::string::npos) return line;
+    if (!line.empty()) last = line;
+  }
+  return failed ? last : "";
+}
+
+/// Whether the file is written to its end: gnuplot does not notice that a disk is full.
+bool is_whole(const std::filesystem::path& path, std::string_view end_mark) {
+  constexpr std::streamoff kTail = 16;
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(0, std::ios::end);
+  file.seekg(std::max<std::streamoff>(file.tellg() - kTail, 0));
+  const std::string tail((std::istreambuf_iterator<char>(file)), {});
+  return tail.find(end_mark) != std::string::npos;
+}
+
+void run(const Format& format, const std::string& script, const std::filesystem::path& output) {
+  const File picture(std::fopen(output.c_str(), "wb"));
+  if (!picture) throw Error(output.string(), std::strerror(errno));
+  const File input = file_of(format.terminal + kStyle + script);
+  const File messages = file_of("");
+  const int status = wait_for(start(input.get(), picture.get(), messages.get()));
+  const std::string complaint = complaint_in(messages.get(), status != 0);
+  if (!complaint.empty()) {
+    throw Error(output.string(), "gnuplot failed: " + complaint, "draw with gnuplot 5.4 or later");
+  }
+  if (!is_whole(output, format.end_mark)) {
+    throw Error(output.string(), "gnuplot did not write all of it", "make room on that disk");
+  }
+}
+
+}  // namespace
+
+void draw(const std::filesystem::path& stem, const std::string& script, Size size) {
+  const Format svg = svg_format(size);
+  const Format png = png_format(size);
+  PartFile svg_file(stem.string() + svg.ending);
+  PartFile png_file(stem.string() + png.ending);
+  run(svg, script, svg_file.path());
+  run(png, script, png_file.path());
+  svg_file.commit();
+  png_file.commit();
+}
+
+}  // namespace pillarfield::gnuplot

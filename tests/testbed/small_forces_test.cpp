@@ -1,0 +1,89 @@
+#include "testbed/small_forces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace pillarfield::testbed {
+namespace {
+
+using std::numbers::pi;
+
+const std::vector<SmallForcePoint>& points() {
+  static const std::vector<SmallForcePoint> result = small_forces();
+  return result;
+}
+
+/// Shares of the hemisphere by another way: equation (2) on a grid of equal areas.
+struct Shares {
+  double unfelt = 0;
+  double wrong_region = 0;
+};
+
+Shares expected_shares(double load) {
+  constexpr int kGrid = 200;
+  const double hidden_share =
+      (kStudyDeadZoneCounts + kStudyThresholdCounts + 0.5) / kStudyDeadZoneCounts / load;
+  Shares shares;
+  for (int i = 0; i < kGrid; ++i) {
+    const double theta = std::acos((i + 0.5) / kGrid);
+    for (int j = 0; j < kGrid; ++j) {
+      const double phi = 2 * pi * (j + 0.5) / kGrid;
+      int pressed = 0;
+      int answering = 0;
+      for (int n = 1; n <= 4; ++n) {
+        const double v = std::cos(theta) - std::sin(theta) * std::cos(pi / 4 * (2 * n - 1) - phi);
+        pressed += v > 0 ? 1 : 0;
+        answering += v > hidden_share ? 1 : 0;
+      }
+      shares.unfelt += answering == 0 ? 1 : 0;
+      shares.wrong_region += answering != 0 && answering != pressed ? 1 : 0;
+    }
+  }
+  return {shares.unfelt / (kGrid * kGrid), shares.wrong_region / (kGrid * kGrid)};
+}
+
+TEST(SmallForces, SharesAreThoseOfTheModel) {
+  for (const SmallForcePoint& point : points()) {
+    const Shares expected = expected_shares(point.load);
+    for (const SmallForceErrors* errors : {&point.paper, &point.naive, &point.direct}) {
+      EXPECT_NEAR(errors->unfelt, expected.unfelt, 0.02) << point.load;
+      EXPECT_NEAR(errors->wrong_region, expected.wrong_region, 0.02) << point.load;
+    }
+  }
+}
+
+TEST(SmallForces, NoWrongRegionGoesUnflaggedOnceTheDeadZoneIsKnown) {
+  bool unflagged_before = false;
+  for (const SmallForcePoint& point : points()) {
+    EXPECT_EQ(point.direct.unflagged, 0) << point.load;
+    unflagged_before |= point.naive.unflagged > 0.05;
+  }
+  EXPECT_TRUE(unflagged_before);
+}
+
+TEST(SmallForces, EndsHoldTheTruthOnceTheDeadZoneIsKnown) {
+  for (const SmallForcePoint& point : points()) {
+    EXPECT_GE(point.direct.held, 0.995) << point.load;
+    EXPECT_LE(point.naive.held, 0.5) << point.load;
+  }
+}
+
+// With three or four usable sensels a dead zone takes z counts from each: the shear is right, and
+// the normal force z / k short. Once it is known, noise remains: at most sqrt(5/2) deviations over
+// k.
+TEST(SmallForces, WhereReadingsDetermineTheForceNoiseIsLeft) {
+  const double noise = std::hypot(kStudyNoiseCounts, 1 / std::sqrt(12.0)) / kStudyDeadZoneCounts;
+  for (const SmallForcePoint& point : points()) {
+    if (std::isnan(point.direct.determined)) continue;
+    EXPECT_NEAR(point.naive.determined * point.load, 1, 0.02) << point.load;
+    EXPECT_NEAR(point.paper.determined * point.load, 1, 0.02) << point.load;
+    const double deviations = point.direct.determined * point.load / noise;
+    EXPECT_GT(deviations, std::sqrt(5.0) / 2) << point.load;
+    EXPECT_LT(deviations, std::sqrt(5.0 / 2)) << point.load;
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield::testbed
