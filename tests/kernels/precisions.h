@@ -54,7 +54,8 @@ using Precisions = testing::Types<Single, Double>;
 
 struct PrecisionNames {
   template <class Precision>
-  static std::string GetName(int /*index*/) {
+  static std::string GetName(
+      int /*index*/) {  // NOLINT(readability-identifier-naming): GoogleTest's
     return std::is_same_v<Precision, Single> ? "float" : "double";
   }
 };
