@@ -54,8 +54,8 @@ using Precisions = testing::Types<Single, Double>;
 
 struct PrecisionNames {
   template <class Precision>
-  static std::string GetName(
-      int /*index*/) {  // NOLINT(readability-identifier-naming): GoogleTest's
+  // GoogleTest's name for it. NOLINTNEXTLINE(readability-identifier-naming)
+  static std::string GetName(int /*index*/) {
     return std::is_same_v<Precision, Single> ? "float" : "double";
   }
 };
