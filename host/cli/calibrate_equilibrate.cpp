@@ -26,7 +26,8 @@ void print_json(const EquilibrateCommand& command, const EquilibrationResult& re
                                  {"levels", result.levels},
                                  {"counts_per_newton", *result.calibration.counts_per_newton},
                                  {"gain_spread", result.gain_spread},
-                                 {"unevenness", result.unevenness}};
+                                 {"unevenness", result.unevenness},
+                                 {"shear", result.shear}};
   if (result.levels > 1) json["dead_zone_counts"] = result.dead_zone_counts;
   if (result.levels > 2) json["nonlinearity"] = result.nonlinearity;
   add_findings(json, result.calibration, result.findings);
@@ -47,12 +48,22 @@ void print_text(const EquilibrateCommand& command, const EquilibrationResult& re
   }
   fmt::print("  unevenness    {:8.2f} % from pillar to pillar, beyond their sensels' own spread\n",
              100 * result.unevenness);
+  fmt::print("  shear         {:8.2f} % of the normal force\n", 100 * result.shear);
   if (result.levels > 2) {
     fmt::print("  nonlinearity  {:8.2f} % of the answers, left by straight lines\n",
                100 * result.nonlinearity);
   }
   print_findings(result.calibration, result.findings);
   fmt::print("Wrote {}\n", command.step.output);
+}
+
+void print_remarks(const EquilibrateCommand& command, const EquilibrationResult& result) {
+  constexpr double kMuchShear = 0.03;
+  if (result.shear <= kMuchShear) return;
+  fmt::print(stderr,
+             "{}: the press shears the skin by {:.1f} % of the normal force, which the gains "
+             "take for their own; press straight\n",
+             command.files.back(), 100 * result.shear);
 }
 
 void run(const EquilibrateCommand& command) {
@@ -67,6 +78,7 @@ void run(const EquilibrateCommand& command) {
       fmt::format("pressures_kpa = {}, most_unevenness = {}", fmt::join(command.pressures_kpa, " "),
                   command.equilibration.most_unevenness)));
   write_calibration_file(command.step.output, result.calibration);
+  print_remarks(command, result);
   if (command.step.json) {
     print_json(command, result, input.frames);
   } else {

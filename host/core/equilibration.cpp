@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/finding_list.h"
 #include "core/pillar_sensels.h"
@@ -174,6 +176,27 @@ double unevenness_of(const std::vector<Response>& responses, const Skin& skin,
   return std::sqrt(std::max(0.0, (mean_square_between - mean_square_within) / 4));
 }
 
+/// The mean shear over the mean normal force, from pillars with four good sensels. Sensels differ
+/// at random, shear presses the same side of every pillar: by D1, with V = kN (1 + c), the shear is
+/// √2 times the mean contrast of the sides.
+double shear_of(const std::vector<Response>& responses, const Skin& skin,
+                const FindingList& found) {
+  double pillars = 0;
+  double right = 0;
+  double up = 0;
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    std::array<double, 4> answers{};
+    for (std::size_t n = 0; n < sensels.size(); ++n) {
+      if (!found.good(sensels.at(n))) return;
+      answers.at(n) = -std::log(responses[sensels.at(n)].newtons_per_count);
+    }
+    ++pillars;
+    right += (answers[0] + answers[3] - answers[1] - answers[2]) / 4;
+    up += (answers[0] + answers[1] - answers[2] - answers[3]) / 4;
+  });
+  return pillars == 0 ? 0 : std::numbers::sqrt2 * std::hypot(right, up) / pillars;
+}
+
 void require_even(double unevenness, double most, const std::string& name) {
   if (unevenness <= most) return;
   throw Error(name,
@@ -219,6 +242,7 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   result.levels = fit.levels();
   result.unevenness = unevenness_of(responses, skin, found);
   require_even(result.unevenness, options.most_unevenness, last.name());
+  result.shear = shear_of(responses, skin, found);
   result.gain_spread = consensus.gain_spread(k);
   result.nonlinearity = fit.levels() > 2 ? consensus.nonlinearity() : 0;
   result.calibration = before;

@@ -174,7 +174,7 @@ std::string uncertainty() {
 constexpr const char* kMagnitudeScript = R"(
 set multiplot layout 1,3 margins 0.095, 0.795, 0.24, 0.9 spacing 0.025
 set xrange [0 : 108]
-set yrange [0 : 108]
+set yrange [0 : 130]
 set xtics 20
 set ytics 20
 set xlabel 'applied (N)'

@@ -8,7 +8,7 @@ import unittest
 
 from command import PROGRAM, SCENES, SOURCE, CommandTest, run, run_json
 
-COMMANDS = ["simulate", "solve", "compare", "testbed", "info", "completion"]
+COMMANDS = ["simulate", "solve", "compare", "calibrate", "testbed", "info", "completion"]
 FINGER = SOURCE.parent / "shared/data/tekscan/iscan_6900_finger_45deg.csv"
 
 SMALL_SCENE = """
@@ -379,6 +379,10 @@ class Completion(CommandTest):
         self.assertEqual(self.complete("pillarfield", "si"), ["simulate"])
         self.assertIn("--threshold", self.complete("pillarfield", "solve", "--th"))
         self.assertEqual(self.complete("pillarfield", "solve", "demo"), [])
+        self.assertEqual(self.complete("pillarfield", "calibrate", "eq"), ["equilibrate"])
+        self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "--pre"),
+                         ["--preloaded"])
+        self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "eq"), [])
 
     def test_other_shells(self):
         self.assertIn("bashcompinit", run("completion", "zsh").stdout)

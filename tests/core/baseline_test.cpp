@@ -39,17 +39,17 @@ class Follower {
   Follower(const Scene& scene, double time_constant_s)
       : simulator_(scene),
         raw_(simulator_.sensel_type(), scene.skin.rows, scene.skin.cols),
-        truth_(scene.skin.pillar_rows(), scene.skin.pillar_cols()) {
+        truth_(scene.skin.pillar_rows(), scene.skin.pillar_cols()),
+        unloaded_(simulator_.calibration().tare) {
     plan_.skin = scene.skin;
     plan_.sensel_type = simulator_.sensel_type();
     plan_.calibration = simulator_.calibration();
     plan_.baseline_rate = baseline_rate(time_constant_s, 1 / scene.rate_hz);
-    unloaded_ = plan_.calibration.tare;
   }
 
   ForceField step() {
     simulator_.render(frame_++, raw_, truth_);
-    const ForceField forces = solve_on_host(plan_, raw_.view());
+    ForceField forces = solve_on_host(plan_, raw_.view());
     follow_baseline_on_host(plan_, raw_.view(), forces);
     return forces;
   }
@@ -62,8 +62,8 @@ class Follower {
   Simulator simulator_;
   FrameBuffer raw_;
   ForceField truth_;
-  SolverPlan plan_;
   std::vector<float> unloaded_;
+  SolverPlan plan_;
   std::uint64_t frame_ = 0;
 };
 

@@ -221,6 +221,27 @@ TEST(Equilibration, MeasuresUnevenness) {
   EXPECT_NEAR(unevenness, std::sqrt(squares - sum * sum), 0.015);
 }
 
+TEST(Equilibration, MeasuresShear) {
+  PressedSkin skin(20, 20, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  Scene scene = skin.scene();
+  Contact slider;
+  slider.motion = ContactMotion::slide;
+  slider.friction = 0.1;
+  slider.direction_deg = 70;
+  slider.contact_radius_mm = 60;
+  slider.reference_load_n = 3000;
+  slider.path = {{0, 0, 0, 3000}};
+  scene.load = std::vector<Contact>{slider};
+  const FrameStatistics sheared = skin.statistics_of(Simulator(scene), 20);
+  const UniformPress presses[] = {{sheared, 300}};
+  // The sensels' own spread of 10 % leaves 0.1 √2 / 40 on each axis.
+  EXPECT_NEAR(equilibrate(before, presses, {}).shear, 0.1, 4 * 0.0035);
+  const FrameStatistics straight = skin.press(0.4, 20);
+  const UniformPress upright[] = {{straight, 300}};
+  EXPECT_LT(equilibrate(before, upright, {}).shear, 4 * 0.0035);
+}
+
 TEST(Equilibration, RefusesWhatIsNotEnough) {
   PressedSkin skin(10, 10, spread_sensor());
   const SkinCalibration before = tared(skin);

@@ -19,7 +19,7 @@ using States = std::array<State, 4>;
 
 /// All 256 of them.
 inline std::array<States, 256> all_states() {
-  std::array<States, 256> all;
+  std::array<States, 256> all{};
   for (std::size_t i = 0; i < all.size(); ++i) {
     all[i] = {kStates[i % 4], kStates[i / 4 % 4], kStates[i / 16 % 4], kStates[i / 64]};
   }
@@ -94,7 +94,7 @@ struct Solved {
 template <class Precision>
 Solved<Precision> solve(const PillarOf<Precision>& pillar, double k) {
   using Real = RealOf<Precision>;
-  Solved<Precision> solved;
+  Solved<Precision> solved{};
   solved.diagonals = pillar_diagonals(pillar);
   solved.sum = parity_sum(solved.diagonals);
   solved.scale = {static_cast<Real>(1 / (2 * std::numbers::sqrt2_v<long double> * k)),

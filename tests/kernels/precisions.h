@@ -54,6 +54,7 @@ using Precisions = testing::Types<Single, Double>;
 
 struct PrecisionNames {
   template <class Precision>
+  // GoogleTest's name for it. NOLINTNEXTLINE(readability-identifier-naming)
   static std::string GetName(int /*index*/) {
     return std::is_same_v<Precision, Single> ? "float" : "double";
   }

@@ -30,6 +30,8 @@ struct EquilibrationResult {
   /// Relative standard deviation, from pillar to pillar, that the sensels' own spread does not
   /// explain: of the pressure, or of gains that neighbours share.
   double unevenness = 0;
+  /// Tangential over normal force of the whole press. Gains made under shear are wrong by it.
+  double shear = 0;
   /// Relative root mean square of what the straight lines leave; 0 for less than three pressures.
   double nonlinearity = 0;
 };

@@ -32,7 +32,7 @@ class FrameStatistics {
   /// `name` stands for the frames in messages, as their file.
   FrameStatistics(std::string name, const Skin& skin, SenselType type);
 
-  /// Adds a frame of the skin's size and type; about 4 ns per sensel.
+  /// Adds a frame of the skin's size and type; about 5 ns per sensel.
   void add(const FrameView& frame);
 
   [[nodiscard]] const std::string& name() const { return name_; }

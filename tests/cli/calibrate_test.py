@@ -1,0 +1,287 @@
+"""`pillarfield calibrate` as a user meets it: from a new skin to forces that are right."""
+
+import unittest
+
+import h5py
+import numpy
+
+from command import CommandTest, run, run_json
+
+SENSOR = """
+[sensor]
+adc_bits = 12
+tare_counts = 12
+tare_spread_counts = 1.5
+gain_spread = 0.1
+dead_zone_counts = 3
+noise_counts = 1
+dead_share = 0.003
+"""
+SIZE = 30  # pillars each way
+PILLAR_AREA_MM2 = 4 * 0.632455532**2
+FRAMES = 100
+COUNTS_PER_NEWTON = 320
+
+BALL = f"""
+[skin]
+pillars = [{SIZE}, {SIZE}]
+[[contact]]
+shape = "sphere"
+motion = "slide"
+friction = 0.4
+contact_radius_mm = 12
+reference_load_n = 60
+path = [
+  {{ time_s = 0, position_mm = [-4, 0], load_n = 60 }},
+  {{ time_s = 4, position_mm = [4, 0], load_n = 60 }},
+]
+"""
+
+# Presses the whole patch, ever harder.
+WIDE_BALL = f"""
+[skin]
+pillars = [{SIZE}, {SIZE}]
+[[contact]]
+shape = "sphere"
+motion = "press"
+contact_radius_mm = 40
+reference_load_n = 1200
+path = [
+  {{ time_s = 0, position_mm = [-3, 0], load_n = 20 }},
+  {{ time_s = 5, position_mm = [3, 0], load_n = 1200 }},
+]
+"""
+
+
+class Calibrate(CommandTest):
+    """Each recording is of the same sensels, made from frames that no other has."""
+
+    first_frame = 0
+
+    def record(self, name, load, sensor=SENSOR, frames=FRAMES):
+        """Simulates `load` with the sensor, uncalibrated, and returns the recording's path."""
+        scene = self.folder / f"{name}.toml"
+        path = self.folder / f"{name}.h5"
+        scene.write_text(load + sensor)
+        last_frame = self.first_frame + frames
+        run("simulate", scene, "-o", path, "--uncalibrated", "--frames", last_frame)
+        with h5py.File(path, "r+") as file:
+            for dataset in ("frames/raw", "frames/time", "truth/shear_x", "truth/shear_y",
+                            "truth/normal"):
+                values = file[dataset][self.first_frame:]
+                del file[dataset]
+                file[dataset] = values
+        self.first_frame = last_frame
+        return path
+
+    def unloaded(self, **options):
+        return self.record("unloaded", f"[skin]\npillars = [{SIZE}, {SIZE}]\n", **options)
+
+    def pressed(self, newtons, **options):
+        """All pillars carry so much each."""
+        return self.record(f"pressed_{newtons}",
+                           f"[chart]\ndirections = {SIZE}\ninclinations = {SIZE}\n"
+                           f"max_theta_deg = 0\nmagnitudes_n = [{newtons}]\n", **options)
+
+    def pressure_kpa(self, newtons):
+        return 1000 * newtons / PILLAR_AREA_MM2
+
+    def tared(self):
+        calibration = self.folder / "tared.h5"
+        return calibration, run_json("calibrate", "tare", self.unloaded(), "-o", calibration)
+
+    def error_of(self, recording, *options):
+        forces = self.folder / "forces.h5"
+        run("solve", recording, "-o", forces, *options)
+        return run_json("compare", forces, recording)["regions"]["1"]["rms_n"]
+
+
+class Chain(Calibrate):
+    def test_from_a_new_skin_to_forces(self):
+        tared, tare = self.tared()
+        self.assertAlmostEqual(tare["tare_counts"], 12, delta=0.2)
+        self.assertAlmostEqual(tare["noise_counts"], 1.04, delta=0.03)
+        self.assertTrue(all(finding["fault"] == "stuck" and finding["masked"]
+                            for finding in tare["findings"]))
+        self.assertEqual(tare["masked"], len(tare["findings"]))
+
+        low, high = self.pressed(0.2), self.pressed(0.7)
+        equal = self.folder / "equal.h5"
+        pressures = f"{self.pressure_kpa(0.2)},{self.pressure_kpa(0.7)}"
+        result = run_json("calibrate", "equilibrate", low, high, "--pressure-kpa", pressures,
+                          "--calibration", tared, "-o", equal)
+        self.assertEqual(result["levels"], 2)
+        self.assertAlmostEqual(result["gain_spread"], 0.1, delta=0.01)
+        self.assertAlmostEqual(result["dead_zone_counts"], 3, delta=0.1)
+        self.assertLess(result["unevenness"], 0.02)
+        self.assertEqual(result["findings"], [])
+
+        loaded = self.folder / "loaded.h5"
+        pillars = SIZE * SIZE
+        result = run_json("calibrate", "load", high, "--load-n", 0.7 * pillars, low, "--load-n",
+                          0.2 * pillars, "--calibration", equal, "-o", loaded)
+        self.assertLess(result["misfit"], 2e-3)
+        # The gains' mean is 1, and that of their truths above it by the square of the spread.
+        self.assertAlmostEqual(result["counts_per_newton"], COUNTS_PER_NEWTON / 1.01, delta=1.5)
+        self.assertEqual([load["saturated"] for load in result["loads"]], [0, 0])
+
+        ball = self.record("ball", BALL, frames=50)
+        found = self.error_of(ball, "--calibration", loaded)
+        without = self.error_of(ball)
+        with_truth = self.folder / "known.h5"
+        scene = self.folder / "ball.toml"
+        run("simulate", scene, "-o", with_truth, "--frames", 50)
+        faultless = self.error_of(with_truth, "--threshold", 5)
+        self.assertLess(found, 1.1 * faultless)
+        self.assertGreater(without, 3 * faultless)
+
+        copy = self.folder / "copy.h5"
+        run("calibrate", "apply", loaded, ball, "-o", copy)
+        self.assertAlmostEqual(self.error_of(copy), found, delta=1e-9)
+
+        facts = run_json("info", loaded)
+        self.assertEqual(facts["planes"], ["tare", "gain", "dead_zone", "mask", "noise"])
+        self.assertEqual([step["step"] for step in facts["history"]],
+                         ["tare", "equilibrate", "load"])
+        self.assertEqual(facts["history"][1]["sources"], ["pressed_0.2.h5", "pressed_0.7.h5"])
+        self.assertEqual(facts["history"][1]["frames"], 2 * FRAMES)
+        self.assertIn("linear", facts["history"][2]["parameters"])
+        self.assertRegex(facts["history"][0]["date_utc"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        text = run("info", loaded).stdout
+        self.assertIn("equilibrate, pressed_0.2.h5, pressed_0.7.h5, 200", text)
+
+    def test_a_power_law_is_found_and_undone(self):
+        sensor = SENSOR.replace("dead_zone_counts = 3", "power_law_exponent = 1.3\n"
+                                "power_law_reference_counts = 150")
+        tared = self.folder / "tared.h5"
+        run("calibrate", "tare", self.unloaded(sensor=sensor), "-o", tared)
+        middle = self.pressed(0.5, sensor=sensor)
+        light, heavy = self.pressed(0.1, sensor=sensor), self.pressed(0.9, sensor=sensor)
+        equal, straight = self.folder / "equal.h5", self.folder / "straight.h5"
+        run("calibrate", "equilibrate", middle, "--pressure-kpa", self.pressure_kpa(0.5),
+            "--calibration", tared, "-o", equal)
+        pillars = SIZE * SIZE
+        loads = ",".join(str(newtons * pillars) for newtons in (0.1, 0.5, 0.9))
+        result = run_json("calibrate", "load", light, middle, heavy, "--load-n", loads,
+                          "--model", "power", "--calibration", equal, "-o", straight)
+        self.assertAlmostEqual(result["power_law_exponent"], 1.3, delta=0.005)
+        ball = self.record("ball", BALL, sensor=sensor, frames=20)
+        self.assertLess(self.error_of(ball, "--calibration", straight),
+                        0.4 * self.error_of(ball, "--calibration", equal))
+        solved = run_json("solve", ball, "--calibration", straight, "-o", self.folder / "f.h5")
+        self.assertIn("power_law", solved["stages"])
+
+    def test_faults_are_found_and_masked(self):
+        sensor = SENSOR.replace("dead_share = 0.003", "")
+        tared = self.folder / "tared.h5"
+        run("calibrate", "tare", self.unloaded(sensor=sensor), "-o", tared)
+        ball = self.record("ball", WIDE_BALL, sensor=sensor, frames=400)
+        with h5py.File(ball, "r+") as file:
+            raw = file["frames/raw"][:]
+            raw[:, 20, 20] = 12
+            raw[:, 24, 31] = 150
+            raw[:, 30, 30] = raw[:, 30, 31] = 12
+            file["frames/raw"][:] = raw
+        tested = self.folder / "tested.h5"
+        result = run_json("calibrate", "faults", ball, "--calibration", tared, "-o", tested)
+        found = {(finding["row"], finding["col"]): (finding["fault"], finding["masked"])
+                 for finding in result["findings"]}
+        self.assertEqual(found, {(20, 20): ("silent", True), (24, 31): ("stuck", True),
+                                 (30, 30): ("undecided", False), (30, 31): ("undecided", False)})
+        self.assertEqual(result["masked"], 2)
+        self.assertNotIn([10, 10], result["untested"])
+        with h5py.File(tested) as file:
+            self.assertEqual(sorted(zip(*numpy.where(file["calibration/mask"][:] == 0))),
+                             [(20, 20), (24, 31)])
+        text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested).stdout
+        for words in ("row 20, column 20: silent", "row 30, column 31: undecided", "not masked"):
+            self.assertIn(words, text)
+
+
+class Apply(Calibrate):
+    def test_raw_readings_are_never_changed(self):
+        tared, _ = self.tared()
+        recording = self.pressed(0.3, frames=20)
+        before = recording.read_bytes()
+        copy = self.folder / "copy.h5"
+        result = run_json("calibrate", "apply", tared, recording, "-o", copy)
+        self.assertEqual(result["frames"], 20)
+        self.assertEqual(recording.read_bytes(), before)
+        with h5py.File(recording) as old, h5py.File(copy) as new, h5py.File(tared) as calibration:
+            for dataset in ("frames/raw", "frames/time", "truth/shear_x", "truth/shear_y",
+                            "truth/normal"):
+                self.assertEqual(old[dataset].dtype, new[dataset].dtype)
+                self.assertEqual(old[dataset][:].tobytes(), new[dataset][:].tobytes())
+            for plane in ("tare", "noise", "mask"):
+                self.assertEqual(calibration[f"calibration/{plane}"][:].tobytes(),
+                                 new[f"calibration/{plane}"][:].tobytes())
+            self.assertEqual(new["skin"].attrs["threshold_counts"],
+                             calibration["skin"].attrs["threshold_counts"])
+
+    def test_nothing_is_written_over_what_is_read(self):
+        tared, _ = self.tared()
+        recording = self.pressed(0.3, frames=20)
+        before = recording.read_bytes()
+        self.assert_fails("calibrate", "apply", tared, recording, "-o", recording,
+                          says=["pressed_0.3.h5", "another file"])
+        self.assert_fails("calibrate", "tare", recording, "-o", recording, says=["another file"])
+        self.assertEqual(recording.read_bytes(), before)
+
+
+class WrongInput(Calibrate):
+    """One clear line, exit status 1, and nothing written."""
+
+    def assert_refused(self, *arguments, says):
+        output = self.folder / "new.h5"
+        self.assert_fails("calibrate", *arguments, "-o", output, says=says)
+        self.assertFalse(output.exists())
+        self.assertFalse((self.folder / "new.h5.part").exists())
+
+    def test_of_every_kind(self):
+        tared, _ = self.tared()
+        equilibrate = ("--pressure-kpa", 100, "--calibration", tared)
+        load = ("--load-n", 20, "--calibration", tared)
+        bare = self.unloaded(frames=40)
+        ball = self.record("ball", BALL, frames=20)
+        few = self.record("few", f"[skin]\npillars = [{SIZE}, {SIZE}]\n", frames=4)
+        small = self.record("small", f"[skin]\npillars = [{SIZE}, 20]\n", frames=20)
+        self.assert_refused("tare", few, says=["few.h5", "4 frames", "at least 10"])
+        self.assert_refused("tare", ball, says=["ball.h5", "touched", "preloaded"])
+        self.assert_refused("tare", small, "--calibration", tared, says=["60 x 40", "60 x 60"])
+        self.assert_refused("equilibrate", bare, *equilibrate, says=["unloaded.h5", "not answer"])
+        self.assert_refused("equilibrate", ball, *equilibrate, says=["ball.h5", "not answer"])
+        self.assert_refused("equilibrate", few, *equilibrate, says=["few.h5", "at least 5"])
+        self.assert_refused("equilibrate", small, *equilibrate, says=["60 x 40", "60 x 60"])
+        self.assert_refused("load", bare, *load, says=["unloaded.h5", "no contact"])
+        self.assert_refused("load", ball, *load, "--model", "power", says=["20 to 20 N"])
+        self.assert_refused("faults", bare, "--calibration", tared, says=["no sensel moved"])
+        self.assert_refused("faults", few, "--calibration", tared, says=["few.h5", "at least 30"])
+        self.assert_refused("faults", ball, "--calibration", bare,
+                            says=["unloaded.h5", "pillarfield-recording"])
+        self.assert_refused("faults", ball, "--calibration", self.folder / "absent.h5",
+                            says=["absent.h5", "No such file"])
+        self.assert_refused("apply", tared, small, says=["60 x 40", "60 x 60"])
+        self.assert_refused("apply", tared, tared, says=["tared.h5", "a calibration"])
+        self.assert_fails("solve", small, "--calibration", tared, "-o", self.folder / "new.h5",
+                          says=["small.h5", "60 x 40", "60 x 60"])
+
+    def test_wrong_command_lines_end_with_2(self):
+        for arguments in ([], ["tare"], ["tare", "a"], ["equilibrate", "a", "-o", "b"],
+                          ["equilibrate", "a", "b", "--pressure-kpa", "1", "--calibration", "c",
+                           "-o", "d"],
+                          ["equilibrate", "a", "--pressure-kpa", "0", "--calibration", "c", "-o",
+                           "d"],
+                          ["load", "a", "--load-n", "-3", "--calibration", "c", "-o", "d"],
+                          ["load", "a", "--load-n", "1,2", "--calibration", "c", "-o", "d"],
+                          ["load", "a", "--load-n", "1", "--calibration", "c", "-o", "d",
+                           "--model", "cubic"],
+                          ["tare", "a", "-o", "b", "--threshold-factor", "-1"],
+                          ["apply", "a"]):
+            with self.subTest(arguments=arguments):
+                result = run("calibrate", *arguments, expect=2)
+                self.assertEqual(result.stdout, "")
+                self.assertNotEqual(result.stderr, "")
+
+
+if __name__ == "__main__":
+    unittest.main()
