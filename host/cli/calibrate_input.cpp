@@ -82,6 +82,7 @@ void require_one_each(const char* option, const std::vector<std::string>& files,
 
 std::vector<std::string> names_of(const std::vector<std::string>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const std::string& file : files) {
     names.push_back(std::filesystem::path(file).filename().string());
   }

@@ -1,11 +1,12 @@
 #include "core/finding_list.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pillarfield {
 
-FindingList::FindingList(const std::vector<std::uint8_t>& mask, const FrameStatistics& statistics)
-    : statistics_(statistics), mask_(mask) {
+FindingList::FindingList(std::vector<std::uint8_t> mask, const FrameStatistics& statistics)
+    : statistics_(statistics), mask_(std::move(mask)) {
   if (mask_.empty()) mask_.assign(statistics.skin().sensels(), 1);
 }
 

@@ -12,7 +12,7 @@ namespace pillarfield {
 class FindingList {
  public:
   /// `mask` is that of Calibration, so far; `statistics` tell what the sensels read.
-  FindingList(const std::vector<std::uint8_t>& mask, const FrameStatistics& statistics);
+  FindingList(std::vector<std::uint8_t> mask, const FrameStatistics& statistics);
 
   /// Whether the sensel is neither masked before nor found since.
   [[nodiscard]] bool good(std::size_t sensel) const { return mask_[sensel] != 0; }

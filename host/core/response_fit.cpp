@@ -89,7 +89,7 @@ Response ResponseFit::ratio(const Sums& sums, std::size_t sensel) const {
 }
 
 /// Several pressures: least squares of y = s (N − n0) under n0 >= 0.
-Response ResponseFit::line(const Sums& sums) const {
+Response ResponseFit::line(const Sums& sums) {
   const double mean_n = sums.n / sums.w;
   double slope = (sums.ny - sums.n * sums.y / sums.w) / (sums.nn - sums.n * mean_n);
   if (slope <= 0) return {.kind = Response::Kind::silent};

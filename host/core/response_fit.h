@@ -34,7 +34,7 @@ class ResponseFit {
   [[nodiscard]] bool answers(const SenselStatistics& pressed, std::size_t sensel) const;
   [[nodiscard]] double answer(const SenselStatistics& pressed, std::size_t sensel) const;
   [[nodiscard]] Response ratio(const Sums& sums, std::size_t sensel) const;
-  [[nodiscard]] Response line(const Sums& sums) const;
+  [[nodiscard]] static Response line(const Sums& sums);
 
   std::span<const UniformPress> presses_;
   const Calibration& planes_;

@@ -122,6 +122,8 @@ TEST(Equilibration, AKnownDeadZoneServesWithOnePressure) {
   const double share = 1 / mean_of(truth.gain);
   EXPECT_LT(relative_errors(result.calibration.planes.gain, truth.gain, share).largest, 0.01);
   EXPECT_EQ(result.calibration.planes.dead_zone, before.planes.dead_zone);
+  // (V - z) share + z at 96 counts.
+  EXPECT_NEAR(result.calibration.counts_per_newton.value(), (88 * share + 8) / 0.3, 0.5);
   EXPECT_NEAR(mean_of(result.calibration.planes.gain), 1, 1e-6);
 }
 

@@ -135,6 +135,20 @@ TEST_P(PowerLawLoad, TheExponentIsFound) {
 
 INSTANTIATE_TEST_SUITE_P(Exponents, PowerLawLoad, testing::Values(0.7, 1.0, 1.4));
 
+/// A sensel that was clipped now and then has too low a mean.
+TEST(LoadCalibration, SaturationInSomeFramesIsSeen) {
+  SensorModel sensor = noisy_sensor();
+  sensor.adc_bits = 8;
+  sensor.noise_counts = 6;
+  PressedSkin skin(10, 10, sensor);
+  const SkinCalibration before = tared(skin);
+  const FrameStatistics press = skin.press(0.72, kFrames);  // 242 counts with the tare
+  const KnownLoad loads[] = {{press, 72}};
+  const std::string message =
+      message_of([&] { (void)calibrate_load(before, loads, LoadModel::linear); });
+  EXPECT_NE(message.find("saturated"), std::string::npos) << message;
+}
+
 TEST(LoadCalibration, RefusesWhatDoesNotTell) {
   PressedSkin skin(10, 10, noisy_sensor());
   const SkinCalibration before = tared(skin);

@@ -109,20 +109,41 @@ double flicker(std::size_t sensel, std::uint32_t frame) {
   return (sensel + frame) % 2 == 0 ? 9 : 11;
 }
 
+/// 10 x 10 sensels of which some are peculiar.
+double peculiar(std::size_t sensel, std::uint32_t frame) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const double usual = flicker(sensel, frame);
+  switch (sensel) {
+    case 3:  // mostly no number
+      return frame % 3 == 0 ? usual : kNan;
+    case 10:  // at full scale
+      return 250;
+    case 20:  // stuck high
+      return 100;
+    case 30:  // stuck low
+      return -7;
+    case 40:  // comes and goes
+      return frame % 2 == 0 ? 0 : 40;
+    case 50:  // constant where it may be
+      return 10;
+    case 60:  // a high tare, and alive
+      return 30 + usual;
+    case 70:  // one reading lost
+      return frame == 5 ? kNan : usual;
+    default:
+      return usual;
+  }
+}
+
+const SenselFinding* finding_of(const TareResult& result, std::size_t sensel) {
+  const auto found = std::ranges::find_if(result.findings, [=](const SenselFinding& finding) {
+    return finding.row * 10 + finding.col == sensel;
+  });
+  return found == result.findings.end() ? nullptr : &*found;
+}
+
 TEST(Tare, MasksWhatCannotBeRightAndSaysWhy) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  const auto reading = [](std::size_t i, std::uint32_t t) -> double {
-    if (i == 3) return t % 3 == 0 ? flicker(i, t) : kNan;
-    if (i == 10) return 250;                            // at full scale
-    if (i == 20) return 100;                            // stuck high
-    if (i == 30) return -7;                             // stuck low
-    if (i == 40) return t % 2 == 0 ? 0 : 40;            // comes and goes
-    if (i == 50) return 10;                             // constant where it may be
-    if (i == 60) return 30 + flicker(i, t);             // a high tare, and alive
-    if (i == 70) return t == 5 ? kNan : flicker(i, t);  // one reading lost
-    return flicker(i, t);
-  };
-  const TareResult result = tare_of(frames_of(10, 10, 60, reading, 250));
+  const TareResult result = tare_of(frames_of(10, 10, 60, peculiar, 250));
   ASSERT_EQ(result.findings.size(), 5U);
   const std::vector<std::pair<std::size_t, SenselFault>> expected = {{3, SenselFault::not_a_number},
                                                                      {10, SenselFault::saturated},
@@ -130,12 +151,10 @@ TEST(Tare, MasksWhatCannotBeRightAndSaysWhy) {
                                                                      {30, SenselFault::stuck},
                                                                      {40, SenselFault::noisy}};
   for (const auto& [sensel, fault] : expected) {
-    const auto found = std::ranges::find_if(result.findings, [&](const SenselFinding& finding) {
-      return finding.row * 10 + finding.col == sensel;
-    });
-    ASSERT_NE(found, result.findings.end()) << sensel;
-    EXPECT_EQ(found->fault, fault) << sensel;
-    EXPECT_TRUE(found->masked);
+    const SenselFinding* const finding = finding_of(result, sensel);
+    ASSERT_NE(finding, nullptr) << sensel;
+    EXPECT_EQ(finding->fault, fault) << sensel;
+    EXPECT_TRUE(finding->masked);
     EXPECT_EQ(result.calibration.planes.mask[sensel], 0);
   }
   EXPECT_EQ(std::ranges::count(result.calibration.planes.mask, 0), 5);

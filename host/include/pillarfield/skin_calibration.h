@@ -32,7 +32,7 @@ struct SkinCalibration {
   /// The threshold as a multiple of the noise; see set_threshold.
   std::optional<double> threshold_factor;
   std::optional<double> counts_per_newton;
-  std::optional<PowerLaw> power_law;  ///< comes with counts_per_newton
+  std::optional<PowerLaw> power_law;     ///< comes with counts_per_newton
   std::vector<CalibrationStep> history;  ///< oldest first
 };
 
