@@ -51,8 +51,8 @@ static inline Real theta_of_pair(Real v_i, Real cos_i, Real v_j, Real cos_j) {
 }
 
 /* Four usable: (7), then (5) with the diagonal along which the shear lies more (P1). No shear where
- * (7) is 0/0: under a force that only presses, and where its products vanish because a whole diagonal
- * reads nearly nothing, which no force does. */
+ * (7) is 0/0: under a force that only presses, and where its products vanish because a whole
+ * diagonal reads nearly nothing, which no force does. */
 static inline Angles paper_region_1(Ratios v) {
   const Real zero = PF_REAL(0.0);
   const Real up = v.c * v.d - v.a * v.b;
@@ -69,8 +69,8 @@ static inline Angles paper_region_1(Ratios v) {
 }
 
 /* All but d: (9), then (5) with the sensel opposite d and that of its neighbours which differs more
- * from it (P2): the weaker one where d lifted, since b then reads most. Where d is missing the other
- * one may read as much as b, and (5) is 0/0. */
+ * from it (P2): the weaker one where d lifted, since b then reads most. Where d is missing the
+ * other one may read as much as b, and (5) is 0/0. */
 static inline Angles paper_region_2(Ratios v) {
   Angles angles;
   angles.phi = atan2(v.c - v.b, v.b - v.a);
