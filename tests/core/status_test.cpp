@@ -42,8 +42,10 @@ Force force_from(double theta, double phi) {
 }
 
 TEST(IdealReadings, AreThoseOfThePapersEquation) {
-  for (double theta = 0; theta < 1.5; theta += 0.07) {
-    for (double phi = -3; phi < 3; phi += 0.11) {
+  for (int row = 0; row < 22; ++row) {
+    const double theta = 0.07 * row;
+    for (int col = 0; col < 55; ++col) {
+      const double phi = -3 + 0.11 * col;
       const auto v = ideal_readings(force_from(theta, phi), 300);
       const double readings[] = {v.v1, v.v2, v.v3, v.v4};
       for (int n = 1; n <= 4; ++n) {

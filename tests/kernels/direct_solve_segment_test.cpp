@@ -120,7 +120,8 @@ TYPED_TEST(DirectSolveSegment, HasTheHalfWidthsOfTheDesign) {
   double worst_phi = 0;
   double ratio_theta = 0;
   double ratio_phi = 0;
-  for (double ratio = 1; ratio < 20; ratio += 0.001) {
+  for (int step = 0; step < 19'000; ++step) {
+    const double ratio = 1 + 0.001 * step;
     const auto solved =
         solve<TypeParam>(pillar_of<TypeParam>({static_cast<Real>(ratio), 1, 0, 0}), 1);
     const auto low = direction_of(solved.low());
