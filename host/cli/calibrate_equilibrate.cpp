@@ -98,14 +98,14 @@ void add_calibrate_equilibrate(CLI::App& calibrate, Work& work) {
       ->add_option("--pressure-kpa", options->pressures_kpa,
                    "Pressure of each file, in their order: P1,P2,...")
       ->required()
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-6, 1e6).description(""))
       ->delimiter(',')
       ->allow_extra_args(false);
   add_calibration_option(*command, options->step);
   command
       ->add_option("--max-unevenness", options->equilibration.most_unevenness,
                    "Largest share by which the pressure may vary from pillar to pillar")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 1e6).description(""))
       ->capture_default_str();
   add_step_options(*command, options->step, "Calibration to write (HDF5)");
   command->callback([options, &work] {

@@ -83,12 +83,12 @@ void add_calibrate_faults(CLI::App& calibrate, Work& work) {
   command
       ->add_option("--still", options->faults.still_factor,
                    "A range of so many times its noise is no movement of a reading")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-6, 1e6).description(""))
       ->capture_default_str();
   command
       ->add_option("--moving", options->faults.moving_factor,
                    "A deviation of so many times its noise is one of what parity leaves")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-6, 1e6).description(""))
       ->capture_default_str();
   add_step_options(*command, options->step, "Calibration to write (HDF5)");
   command->callback([options, &work] { work = [options] { run(*options); }; });

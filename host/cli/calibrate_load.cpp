@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
+#include "cli/choice.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/load_calibration.h"
 
@@ -109,8 +109,6 @@ void run(const LoadCommand& command) {
 }  // namespace
 
 void add_calibrate_load(CLI::App& calibrate, Work& work) {
-  static const std::map<std::string, LoadModel> models = {{"linear", LoadModel::linear},
-                                                          {"power", LoadModel::power}};
   const auto options = std::make_shared<LoadCommand>();
   CLI::App* const command = calibrate.add_subcommand(
       "load", "Counts per newton, and a power law, from known normal loads");
@@ -121,14 +119,13 @@ void add_calibrate_load(CLI::App& calibrate, Work& work) {
       ->add_option("--load-n", options->loads_n,
                    "Normal load of each file, in their order: L1,L2,... or given again for each")
       ->required()
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1e-6, 1e6).description(""))
       ->delimiter(',')
       ->allow_extra_args(false);
-  command
-      ->add_option("--model", options->model,
-                   "linear: in proportion; power: by a power law, from two loads or more [linear]")
-      ->transform(CLI::CheckedTransformer(models))
-      ->type_name("linear|power");
+  add_choice<LoadModel>(
+      *command, "--model", options->model,
+      {{"linear", LoadModel::linear}, {"power", LoadModel::power}},
+      "linear: in proportion; power: by a power law, from two loads or more [linear]");
   add_calibration_option(*command, options->step);
   add_step_options(*command, options->step, "Calibration to write (HDF5)");
   command->callback([options, &work] {

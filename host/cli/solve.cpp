@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/choice.h"
 #include "cli/command.h"
 #include "cli/device_options.h"
 #include "cli/interrupt.h"
@@ -277,12 +278,9 @@ void add_solve(CLI::App& app, Work& work) {
                       "Take the sensor's constants and the parity test from a scene file");
   command->add_option("--calibration", options->calibration,
                       "Take planes and constants from a calibration made by calibrate");
-  command
-      ->add_option("--estimator", options->estimator,
-                   "How forces are estimated: direct, or the paper's equations [direct]")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Estimator>{
-          {"direct", Estimator::direct}, {"paper", Estimator::paper}}))
-      ->type_name("direct|paper");
+  add_choice<Estimator>(*command, "--estimator", options->estimator,
+                        {{"direct", Estimator::direct}, {"paper", Estimator::paper}},
+                        "How forces are estimated: direct, or the paper's equations [direct]");
   command
       ->add_option("--outputs", options->outputs,
                    "What is written: forces; angles adds magnitude, theta and phi; uncertainty "

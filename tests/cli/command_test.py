@@ -38,6 +38,7 @@ class Help(CommandTest):
         for command in COMMANDS:
             text = run(command, "--help").stdout
             self.assertIn("Usage: pillarfield " + command, text)
+            self.assertTrue(text.replace("\n", "").isprintable(), command)
 
     def test_version(self):
         self.assertRegex(run("--version").stdout, r"^\d+\.\d+\.\d+\n$")
