@@ -14,6 +14,7 @@ CLI::Option* add_choice(CLI::App& command, const std::string& name, Target& targ
                         const std::map<std::string, Value>& choices,
                         const std::string& description) {
   std::vector<std::string> words;
+  words.reserve(choices.size());
   for (const auto& [word, value] : choices) words.push_back(word);
   const auto take = [&target, choices](const std::string& word) { target = choices.at(word); };
   return command.add_option_function<std::string>(name, take, description)
