@@ -78,7 +78,7 @@ class DirectSolveStates : public testing::Test {
     const double rounding = 16 * ulp_at<RealOf<Precision>>(largest);
     for (std::size_t n = 0; n < 4; ++n) {
       SCOPED_TRACE("sensel " + std::to_string(n + 1));
-      const double implies = static_cast<double>(implied[n]);
+      const auto implies = static_cast<double>(implied[n]);
       switch (states[n]) {
         case usable:
           EXPECT_NEAR(implies, readings[n], rounding);
@@ -119,7 +119,7 @@ TYPED_TEST(DirectSolveStates, SixteenPatternsHaveTheirStatus) {
 TYPED_TEST(DirectSolveStates, OneSenselAloneIsShearAlongItsDiagonal) {
   using Force = ForceOf<TypeParam>;
   using Real = RealOf<TypeParam>;
-  const double diagonal = 100 / 50 / std::numbers::sqrt2;
+  const double diagonal = 100.0 / 50 / std::numbers::sqrt2;
   const std::array<std::array<int, 2>, 4> signs = {{{1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
   for (std::size_t n = 0; n < 4; ++n) {
     FourReadings<TypeParam> readings{};
