@@ -83,17 +83,17 @@ static inline Angles paper_region_2(Ratios v) {
 /* Only a and b: half way in theta between the contour's ends (P3), where (5) gives phi (P4). */
 static inline Angles paper_region_3(Ratios v) {
   const Real one = PF_REAL(1.0);
-  const Real half_pi = PF_REAL(1.57079632679489661923);
+  const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const Real sqrt_2 = PF_REAL(1.41421356237309504880);
   const Real weaker = v.a < v.b ? v.a : v.b;
   const Real rest = PF_REAL(2.0) - weaker;
   const Real border = atan2(sqrt(rest * rest + weaker * weaker), weaker);
   const Real balance = (v.a - v.b) / (v.a + v.b);
   Angles angles;
-  angles.theta = PF_REAL(0.5) * (border + half_pi);
+  angles.theta = PF_REAL(0.5) * (border + quarter_turn);
   const Real cotangent = cos(angles.theta) / sin(angles.theta);
   const Real sine = balance * sqrt_2 * cotangent / sqrt(one + balance * balance);
-  angles.phi = -half_pi - atan(balance) - asin(sine);
+  angles.phi = -quarter_turn - atan(balance) - asin(sine);
   return angles;
 }
 
