@@ -15,7 +15,10 @@ namespace maths = single_precision;
 class PillarSolver {
  public:
   PillarSolver(const SolverPlan& plan, const FrameView& frame, ForceField& field)
-      : plan_(plan), sensel_(plan, frame), field_(field) {
+      : plan_(plan),
+        sensel_(plan, frame),
+        field_(field),
+        doubt_(static_cast<float>(region_doubt(plan))) {
     const ForceScale scale = force_scale(plan.skin.counts_per_newton);
     scale_ = {static_cast<float>(scale.shear), static_cast<float>(scale.normal)};
     if (!plan.uncertainty) return;
@@ -45,8 +48,7 @@ class PillarSolver {
 
  private:
   [[nodiscard]] maths::Bits status(const maths::Pillar& pillar, const maths::ParitySum& sum) const {
-    const auto doubt = static_cast<float>(region_doubt(plan_));
-    maths::Bits bits = maths::direct_status(pillar, sum, doubt);
+    maths::Bits bits = maths::direct_status(pillar, sum, doubt_);
     if (plan_.parity_tolerance_counts) {
       const auto tolerance = static_cast<float>(*plan_.parity_tolerance_counts);
       bits |= maths::fails_parity(pillar, sum, tolerance) != 0 ? PF_STATUS_INCONSISTENT : 0;
@@ -74,6 +76,7 @@ class PillarSolver {
   const SolverPlan& plan_;
   SenselReader sensel_;
   ForceField& field_;
+  float doubt_;
   maths::ForceScale scale_{};
 };
 
