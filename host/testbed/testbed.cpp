@@ -82,6 +82,12 @@ void check(const Parameters& parameters) {
   require("threshold", sensor.threshold_counts, 0, kMaxCounts);
   require("dead zone", sensor.dead_zone_counts, 0, kMaxCounts);
   require("full scale", sensor.full_scale_counts.value_or(1), 1, kMaxCounts);
+  if (sensor.full_scale_counts && *sensor.full_scale_counts <= sensor.threshold_counts) {
+    throw Error("testbed",
+                fmt::format("the full scale {} leaves no reading above the threshold",
+                            *sensor.full_scale_counts),
+                fmt::format("give more than {}", sensor.threshold_counts));
+  }
   require("noise", sensor.noise_counts, 0, kMaxNoiseCounts);
   require("accuracy of the positioner", parameters.positioner_rad, 0, 0.3);
   require("play", parameters.play_rad, 0, 0.3);

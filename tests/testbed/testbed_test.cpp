@@ -172,6 +172,7 @@ TEST(Testbed, ParametersOutOfRangeAreNamed) {
     says("threshold", [&](P& p) { p.sensor.threshold_counts = wrong; });
     says("noise", [&](P& p) { p.sensor.noise_counts = wrong; });
     says("full scale", [&](P& p) { p.sensor.full_scale_counts = wrong; });
+    says("full scale", [](P& p) { p.sensor.full_scale_counts = p.sensor.threshold_counts; });
     says("positioner", [&](P& p) { p.positioner_rad = wrong; });
     says("play", [&](P& p) { p.play_rad = wrong; });
     says("probe", [&](P& p) { p.probe_resolution_n = wrong; });
