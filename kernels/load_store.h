@@ -11,10 +11,10 @@ typedef struct {
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
-/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. At the end of a
- * row `count` is below PF_LANES, nothing beyond it is read, and the other lanes are zero. */
+/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. Where a row has
+ * fewer than PF_LANES, nothing beyond it is read, and the other lanes are zero. */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type)                                         \
+#define PF_DEFINE_LOAD(name, type, split)                                  \
   static inline RealPair load_##name(global const type* row, uint count) { \
     RealPair pair;                                                         \
     pair.left = (Real)row[0];                                              \
@@ -22,28 +22,70 @@ typedef struct {
     return pair;                                                           \
   }
 #else
-#define PF_DEFINE_LOAD(name, type)                                                           \
-  static inline RealPair load_##name(global const type* row, uint count) {                   \
-    PF_LANE_TYPE(type) low, high;                                                            \
-    if (count == PF_LANES) {                                                                 \
-      low = PF_VLOAD(0, row);                                                                \
-      high = PF_VLOAD(1, row);                                                               \
-    } else {                                                                                 \
-      type padded[2 * PF_LANES];                                                             \
-      for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0;  \
-      low = PF_VLOAD(0, padded);                                                             \
-      high = PF_VLOAD(1, padded);                                                            \
-    }                                                                                        \
-    RealPair pair;                                                                           \
-    pair.left = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.even, high.even)); \
-    pair.right = PF_JOIN(convert_float, PF_LANES)((PF_LANE_TYPE(type))(low.odd, high.odd));  \
-    return pair;                                                                             \
+
+#define PF_DEFINE_LOAD(name, type, split)                                                 \
+  static inline RealPair load_##name(global const type* row, uint count) {                \
+    if (count == PF_LANES) return split(PF_VLOAD(0, row), PF_VLOAD(1, row));              \
+    type padded[2 * PF_LANES];                                                            \
+    for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0; \
+    return split(PF_VLOAD(0, padded), PF_VLOAD(1, padded));                               \
   }
+
+#define PF_TO_REAL PF_JOIN(convert_float, PF_LANES)
+
+/* Left and right sensels alternate in memory. */
+#define PF_DEFINE_SPLIT(type)                                                            \
+  static inline RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
+    RealPair pair;                                                                       \
+    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));                   \
+    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                    \
+    return pair;                                                                         \
+  }
+PF_DEFINE_SPLIT(float)
+
+#ifdef __ENDIAN_LITTLE__
+/* Two neighbours of a short type are one integer, whose lower half is the left one: taken apart so
+ * they cost half the instructions of a shuffle. */
+#if PF_LANES == 16
+#define PF_HALF_LANES 8
+#elif PF_LANES == 8
+#define PF_HALF_LANES 4
+#elif PF_LANES == 4
+#define PF_HALF_LANES 2
+#else
+#define PF_HALF_LANES
+#endif
+#define PF_DEFINE_SPLIT_OF_INTEGERS(type, wide, bits)                                      \
+  static inline RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {   \
+    const PF_LANE_TYPE(uint) both = PF_JOIN(convert_uint, PF_LANES)((PF_LANE_TYPE(wide))(  \
+        PF_JOIN(as_##wide, PF_HALF_LANES)(low), PF_JOIN(as_##wide, PF_HALF_LANES)(high))); \
+    RealPair pair;                                                                         \
+    pair.left = PF_TO_REAL(PF_JOIN(as_int, PF_LANES)(both & ((1u << bits) - 1u)));         \
+    pair.right = PF_TO_REAL(PF_JOIN(as_int, PF_LANES)(both >> bits));                      \
+    return pair;                                                                           \
+  }
+PF_DEFINE_SPLIT_OF_INTEGERS(uchar, ushort, 8u)
+PF_DEFINE_SPLIT_OF_INTEGERS(ushort, uint, 16u)
+#else
+PF_DEFINE_SPLIT(uchar)
+PF_DEFINE_SPLIT(ushort)
+#endif
 #endif
 
-PF_DEFINE_LOAD(readings, PF_SENSEL)
-PF_DEFINE_LOAD(plane, float)
-PF_DEFINE_LOAD(mask, uchar)
+PF_DEFINE_LOAD(readings, PF_SENSEL, PF_JOIN(split_, PF_SENSEL))
+PF_DEFINE_LOAD(plane, float, split_float)
+PF_DEFINE_LOAD(mask, uchar, split_uchar)
+
+/* Brings memory that a later block reads towards the caches; where that is nobody's to say,
+ * nothing.
+ */
+static inline void prefetch_memory(global const void* place) {
+#if PF_LANES > 1 && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+  __builtin_prefetch((const void*)(size_t)place);
+#endif
+#endif
+}
 
 /* Writes what load_plane reads. */
 static inline void store_pair(RealPair pair, global float* row, uint count) {
@@ -87,7 +129,7 @@ static inline void store_status(Bits value, global uchar* plane, uint count) {
 #if PF_LANES == 1
   *plane = (uchar)value;
 #else
-  const PF_LANE_TYPE(uchar) bytes = PF_JOIN(convert_uchar, PF_LANES)(value);
+  const PF_LANE_TYPE(uchar) bytes = PF_JOIN(as_uchar, PF_LANES)(value);
   if (count == PF_LANES) {
     PF_VSTORE(bytes, 0, plane);
   } else {
@@ -105,13 +147,13 @@ static inline Bits load_status(global const uchar* row, int col, uint cols) {
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else
   if (col >= 0 && (uint)col + PF_LANES <= cols) {
-    return PF_JOIN(convert_int, PF_LANES)(PF_VLOAD(0, row + col));
+    return PF_JOIN(as_char, PF_LANES)(PF_VLOAD(0, row + col));
   }
   uchar padded[PF_LANES];
   for (uint i = 0; i < PF_LANES; ++i) {
     const int at = col + (int)i;
     padded[i] = at >= 0 && (uint)at < cols ? row[at] : (uchar)0;
   }
-  return PF_JOIN(convert_int, PF_LANES)(PF_VLOAD(0, padded));
+  return PF_JOIN(as_char, PF_LANES)(PF_VLOAD(0, padded));
 #endif
 }

@@ -4,17 +4,20 @@
  *
  *              OpenCL C                      C++, PF_PRECISION 32    C++, PF_PRECISION 64
  *   Real       float, or floatN of lanes     float                   double
- *   Mask       int, or intN: 0 or all ones   int: 0 or 1             int: 0 or 1
- *   Bits       int, or intN                  int                     int
+ *   Mask       int, or intN                  bool                    bool
+ *   Bits       char, or charN                int                     int
  *
  *   PF_REAL(x)   the constant x in every lane, of Real's own precision
  *   PF_BITS(x)   the integer x in every lane
+ *   bits_of(m)   all bits where the mask m is true, none elsewhere
+ *   mask_of(b)   true where b has any bit
  *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) from the program's first lines.
  *
- * What may stand in kernels/maths is what means the same in all three: masks joined by & and |,
- * negated by !; choices written c ? x : y with both sides of lane type; structs passed by value;
+ * What may stand in kernels/maths is what means the same in all three: masks joined by && and
+ * ||, negated by !; Bits joined by &, | and ~; choices written c ? x : y with both sides of lane
+ * type; structs passed by value;
  * + - * /, comparisons, fabs, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction: the
  * device and a host built with -ffp-contract=off then agree bit for bit in all but the last six.
  */
@@ -27,11 +30,15 @@
 #if PF_LANES == 1
 typedef float Real;
 typedef int Mask;
-typedef int Bits;
+typedef char Bits;
+static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
+static inline Mask mask_of(Bits bits) { return bits != 0; }
 #else
 typedef PF_JOIN(float, PF_LANES) Real;
 typedef PF_JOIN(int, PF_LANES) Mask;
-typedef PF_JOIN(int, PF_LANES) Bits;
+typedef PF_JOIN(char, PF_LANES) Bits;
+static inline Bits bits_of(Mask mask) { return PF_JOIN(convert_char, PF_LANES)(mask); }
+static inline Mask mask_of(Bits bits) { return PF_JOIN(convert_int, PF_LANES)(bits != (Bits)(0)); }
 #endif
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_BITS(x) ((Bits)(x))
@@ -47,9 +54,11 @@ using Real = double;
 using Real = float;
 #define PF_REAL(x) (x##f)
 #endif
-using Mask = int;
+using Mask = bool;
 using Bits = int;
 #define PF_BITS(x) (x)
+static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
+static inline Mask mask_of(Bits bits) { return bits != 0; }
 
 using std::asin;
 using std::atan;

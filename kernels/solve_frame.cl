@@ -31,79 +31,127 @@ static inline Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) 
 #endif
 }
 
-static inline Bits status_of(Pillar pillar, ParitySum sum) {
-  Bits status = direct_status(pillar, sum, (Real)(PF_DOUBT));
+static inline Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum) {
+  Bits status = direct_status(pillar, diagonals, sum, (Real)(PF_DOUBT));
 #ifdef PF_PARITY_TOLERANCE
-  status = status |
-           (fails_parity(pillar, sum, (Real)(PF_PARITY_TOLERANCE)) ? PF_BITS(PF_STATUS_INCONSISTENT)
-                                                                   : PF_BITS(0));
+  const Bits at_odds = bits_of(fails_parity(pillar, sum, (Real)(PF_PARITY_TOLERANCE)));
+  status = status | (at_odds & PF_BITS(PF_STATUS_INCONSISTENT));
 #endif
   return status;
 }
 
-/* One work-item solves every get_global_size(0)-th block of PF_LANES pillars of its pillar row.
+/* Where a frame comes from, and the results go: the arguments of the entry point. */
+typedef struct {
+  global const PF_SENSEL* raw;
+  size_t row_stride;
+  Planes planes;
+} Input;
+
+typedef struct {
+  global float* shear_x;
+  global float* shear_y;
+  global float* normal;
+  global uchar* status;
+  global float* magnitude;
+  global float* theta;
+  global float* phi;
+  global float* deviation_x;
+  global float* deviation_y;
+  global float* deviation_normal;
+  global float* theta_low;
+  global float* theta_high;
+  global float* phi_low;
+  global float* phi_high;
+  global float* magnitude_low;
+  global float* magnitude_high;
+} Output;
+
+/* Solves `count` pillars of a row. `raw` is the sensel at their upper left, `offset` its place in
+ * the calibration planes, and `index` that of the first pillar in the results. */
+static inline void solve_block(Input input, Output output, global const PF_SENSEL* raw,
+                               size_t offset, size_t index, uint count) {
+  const Planes planes = input.planes;
+  global const PF_SENSEL* const below = raw + input.row_stride;
+  const SenselPair top = read_sensels(raw, planes, offset, count);
+  const SenselPair bottom = read_sensels(below, planes, offset + planes.stride, count);
+  const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
+
+  const Diagonals diagonals = pillar_diagonals(pillar);
+  const ParitySum sum = parity_sum(diagonals);
+  const Force force = estimate(pillar, diagonals, sum);
+  store_plane(force.shear_x, output.shear_x + index, count);
+  store_plane(force.shear_y, output.shear_y + index, count);
+  store_plane(force.normal, output.normal + index, count);
+  store_status(status_of(pillar, diagonals, sum), output.status + index, count);
+#ifdef PF_ANGLES
+  const Direction direction = direction_of(force);
+  store_plane(direction.magnitude, output.magnitude + index, count);
+  store_plane(direction.theta, output.theta + index, count);
+  store_plane(direction.phi, output.phi + index, count);
+#endif
+#ifdef PF_UNCERTAINTY
+  const RealPair noise_top = read_noise(raw, planes, offset, count);
+  const RealPair noise_bottom = read_noise(below, planes, offset + planes.stride, count);
+  const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
+  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+  const Force deviations = force_deviations(pillar, diagonals, noises, scale);
+  const DirectionInterval interval = direction_interval(pillar, diagonals, sum, scale);
+  store_plane(deviations.shear_x, output.deviation_x + index, count);
+  store_plane(deviations.shear_y, output.deviation_y + index, count);
+  store_plane(deviations.normal, output.deviation_normal + index, count);
+  store_plane(interval.theta_low, output.theta_low + index, count);
+  store_plane(interval.theta_high, output.theta_high + index, count);
+  store_plane(interval.phi_low, output.phi_low + index, count);
+  store_plane(interval.phi_high, output.phi_high + index, count);
+  store_plane(interval.magnitude_low, output.magnitude_low + index, count);
+  store_plane(interval.magnitude_high, output.magnitude_high + index, count);
+#endif
+}
+
+/* Solves the blocks of a pillar row that are this work-item's. Blocks begin where a result is on a
+ * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
+ * moved into the row, and solve again what their neighbour solves as well. */
+static inline void solve_row(Input input, Output output, uint row, uint pillar_cols) {
+  const size_t first_index = (size_t)row * pillar_cols;
+  const uint skew = (uint)(first_index % PF_LANES);
+  const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
+  const uint count = min(pillar_cols, (uint)PF_LANES);
+  const uint last_col = pillar_cols - count;
+  global const PF_SENSEL* const raw = input.raw + 2 * row * input.row_stride;
+  const size_t offset = 2 * row * input.planes.stride;
+  for (uint block = (uint)get_global_id(0); block < blocks; block += (uint)get_global_size(0)) {
+    const uint col = min(max(block * PF_LANES, skew) - skew, last_col);
+    prefetch_memory(raw + 2 * input.row_stride + 2 * col);
+    prefetch_memory(raw + 3 * input.row_stride + 2 * col);
+    solve_block(input, output, raw + 2 * col, offset + 2 * col, first_index + col, count);
+  }
+}
+
+/* One work-item solves every get_global_size(0)-th block of PF_LANES pillars, in the rows of its
+ * band among get_global_size(1).
  *
  * raw           readings, `row_stride` apart from one row of sensels to the next
  * tare .. noise calibration planes [rows, plane_stride], or null
- * shear_x ..    results [get_global_size(1), pillar_cols]; those from magnitude on may be null */
-kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, uint pillar_cols,
-                        global const float* restrict tare, global const float* restrict gain,
-                        global const float* restrict dead_zone, global const uchar* restrict mask,
-                        global const float* restrict noise, ulong plane_stride,
-                        global float* restrict shear_x, global float* restrict shear_y,
-                        global float* restrict normal, global uchar* restrict status,
-                        global float* restrict magnitude, global float* restrict theta,
-                        global float* restrict phi, global float* restrict deviation_x,
-                        global float* restrict deviation_y, global float* restrict deviation_normal,
-                        global float* restrict theta_low, global float* restrict theta_high,
-                        global float* restrict phi_low, global float* restrict phi_high,
-                        global float* restrict magnitude_low,
+ * shear_x ..    results [pillar_rows, pillar_cols]; those from magnitude on may be null */
+kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, uint pillar_rows,
+                        uint pillar_cols, global const float* restrict tare,
+                        global const float* restrict gain, global const float* restrict dead_zone,
+                        global const uchar* restrict mask, global const float* restrict noise,
+                        ulong plane_stride, global float* restrict shear_x,
+                        global float* restrict shear_y, global float* restrict normal,
+                        global uchar* restrict status, global float* restrict magnitude,
+                        global float* restrict theta, global float* restrict phi,
+                        global float* restrict deviation_x, global float* restrict deviation_y,
+                        global float* restrict deviation_normal, global float* restrict theta_low,
+                        global float* restrict theta_high, global float* restrict phi_low,
+                        global float* restrict phi_high, global float* restrict magnitude_low,
                         global float* restrict magnitude_high) {
-  const size_t row = get_global_id(1);
-  const uint step = (uint)get_global_size(0) * PF_LANES;
   const Planes planes = {tare, gain, dead_zone, mask, noise, plane_stride};
-
-  for (uint col = (uint)get_global_id(0) * PF_LANES; col < pillar_cols; col += step) {
-    const uint count = min(pillar_cols - col, (uint)PF_LANES);
-    global const PF_SENSEL* const first = raw + 2 * row * row_stride + 2 * col;
-    const size_t offset = 2 * row * planes.stride + 2 * col;
-    const SenselPair top = read_sensels(first, planes, offset, count);
-    const SenselPair bottom =
-        read_sensels(first + row_stride, planes, offset + planes.stride, count);
-    const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
-
-    const Diagonals diagonals = pillar_diagonals(pillar);
-    const ParitySum sum = parity_sum(diagonals);
-    const Force force = estimate(pillar, diagonals, sum);
-
-    const size_t index = row * pillar_cols + col;
-    store_plane(force.shear_x, shear_x + index, count);
-    store_plane(force.shear_y, shear_y + index, count);
-    store_plane(force.normal, normal + index, count);
-    store_status(status_of(pillar, sum), status + index, count);
-#ifdef PF_ANGLES
-    const Direction direction = direction_of(force);
-    store_plane(direction.magnitude, magnitude + index, count);
-    store_plane(direction.theta, theta + index, count);
-    store_plane(direction.phi, phi + index, count);
-#endif
-#ifdef PF_UNCERTAINTY
-    const RealPair noise_top = read_noise(first, planes, offset, count);
-    const RealPair noise_bottom =
-        read_noise(first + row_stride, planes, offset + planes.stride, count);
-    const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
-    const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
-    const Force deviations = force_deviations(pillar, diagonals, noises, scale);
-    const DirectionInterval interval = direction_interval(pillar, diagonals, sum, scale);
-    store_plane(deviations.shear_x, deviation_x + index, count);
-    store_plane(deviations.shear_y, deviation_y + index, count);
-    store_plane(deviations.normal, deviation_normal + index, count);
-    store_plane(interval.theta_low, theta_low + index, count);
-    store_plane(interval.theta_high, theta_high + index, count);
-    store_plane(interval.phi_low, phi_low + index, count);
-    store_plane(interval.phi_high, phi_high + index, count);
-    store_plane(interval.magnitude_low, magnitude_low + index, count);
-    store_plane(interval.magnitude_high, magnitude_high + index, count);
-#endif
-  }
+  const Input input = {raw, row_stride, planes};
+  const Output output = {shear_x,       shear_y,    normal,      status,      magnitude,
+                         theta,         phi,        deviation_x, deviation_y, deviation_normal,
+                         theta_low,     theta_high, phi_low,     phi_high,    magnitude_low,
+                         magnitude_high};
+  const Band band = band_of_rows(pillar_rows);
+  for (uint row = band.first; row < band.end; ++row) solve_row(input, output, row, pillar_cols);
 }

@@ -110,3 +110,17 @@ static inline RealPair read_noise(global const PF_SENSEL* raw, Planes planes, si
   return noise;
 }
 #endif
+
+/* Pillar rows. */
+typedef struct {
+  uint first;
+  uint end;
+} Band;
+
+/* The rows of this work-item: its band among get_global_size(1) of like height. */
+static inline Band band_of_rows(uint rows) {
+  const ulong bands = get_global_size(1);
+  const ulong band = get_global_id(1);
+  const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
+  return result;
+}

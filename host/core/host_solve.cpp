@@ -36,7 +36,7 @@ class PillarSolver {
     field_.shear_x[index] = force.shear_x;
     field_.shear_y[index] = force.shear_y;
     field_.normal[index] = force.normal;
-    field_.status[index] = static_cast<std::uint8_t>(status(pillar, sum));
+    field_.status[index] = static_cast<std::uint8_t>(status(pillar, diagonals, sum));
     if (!plan_.uncertainty) return;
     const std::size_t top = 2 * row;
     const std::size_t left = 2 * col;
@@ -47,11 +47,12 @@ class PillarSolver {
   }
 
  private:
-  [[nodiscard]] maths::Bits status(const maths::Pillar& pillar, const maths::ParitySum& sum) const {
-    maths::Bits bits = maths::direct_status(pillar, sum, doubt_);
+  [[nodiscard]] maths::Bits status(const maths::Pillar& pillar, const maths::Diagonals& diagonals,
+                                   const maths::ParitySum& sum) const {
+    maths::Bits bits = maths::direct_status(pillar, diagonals, sum, doubt_);
     if (plan_.parity_tolerance_counts) {
       const auto tolerance = static_cast<float>(*plan_.parity_tolerance_counts);
-      bits |= maths::fails_parity(pillar, sum, tolerance) != 0 ? PF_STATUS_INCONSISTENT : 0;
+      bits |= maths::fails_parity(pillar, sum, tolerance) ? PF_STATUS_INCONSISTENT : 0;
     }
     return bits;
   }
@@ -100,7 +101,7 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
   const auto rate = static_cast<float>(plan.baseline_rate.value_or(0));
   for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
     for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
-      const int untouched = is_touched(forces, row / 2, col / 2) ? 0 : 1;
+      const bool untouched = !is_touched(forces, row / 2, col / 2);
       float& tare = plan.calibration.tare[row * frame.cols + col];
       tare = maths::follow_tare(tare, sensel.judged(row, col), untouched, rate);
     }

@@ -78,7 +78,7 @@ PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const Pilla
   estimate.force = estimator == Estimator::paper ? paper_force(pillar, diagonals, sum, scale)
                                                  : direct_force(diagonals, sum, scale);
   estimate.direction = direction_of(estimate.force);
-  estimate.status = direct_status(pillar, sum, doubt);
+  estimate.status = direct_status(pillar, diagonals, sum, doubt);
   estimate.deviations = force_deviations(pillar, diagonals, {noise, noise, noise, noise}, scale);
   estimate.interval = direction_interval(pillar, diagonals, sum, scale);
   return estimate;

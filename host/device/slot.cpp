@@ -13,25 +13,29 @@ cl::Buffer plane_buffer(const cl::Context& context, const std::vector<Value>& pl
   return {context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, plane.size() * sizeof(Value), values};
 }
 
-/// Work-items per pillar row, and their grouping. Devices that solve several pillars at once run a
-/// row as one loop; others spread it over work-items.
+/// Work-items, and their grouping. Where a work-item solves several pillars at once it takes a band
+/// of rows; there are a few bands for each compute unit, so that none waits long for the last, and
+/// they are work-groups of their own, since drivers have other ideas (PoCL makes a single group of
+/// 790 rows). Elsewhere a row is spread over work-items.
 struct Launch {
-  Launch(std::uint32_t rows, std::uint32_t cols, int lanes) {
+  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
     constexpr std::size_t kGroup = 64;
+    constexpr std::size_t kBandsPerUnit = 8;
     if (lanes > 1) {
-      global = cl::NDRange(1, rows);
+      global = cl::NDRange(1, std::min<std::size_t>(rows, kBandsPerUnit * compute_units));
+      local = cl::NDRange(1, 1);
       return;
     }
     global = cl::NDRange((cols + kGroup - 1) / kGroup * kGroup, rows);
     local = cl::NDRange(kGroup, 1);
   }
   cl::NDRange global;
-  cl::NDRange local = cl::NullRange;
+  cl::NDRange local;
 };
 
 constexpr cl_uint kRawArgument = 0;
 constexpr cl_uint kStrideArgument = 1;
-constexpr cl_uint kRateArgument = 7;  // of follow_baseline
+constexpr cl_uint kRateArgument = 8;  // of follow_baseline
 
 }  // namespace
 
@@ -49,12 +53,13 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::P
       queue_(device.context, device.device),
       kernel_(program, "solve_frame"),
       baseline_(&baseline) {
-  const Launch launch(rows_, cols_, lanes);
+  const Launch launch(rows_, cols_, lanes, device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = launch.global;
   local_ = launch.local;
   memory_ = shares_memory ? shared_memory(device.context, plan)
                           : staged_memory(device.context, queue_, plan);
   cl_uint argument = kStrideArgument + 1;
+  kernel_.setArg(argument++, cl_uint{rows_});
   kernel_.setArg(argument++, cl_uint{cols_});
   for (const cl::Buffer* plane : {&calibration.tare, &calibration.gain, &calibration.dead_zone,
                                   &calibration.mask, &calibration.noise}) {
@@ -67,6 +72,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::P
   if (!baseline.follows) return;
   follow_ = cl::Kernel(program, "follow_baseline");
   argument = kStrideArgument + 1;
+  follow_.setArg(argument++, cl_uint{rows_});
   follow_.setArg(argument++, cl_uint{cols_});
   follow_.setArg(argument++, calibration.mask);
   follow_.setArg(argument++, cl_ulong{plan.skin.cols});

@@ -34,6 +34,8 @@ typedef struct {
 typedef struct {
   Real low;
   Real high;
+  Real middle;
+  Mask ambiguous; /* low is below high */
 } ParitySum;
 
 /* 1 / (2 sqrt(2) k) and 1 / (2 k), newtons per count. */
@@ -42,26 +44,26 @@ typedef struct {
   Real normal;
 } ForceScale;
 
-static inline Mask is_pressed(Sensel sensel) { return sensel.usable | sensel.saturated; }
+static inline Mask is_pressed(Sensel sensel) { return sensel.usable || sensel.saturated; }
 
-static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) & is_pressed(q); }
+static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) && is_pressed(q); }
 
 /* Which sensels of a diagonal stand (D4): the usable; the saturated, whose reading is a lower
  * bound, unless the other diagonal has `more` and its parity sum leaves that for them; and on a
  * pillar in `contact` the lifted, whose reading is an upper bound, where only they tell how to
  * share the sum. */
 static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
-  const Mask p_follows = p.saturated & more & (q.usable | is_lifted(q));
-  const Mask q_follows = q.saturated & more & (p.usable | is_lifted(p));
-  const Mask p_answers = is_pressed(p) & !p_follows;
-  const Mask q_answers = is_pressed(q) & !q_follows;
+  const Mask p_follows = p.saturated && more && (q.usable || is_lifted(q));
+  const Mask q_follows = q.saturated && more && (p.usable || is_lifted(p));
+  const Mask p_answers = is_pressed(p) && !p_follows;
+  const Mask q_answers = is_pressed(q) && !q_follows;
   Diagonal d;
   d.p = p.reading;
   d.q = q.reading;
-  d.p_stands = p_answers | (contact & is_lifted(p) & (q.missing | q_follows));
-  d.q_stands = q_answers | (contact & is_lifted(q) & (p.missing | p_follows));
-  d.full = p_answers & q_answers & !(more & p.saturated & q.saturated);
-  d.open = p.missing | q.missing;
+  d.p_stands = p_answers || (contact && is_lifted(p) && (q.missing || q_follows));
+  d.q_stands = q_answers || (contact && is_lifted(q) && (p.missing || p_follows));
+  d.full = p_answers && q_answers && !(more && p.saturated && q.saturated);
+  d.open = p.missing || q.missing;
   return d;
 }
 
@@ -70,13 +72,13 @@ static inline Diagonals pillar_diagonals(Pillar pillar) {
   const Mask falling_pressed = both_pressed(pillar.s2, pillar.s4);
   const Real rising = pillar.s1.reading + pillar.s3.reading;
   const Real falling = pillar.s2.reading + pillar.s4.reading;
-  const Mask contact =
-      is_pressed(pillar.s1) | is_pressed(pillar.s2) | is_pressed(pillar.s3) | is_pressed(pillar.s4);
+  const Mask contact = is_pressed(pillar.s1) || is_pressed(pillar.s2) || is_pressed(pillar.s3) ||
+                       is_pressed(pillar.s4);
   Diagonals diagonals;
   diagonals.rising =
-      make_diagonal(pillar.s1, pillar.s3, falling_pressed & (falling > rising), contact);
+      make_diagonal(pillar.s1, pillar.s3, falling_pressed && (falling > rising), contact);
   diagonals.falling =
-      make_diagonal(pillar.s2, pillar.s4, rising_pressed & (rising > falling), contact);
+      make_diagonal(pillar.s2, pillar.s4, rising_pressed && (rising > falling), contact);
   return diagonals;
 }
 
@@ -88,11 +90,11 @@ static inline Real parity_bound(Diagonal a, Diagonal b) {
   const Real b_sum = b.p + b.q;
   const Real least = a_sum < b_sum ? a_sum : b_sum;
   const Real closed = a.open ? b_sum : (b.open ? a_sum : least);
-  const Mask a_stands = a.p_stands | a.q_stands;
-  const Mask b_stands = b.p_stands | b.q_stands;
-  const Real share = (a_stands & b_stands) ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
-  const Real bound = (a.open & b.open) ? share * (a_sum + b_sum) : closed;
-  return (a_stands | b_stands) ? bound : PF_REAL(0.0);
+  const Mask a_stands = a.p_stands || a.q_stands;
+  const Mask b_stands = b.p_stands || b.q_stands;
+  const Real share = (a_stands && b_stands) ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
+  const Real bound = (a.open && b.open) ? share * (a_sum + b_sum) : closed;
+  return (a_stands || b_stands) ? bound : PF_REAL(0.0);
 }
 
 /* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5). */
@@ -103,20 +105,26 @@ static inline ParitySum parity_sum(Diagonals diagonals) {
   const Real b_sum = b.p + b.q;
   const Real mean = PF_REAL(0.5) * (a_sum + b_sum);
   const Real measured = a.full ? (b.full ? mean : a_sum) : b_sum;
-  const Mask determined = a.full | b.full;
+  const Mask determined = a.full || b.full;
+  const Real bound = parity_bound(a, b);
   ParitySum sum;
   sum.low = determined ? measured : PF_REAL(0.0);
-  sum.high = determined ? measured : parity_bound(a, b);
+  sum.high = determined ? measured : bound;
+  sum.middle = determined ? measured : PF_REAL(0.5) * bound;
+  sum.ambiguous = !determined && (bound > PF_REAL(0.0));
   return sum;
 }
 
-/* V_p - V_q of a diagonal whose parity sum is `sum`: a sensel that does not stand has what parity
- * leaves for it; two such share equally (D3). */
+/* V_p and V_q of a diagonal whose parity sum is `sum`: a sensel that does not stand has what parity
+ * leaves for it. Of use where one of the two stands. */
+static inline Real filled_p(Diagonal d, Real sum) { return d.p_stands ? d.p : sum - d.q; }
+static inline Real filled_q(Diagonal d, Real sum) { return d.q_stands ? d.q : sum - d.p; }
+
+/* V_p - V_q of a diagonal whose parity sum is `sum`: two sensels that do not stand share equally
+ * (D3). */
 static inline Real diagonal_difference(Diagonal d, Real sum) {
-  const Real by_p = (d.p + d.p) - sum;
-  const Real by_q = sum - (d.q + d.q);
-  const Real by_one = d.p_stands ? by_p : (d.q_stands ? by_q : PF_REAL(0.0));
-  return (d.p_stands & d.q_stands) ? d.p - d.q : by_one;
+  const Real difference = filled_p(d, sum) - filled_q(d, sum);
+  return (d.p_stands || d.q_stands) ? difference : PF_REAL(0.0);
 }
 
 /* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 every sum of the
@@ -135,63 +143,85 @@ static inline Force force_at(Diagonals diagonals, Real sum, ForceScale scale) {
 /* The force on a pillar: the middle of the interval, which halves the worst error in region 3.
  * Regions 1 and 2: within 4 ULP of the magnitude, float or double. */
 static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale scale) {
-  return force_at(diagonals, PF_REAL(0.5) * (sum.low + sum.high), scale);
+  return force_at(diagonals, sum.middle, scale);
 }
 
-/* Whether one of two opposite sensels is silent and parity leaves it more than -`doubt` counts: it
- * may press, and then three usable readings are those of region 1. Without threshold and dead zone
- * silence hides nothing. (D9) */
-static inline Mask may_press(Sensel p, Sensel q, Real sum, Real doubt) {
-  const Real zero = PF_REAL(0.0);
-  const Mask p_may = is_lifted(p) & q.usable & (p.reading > zero) & (sum - q.reading > -doubt);
-  const Mask q_may = is_lifted(q) & p.usable & (q.reading > zero) & (sum - p.reading > -doubt);
-  return p_may | q_may;
+static inline Real least_of(Real a, Real b) { return a < b ? a : b; }
+
+/* Whether the silent one of four sensels may press, where the three others are usable: its silence
+ * hides something, and parity leaves it more than -`doubt` counts. That of a usable sensel reads
+ * above zero, so the least of all four is asked. (D9) */
+static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Real sum, Real doubt) {
+  const Diagonal a = diagonals.rising;
+  const Diagonal b = diagonals.falling;
+  const Real least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),
+                                     least_of(filled_p(b, sum), filled_q(b, sum)));
+  const Real least_reading = least_of(least_of(pillar.s1.reading, pillar.s2.reading),
+                                      least_of(pillar.s3.reading, pillar.s4.reading));
+  return (least_filled > -doubt) && (least_reading > PF_REAL(0.0));
+}
+
+/* The masks of a sensel as Bits. */
+typedef struct {
+  Bits usable;
+  Bits saturated;
+  Bits missing;
+  Bits lifted;
+} State;
+
+static inline State state_of(Sensel sensel) {
+  State state;
+  state.usable = bits_of(sensel.usable);
+  state.saturated = bits_of(sensel.saturated);
+  state.missing = bits_of(sensel.missing);
+  state.lifted = ~(state.usable | state.saturated | state.missing);
+  return state;
+}
+
+/* One of two opposite sensels is usable and the other lifted. */
+static inline Bits one_lifted_of(State p, State q) {
+  return (p.usable & q.lifted) | (p.lifted & q.usable);
 }
 
 /* The status byte, bits 0 to 6. Ambiguous are a force that is one of a segment, and a region that
  * is 1 or 2; what parity says of the latter is off by `doubt` counts at most. Two opposite sensels
  * usable while the other two are lifted contradict the model and are inconsistent. */
-static inline Bits direct_status(Pillar pillar, ParitySum sum, Real doubt) {
-  const Bits none = PF_BITS(0);
-  const Mask missing =
-      pillar.s1.missing | pillar.s2.missing | pillar.s3.missing | pillar.s4.missing;
-  const Mask saturated =
-      pillar.s1.saturated | pillar.s2.saturated | pillar.s3.saturated | pillar.s4.saturated;
-  const Mask rising_alone =
-      pillar.s1.usable & pillar.s3.usable & is_lifted(pillar.s2) & is_lifted(pillar.s4);
-  const Mask falling_alone =
-      pillar.s2.usable & pillar.s4.usable & is_lifted(pillar.s1) & is_lifted(pillar.s3);
-  const Mask inconsistent = missing | rising_alone | falling_alone;
-  const Mask rising_hides =
-      pillar.s2.usable & pillar.s4.usable & may_press(pillar.s1, pillar.s3, sum.high, doubt);
-  const Mask falling_hides =
-      pillar.s1.usable & pillar.s3.usable & may_press(pillar.s2, pillar.s4, sum.high, doubt);
-  const Mask ambiguous = (sum.low < sum.high) | rising_hides | falling_hides;
-  return (pillar.s1.usable ? PF_BITS(PF_STATUS_SENSEL_1) : none) |
-         (pillar.s2.usable ? PF_BITS(PF_STATUS_SENSEL_2) : none) |
-         (pillar.s3.usable ? PF_BITS(PF_STATUS_SENSEL_3) : none) |
-         (pillar.s4.usable ? PF_BITS(PF_STATUS_SENSEL_4) : none) |
-         (ambiguous ? PF_BITS(PF_STATUS_AMBIGUOUS) : none) |
-         (saturated ? PF_BITS(PF_STATUS_SATURATED) : none) |
-         (inconsistent ? PF_BITS(PF_STATUS_INCONSISTENT) : none);
+static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Real doubt) {
+  const State s1 = state_of(pillar.s1);
+  const State s2 = state_of(pillar.s2);
+  const State s3 = state_of(pillar.s3);
+  const State s4 = state_of(pillar.s4);
+  const Bits rising = s1.usable & s3.usable;
+  const Bits falling = s2.usable & s4.usable;
+  const Bits three_usable = (rising & one_lifted_of(s2, s4)) | (falling & one_lifted_of(s1, s3));
+  const Bits one_or_two =
+      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.middle, doubt));
+  const Bits ambiguous = bits_of(sum.ambiguous) | one_or_two;
+  const Bits saturated = s1.saturated | s2.saturated | s3.saturated | s4.saturated;
+  const Bits missing = s1.missing | s2.missing | s3.missing | s4.missing;
+  const Bits at_odds = (rising & s2.lifted & s4.lifted) | (falling & s1.lifted & s3.lifted);
+  return (s1.usable & PF_BITS(PF_STATUS_SENSEL_1)) | (s2.usable & PF_BITS(PF_STATUS_SENSEL_2)) |
+         (s3.usable & PF_BITS(PF_STATUS_SENSEL_3)) | (s4.usable & PF_BITS(PF_STATUS_SENSEL_4)) |
+         (ambiguous & PF_BITS(PF_STATUS_AMBIGUOUS)) | (saturated & PF_BITS(PF_STATUS_SATURATED)) |
+         ((missing | at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
 }
 
 /* Whether one of two opposite sensels is usable and the other lifted. */
 static inline Mask one_lifted(Sensel p, Sensel q) {
-  return (p.usable & is_lifted(q)) | (is_lifted(p) & q.usable);
+  return (p.usable && is_lifted(q)) || (is_lifted(p) && q.usable);
 }
 
 /* Whether a redundant reading disagrees by more than `tolerance` counts: with four usable, the
  * parity residual (D7); with three, what parity leaves for the lifted sensel beyond what its
  * silence can hide (D8). */
 static inline Mask fails_parity(Pillar pillar, ParitySum sum, Real tolerance) {
-  const Mask rising_usable = pillar.s1.usable & pillar.s3.usable;
-  const Mask falling_usable = pillar.s2.usable & pillar.s4.usable;
+  const Mask rising_usable = pillar.s1.usable && pillar.s3.usable;
+  const Mask falling_usable = pillar.s2.usable && pillar.s4.usable;
   const Real rising = pillar.s1.reading + pillar.s3.reading;
   const Real falling = pillar.s2.reading + pillar.s4.reading;
-  const Mask rising_hides = falling_usable & one_lifted(pillar.s1, pillar.s3);
-  const Mask falling_hides = rising_usable & one_lifted(pillar.s2, pillar.s4);
-  return (rising_usable & falling_usable & (fabs(rising - falling) > tolerance)) |
-         (rising_hides & (sum.high - rising > tolerance)) |
-         (falling_hides & (sum.high - falling > tolerance));
+  const Mask rising_hides = falling_usable && one_lifted(pillar.s1, pillar.s3);
+  const Mask falling_hides = rising_usable && one_lifted(pillar.s2, pillar.s4);
+  return (rising_usable && falling_usable && (fabs(rising - falling) > tolerance)) ||
+         (rising_hides && (sum.high - rising > tolerance)) ||
+         (falling_hides && (sum.high - falling > tolerance));
 }

@@ -57,7 +57,7 @@ static inline Angles paper_region_1(Ratios v) {
   const Real zero = PF_REAL(0.0);
   const Real up = v.c * v.d - v.a * v.b;
   const Real right = v.b * v.c - v.a * v.d;
-  const Mask no_shear = (up == zero) & (right == zero);
+  const Mask no_shear = (up == zero) && (right == zero);
   Angles angles;
   angles.phi = atan2(up, right);
   const SenselCosines cosines = sensel_cosines(angles.phi);
@@ -148,14 +148,14 @@ static inline Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum su
   const Mask u2 = is_pressed(pillar.s2);
   const Mask u3 = is_pressed(pillar.s3);
   const Mask u4 = is_pressed(pillar.s4);
-  const Mask four = u1 & u2 & u3 & u4;
-  const Mask adjacent = (u1 | u3) & (u2 | u4);
-  const Mask three = adjacent & ((u1 & u3) | (u2 & u4));
-  const Mask unknown = (u1 == u3) & (u2 == u4) & !four;
+  const Mask four = u1 && u2 && u3 && u4;
+  const Mask adjacent = (u1 || u3) && (u2 || u4);
+  const Mask three = adjacent && ((u1 && u3) || (u2 && u4));
+  const Mask unknown = (u1 == u3) && (u2 == u4) && !four;
   Turn turn;
-  turn.at_2 = u2 & !u1;
-  turn.at_3 = u3 & !u2;
-  turn.at_4 = u4 & !u3;
+  turn.at_2 = u2 && !u1;
+  turn.at_3 = u3 && !u2;
+  turn.at_4 = u4 && !u3;
 
   const Real r1 = u1 ? pillar.s1.reading : zero;
   const Real r2 = u2 ? pillar.s2.reading : zero;

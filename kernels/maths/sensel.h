@@ -23,19 +23,19 @@ static inline Sensel raw_sensel(Real raw) {
 
 /* NaN, infinity and readings beyond `largest` count as missing; for float32 sensels. */
 static inline Sensel reject_absurd(Sensel sensel, Real largest) {
-  sensel.missing = sensel.missing | !(fabs(sensel.reading) <= largest);
+  sensel.missing = sensel.missing || !(fabs(sensel.reading) <= largest);
   return sensel;
 }
 
 /* `good` is zero where the sensel is masked. */
 static inline Sensel apply_mask(Sensel sensel, Real good) {
-  sensel.missing = sensel.missing | (good == PF_REAL(0.0));
+  sensel.missing = sensel.missing || (good == PF_REAL(0.0));
   return sensel;
 }
 
 /* A reading of `full_scale` counts or more is saturated; to be asked of the raw reading. */
 static inline Sensel mark_saturated(Sensel sensel, Real full_scale) {
-  sensel.saturated = (sensel.reading >= full_scale) & !sensel.missing;
+  sensel.saturated = (sensel.reading >= full_scale) && !sensel.missing;
   return sensel;
 }
 
@@ -70,7 +70,7 @@ static inline Real power_law_slope(Real reading, Real exponent, Real reference) 
  * over, where nothing touches the sensel and the reading tells anything. */
 static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate) {
   const Real followed = tare + rate * (raw.reading - tare);
-  return (untouched & !(raw.missing | raw.saturated)) ? followed : tare;
+  return (untouched && !(raw.missing || raw.saturated)) ? followed : tare;
 }
 
 /* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
@@ -78,11 +78,11 @@ static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate)
  * missing, and read zero. A saturated sensel that its calibration brings down to the threshold
  * tells nothing. */
 static inline Sensel classify(Sensel sensel, Real threshold) {
-  const Mask answers = (sensel.reading > threshold) & !sensel.missing;
-  const Mask tells_nothing = sensel.missing | (sensel.saturated & !answers);
+  const Mask answers = (sensel.reading > threshold) && !sensel.missing;
+  const Mask tells_nothing = sensel.missing || (sensel.saturated && !answers);
   sensel.missing = tells_nothing;
-  sensel.usable = answers & !sensel.saturated;
-  sensel.saturated = answers & sensel.saturated;
+  sensel.usable = answers && !sensel.saturated;
+  sensel.saturated = answers && sensel.saturated;
   sensel.reading = answers ? sensel.reading : (tells_nothing ? PF_REAL(0.0) : threshold);
   return sensel;
 }
@@ -96,5 +96,5 @@ static inline Sensel fill_dead_zone(Sensel sensel, Real dead_zone) {
 
 /* Silent and not missing: V is at most the reading, which is threshold and dead zone together. */
 static inline Mask is_lifted(Sensel sensel) {
-  return !(sensel.usable | sensel.saturated | sensel.missing);
+  return !(sensel.usable || sensel.saturated || sensel.missing);
 }

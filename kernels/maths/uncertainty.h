@@ -30,12 +30,12 @@ static inline ParityWeights parity_weights(Diagonals diagonals) {
   const Real one = PF_REAL(1.0);
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
-  const Mask a_stands = a.p_stands | a.q_stands;
-  const Mask b_stands = b.p_stands | b.q_stands;
-  const Mask by_b = a.open | ((a.p + a.q >= b.p + b.q) & !b.open);
-  const Real share = (a_stands & b_stands) ? PF_REAL(0.66666666666666666667) : one;
-  const Real open_a = (a.open & b.open) ? share : (by_b ? zero : one_half);
-  const Real open_b = (a.open & b.open) ? share : (by_b ? one_half : zero);
+  const Mask a_stands = a.p_stands || a.q_stands;
+  const Mask b_stands = b.p_stands || b.q_stands;
+  const Mask by_b = a.open || ((a.p + a.q >= b.p + b.q) && !b.open);
+  const Real share = (a_stands && b_stands) ? PF_REAL(0.66666666666666666667) : one;
+  const Real open_a = (a.open && b.open) ? share : (by_b ? zero : one_half);
+  const Real open_b = (a.open && b.open) ? share : (by_b ? one_half : zero);
   ParityWeights weights;
   weights.rising = a.full ? (b.full ? one_half : one) : (b.full ? zero : open_a);
   weights.falling = b.full ? (a.full ? one_half : one) : (a.full ? zero : open_b);
@@ -47,7 +47,7 @@ static inline DifferenceWeights difference_weights(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const Real two = PF_REAL(2.0);
-  const Mask both = d.p_stands & d.q_stands;
+  const Mask both = d.p_stands && d.q_stands;
   DifferenceWeights weights;
   weights.p = both ? one : (d.p_stands ? two : zero);
   weights.q = both ? -one : (d.q_stands ? -two : zero);
@@ -128,7 +128,7 @@ static inline Real larger_side(DifferenceInterval interval) {
 /* phi of the shear whose differences are these (M2, M5); zero without shear. */
 static inline Real phi_of(Real rising, Real falling) {
   const Real zero = PF_REAL(0.0);
-  const Mask none = (rising == zero) & (falling == zero);
+  const Mask none = (rising == zero) && (falling == zero);
   return none ? zero : atan2(zero - (rising + falling), falling - rising);
 }
 
@@ -141,9 +141,9 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Real pi = PF_REAL(3.14159265358979323846);
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
-  const Mask a_loose = is_lifted(pillar.s1) & is_lifted(pillar.s3);
-  const Mask b_loose = is_lifted(pillar.s2) & is_lifted(pillar.s4);
-  const Mask silent = a_loose & b_loose;
+  const Mask a_loose = is_lifted(pillar.s1) && is_lifted(pillar.s3);
+  const Mask b_loose = is_lifted(pillar.s2) && is_lifted(pillar.s4);
+  const Mask silent = a_loose && b_loose;
   const Real a_most = a.p + a.q;
   const Real b_most = b.p + b.q;
   const Real most = silent ? (a_most < b_most ? a_most : b_most) : sum.high;
@@ -160,14 +160,14 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Mask b_sloped = b.p_stands != b.q_stands;
   const Real a_reading = a_sloped ? (a.p_stands ? a.p : a.q) : zero;
   const Real b_reading = b_sloped ? (b.p_stands ? b.p : b.q) : zero;
-  const Real share = (a_sloped & b_sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
+  const Real share = (a_sloped && b_sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
   const Real free = share * (a_reading + b_reading);
   const Real least = free < sum.low ? sum.low : (free > most ? most : free);
   const Real a_short = diagonal_difference(a, least);
   const Real b_short = diagonal_difference(b, least);
 
   /* Two corners between which the shear turns, and which way. */
-  const Mask loose = a_loose | b_loose;
+  const Mask loose = a_loose || b_loose;
   const Real a_from = a_loose ? a_flat.low : a_flat.high;
   const Real b_from = b_loose ? b_flat.low : b_flat.high;
   const Real a_to = loose ? a_flat.high : a_steep;
@@ -176,7 +176,7 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Mask clockwise = (a_from / unit) * b_to < (b_from / unit) * a_to;
   const Real phi_from = phi_of(a_from, b_from);
   const Real phi_to = phi_of(a_to, b_to);
-  const Mask any_phi = silent & (most > zero);
+  const Mask any_phi = silent && (most > zero);
 
   DirectionInterval interval;
   interval.theta_low = atan2(hypot(a_steep, b_steep), most);

@@ -75,8 +75,8 @@ TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
 TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
   using Real = RealOf<TypeParam>;
   const auto open = [](const PillarOf<TypeParam>& pillar, Real doubt) {
-    const auto sum = parity_sum(pillar_diagonals(pillar));
-    return (direct_status(pillar, sum, doubt) & status::kAmbiguous) != 0;
+    const auto diagonals = pillar_diagonals(pillar);
+    return (direct_status(pillar, diagonals, parity_sum(diagonals), doubt) & status::kAmbiguous) != 0;
   };
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto under = [&](Real opposite, Real threshold) {

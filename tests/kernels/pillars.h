@@ -100,7 +100,7 @@ Solved<Precision> solve(const PillarOf<Precision>& pillar, double k) {
   solved.scale = {static_cast<Real>(1 / (2 * std::numbers::sqrt2_v<long double> * k)),
                   static_cast<Real>(1 / (2 * static_cast<long double>(k)))};
   solved.force = direct_force(solved.diagonals, solved.sum, solved.scale);
-  solved.status = direct_status(pillar, solved.sum, Real{0});
+  solved.status = direct_status(pillar, solved.diagonals, solved.sum, Real{0});
   return solved;
 }
 
