@@ -3,8 +3,7 @@
 #ifdef PF_BASELINE
 
 /* The status bits of a pillar's 3 x 3 neighbourhood, or-ed. */
-static inline Bits status_around(global const uchar* status, uint row, uint col, uint rows,
-                                 uint cols) {
+PF_INLINE Bits status_around(global const uchar* status, uint row, uint col, uint rows, uint cols) {
   const uint first = row == 0 ? 0 : row - 1;
   const uint last = row + 1 == rows ? row : row + 1;
   Bits bits = PF_BITS(0);
@@ -17,8 +16,8 @@ static inline Bits status_around(global const uchar* status, uint row, uint col,
 }
 
 /* The tares of one row of sensels under `count` pillars. */
-static inline void follow_row(global const PF_SENSEL* raw, global const uchar* mask,
-                              global float* tare, Mask untouched, Real rate, uint count) {
+PF_INLINE void follow_row(global const PF_SENSEL* raw, global const uchar* mask, global float* tare,
+                          Mask untouched, Real rate, uint count) {
   const RealPair readings = load_readings(raw, count);
   RealPair good = {(Real)(1.0f), (Real)(1.0f)};
 #ifdef PF_MASK
@@ -32,10 +31,9 @@ static inline void follow_row(global const PF_SENSEL* raw, global const uchar* m
 }
 
 /* Follows the blocks of a pillar row that are this work-item's. */
-static inline void follow_pillar_row(global const PF_SENSEL* raw, size_t row_stride, uint row,
-                                     uint rows, uint cols, global const uchar* mask,
-                                     global float* tare, size_t plane_stride,
-                                     global const uchar* status, Real rate) {
+PF_INLINE void follow_pillar_row(global const PF_SENSEL* raw, size_t row_stride, uint row,
+                                 uint rows, uint cols, global const uchar* mask, global float* tare,
+                                 size_t plane_stride, global const uchar* status, Real rate) {
   const uint step = (uint)get_global_size(0) * PF_LANES;
   for (uint col = (uint)get_global_id(0) * PF_LANES; col < cols; col += step) {
     const uint count = min(cols - col, (uint)PF_LANES);

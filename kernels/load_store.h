@@ -1,6 +1,9 @@
 /* How values of PF_LANES pillars at once come from memory and go there. For the entry points;
  * PF_LANES and PF_SENSEL are of the program's first lines. */
 
+/* Structures of lanes go through memory wherever a call remains. */
+#define PF_INLINE static inline __attribute__((always_inline))
+
 /* The values of `PF_LANES` pillars in one row of sensels. */
 typedef struct {
   Real left;
@@ -14,17 +17,17 @@ typedef struct {
 /* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. Where a row has
  * fewer than PF_LANES, nothing beyond it is read, and the other lanes are zero. */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type, split)                                  \
-  static inline RealPair load_##name(global const type* row, uint count) { \
-    RealPair pair;                                                         \
-    pair.left = (Real)row[0];                                              \
-    pair.right = (Real)row[1];                                             \
-    return pair;                                                           \
+#define PF_DEFINE_LOAD(name, type, split)                              \
+  PF_INLINE RealPair load_##name(global const type* row, uint count) { \
+    RealPair pair;                                                     \
+    pair.left = (Real)row[0];                                          \
+    pair.right = (Real)row[1];                                         \
+    return pair;                                                       \
   }
 #else
 
 #define PF_DEFINE_LOAD(name, type, split)                                                 \
-  static inline RealPair load_##name(global const type* row, uint count) {                \
+  PF_INLINE RealPair load_##name(global const type* row, uint count) {                    \
     if (count == PF_LANES) return split(PF_VLOAD(0, row), PF_VLOAD(1, row));              \
     type padded[2 * PF_LANES];                                                            \
     for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0; \
@@ -34,12 +37,12 @@ typedef struct {
 #define PF_TO_REAL PF_JOIN(convert_float, PF_LANES)
 
 /* Left and right sensels alternate in memory. */
-#define PF_DEFINE_SPLIT(type)                                                            \
-  static inline RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
-    RealPair pair;                                                                       \
-    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));                   \
-    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                    \
-    return pair;                                                                         \
+#define PF_DEFINE_SPLIT(type)                                                        \
+  PF_INLINE RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
+    RealPair pair;                                                                   \
+    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));               \
+    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                \
+    return pair;                                                                     \
   }
 PF_DEFINE_SPLIT(float)
 
@@ -56,7 +59,7 @@ PF_DEFINE_SPLIT(float)
 #define PF_HALF_LANES
 #endif
 #define PF_DEFINE_SPLIT_OF_INTEGERS(type, wide, bits)                                      \
-  static inline RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {   \
+  PF_INLINE RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {       \
     const PF_LANE_TYPE(uint) both = PF_JOIN(convert_uint, PF_LANES)((PF_LANE_TYPE(wide))(  \
         PF_JOIN(as_##wide, PF_HALF_LANES)(low), PF_JOIN(as_##wide, PF_HALF_LANES)(high))); \
     RealPair pair;                                                                         \
@@ -76,10 +79,19 @@ PF_DEFINE_LOAD(readings, PF_SENSEL, PF_JOIN(split_, PF_SENSEL))
 PF_DEFINE_LOAD(plane, float, split_float)
 PF_DEFINE_LOAD(mask, uchar, split_uchar)
 
+/* Whether a mask is true in any lane. */
+PF_INLINE bool any_lane(Mask mask) {
+#if PF_LANES == 1
+  return mask;
+#else
+  return any(mask);
+#endif
+}
+
 /* Brings memory that a later block reads towards the caches; where that is nobody's to say,
  * nothing.
  */
-static inline void prefetch_memory(global const void* place) {
+PF_INLINE void prefetch_memory(global const void* place) {
 #if PF_LANES > 1 && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
   __builtin_prefetch((const void*)(size_t)place);
@@ -88,7 +100,7 @@ static inline void prefetch_memory(global const void* place) {
 }
 
 /* Writes what load_plane reads. */
-static inline void store_pair(RealPair pair, global float* row, uint count) {
+PF_INLINE void store_pair(RealPair pair, global float* row, uint count) {
 #if PF_LANES == 1
   row[0] = pair.left;
   row[1] = pair.right;
@@ -111,7 +123,7 @@ static inline void store_pair(RealPair pair, global float* row, uint count) {
 }
 
 /* Writes the first `count` lanes. */
-static inline void store_plane(Real value, global float* plane, uint count) {
+PF_INLINE void store_plane(Real value, global float* plane, uint count) {
 #if PF_LANES == 1
   *plane = value;
 #else
@@ -125,7 +137,7 @@ static inline void store_plane(Real value, global float* plane, uint count) {
 #endif
 }
 
-static inline void store_status(Bits value, global uchar* plane, uint count) {
+PF_INLINE void store_status(Bits value, global uchar* plane, uint count) {
 #if PF_LANES == 1
   *plane = (uchar)value;
 #else
@@ -142,7 +154,7 @@ static inline void store_status(Bits value, global uchar* plane, uint count) {
 
 /* The status bytes of PF_LANES pillars from column `col` on, which may lie outside the row: what is
  * beyond its ends is zero. */
-static inline Bits load_status(global const uchar* row, int col, uint cols) {
+PF_INLINE Bits load_status(global const uchar* row, int col, uint cols) {
 #if PF_LANES == 1
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else

@@ -22,7 +22,7 @@
  *
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
 
-static inline Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
+PF_INLINE Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
 #ifdef PF_PAPER
   return paper_force(pillar, diagonals, sum, scale);
@@ -31,7 +31,7 @@ static inline Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) 
 #endif
 }
 
-static inline Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum) {
+PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum) {
   Bits status = direct_status(pillar, diagonals, sum, (Real)(PF_DOUBT));
 #ifdef PF_PARITY_TOLERANCE
   const Bits at_odds = bits_of(fails_parity(pillar, sum, (Real)(PF_PARITY_TOLERANCE)));
@@ -68,8 +68,8 @@ typedef struct {
 
 /* Solves `count` pillars of a row. `raw` is the sensel at their upper left, `offset` its place in
  * the calibration planes, and `index` that of the first pillar in the results. */
-static inline void solve_block(Input input, Output output, global const PF_SENSEL* raw,
-                               size_t offset, size_t index, uint count) {
+PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* raw, size_t offset,
+                           size_t index, uint count) {
   const Planes planes = input.planes;
   global const PF_SENSEL* const below = raw + input.row_stride;
   const SenselPair top = read_sensels(raw, planes, offset, count);
@@ -83,8 +83,10 @@ static inline void solve_block(Input input, Output output, global const PF_SENSE
   store_plane(force.shear_y, output.shear_y + index, count);
   store_plane(force.normal, output.normal + index, count);
   store_status(status_of(pillar, diagonals, sum), output.status + index, count);
-#ifdef PF_ANGLES
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
   const Direction direction = direction_of(force);
+#endif
+#ifdef PF_ANGLES
   store_plane(direction.magnitude, output.magnitude + index, count);
   store_plane(direction.theta, output.theta + index, count);
   store_plane(direction.phi, output.phi + index, count);
@@ -95,7 +97,12 @@ static inline void solve_block(Input input, Output output, global const PF_SENSE
   const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
   const Force deviations = force_deviations(pillar, diagonals, noises, scale);
-  const DirectionInterval interval = direction_interval(pillar, diagonals, sum, scale);
+  /* The whole interval costs more than all before it, and where every lane is settled it is a
+   * point. */
+  DirectionInterval interval = point_interval(direction);
+  if (any_lane(!is_settled(pillar, sum))) {
+    interval = direction_interval(pillar, diagonals, sum, direction, scale);
+  }
   store_plane(deviations.shear_x, output.deviation_x + index, count);
   store_plane(deviations.shear_y, output.deviation_y + index, count);
   store_plane(deviations.normal, output.deviation_normal + index, count);
@@ -111,7 +118,7 @@ static inline void solve_block(Input input, Output output, global const PF_SENSE
 /* Solves the blocks of a pillar row that are this work-item's. Blocks begin where a result is on a
  * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
  * moved into the row, and solve again what their neighbour solves as well. */
-static inline void solve_row(Input input, Output output, uint row, uint pillar_cols) {
+PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols) {
   const size_t first_index = (size_t)row * pillar_cols;
   const uint skew = (uint)(first_index % PF_LANES);
   const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;

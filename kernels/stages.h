@@ -2,7 +2,7 @@
  * macros are listed in solve_frame.cl. */
 
 /* A raw reading, and what is wrong with it before any calibration. */
-static inline Sensel judge_reading(Real raw, Real good) {
+PF_INLINE Sensel judge_reading(Real raw, Real good) {
   Sensel sensel = raw_sensel(raw);
 #ifdef PF_LARGEST_READING
   sensel = reject_absurd(sensel, (Real)(PF_LARGEST_READING));
@@ -17,7 +17,7 @@ static inline Sensel judge_reading(Real raw, Real good) {
 }
 
 /* A raw reading through the stages of the plan. */
-static inline Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, Real good) {
+PF_INLINE Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, Real good) {
   Sensel sensel = judge_reading(raw, good);
 #ifdef PF_TARE
   sensel = subtract_tare(sensel, tare);
@@ -52,8 +52,8 @@ typedef struct {
 } SenselPair;
 
 /* The sensels of one row under `count` pillars. `offset` is the first one's place in the planes. */
-static inline SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset,
-                                      uint count) {
+PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset,
+                                  uint count) {
   const RealPair readings = load_readings(raw, count);
   RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
   RealPair gains = tares;
@@ -80,8 +80,8 @@ static inline SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes
 
 #ifdef PF_UNCERTAINTY
 /* The noise of those sensels as the corrections leave it, counts. */
-static inline RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t offset,
-                                  uint count) {
+PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t offset,
+                              uint count) {
   RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
 #ifdef PF_NOISE
   noise = load_plane(planes.noise + offset, count);
@@ -118,7 +118,7 @@ typedef struct {
 } Band;
 
 /* The rows of this work-item: its band among get_global_size(1) of like height. */
-static inline Band band_of_rows(uint rows) {
+PF_INLINE Band band_of_rows(uint rows) {
   const ulong bands = get_global_size(1);
   const ulong band = get_global_id(1);
   const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};

@@ -43,7 +43,8 @@ class PillarSolver {
     const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
                                 sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
     store(maths::force_deviations(pillar, diagonals, noise, scale_), index);
-    store(maths::direction_interval(pillar, diagonals, sum, scale_), index);
+    const maths::Direction direction = maths::direction_of(force);
+    store(maths::direction_interval(pillar, diagonals, sum, direction, scale_), index);
   }
 
  private:

@@ -80,7 +80,8 @@ PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const Pilla
   estimate.direction = direction_of(estimate.force);
   estimate.status = direct_status(pillar, diagonals, sum, doubt);
   estimate.deviations = force_deviations(pillar, diagonals, {noise, noise, noise, noise}, scale);
-  estimate.interval = direction_interval(pillar, diagonals, sum, scale);
+  const auto direct = direction_of(direct_force(diagonals, sum, scale));
+  estimate.interval = direction_interval(pillar, diagonals, sum, direct, scale);
   return estimate;
 }
 

@@ -8,6 +8,7 @@ namespace pillarfield::single_precision {
 #define PF_PRECISION 32
 #include "kernels/portable.h"
 // portable.h first
+#include "kernels/maths/elementary.h"
 #include "kernels/maths/status.h"
 // then what the others are made of
 #include "kernels/maths/pillar_model.h"
@@ -24,6 +25,8 @@ namespace pillarfield::single_precision {
 namespace pillarfield::double_precision {
 #define PF_PRECISION 64
 #include "kernels/portable.h"
+// as above
+#include "kernels/maths/elementary.h"
 // as above
 #include "kernels/maths/pillar_model.h"
 #include "kernels/maths/sensel.h"

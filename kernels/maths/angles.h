@@ -6,15 +6,14 @@ typedef struct {
   Real phi;       /* rad in the plane of the skin, [-pi, pi], and 0 where there is no shear */
 } Direction;
 
-/* In C++ within 2 ULP of the exact values of the given components; OpenCL allows a device 4 ULP for
- * each hypot and 6 for atan2. */
+/* Within 2 ULP of the exact values of the given components. */
 static inline Direction direction_of(Force force) {
   const Real zero = PF_REAL(0.0);
-  const Real shear = hypot(force.shear_x, force.shear_y);
+  const Real shear = length_2(force.shear_x, force.shear_y);
   Direction direction;
-  direction.magnitude = hypot(shear, force.normal);
-  direction.theta = atan2(shear, force.normal);
+  direction.magnitude = length_3(force.shear_x, force.shear_y, force.normal);
+  direction.theta = angle_of(shear, force.normal);
   /* Subtracted, not negated: a component +0 must not become -0, on the far side of the cut. */
-  direction.phi = shear > zero ? atan2(zero - force.shear_y, zero - force.shear_x) : zero;
+  direction.phi = shear > zero ? angle_of(zero - force.shear_y, zero - force.shear_x) : zero;
   return direction;
 }

@@ -129,14 +129,36 @@ static inline Real larger_side(DifferenceInterval interval) {
 static inline Real phi_of(Real rising, Real falling) {
   const Real zero = PF_REAL(0.0);
   const Mask none = (rising == zero) && (falling == zero);
-  return none ? zero : atan2(zero - (rising + falling), falling - rising);
+  return none ? zero : angle_of(zero - (rising + falling), falling - rising);
+}
+
+/* Whether both ends are the estimate: the parity sum is a point, and no two lifted sensels share
+ * it.
+ */
+static inline Mask is_settled(Pillar pillar, ParitySum sum) {
+  const Mask a_loose = is_lifted(pillar.s1) && is_lifted(pillar.s3);
+  const Mask b_loose = is_lifted(pillar.s2) && is_lifted(pillar.s4);
+  return !(sum.ambiguous || a_loose || b_loose);
+}
+
+/* The interval about a settled estimate. */
+static inline DirectionInterval point_interval(Direction estimate) {
+  DirectionInterval interval;
+  interval.theta_low = estimate.theta;
+  interval.theta_high = estimate.theta;
+  interval.phi_low = estimate.phi;
+  interval.phi_high = estimate.phi;
+  interval.magnitude_low = estimate.magnitude;
+  interval.magnitude_high = estimate.magnitude;
+  return interval;
 }
 
 /* The ends of theta, phi and magnitude over all forces that explain the readings of a pillar
  * without missing and saturated sensels (U4 to U8). Both ends are the estimate where the force is
- * determined. `sum` is that of `parity_sum`. */
+ * determined. `sum` is that of `parity_sum`, `estimate` the direction of `direct_force`. */
 static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
-                                                   ParitySum sum, ForceScale scale) {
+                                                   ParitySum sum, Direction estimate,
+                                                   ForceScale scale) {
   const Real zero = PF_REAL(0.0);
   const Real pi = PF_REAL(3.14159265358979323846);
   const Diagonal a = diagonals.rising;
@@ -151,7 +173,9 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   /* At the least parity sum the force is longest, flattest and, if it may turn, freest. */
   const DifferenceInterval a_flat = difference_interval(a, a_loose, sum.low);
   const DifferenceInterval b_flat = difference_interval(b, b_loose, sum.low);
-  const Real flat = hypot(larger_side(a_flat), larger_side(b_flat));
+  const Real a_side = larger_side(a_flat);
+  const Real b_side = larger_side(b_flat);
+  const Real flat = length_2(a_side, b_side);
   const Real a_steep = diagonal_difference(a, most);
   const Real b_steep = diagonal_difference(b, most);
 
@@ -178,12 +202,19 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Real phi_to = phi_of(a_to, b_to);
   const Mask any_phi = silent && (most > zero);
 
+  const Mask settled = is_settled(pillar, sum);
+  const Real theta_low = angle_of(length_2(a_steep, b_steep), most);
+  const Real theta_high = angle_of(flat, sum.low);
+  const Real phi_low = any_phi ? -pi : (clockwise ? phi_to : phi_from);
+  const Real phi_high = any_phi ? pi : (clockwise ? phi_from : phi_to);
+  const Real magnitude_low = scale.normal * length_3(a_short, b_short, least);
+  const Real magnitude_high = scale.normal * length_3(a_side, b_side, sum.low);
   DirectionInterval interval;
-  interval.theta_low = atan2(hypot(a_steep, b_steep), most);
-  interval.theta_high = atan2(flat, sum.low);
-  interval.phi_low = any_phi ? -pi : (clockwise ? phi_to : phi_from);
-  interval.phi_high = any_phi ? pi : (clockwise ? phi_from : phi_to);
-  interval.magnitude_low = scale.normal * hypot(hypot(a_short, b_short), least);
-  interval.magnitude_high = scale.normal * hypot(flat, sum.low);
+  interval.theta_low = settled ? estimate.theta : theta_low;
+  interval.theta_high = settled ? estimate.theta : theta_high;
+  interval.phi_low = settled ? estimate.phi : phi_low;
+  interval.phi_high = settled ? estimate.phi : phi_high;
+  interval.magnitude_low = settled ? estimate.magnitude : magnitude_low;
+  interval.magnitude_high = settled ? estimate.magnitude : magnitude_high;
   return interval;
 }

@@ -123,13 +123,14 @@ PillarOf<Precision> hiding_pillar(const std::array<double, 4>& readings) {
 
 template <class Precision>
 struct Ends {
-  decltype(direction_interval(PillarOf<Precision>{}, {}, {}, {})) interval;
+  decltype(direction_interval(PillarOf<Precision>{}, {}, {}, {}, {})) interval;
   double slack;
 
   explicit Ends(const PillarOf<Precision>& pillar)
       : slack(64 * std::numeric_limits<RealOf<Precision>>::epsilon()) {
     const auto solved = solve<Precision>(pillar, kCountsPerNewton);
-    interval = direction_interval(pillar, solved.diagonals, solved.sum, solved.scale);
+    interval = direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
+                                  solved.scale);
   }
 
   /// How far phi lies counter-clockwise of phi_low, and how far phi_high does.
@@ -304,7 +305,8 @@ TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
       for (auto& reading : readings) reading = odd[random.below(odd.size())];
       const auto pillar = pillar_in<TypeParam>(states, readings);
       const auto solved = solve<TypeParam>(pillar, kCountsPerNewton);
-      const auto interval = direction_interval(pillar, solved.diagonals, solved.sum, solved.scale);
+      const auto interval = direction_interval(pillar, solved.diagonals, solved.sum,
+                                               direction_of(solved.force), solved.scale);
       const Real most = static_cast<Real>(1e6);
       const auto deviations =
           force_deviations(pillar, solved.diagonals, {most, most, most, most}, solved.scale);
