@@ -88,16 +88,19 @@ PF_INLINE bool any_lane(Mask mask) {
 #endif
 }
 
-/* Brings memory that a later block reads towards the caches; where that is nobody's to say,
- * nothing.
- */
-PF_INLINE void prefetch_memory(global const void* place) {
+/* Brings the values of PF_LANES pillars in one row of sensels towards the caches. What may lie past
+ * the end of a plane is not touched by it; where a compiler has no word for it, nothing happens. */
 #if PF_LANES > 1 && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
-  __builtin_prefetch((const void*)(size_t)place);
+#define PF_PREFETCH(row)                                                       \
+  for (size_t byte_ = 0; byte_ < 2 * PF_LANES * sizeof(*(row)); byte_ += 64) { \
+    __builtin_prefetch((const void*)((size_t)(row) + byte_));                  \
+  }
 #endif
 #endif
-}
+#ifndef PF_PREFETCH
+#define PF_PREFETCH(row)
+#endif
 
 /* Writes what load_plane reads. */
 PF_INLINE void store_pair(RealPair pair, global float* row, uint count) {

@@ -128,8 +128,8 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
   const size_t offset = 2 * row * input.planes.stride;
   for (uint block = (uint)get_global_id(0); block < blocks; block += (uint)get_global_size(0)) {
     const uint col = min(max(block * PF_LANES, skew) - skew, last_col);
-    prefetch_memory(raw + 2 * input.row_stride + 2 * col);
-    prefetch_memory(raw + 3 * input.row_stride + 2 * col);
+    prefetch_sensels(raw + 2 * input.row_stride + 2 * col, input.row_stride, input.planes,
+                     offset + 2 * input.planes.stride + 2 * col);
     solve_block(input, output, raw + 2 * col, offset + 2 * col, first_index + col, count);
   }
 }
