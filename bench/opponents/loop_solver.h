@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "bench/frames.h"
+#include "bench/opponents/bare_solve.h"
+#include "bench/opponents/thread_team.h"
+#include "pillarfield/force_field.h"
+
+namespace pillarfield::bench {
+
+/// A C++ loop over frames, the rows of each shared out among threads. Two results are kept in
+/// turns, as a processor of two slots does.
+class LoopSolver {
+ public:
+  LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads);
+
+  /// Solves so many frames, going on where it stopped.
+  void run(const Frames& frames, int count);
+
+  /// Solves one frame; the result stays until two more are solved.
+  ForceFieldView solve(const FrameView& frame);
+
+ private:
+  struct Result {
+    explicit Result(const Skin& skin);
+    ForcePlanes planes();
+    FrameBuffer shear_x;  ///< page by page, as what a processor writes
+    FrameBuffer shear_y;
+    FrameBuffer normal;
+    FrameBuffer status;
+  };
+  Result& result() { return results_[solved_ % results_.size()]; }
+  void solve_share(const FrameView& frame, const ForcePlanes& to, int member) const;
+
+  Skin skin_;
+  BareSolve solve_;
+  SolveRows solve_rows_;
+  std::vector<Result> results_;
+  std::size_t solved_ = 0;
+  ThreadTeam team_;
+};
+
+}  // namespace pillarfield::bench
