@@ -26,7 +26,8 @@ class CopyKernel {
   /// What the last frame became: the result planes one after the other, then the status bytes.
   [[nodiscard]] std::vector<std::byte> results() const;
 
-  /// What of the calibration the kernel reads, for the tests: values that differ.
+  /// What the kernel reads.
+  [[nodiscard]] const cl::Buffer& frame(std::size_t index) const { return frames_.at(index); }
   [[nodiscard]] const cl::Buffer& calibration() const { return calibration_; }
   [[nodiscard]] const cl::Buffer& mask() const { return mask_; }
 

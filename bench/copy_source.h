@@ -17,8 +17,9 @@ enum class CopyStores : std::uint8_t {
 /// else that takes time, and `empty`. With 16 lanes a work-item copies a row of pillars, with one a
 /// pillar, as solve_frame of that many lanes.
 ///
-/// The bits of all that is read are folded into one word a pillar by exclusive or, which is what
-/// every result plane and the status bytes get: each input bit moves every output.
+/// The bits of all that is read for as many pillars as are copied at once are folded by exclusive
+/// or into one word for each, which is what every result plane gets, and the status bytes folded
+/// once more: each bit that is read moves one value of every plane.
 std::string copy_source(const Streams& streams, int lanes, CopyStores stores);
 
 /// Floats from one plane to the next in the buffers of calibration and results: whole pages.

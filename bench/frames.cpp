@@ -22,10 +22,11 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr std::size_t kQuartets = 1024;      ///< distinct ones of a region
 constexpr std::size_t kTapePillars = 16384;  ///< before a tape repeats
 
-/// From any direction of the hemisphere alike, 4 to 170 counts: sensels read 240 at most.
+/// From any direction of the hemisphere alike, 1 to 170 counts and as many weak as strong ones:
+/// sensels read 240 at most, and some forces are below what three of four sensels feel.
 Quartet random_readings(Random& random) {
   std::uniform_real_distribution<double> share(0, 1);
-  const double magnitude = 4 + 166 * share(random);
+  const double magnitude = std::pow(170, share(random));
   const double cosine = share(random);
   const double shear = magnitude * std::sqrt(1 - cosine * cosine);
   const double phi = 2 * std::numbers::pi * share(random);

@@ -9,7 +9,9 @@
 #include <cstdlib>
 #include <exception>
 #include <regex>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "bench/plain_names.h"
 #include "bench/rows.h"
@@ -108,16 +110,18 @@ std::string row_filter(const std::string& filter) {
   return std::regex_replace(filter, std::regex(R"(\$)"), "/manual_time$$");
 }
 
-int run(std::vector<char*> words) {
-  const Arguments arguments = take_arguments(words);
+/// Hands Google Benchmark its options; false where one is unknown to it too.
+bool initialize(std::vector<char*> words) {
   // A row is one race: with the library's own time it would be repeated.
   std::string one_iteration = "--benchmark_min_time=1e-9";
   words.insert(words.begin() + 1, one_iteration.data());
   int count = static_cast<int>(words.size());
   words.push_back(nullptr);
   benchmark::Initialize(&count, words.data(), print_help);
-  if (benchmark::ReportUnrecognizedArguments(count, words.data())) return kWrongCommandLine;
+  return !benchmark::ReportUnrecognizedArguments(count, words.data());
+}
 
+int run(const Arguments& arguments) {
   Session session{open_device(arguments.device), {}};
   session.length.seconds = arguments.seconds;
   tell_context(session.device);
@@ -132,14 +136,27 @@ int run(std::vector<char*> words) {
   return rows == 0 || reporter.any_failed() ? kFailed : kDone;
 }
 
+int complain(const std::exception& error, int status) {
+  std::fprintf(stderr, "pillarfield-bench: %s\n", error.what());
+  return status;
+}
+
 }  // namespace
 }  // namespace pillarfield::bench
 
 int main(int argc, char** argv) {
+  using namespace pillarfield::bench;  // NOLINT(google-build-using-namespace)
+  std::vector<char*> words(argv, argv + argc);
+  Arguments arguments;
   try {
-    return pillarfield::bench::run({argv, argv + argc});
+    arguments = take_arguments(words);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "pillarfield-bench: %s\n", error.what());
-    return 1;
+    return complain(error, kWrongCommandLine);
+  }
+  if (!initialize(words)) return kWrongCommandLine;
+  try {
+    return run(arguments);
+  } catch (const std::exception& error) {
+    return complain(error, kFailed);
   }
 }

@@ -13,9 +13,20 @@ ForcePlanes LoopSolver::Result::planes() {
           normal.readings<float>().data(), status.readings<std::uint8_t>().data()};
 }
 
+ForceFieldView LoopSolver::Result::view(const Skin& skin) const {
+  ForceFieldView view;
+  view.rows = skin.pillar_rows();
+  view.cols = skin.pillar_cols();
+  view.shear_x = shear_x.readings<float>();
+  view.shear_y = shear_y.readings<float>();
+  view.normal = normal.readings<float>();
+  view.status = status.readings<std::uint8_t>();
+  return view;
+}
+
 LoopSolver::LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads)
     : skin_(plan.skin), solve_(bare_solve(plan)), solve_rows_(solve_rows), team_(threads) {
-  for (int i = 0; i < 2; ++i) results_.emplace_back(skin_);
+  for (std::size_t i = 0; i < kResults; ++i) results_.emplace_back(skin_);
 }
 
 void LoopSolver::run(const Frames& frames, int count) {
@@ -23,7 +34,7 @@ void LoopSolver::run(const Frames& frames, int count) {
   const std::size_t last = first + static_cast<std::size_t>(count);
   team_.run([&](int member) {
     for (std::size_t i = first; i < last; ++i) {
-      solve_share(frames[i], results_[i % results_.size()].planes(), member);
+      solve_share(frames[i], results_[i % kResults].planes(), member);
       team_.meet();
     }
   });
@@ -31,19 +42,14 @@ void LoopSolver::run(const Frames& frames, int count) {
 }
 
 ForceFieldView LoopSolver::solve(const FrameView& frame) {
-  Result& to = result();
-  team_.run([&](int member) { solve_share(frame, to.planes(), member); });
+  const ForcePlanes to = results_[solved_ % kResults].planes();
+  team_.run([&](int member) { solve_share(frame, to, member); });
   ++solved_;
-  return {skin_.pillar_rows(),
-          skin_.pillar_cols(),
-          to.shear_x.readings<float>(),
-          to.shear_y.readings<float>(),
-          to.normal.readings<float>(),
-          to.status.readings<std::uint8_t>(),
-          {},
-          {},
-          {},
-          {}};
+  return last();
+}
+
+ForceFieldView LoopSolver::last() const {
+  return results_[(solved_ + kResults - 1) % kResults].view(skin_);
 }
 
 void LoopSolver::solve_share(const FrameView& frame, const ForcePlanes& to, int member) const {

@@ -21,16 +21,20 @@ class LoopSolver {
   /// Solves one frame; the result stays until two more are solved.
   ForceFieldView solve(const FrameView& frame);
 
+  /// The result of the last frame.
+  [[nodiscard]] ForceFieldView last() const;
+
  private:
+  static constexpr std::size_t kResults = 2;
   struct Result {
     explicit Result(const Skin& skin);
     ForcePlanes planes();
+    [[nodiscard]] ForceFieldView view(const Skin& skin) const;
     FrameBuffer shear_x;  ///< page by page, as what a processor writes
     FrameBuffer shear_y;
     FrameBuffer normal;
     FrameBuffer status;
   };
-  Result& result() { return results_[solved_ % results_.size()]; }
   void solve_share(const FrameView& frame, const ForcePlanes& to, int member) const;
 
   Skin skin_;
