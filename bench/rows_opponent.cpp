@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <map>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "bench/opponents/agreement.h"
 #include "bench/opponents/loop_solver.h"
@@ -27,7 +30,7 @@ constexpr float kPaperTolerance = 64 * 1.2e-7F;
 
 int all_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-/// Our own solve of a square metre, and a race in which it is the first contestant.
+/// A race of our own solve of a square metre and the copies of its streams with an opponent.
 class Match {
  public:
   explicit Match(const Session& session)
@@ -35,23 +38,28 @@ class Match {
         plan_(bare_plan(kSquareMetre)),
         frames_(plan_.skin, plan_.sensel_type, {}),
         ours_(session.device, plan_, frames_),
-        our_entry_(race_.add([this](int count) { ours_.run(count); })) {}
+        our_entry_(race_.add([this](int count) { ours_.run(count); })),
+        ceiling_(race_, session.device, plan_, frames_, Processor::Options{}.frames_in_flight) {}
 
   [[nodiscard]] const SolverPlan& plan() const { return plan_; }
   [[nodiscard]] const Frames& frames() const { return frames_; }
   FrameSolver& ours() { return ours_; }
 
-  void add(Work work) { their_entries_.push_back(race_.add(std::move(work))); }
+  void add(const std::string& label, Work work) { labels_[race_.add(std::move(work))] = label; }
 
   /// The opponent is the fastest of those added.
-  Measurement run(const std::string& label) {
+  Measurement run() {
     race_.run(session_->length);
-    const std::size_t theirs = race_.fastest(their_entries_);
+    std::vector<std::size_t> entries;
+    for (const auto& [entry, label] : labels_) entries.push_back(entry);
+    const std::size_t theirs = race_.fastest(entries);
     Measurement measured = measurement_of(race_, theirs, plan_);
     measured.counters["our_ns_per_pillar"] =
         race_.median(our_entry_) * 1e9 / static_cast<double>(plan_.skin.pillars());
     measured.counters["speedup"] = race_.ratio(theirs, our_entry_);
-    measured.label = label;
+    measured.counters["of_ceiling"] = race_.ratio(ceiling_.fastest(race_), theirs);
+    ceiling_.tell(race_, measured);
+    measured.label = labels_.at(theirs);
     return measured;
   }
 
@@ -62,7 +70,8 @@ class Match {
   FrameSolver ours_;
   Race race_;
   std::size_t our_entry_;
-  std::vector<std::size_t> their_entries_;
+  CeilingEntry ceiling_;
+  std::map<std::size_t, std::string> labels_;  ///< of the opponents
 };
 
 void hold_to_ours(const char* name, LoopSolver& theirs, Match& match) {
@@ -75,8 +84,9 @@ Measurement race_plain_loop(const Session& session, int threads) {
   Match match(session);
   LoopSolver loop(match.plan(), solve_rows_plainly, threads);
   hold_to_ours("C++ loop", loop, match);
-  match.add([&](int count) { loop.run(match.frames(), count); });
-  return match.run(fmt::format("-O3, threads: {}", threads));
+  match.add(fmt::format("-O3, threads: {}", threads),
+            [&](int count) { loop.run(match.frames(), count); });
+  return match.run();
 }
 
 Measurement race_vectorised(const Session& session) {
@@ -90,9 +100,10 @@ Measurement race_vectorised(const Session& session) {
   LoopSolver streaming(match.plan(), by_hand.streaming, all_threads());
   hold_to_ours("vectorised loop", cached, match);
   hold_to_ours("vectorised loop, streaming", streaming, match);
-  match.add([&](int count) { cached.run(match.frames(), count); });
-  match.add([&](int count) { streaming.run(match.frames(), count); });
-  return match.run(fmt::format("{}, threads: {}", by_hand.instructions, all_threads()));
+  const std::string label = fmt::format("{}, threads: {}", by_hand.instructions, all_threads());
+  match.add(label, [&](int count) { cached.run(match.frames(), count); });
+  match.add(label + ", streaming", [&](int count) { streaming.run(match.frames(), count); });
+  return match.run();
 }
 
 Measurement race_paper(const Session& session) {
@@ -102,8 +113,8 @@ Measurement race_paper(const Session& session) {
   FrameSolver paper(session.device, plan, match.frames(), {.lanes = 1});
   require_near("the paper's equations", paper.solve(match.frames()[0]),
                solve_on_host(plan, match.frames()[0]).view(), kPaperTolerance);
-  match.add([&](int count) { paper.run(count); });
-  return match.run("one pillar per work-item");
+  match.add("one pillar per work-item", [&](int count) { paper.run(count); });
+  return match.run();
 }
 
 Measurement race_numpy(const Session& session) {
@@ -112,8 +123,8 @@ Measurement race_numpy(const Session& session) {
   require_near("NumPy", numpy.first_result().view(), match.ours().solve(match.frames()[0]),
                kNumpyTolerance);
   double nanoseconds = 0;
-  match.add([&](int count) { nanoseconds = numpy.run(count); });
-  Measurement measured = match.run("float32 arrays");
+  match.add("float32 arrays", [&](int count) { nanoseconds = numpy.run(count); });
+  Measurement measured = match.run();
   measured.counters["last_by_its_own_clock"] = nanoseconds;
   return measured;
 }

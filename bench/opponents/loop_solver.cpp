@@ -1,5 +1,7 @@
 #include "bench/opponents/loop_solver.h"
 
+#include <atomic>
+
 namespace pillarfield::bench {
 
 LoopSolver::Result::Result(const Skin& skin)
@@ -29,22 +31,29 @@ LoopSolver::LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads
   for (std::size_t i = 0; i < kResults; ++i) results_.emplace_back(skin_);
 }
 
-void LoopSolver::run(const Frames& frames, int count) {
-  const std::size_t first = solved_;
-  const std::size_t last = first + static_cast<std::size_t>(count);
-  team_.run([&](int member) {
-    for (std::size_t i = first; i < last; ++i) {
-      solve_share(frames[i], results_[i % kResults].planes(), member);
+template <class FrameOf>
+void LoopSolver::solve_frames(std::size_t count, FrameOf frame_of) {
+  std::atomic<std::size_t> next = 0;
+  team_.run([&](int) {
+    // Members draw pieces of all frames in their order, and wait where a frame ends.
+    std::size_t piece = next++;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t frame = solved_ + i;
+      const ForcePlanes to = results_[frame % kResults].planes();
+      for (; piece / kPieces == i; piece = next++)
+        solve_piece(frame_of(frame), to, piece % kPieces);
       team_.meet();
     }
   });
-  solved_ = last;
+  solved_ += count;
+}
+
+void LoopSolver::run(const Frames& frames, int count) {
+  solve_frames(static_cast<std::size_t>(count), [&](std::size_t i) { return frames[i]; });
 }
 
 ForceFieldView LoopSolver::solve(const FrameView& frame) {
-  const ForcePlanes to = results_[solved_ % kResults].planes();
-  team_.run([&](int member) { solve_share(frame, to, member); });
-  ++solved_;
+  solve_frames(1, [&](std::size_t) { return frame; });
   return last();
 }
 
@@ -52,13 +61,12 @@ ForceFieldView LoopSolver::last() const {
   return results_[(solved_ + kResults - 1) % kResults].view(skin_);
 }
 
-void LoopSolver::solve_share(const FrameView& frame, const ForcePlanes& to, int member) const {
-  const auto before = [&](int members) {
-    return static_cast<std::uint32_t>(std::uint64_t{skin_.pillar_rows()} *
-                                      static_cast<std::uint64_t>(members) /
-                                      static_cast<std::uint64_t>(team_.members()));
+void LoopSolver::solve_piece(const FrameView& frame, const ForcePlanes& to,
+                             std::size_t piece) const {
+  const auto row = [&](std::size_t pieces) {
+    return static_cast<std::uint32_t>(skin_.pillar_rows() * pieces / kPieces);
   };
-  solve_rows_(solve_, frame, before(member), before(member + 1), to);
+  solve_rows_(solve_, frame, row(piece), row(piece + 1), to);
 }
 
 }  // namespace pillarfield::bench

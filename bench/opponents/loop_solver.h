@@ -9,8 +9,8 @@
 
 namespace pillarfield::bench {
 
-/// A C++ loop over frames, the rows of each shared out among threads. Two results are kept in
-/// turns, as a processor of two slots does.
+/// A C++ loop over frames, of each of which the threads take piece after piece. Two results are
+/// kept in turns, as a processor of two slots does.
 class LoopSolver {
  public:
   LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads);
@@ -26,6 +26,7 @@ class LoopSolver {
 
  private:
   static constexpr std::size_t kResults = 2;
+  static constexpr std::size_t kPieces = 32;  ///< of a frame
   struct Result {
     explicit Result(const Skin& skin);
     ForcePlanes planes();
@@ -35,7 +36,9 @@ class LoopSolver {
     FrameBuffer normal;
     FrameBuffer status;
   };
-  void solve_share(const FrameView& frame, const ForcePlanes& to, int member) const;
+  template <class FrameOf>
+  void solve_frames(std::size_t count, FrameOf frame_of);
+  void solve_piece(const FrameView& frame, const ForcePlanes& to, std::size_t piece) const;
 
   Skin skin_;
   BareSolve solve_;
