@@ -1,0 +1,24 @@
+#include "bench/frame_solver.h"
+
+namespace pillarfield::bench {
+
+FrameSolver::FrameSolver(const Device& device, const SolverPlan& plan, const Frames& frames,
+                         const Processor::Options& options)
+    : frames_(&frames),
+      most_in_flight_(options.frames_in_flight),
+      processor_(device, plan, options) {}
+
+void FrameSolver::run(int frames) {
+  for (int i = 0; i < frames; ++i) {
+    if (processor_.in_flight() == most_in_flight_) static_cast<void>(processor_.receive());
+    processor_.submit((*frames_)[submitted_++]);
+  }
+  while (processor_.in_flight() > 0) static_cast<void>(processor_.receive());
+}
+
+ForceFieldView FrameSolver::solve(const FrameView& frame) {
+  processor_.submit(frame);
+  return processor_.receive();
+}
+
+}  // namespace pillarfield::bench

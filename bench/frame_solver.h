@@ -1,0 +1,28 @@
+#pragma once
+
+#include "bench/frames.h"
+#include "pillarfield/processor.h"
+
+namespace pillarfield::bench {
+
+/// A processor that works through a series of frames, as many in flight as it has slots for.
+/// `frames` must outlive it.
+class FrameSolver {
+ public:
+  FrameSolver(const Device& device, const SolverPlan& plan, const Frames& frames,
+              const Processor::Options& options = {});
+
+  /// Solves so many frames, going on where it stopped.
+  void run(int frames);
+
+  /// Solves one frame; the result stays until run() or the next solve().
+  ForceFieldView solve(const FrameView& frame);
+
+ private:
+  const Frames* frames_;
+  int most_in_flight_;
+  Processor processor_;
+  std::size_t submitted_ = 0;
+};
+
+}  // namespace pillarfield::bench

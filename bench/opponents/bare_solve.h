@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "pillarfield/frame.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield::bench {
+
+/// The constants of the bare direct solve of uint8 frames, in the precision of the kernels.
+struct BareSolve {
+  float threshold = 0;     ///< counts
+  float doubt = 0;         ///< counts
+  float shear_scale = 0;   ///< N per count
+  float normal_scale = 0;  ///< N per count
+};
+
+/// Throws Error where the plan asks for more than that: another type, estimator, stage or result.
+BareSolve bare_solve(const SolverPlan& plan);
+
+/// Where results go: planes [pillar rows, pillar cols].
+struct ForcePlanes {
+  float* shear_x;
+  float* shear_y;
+  float* normal;
+  std::uint8_t* status;
+};
+
+/// The planes from a pillar on.
+inline ForcePlanes advanced(const ForcePlanes& planes, std::size_t pillars) {
+  return {planes.shear_x + pillars, planes.shear_y + pillars, planes.normal + pillars,
+          planes.status + pillars};
+}
+
+/// Solves the rows of pillars from `first` to before `last`.
+using SolveRows = void (*)(const BareSolve& solve, const FrameView& frame, std::uint32_t first,
+                           std::uint32_t last, const ForcePlanes& to);
+
+}  // namespace pillarfield::bench

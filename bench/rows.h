@@ -1,0 +1,16 @@
+#pragma once
+
+#include "bench/session.h"
+
+namespace pillarfield::bench {
+
+// Each adds the rows of some groups; the session must outlive them. docs/benchmark.md says what
+// they mean.
+
+void add_ceiling_rows(const Session& session);   ///< ceiling/
+void add_size_rows(const Session& session);      ///< size/, contact/, regions/
+void add_plan_rows(const Session& session);      ///< type/, output/, estimator/, lanes/, stage/
+void add_time_rows(const Session& session);      ///< latency/, throughput/
+void add_opponent_rows(const Session& session);  ///< opponent/
+
+}  // namespace pillarfield::bench

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "bench/race.h"
+#include "pillarfield/processor.h"
+
+namespace pillarfield::bench {
+
+/// What all rows of a run have in common.
+struct Session {
+  Device device;
+  RaceLength length;
+};
+
+}  // namespace pillarfield::bench

@@ -1,0 +1,133 @@
+#include "bench/variants.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <random>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/force_field.h"
+
+namespace pillarfield::bench {
+namespace {
+
+constexpr double kNoiseCounts = 0.5;
+
+/// A plane of the skin's sensels with values evenly from `low` to `high`.
+std::vector<float> uneven_plane(const Skin& skin, float low, float high, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> value(low, high);
+  std::vector<float> plane(skin.sensels());
+  for (float& each : plane) each = value(random);
+  return plane;
+}
+
+void add_tare(SolverPlan& plan) { plan.calibration.tare = uneven_plane(plan.skin, 0, 3, 1); }
+
+void add_gain(SolverPlan& plan) { plan.calibration.gain = uneven_plane(plan.skin, 0.9F, 1.1F, 2); }
+
+void add_dead_zone(SolverPlan& plan) {
+  plan.calibration.dead_zone = uneven_plane(plan.skin, 1, 2, 3);
+}
+
+/// Three sensels in a thousand are dead.
+void add_mask(SolverPlan& plan) {
+  for (const float share : uneven_plane(plan.skin, 0, 1, 4)) {
+    plan.calibration.mask.push_back(share < 0.997F ? 1 : 0);
+  }
+}
+
+/// Of the frames' readings, a few per cent are at least so large.
+void add_saturation(SolverPlan& plan) {
+  plan.skin.full_scale_counts = plan.sensel_type == SenselType::u16 ? 16 * 200 : 200;
+}
+
+void add_parity(SolverPlan& plan) { plan.parity_tolerance_counts = 5; }
+
+void add_angles(SolverPlan& plan) { plan.angles = true; }
+
+void add_uncertainty(SolverPlan& plan) {
+  plan.noise_counts = kNoiseCounts;
+  plan.uncertainty = true;
+}
+
+void add_baseline(SolverPlan& plan) { plan.baseline_rate = 0.01; }
+
+void add_power_law(SolverPlan& plan) { plan.skin.power_law = PowerLaw{0.8, 100}; }
+
+void add_all(SolverPlan& plan) {
+  for (const auto add :
+       {add_tare, add_gain, add_mask, add_dead_zone, add_saturation, add_uncertainty, add_angles}) {
+    add(plan);
+  }
+}
+
+struct Stage {
+  std::string_view name;
+  void (*add)(SolverPlan&);
+};
+
+constexpr std::array kStages = {
+    Stage{"none", [](SolverPlan&) {}},
+    Stage{"tare", add_tare},
+    Stage{"gain", add_gain},
+    Stage{"dead_zone", add_dead_zone},
+    Stage{"mask", add_mask},
+    Stage{"saturation", add_saturation},
+    Stage{"parity", add_parity},
+    Stage{"angles", add_angles},
+    Stage{"uncertainty", add_uncertainty},
+    Stage{"baseline", add_baseline},
+    Stage{"power_law", add_power_law},
+    Stage{"all", add_all},
+};
+
+}  // namespace
+
+SolverPlan bare_plan(std::uint32_t pillars_a_side, SenselType type) {
+  SolverPlan plan;
+  plan.skin.rows = 2 * pillars_a_side;
+  plan.skin.cols = 2 * pillars_a_side;
+  plan.sensel_type = type;
+  return plan;
+}
+
+std::vector<std::string_view> stage_names() {
+  std::vector<std::string_view> names;
+  for (const Stage& stage : kStages) names.push_back(stage.name);
+  return names;
+}
+
+void add_stage(SolverPlan& plan, std::string_view name) {
+  for (const Stage& stage : kStages) {
+    if (stage.name == name) return stage.add(plan);
+  }
+  throw Error("bench", fmt::format("'{}' is no stage", name),
+              fmt::format("there are: {}", fmt::join(stage_names(), ", ")));
+}
+
+std::size_t Streams::bytes_per_pillar() const {
+  const std::size_t frame = 4 * size_of(sensel_type);
+  const std::size_t calibration =
+      16 * static_cast<std::size_t>(calibration_planes) + (mask ? 4 : 0) + (tare_follows ? 16 : 0);
+  return frame + calibration + 4 * static_cast<std::size_t>(result_planes) + 1;
+}
+
+Streams streams_of(const SolverPlan& plan) {
+  const Calibration& calibration = plan.calibration;
+  Streams streams;
+  streams.sensel_type = plan.sensel_type;
+  const bool tare = !calibration.tare.empty() || plan.baseline_rate;
+  const bool noise = !calibration.noise.empty() && plan.uncertainty;
+  for (const bool read : {tare, !calibration.gain.empty(), !calibration.dead_zone.empty(), noise}) {
+    streams.calibration_planes += read ? 1 : 0;
+  }
+  streams.mask = !calibration.mask.empty();
+  streams.tare_follows = plan.baseline_rate.has_value();
+  if (plan.angles) streams.result_planes += 3;
+  if (plan.uncertainty) streams.result_planes += static_cast<int>(kUncertaintyPlanes);
+  return streams;
+}
+
+}  // namespace pillarfield::bench
