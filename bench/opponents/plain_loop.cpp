@@ -29,7 +29,8 @@ void solve_rows_plainly(const BareSolve& solve, const FrameView& frame, std::uin
       to.shear_x[index] = force.shear_x;
       to.shear_y[index] = force.shear_y;
       to.normal[index] = force.normal;
-      to.status[index] = static_cast<std::uint8_t>(maths::direct_status(pillar, sum, solve.doubt));
+      to.status[index] =
+          static_cast<std::uint8_t>(maths::direct_status(pillar, diagonals, sum, solve.doubt));
     }
   }
 }
