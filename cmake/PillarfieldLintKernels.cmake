@@ -19,11 +19,13 @@ endforeach()
 set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
   -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
   -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_POWER_LARGEST=1.0f -DPF_BASELINE)
+set(lint_skipping -DPF_SKIP_SILENT -DPF_WAKE=1 -DPF_WAKE_THRESHOLD=1.0f -DPF_WAKE_STEP=1.0f
+  -DPF_WAKE_LOWEST=0.0f -DPF_WAKE_HIGHEST=1.0f -DPF_WAKE_NEVER=1.0f)
 
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" -DPF_PAPER "${lint_all_stages}")
+    foreach(stages "" -DPF_PAPER "${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
       list(APPEND lint_commands COMMAND ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
         -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
         -Wno-unused-function -Werror -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}

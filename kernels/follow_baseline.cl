@@ -15,53 +15,67 @@ PF_INLINE Bits status_around(global const uchar* status, uint row, uint col, uin
   return bits;
 }
 
-/* The tares of one row of sensels under `count` pillars. */
-PF_INLINE void follow_row(global const PF_SENSEL* raw, global const uchar* mask, global float* tare,
-                          Mask untouched, Real rate, uint count) {
-  const RealPair readings = load_readings(raw, count);
+/* What is read and written of one row of sensels. */
+typedef struct {
+  global const PF_SENSEL* raw;
+  global const float* gain;
+  global const uchar* mask;
+  global float* tare;
+  global PF_SENSEL* wake;
+} SenselRow;
+
+/* The tares, and the levels that follow from them, under `count` pillars. */
+PF_INLINE void follow_row(SenselRow row, Mask untouched, Real rate, uint count) {
+  const RealPair readings = load_readings(row.raw, count);
   RealPair good = {(Real)(1.0f), (Real)(1.0f)};
 #ifdef PF_MASK
-  good = load_mask(mask, count);
+  good = load_mask(row.mask, count);
 #endif
-  RealPair tares = load_plane(tare, count);
+  RealPair tares = load_plane(row.tare, count);
   tares.left = follow_tare(tares.left, judge_reading(readings.left, good.left), untouched, rate);
   tares.right =
       follow_tare(tares.right, judge_reading(readings.right, good.right), untouched, rate);
-  store_pair(tares, tare, count);
+  store_pair(tares, row.tare, count);
+#ifdef PF_SKIP_SILENT
+  RealPair gains = {(Real)(1.0f), (Real)(1.0f)};
+#ifdef PF_GAIN
+  gains = load_plane(row.gain, count);
+#endif
+  const RealPair levels = {level_of(tares.left, gains.left, good.left),
+                           level_of(tares.right, gains.right, good.right)};
+  store_readings(levels, row.wake, count);
+#endif
 }
 
-/* Follows the blocks of a pillar row that are this work-item's. */
-PF_INLINE void follow_pillar_row(global const PF_SENSEL* raw, size_t row_stride, uint row,
-                                 uint rows, uint cols, global const uchar* mask, global float* tare,
-                                 size_t plane_stride, global const uchar* status, Real rate) {
-  const uint step = (uint)get_global_size(0) * PF_LANES;
-  for (uint col = (uint)get_global_id(0) * PF_LANES; col < cols; col += step) {
-    const uint count = min(cols - col, (uint)PF_LANES);
-    const Bits pressed = PF_BITS(PF_STATUS_PRESSED);
-    const Mask untouched = !mask_of(status_around(status, row, col, rows, cols) & pressed);
-    global const PF_SENSEL* const first = raw + 2 * row * row_stride + 2 * col;
-    const size_t offset = 2 * row * plane_stride + 2 * col;
-    follow_row(first, mask + offset, tare + offset, untouched, rate, count);
-    follow_row(first + row_stride, mask + offset + plane_stride, tare + offset + plane_stride,
-               untouched, rate, count);
-  }
-}
-
-/* One work-item follows every get_global_size(0)-th block of PF_LANES pillars, in the rows of its
- * band among get_global_size(1).
+/* Follows the tares of one row in `interval` of pillar rows, from `first_row` on: in those of this
+ * work-item's band among get_global_size(1), every get_global_size(0)-th block of PF_LANES pillars.
  *
  * raw     readings, `row_stride` apart from one row of sensels to the next
- * mask    calibration plane [.., plane_stride], or null; tare: the same, read and written
+ * gain, mask   calibration planes [.., plane_stride], or null
+ * tare, wake   the same, read and written; wake may be null
  * status  of this frame, [pillar_rows, pillar_cols]
  * rate    share of the difference that is taken over, 0..1 */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw, ulong row_stride,
-                            uint pillar_rows, uint pillar_cols, global const uchar* restrict mask,
-                            ulong plane_stride, global const uchar* restrict status,
-                            global float* restrict tare, float rate) {
-  const Band band = band_of_rows(pillar_rows);
-  for (uint row = band.first; row < band.end; ++row) {
-    follow_pillar_row(raw, row_stride, row, pillar_rows, pillar_cols, mask, tare, plane_stride,
-                      status, (Real)(rate));
+                            uint pillar_rows, uint pillar_cols, global const float* restrict gain,
+                            global const uchar* restrict mask, ulong plane_stride,
+                            global const uchar* restrict status, global float* restrict tare,
+                            global PF_SENSEL* restrict wake, float rate, uint first_row,
+                            uint interval) {
+  const Band band = band_of_rows((pillar_rows - first_row + interval - 1) / interval);
+  const uint step = (uint)get_global_size(0) * PF_LANES;
+  for (uint at = band.first; at < band.end; ++at) {
+    const uint row = first_row + at * interval;
+    for (uint col = (uint)get_global_id(0) * PF_LANES; col < pillar_cols; col += step) {
+      const uint count = min(pillar_cols - col, (uint)PF_LANES);
+      const Bits around = status_around(status, row, col, pillar_rows, pillar_cols);
+      const Mask untouched = !mask_of(around & PF_BITS(PF_STATUS_PRESSED));
+      for (uint side = 0; side < 2; ++side) {
+        const size_t offset = (2 * row + side) * plane_stride + 2 * col;
+        const SenselRow sensels = {raw + (2 * row + side) * row_stride + 2 * col, gain + offset,
+                                   mask + offset, tare + offset, wake + offset};
+        follow_row(sensels, untouched, (Real)(rate), count);
+      }
+    }
   }
 }
 

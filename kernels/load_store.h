@@ -102,28 +102,38 @@ PF_INLINE bool any_lane(Mask mask) {
 #define PF_PREFETCH(row)
 #endif
 
-/* Writes what load_plane reads. */
-PF_INLINE void store_pair(RealPair pair, global float* row, uint count) {
+/* store_<name>(pair, row, count): writes what load_<name> reads; whole values where type has no
+ * fractions. */
 #if PF_LANES == 1
-  row[0] = pair.left;
-  row[1] = pair.right;
+#define PF_DEFINE_STORE(name, type)                                          \
+  PF_INLINE void store_##name(RealPair pair, global type* row, uint count) { \
+    row[0] = (type)pair.left;                                                \
+    row[1] = (type)pair.right;                                               \
+  }
 #else
-  PF_LANE_TYPE(float) low, high;
-  low.even = pair.left.lo;
-  low.odd = pair.right.lo;
-  high.even = pair.left.hi;
-  high.odd = pair.right.hi;
-  if (count == PF_LANES) {
-    PF_VSTORE(low, 0, row);
-    PF_VSTORE(high, 1, row);
-  } else {
-    float values[2 * PF_LANES];
-    PF_VSTORE(low, 0, values);
-    PF_VSTORE(high, 1, values);
-    for (uint i = 0; i < 2 * count; ++i) row[i] = values[i];
+#define PF_DEFINE_STORE(name, type)                                                          \
+  PF_INLINE void store_##name(RealPair pair, global type* row, uint count) {                 \
+    const PF_LANE_TYPE(type) left = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.left);   \
+    const PF_LANE_TYPE(type) right = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.right); \
+    PF_LANE_TYPE(type) low, high;                                                            \
+    low.even = left.lo;                                                                      \
+    low.odd = right.lo;                                                                      \
+    high.even = left.hi;                                                                     \
+    high.odd = right.hi;                                                                     \
+    if (count == PF_LANES) {                                                                 \
+      PF_VSTORE(low, 0, row);                                                                \
+      PF_VSTORE(high, 1, row);                                                               \
+    } else {                                                                                 \
+      type values[2 * PF_LANES];                                                             \
+      PF_VSTORE(low, 0, values);                                                             \
+      PF_VSTORE(high, 1, values);                                                            \
+      for (uint i = 0; i < 2 * count; ++i) row[i] = values[i];                               \
+    }                                                                                        \
   }
 #endif
-}
+
+PF_DEFINE_STORE(pair, float)
+PF_DEFINE_STORE(readings, PF_SENSEL)
 
 /* Writes the first `count` lanes. */
 PF_INLINE void store_plane(Real value, global float* plane, uint count) {

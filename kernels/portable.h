@@ -18,8 +18,9 @@
  * What may stand in kernels/maths is what means the same in all three: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; choices written c ? x : y with both sides of lane
  * type; structs passed by value;
- * + - * /, comparisons, fabs, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction: the
- * device and a host built with -ffp-contract=off then agree bit for bit in all but the last six.
+ * + - * /, comparisons, fabs, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction:
+ * the device and a host built with -ffp-contract=off then agree bit for bit in all but the last
+ * six.
  */
 #ifndef __cplusplus /* OpenCL C */
 
@@ -65,6 +66,7 @@ using std::atan;
 using std::atan2;
 using std::cos;
 using std::fabs;
+using std::floor;
 using std::hypot;
 using std::pow;
 using std::sin;

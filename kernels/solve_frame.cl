@@ -19,6 +19,8 @@
  *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: uncertainty is written
  *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from its plane instead
  *   PF_BASELINE                     stage: follow_baseline.cl
+ *   PF_SKIP_SILENT                  silent blocks are left as they are: silence.h
+ *   PF_WAKE_PLANE or PF_WAKE        readings that wake a sensel, each its own or one for all
  *
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
 
@@ -45,6 +47,7 @@ typedef struct {
   global const PF_SENSEL* raw;
   size_t row_stride;
   Planes planes;
+  global const PF_SENSEL* wake; /* [rows, stride of the planes], or null */
 } Input;
 
 typedef struct {
@@ -64,6 +67,7 @@ typedef struct {
   global float* phi_high;
   global float* magnitude_low;
   global float* magnitude_high;
+  global uchar* silent; /* of each block: its results are those of silence; or null */
 } Output;
 
 /* Solves `count` pillars of a row. `raw` is the sensel at their upper left, `offset` its place in
@@ -115,6 +119,20 @@ PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* r
 #endif
 }
 
+/* Whether a block's results are those of silence already; if not, notes what they are now to be. */
+PF_INLINE bool may_skip(Input input, global uchar* silent_block, global const PF_SENSEL* raw,
+                        size_t offset, uint count) {
+#ifdef PF_SKIP_SILENT
+  const bool was_silent = *silent_block;
+  const bool silent = count == PF_LANES &&
+                      is_silent(raw, input.row_stride, input.wake + offset, input.planes.stride);
+  if (silent != was_silent) *silent_block = silent;
+  return silent && was_silent;
+#else
+  return false;
+#endif
+}
+
 /* Solves the blocks of a pillar row that are this work-item's. Blocks begin where a result is on a
  * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
  * moved into the row, and solve again what their neighbour solves as well. */
@@ -124,13 +142,19 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
   const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
   const uint count = min(pillar_cols, (uint)PF_LANES);
   const uint last_col = pillar_cols - count;
-  global const PF_SENSEL* const raw = input.raw + 2 * row * input.row_stride;
-  const size_t offset = 2 * row * input.planes.stride;
+  const size_t stride = input.row_stride;
+  const size_t first_offset = 2 * row * input.planes.stride;
+  global const PF_SENSEL* const first_raw = input.raw + 2 * row * stride;
+  global uchar* const silent_blocks = output.silent + (size_t)row * blocks_of_row(pillar_cols);
   for (uint block = (uint)get_global_id(0); block < blocks; block += (uint)get_global_size(0)) {
     const uint col = min(max(block * PF_LANES, skew) - skew, last_col);
-    prefetch_sensels(raw + 2 * input.row_stride + 2 * col, input.row_stride, input.planes,
-                     offset + 2 * input.planes.stride + 2 * col);
-    solve_block(input, output, raw + 2 * col, offset + 2 * col, first_index + col, count);
+    global const PF_SENSEL* const raw = first_raw + 2 * col;
+    const size_t offset = first_offset + 2 * col;
+    PF_PREFETCH(raw + 2 * stride);
+    PF_PREFETCH(raw + 3 * stride);
+    if (may_skip(input, silent_blocks + block, raw, offset, count)) continue;
+    prefetch_planes(input.planes, offset + 2 * input.planes.stride);
+    solve_block(input, output, raw, offset, first_index + col, count);
   }
 }
 
@@ -138,13 +162,15 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
  * band among get_global_size(1).
  *
  * raw           readings, `row_stride` apart from one row of sensels to the next
- * tare .. noise calibration planes [rows, plane_stride], or null
+ * tare .. wake  calibration planes [rows, plane_stride], or null
+ * silent        [pillar_rows, blocks_of_row(pillar_cols)], zero at first, or null
  * shear_x ..    results [pillar_rows, pillar_cols]; those from magnitude on may be null */
 kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, uint pillar_rows,
                         uint pillar_cols, global const float* restrict tare,
                         global const float* restrict gain, global const float* restrict dead_zone,
                         global const uchar* restrict mask, global const float* restrict noise,
-                        ulong plane_stride, global float* restrict shear_x,
+                        global const PF_SENSEL* restrict wake, ulong plane_stride,
+                        global uchar* restrict silent, global float* restrict shear_x,
                         global float* restrict shear_y, global float* restrict normal,
                         global uchar* restrict status, global float* restrict magnitude,
                         global float* restrict theta, global float* restrict phi,
@@ -154,11 +180,11 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, 
                         global float* restrict phi_high, global float* restrict magnitude_low,
                         global float* restrict magnitude_high) {
   const Planes planes = {tare, gain, dead_zone, mask, noise, plane_stride};
-  const Input input = {raw, row_stride, planes};
-  const Output output = {shear_x,       shear_y,    normal,      status,      magnitude,
-                         theta,         phi,        deviation_x, deviation_y, deviation_normal,
-                         theta_low,     theta_high, phi_low,     phi_high,    magnitude_low,
-                         magnitude_high};
+  const Input input = {raw, row_stride, planes, wake};
+  const Output output = {shear_x,        shear_y,    normal,      status,      magnitude,
+                         theta,          phi,        deviation_x, deviation_y, deviation_normal,
+                         theta_low,      theta_high, phi_low,     phi_high,    magnitude_low,
+                         magnitude_high, silent};
   const Band band = band_of_rows(pillar_rows);
   for (uint row = band.first; row < band.end; ++row) solve_row(input, output, row, pillar_cols);
 }

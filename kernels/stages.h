@@ -111,12 +111,10 @@ PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t
 }
 #endif
 
-/* Prefetches both rows of sensels under a block, and what calibrates them. Processors follow a row
- * by themselves, but lose it at the end of a page; a row ahead they are late for none. */
-PF_INLINE void prefetch_sensels(global const PF_SENSEL* raw, size_t row_stride, Planes planes,
-                                size_t offset) {
+/* Prefetches what calibrates both rows of sensels under a block. Processors follow a row by
+ * themselves, but lose it at the end of a page; a row ahead they are late for none. */
+PF_INLINE void prefetch_planes(Planes planes, size_t offset) {
   for (uint row = 0; row < 2; ++row) {
-    PF_PREFETCH(raw + row * row_stride);
 #ifdef PF_TARE
     PF_PREFETCH(planes.tare + offset + row * planes.stride);
 #endif
@@ -148,3 +146,6 @@ PF_INLINE Band band_of_rows(uint rows) {
   const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
   return result;
 }
+
+/* Blocks of a row of pillars at most, wherever it begins. */
+PF_INLINE uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }

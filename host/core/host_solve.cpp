@@ -97,10 +97,13 @@ bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
 
 }  // namespace
 
-void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces) {
+void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces,
+                             std::uint64_t index) {
   const SenselReader sensel(plan, frame);
-  const auto rate = static_cast<float>(plan.baseline_rate.value_or(0));
+  const auto rate = static_cast<float>(baseline_turn_rate(plan));
+  const auto interval = static_cast<std::uint64_t>(plan.baseline_interval);
   for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
+    if (row / 2 % interval != index % interval) continue;
     for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
       const bool untouched = !is_touched(forces, row / 2, col / 2);
       float& tare = plan.calibration.tare[row * frame.cols + col];

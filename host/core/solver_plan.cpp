@@ -31,6 +31,8 @@ double mean_noise(const Calibration& calibration) {
   return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
 }
 
+constexpr int kMaxBaselineInterval = 1024;
+
 }  // namespace
 
 void set_solver(SolverPlan& plan, const Scene& scene) {
@@ -57,6 +59,10 @@ void check(const SolverPlan& plan, std::string_view where) {
     throw Error(where, fmt::format("baseline_rate is {}", *plan.baseline_rate),
                 "it must lie in (0, 1]");
   }
+  if (plan.baseline_interval < 1 || plan.baseline_interval > kMaxBaselineInterval) {
+    throw Error(where, fmt::format("baseline_interval is {}", plan.baseline_interval),
+                fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
+  }
   if (!plan.uncertainty) return;
   if (plan.estimator != Estimator::direct) {
     throw Error(where, "the paper's estimator has no uncertainty", "use the direct estimator");
@@ -69,6 +75,12 @@ void check(const SolverPlan& plan, std::string_view where) {
 
 double baseline_rate(double time_constant_s, double frame_interval_s) {
   return -std::expm1(-frame_interval_s / time_constant_s);
+}
+
+double baseline_turn_rate(const SolverPlan& plan) {
+  const double rate = plan.baseline_rate.value_or(0);
+  if (plan.baseline_interval == 1) return rate;
+  return -std::expm1(plan.baseline_interval * std::log1p(-rate));
 }
 
 double reading_noise(const SolverPlan& plan) {

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/force_scale.h"
+#include "core/wake_levels.h"
 #include "device/kernel_files.h"
 #include "pillarfield/processor.h"
 
@@ -73,6 +74,23 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
   return all;
 }
 
+/// What skipping silent blocks needs to know.
+std::vector<Definition> silence_definitions(const SolverPlan& plan) {
+  const WakeRange range = wake_range(plan);
+  std::vector<Definition> all = {{"PF_SKIP_SILENT", "", nullptr}};
+  if (has_wake_plane(plan)) {
+    all.push_back({"PF_WAKE_PLANE", "", nullptr});
+  } else {
+    all.push_back({"PF_WAKE", hex_float(wake_levels(plan).front()), nullptr});
+  }
+  all.push_back({"PF_WAKE_THRESHOLD", hex_float(range.threshold), nullptr});
+  all.push_back({"PF_WAKE_STEP", hex_float(range.step), nullptr});
+  all.push_back({"PF_WAKE_LOWEST", hex_float(range.lowest), nullptr});
+  all.push_back({"PF_WAKE_HIGHEST", hex_float(range.highest), nullptr});
+  all.push_back({"PF_WAKE_NEVER", hex_float(range.never), nullptr});
+  return all;
+}
+
 }  // namespace
 
 std::vector<std::string> kernel_stages(const SolverPlan& plan) {
@@ -85,11 +103,15 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   return stages;
 }
 
-std::string kernel_source(const SolverPlan& plan, int lanes) {
+std::string kernel_source(const SolverPlan& plan, int lanes, const SpeedPaths& paths) {
   std::string source = fmt::format("#define PF_LANES {}\n", lanes);
-  for (const Definition& definition : definitions(plan)) {
-    source += fmt::format("#define {} {}\n", definition.macro, definition.value);
-  }
+  const auto define = [&](const std::vector<Definition>& all) {
+    for (const Definition& definition : all) {
+      source += fmt::format("#define {} {}\n", definition.macro, definition.value);
+    }
+  };
+  define(definitions(plan));
+  if (paths.skip_silent) define(silence_definitions(plan));
   for (const KernelFile& file : kernel_files()) {
     source += fmt::format("#line 1 \"{}\"\n", file.name);
     source += file.text;

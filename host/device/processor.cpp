@@ -33,15 +33,6 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
-/// The calibration of a plan, with a tare where there is one to follow.
-Calibration calibration_of(const SolverPlan& plan) {
-  Calibration calibration = plan.calibration;
-  if (plan.baseline_rate && calibration.tare.empty()) {
-    calibration.tare.assign(plan.skin.sensels(), 0.0F);
-  }
-  return calibration;
-}
-
 }  // namespace
 
 struct Processor::State {
@@ -50,17 +41,21 @@ struct Processor::State {
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
         shares_memory(decide_sharing(options.memory, opened)),
-        calibration(opened.state().context, calibration_of(wanted)) {
+        calibration(opened.state().context, wanted, options.paths) {
     baseline.follows = wanted.baseline_rate.has_value();
-    const int lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
-    const cl::Program program = device.state().program(kernel_source(wanted, lanes));
+    baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
+    SlotSettings settings;
+    settings.lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
+    settings.program = device.state().program(kernel_source(wanted, settings.lanes, options.paths));
+    settings.shares_memory = shares_memory;
+    settings.paths = options.paths;
     slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
     for (int i = 0; i < options.frames_in_flight; ++i) {
-      slots.emplace_back(device.state(), wanted, lanes, program, calibration, shares_memory,
-                         baseline);
+      slots.emplace_back(device.state(), wanted, settings, calibration, baseline);
     }
     warm_up();
-    baseline.rate = static_cast<float>(wanted.baseline_rate.value_or(0));
+    baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
+    baseline.frame = 0;
   }
 
   /// Solves an empty frame: drivers finish compiling and make their buffers at the first launch,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/wake_levels.h"
+
 namespace pillarfield {
 namespace {
 
@@ -11,6 +13,31 @@ cl::Buffer plane_buffer(const cl::Context& context, const std::vector<Value>& pl
   if (plane.empty()) return {};
   void* const values = const_cast<Value*>(plane.data());  // Only read, but OpenCL wants it so.
   return {context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, plane.size() * sizeof(Value), values};
+}
+
+/// Levels as readings of the plan's type.
+template <class Reading>
+std::vector<Reading> as_readings(const std::vector<float>& levels) {
+  return {levels.begin(), levels.end()};
+}
+
+cl::Buffer wake_buffer(const cl::Context& context, const SolverPlan& plan) {
+  const std::vector<float> levels = wake_levels(plan);
+  switch (plan.sensel_type) {
+    case SenselType::u8:
+      return plane_buffer(context, as_readings<std::uint8_t>(levels));
+    case SenselType::u16:
+      return plane_buffer(context, as_readings<std::uint16_t>(levels));
+    case SenselType::f32:
+      break;
+  }
+  return plane_buffer(context, levels);
+}
+
+/// Marks of blocks, none of them silent.
+cl::Buffer silent_buffer(const cl::Context& context, const SolverPlan& plan, int lanes) {
+  const std::size_t blocks = plan.skin.pillar_cols() / static_cast<std::size_t>(lanes) + 2;
+  return plane_buffer(context, std::vector<std::uint8_t>(plan.skin.pillar_rows() * blocks));
 }
 
 /// Work-items, and their grouping. Where a work-item solves several pillars at once it takes a band
@@ -35,49 +62,62 @@ struct Launch {
 
 constexpr cl_uint kRawArgument = 0;
 constexpr cl_uint kStrideArgument = 1;
-constexpr cl_uint kRateArgument = 8;  // of follow_baseline
+constexpr cl_uint kRateArgument = 10;  // of follow_baseline
+constexpr cl_uint kFirstRowArgument = 11;
 
 }  // namespace
 
-CalibrationBuffers::CalibrationBuffers(const cl::Context& context, const Calibration& calibration)
-    : tare(plane_buffer(context, calibration.tare)),
-      gain(plane_buffer(context, calibration.gain)),
-      dead_zone(plane_buffer(context, calibration.dead_zone)),
-      mask(plane_buffer(context, calibration.mask)),
-      noise(plane_buffer(context, calibration.noise)) {}
+CalibrationBuffers::CalibrationBuffers(const cl::Context& context, const SolverPlan& plan,
+                                       const SpeedPaths& paths)
+    : tare(plane_buffer(context, plan.calibration.tare)),
+      gain(plane_buffer(context, plan.calibration.gain)),
+      dead_zone(plane_buffer(context, plan.calibration.dead_zone)),
+      mask(plane_buffer(context, plan.calibration.mask)),
+      noise(plane_buffer(context, plan.calibration.noise)) {
+  if (plan.baseline_rate && plan.calibration.tare.empty()) {
+    tare = plane_buffer(context, std::vector<float>(plan.skin.sensels()));
+  }
+  if (paths.skip_silent && has_wake_plane(plan)) wake = wake_buffer(context, plan);
+}
 
-Slot::Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
-           const CalibrationBuffers& calibration, bool shares_memory, Baseline& baseline)
+Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
+           const CalibrationBuffers& calibration, Baseline& baseline)
     : rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
-      kernel_(program, "solve_frame"),
+      kernel_(settings.program, "solve_frame"),
       baseline_(&baseline) {
-  const Launch launch(rows_, cols_, lanes, device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  const Launch launch(rows_, cols_, settings.lanes,
+                      device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = launch.global;
   local_ = launch.local;
-  memory_ = shares_memory ? shared_memory(device.context, plan)
-                          : staged_memory(device.context, queue_, plan);
+  memory_ = settings.shares_memory ? shared_memory(device.context, plan)
+                                   : staged_memory(device.context, queue_, plan);
+  if (settings.paths.skip_silent) silent_ = silent_buffer(device.context, plan, settings.lanes);
   cl_uint argument = kStrideArgument + 1;
   kernel_.setArg(argument++, cl_uint{rows_});
   kernel_.setArg(argument++, cl_uint{cols_});
   for (const cl::Buffer* plane : {&calibration.tare, &calibration.gain, &calibration.dead_zone,
-                                  &calibration.mask, &calibration.noise}) {
+                                  &calibration.mask, &calibration.noise, &calibration.wake}) {
     kernel_.setArg(argument++, *plane);
   }
   kernel_.setArg(argument++, cl_ulong{plan.skin.cols});
+  kernel_.setArg(argument++, silent_);
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
     kernel_.setArg(argument++, memory_->buffer(plane));
   }
   if (!baseline.follows) return;
-  follow_ = cl::Kernel(program, "follow_baseline");
+  follow_ = cl::Kernel(settings.program, "follow_baseline");
   argument = kStrideArgument + 1;
   follow_.setArg(argument++, cl_uint{rows_});
   follow_.setArg(argument++, cl_uint{cols_});
+  follow_.setArg(argument++, calibration.gain);
   follow_.setArg(argument++, calibration.mask);
   follow_.setArg(argument++, cl_ulong{plan.skin.cols});
   follow_.setArg(argument++, memory_->buffer(kStatus));
   follow_.setArg(argument++, calibration.tare);
+  follow_.setArg(argument++, calibration.wake);
+  follow_.setArg(kFirstRowArgument + 1, baseline.interval);
 }
 
 Slot::~Slot() {
@@ -112,6 +152,8 @@ void Slot::launch_in_order() {
   follow_.setArg(kRawArgument, frame_);
   follow_.setArg(kStrideArgument, row_stride_);
   follow_.setArg(kRateArgument, baseline_->rate);
+  follow_.setArg(kFirstRowArgument, static_cast<cl_uint>(baseline_->frame % baseline_->interval));
+  ++baseline_->frame;
   queue_.enqueueNDRangeKernel(follow_, cl::NullRange, global_, local_, nullptr, &baseline_->left);
 }
 

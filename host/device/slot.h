@@ -10,28 +10,39 @@ namespace pillarfield {
 
 /// The calibration planes of a plan on the device; null where the plan has none.
 struct CalibrationBuffers {
-  CalibrationBuffers(const cl::Context& context, const Calibration& calibration);
+  CalibrationBuffers(const cl::Context& context, const SolverPlan& plan, const SpeedPaths& paths);
 
   cl::Buffer tare;
   cl::Buffer gain;
   cl::Buffer dead_zone;
   cl::Buffer mask;
   cl::Buffer noise;
+  cl::Buffer wake;  ///< readings; follows the tare
 };
 
 /// How the tare follows the readings from frame to frame, where a plan asks for it. Each frame
 /// needs the tare that the one before left, so frames in flight wait for each other.
 struct Baseline {
   bool follows = false;
-  float rate = 0;
-  cl::Event left;  ///< the last frame's tare is written; null before the first
+  float rate = 0;           ///< of a row whose turn it is
+  cl_uint interval = 1;     ///< frames from one turn of a pillar row to the next
+  std::uint64_t frame = 0;  ///< counts those submitted
+  cl::Event left;           ///< the last frame's tare is written; null before the first
+};
+
+/// What the slots of a processor have in common.
+struct SlotSettings {
+  cl::Program program;
+  int lanes = 1;
+  bool shares_memory = false;
+  SpeedPaths paths;
 };
 
 /// One frame in flight: a queue of its own, a kernel with its arguments, and memory.
 class Slot {
  public:
-  Slot(Device::State& device, const SolverPlan& plan, int lanes, const cl::Program& program,
-       const CalibrationBuffers& calibration, bool shares_memory, Baseline& baseline);
+  Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
+       const CalibrationBuffers& calibration, Baseline& baseline);
   ~Slot();
   Slot(Slot&&) noexcept = default;
   Slot& operator=(Slot&&) noexcept = default;
@@ -56,7 +67,8 @@ class Slot {
   cl::Kernel kernel_;
   cl::Kernel follow_;  ///< null where the baseline stays
   Baseline* baseline_;
-  cl::Buffer frame_;  ///< keeps the frame in flight alive
+  cl::Buffer silent_;  ///< blocks whose results are those of silence; null where none is skipped
+  cl::Buffer frame_;   ///< keeps the frame in flight alive
   cl_ulong row_stride_ = 0;
   std::unique_ptr<SlotMemory> memory_;
 };

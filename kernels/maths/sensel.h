@@ -87,6 +87,17 @@ static inline Sensel classify(Sensel sensel, Real threshold) {
   return sensel;
 }
 
+/* A level such that every reading below it, in steps of `step` (1: whole readings, 0: any), is
+ * silent after tare and gain: the highest but for rounding. It is found by the arithmetic of the
+ * stages, which only rises with the reading. `lowest` where numbers are too large to tell. */
+static inline Real wake_level(Real tare, Real gain, Real threshold, Real step, Real lowest) {
+  const Real silent = floor(tare + threshold / gain);
+  const Real below = silent - PF_REAL(1.0);
+  const Mask is_silent = (silent - tare) * gain <= threshold;
+  const Mask is_silent_below = (below - tare) * gain <= threshold;
+  return is_silent ? silent + step : (is_silent_below ? below + step : lowest);
+}
+
 /* Gives back the `dead_zone` counts that a sensel swallows before it answers, and that the silence
  * of a lifted one can hide as well. */
 static inline Sensel fill_dead_zone(Sensel sensel, Real dead_zone) {

@@ -212,7 +212,7 @@ TEST_P(FurtherStages, BaselineFollowsAsOnTheHost) {
       for (std::size_t i = first; i < first + 3; ++i) {
         const ForceField expected = solve_on_host(plan, frames[i].view());
         expect_same_bits(processor.receive(), expected.view());
-        follow_baseline_on_host(plan, frames[i].view(), expected);
+        follow_baseline_on_host(plan, frames[i].view(), expected, i);
       }
     }
     expect_same_bits(processor.tare(), plan.calibration.tare, "tare");

@@ -50,8 +50,16 @@ class Device {
 /// before CPUs. Throws Error that lists every device and why it was passed over.
 [[nodiscard]] Device open_device(std::string_view index_or_name = {});
 
+/// Ways to the same results, bit for bit, that differ in speed.
+struct SpeedPaths {
+  /// Blocks of pillars whose sensels are all silent, and were so when their slot was last written,
+  /// are not solved again.
+  bool skip_silent = true;
+};
+
 /// The OpenCL C that is compiled for a plan on a device with so many lanes, complete.
-[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int lanes);
+[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int lanes,
+                                        const SpeedPaths& paths = {});
 
 /// The stages that kernel_source holds, in their order, one name each.
 [[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
@@ -70,6 +78,7 @@ class Processor {
     Memory memory = Memory::automatic;
     int frames_in_flight = 2;  ///< 1..64
     int lanes = 0;  ///< pillars that a work-item solves at once: 1, 2, 4, 8 or 16; 0: DeviceInfo's
+    SpeedPaths paths = {};
   };
 
   /// Compiles (or finds compiled) the kernel and makes all buffers. Throws Error on a plan out of

@@ -36,6 +36,10 @@ struct SolverPlan {
   /// each frame, (0, 1]; unset: the tare stays. Untouched is a sensel whose pillar and the eight
   /// around it have no usable and no saturated sensel in that frame.
   std::optional<double> baseline_rate;
+  /// Frames from one turn of a pillar row to the next, 1 to 1024: after each frame the tare follows
+  /// in one row of so many, by what that many frames would have made of baseline_rate, and at that
+  /// share of the cost.
+  int baseline_interval = 1;
   bool angles = false;       ///< also magnitude, theta and phi
   bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, and `direct`
 };
@@ -47,6 +51,10 @@ void check(const SolverPlan& plan, std::string_view where);
 /// The baseline_rate with which a tare follows a drift with a time constant, both in seconds and
 /// above zero: 1 − exp(−interval / time constant).
 [[nodiscard]] double baseline_rate(double time_constant_s, double frame_interval_s);
+
+/// What the tare takes over when its pillar row has its turn: 1 − (1 − baseline_rate)^interval.
+/// Zero where the tare stays.
+[[nodiscard]] double baseline_turn_rate(const SolverPlan& plan);
 
 /// Standard deviation of a raw reading of sensels without a noise plane, counts: that of the plan,
 /// and of rounding to whole counts, 1/√12, where the sensel type has no fractions.

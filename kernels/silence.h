@@ -1,0 +1,53 @@
+/* Blocks that need no solving: where all readings are below the level that wakes their sensel,
+ * forces and status do not depend on them, so a block that was silent when its place in the results
+ * was last written has them there already (docs/performance_decisions.md). Stage PF_SKIP_SILENT.
+ *
+ * The levels are a plane of readings where sensels differ (PF_WAKE_PLANE), else PF_WAKE. A masked
+ * sensel never wakes; a reading at the end of its type's range, NaN and absurd ones always do. */
+#ifdef PF_SKIP_SILENT
+
+/* The level of sensels with these tares and gains; `good` is zero where one is masked. */
+PF_INLINE Real level_of(Real tare, Real gain, Real good) {
+  const Real lowest = (Real)(PF_WAKE_LOWEST);
+  const Real highest = (Real)(PF_WAKE_HIGHEST);
+  const Real level =
+      wake_level(tare, gain, (Real)(PF_WAKE_THRESHOLD), (Real)(PF_WAKE_STEP), lowest);
+  const Real bounded = level < lowest ? lowest : (level < highest ? level : highest);
+  return good == (Real)(0.0f) ? (Real)(PF_WAKE_NEVER) : bounded;
+}
+
+#ifdef PF_LARGEST_READING
+#define PF_IS_AWAKE(reading, level) (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
+#else
+#define PF_IS_AWAKE(reading, level) ((reading) >= (level))
+#endif
+
+#if PF_LANES > 1
+/* All bits of the lanes in which a sensel of one row is awake, or-ed over both sides. */
+#define PF_AWAKE_LANES(raw, level_low, level_high) \
+  (PF_IS_AWAKE(PF_VLOAD(0, raw), level_low) | PF_IS_AWAKE(PF_VLOAD(1, raw), level_high))
+#endif
+
+/* Whether no sensel under PF_LANES pillars is awake. `wake` is the level of the first one. */
+PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
+                         global const PF_SENSEL* wake, size_t wake_stride) {
+#ifdef PF_WAKE_PLANE
+#define PF_LEVEL(i, row) (wake + row * wake_stride)[i]
+#else
+#define PF_LEVEL(i, row) (PF_SENSEL)(PF_WAKE)
+#endif
+#if PF_LANES == 1
+  return !(PF_IS_AWAKE(raw[0], PF_LEVEL(0, 0)) || PF_IS_AWAKE(raw[1], PF_LEVEL(1, 0)) ||
+           PF_IS_AWAKE(raw[row_stride], PF_LEVEL(0, 1)) ||
+           PF_IS_AWAKE(raw[row_stride + 1], PF_LEVEL(1, 1)));
+#else
+#ifdef PF_WAKE_PLANE
+#undef PF_LEVEL
+#define PF_LEVEL(i, row) PF_VLOAD(i, wake + row * wake_stride)
+#endif
+  return !any(PF_AWAKE_LANES(raw, PF_LEVEL(0, 0), PF_LEVEL(1, 0)) |
+              PF_AWAKE_LANES(raw + row_stride, PF_LEVEL(0, 1), PF_LEVEL(1, 1)));
+#endif
+}
+
+#endif
