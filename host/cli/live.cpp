@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
+#include <span>
 
 #include "cli/command.h"
 #include "cli/device_options.h"
@@ -25,6 +28,7 @@ struct LiveOptions {
   double seconds = 10;
   std::optional<double> deadline_ms;
   std::uint64_t backlog_frames = 4;
+  int frames_in_flight = 2;
   double spin_us = 0;
   std::uint64_t memory_limit_mib = 1024;
   bool realtime = false;
@@ -75,11 +79,10 @@ SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
 /// Frames in memory on their way through a processor, over and over.
 class Replay {
  public:
-  static constexpr int kFramesInFlight = 2;
+  Replay(const LiveFrames& live, Processor& processor, int frames_in_flight)
+      : live_(live), processor_(processor), capacity_(frames_in_flight) {}
 
-  Replay(const LiveFrames& live, Processor& processor) : live_(live), processor_(processor) {}
-
-  [[nodiscard]] static int capacity() { return kFramesInFlight; }
+  [[nodiscard]] int capacity() const { return capacity_; }
   [[nodiscard]] int in_flight() const { return processor_.in_flight(); }
   void submit(std::uint64_t frame) {
     processor_.submit(live_.frames[frame % live_.frames.size()].view());
@@ -88,8 +91,8 @@ class Replay {
 
   /// Solves a frame in every slot: the first result of a slot takes its memory page by page.
   void warm_up() {
-    for (std::uint64_t frame = 0; frame < kFramesInFlight; ++frame) {
-      submit(frame);
+    for (int slot = 0; slot < capacity_; ++slot) {
+      submit(0);
       receive();
     }
   }
@@ -100,6 +103,7 @@ class Replay {
  private:
   const LiveFrames& live_;
   Processor& processor_;
+  int capacity_;
   std::span<const std::uint8_t> status_;
 };
 
@@ -164,8 +168,9 @@ void live(const LiveOptions& options) {
   if (options.realtime) report.realtime.emplace().scheduling_refused = ask_for_realtime();
   Processor processor(
       open_device(options.device.name), plan,
-      {.memory = options.device.memory, .frames_in_flight = Replay::kFramesInFlight});
-  Replay replay(frames, processor);
+      {.memory = options.device.memory, .frames_in_flight = options.frames_in_flight});
+  Replay replay(frames, processor, options.frames_in_flight);
+  report.frames_in_flight = options.frames_in_flight;
   LiveRun run(report.schedule);
   replay.warm_up();
   if (report.realtime) report.realtime->memory_refused = ask_for_locked_memory();
@@ -192,6 +197,10 @@ void add_run_options(CLI::App& command, LiveOptions& options) {
       .add_option("--backlog", options.backlog_frames,
                   "Drop a frame whose turn comes more than so many frames late [4]")
       ->check(CLI::Range(0U, 1000U));
+  command
+      .add_option("--in-flight", options.frames_in_flight,
+                  "While the solver is late, start so many frames before the first is done [2]")
+      ->check(CLI::Range(1, static_cast<int>(LiveRun::kMaxInFlight)));
   command.add_option("--spin", options.spin_us,
                      "Of each wait, spend the last so many microseconds spinning [0]");
   command

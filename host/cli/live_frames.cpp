@@ -13,7 +13,7 @@
 namespace pillarfield::cli {
 namespace {
 
-constexpr std::uint64_t kMiB = 1024 * 1024;
+constexpr std::uint64_t kMiB = 1U << 20U;
 
 struct Bounds {
   std::string file;

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -122,6 +123,7 @@ void print_live_json(const LiveReport& report, const SolverPlan& plan, const Pro
                      {"rate_hz", report.schedule.rate_hz},
                      {"deadline_ms", milliseconds(report.deadline)},
                      {"backlog_frames", report.schedule.backlog_frames},
+                     {"frames_in_flight", report.frames_in_flight},
                      {"spin_us", microseconds(report.schedule.spin)},
                      {"realtime", realtime_json(report.realtime)},
                      {"interrupted", result.interrupted},

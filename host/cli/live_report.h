@@ -22,6 +22,7 @@ struct LiveReport {
   std::string source;
   LiveSchedule schedule;
   Nanoseconds deadline{0};
+  int frames_in_flight = 1;
   std::uint64_t frames_loaded = 0;
   std::uint64_t frames_in_source = 0;
   std::optional<RealtimeAnswer> realtime;  ///< unset where it was not asked for

@@ -83,7 +83,7 @@ class FakePipeline {
   std::vector<Nanoseconds> done_at_;
 };
 
-constexpr auto never = [] { return false; };
+constexpr auto kNever = [] { return false; };
 
 /// A run of 1 kHz, each frame taking 400 microseconds unless a test says otherwise.
 class LiveRunTest : public testing::Test {
@@ -100,7 +100,7 @@ class LiveRunTest : public testing::Test {
     run.run(clock_, pipeline_, stop);
     return run.result();
   }
-  LiveResult run() { return run(never); }
+  LiveResult run() { return run(kNever); }
 
   LiveSchedule schedule_;
   FakeClock clock_;
@@ -237,7 +237,7 @@ TEST(LiveRun, AccountsForEveryFrameOfRandomRuns) {
     }
     const Nanoseconds start = clock.now();
     LiveRun run(schedule);
-    run.run(clock, pipeline, never);
+    run.run(clock, pipeline, kNever);
     const LiveResult& result = run.result();
     ASSERT_EQ(result.scheduled(), schedule.frames);
     ASSERT_EQ(result.solved(), pipeline.submitted.size());
@@ -257,7 +257,7 @@ TEST_F(LiveRunTest, TakesNoMemory) {
   pipeline_.durations[30] = milliseconds(9);
   LiveRun run(schedule_);
   const std::uint64_t before = cli_test::allocations();
-  run.run(clock_, pipeline_, never);
+  run.run(clock_, pipeline_, kNever);
   EXPECT_EQ(cli_test::allocations(), before);
   EXPECT_GT(run.result().dropped, 0);
   const auto something = std::make_unique<int>(1);

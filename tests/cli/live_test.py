@@ -29,11 +29,12 @@ position_mm = [0, 0]
 """
 
 KEYS = ["source", "device", "zero_copy", "estimator", "stages", "pillar_rows", "pillar_cols",
-        "frames_in_source", "frames_loaded", "rate_hz", "deadline_ms", "backlog_frames", "spin_us",
-        "realtime", "interrupted", "scheduled", "solved", "dropped", "missed", "seconds",
-        "achieved_rate_hz", "latency_p50_ms", "latency_p99_ms", "latency_p99_9_ms",
-        "latency_longest_ms", "latency_histogram", "cpu_cores", "voluntary_switches",
-        "involuntary_switches", "minor_page_faults", "major_page_faults", "contact_share"]
+        "frames_in_source", "frames_loaded", "rate_hz", "deadline_ms", "backlog_frames",
+        "frames_in_flight", "spin_us", "realtime", "interrupted", "scheduled", "solved",
+        "dropped", "missed", "seconds", "achieved_rate_hz", "latency_p50_ms", "latency_p99_ms",
+        "latency_p99_9_ms", "latency_longest_ms", "latency_histogram", "cpu_cores",
+        "voluntary_switches", "involuntary_switches", "minor_page_faults", "major_page_faults",
+        "contact_share"]
 
 
 class LiveTest(CommandTest):
@@ -69,6 +70,7 @@ class Run(LiveTest):
         self.assertEqual(report["scheduled"], 100)
         self.assertGreaterEqual(report["seconds"], 0.5)
         self.assertEqual((report["frames_in_source"], report["frames_loaded"]), (6, 6))
+        self.assertEqual((report["frames_in_flight"], report["backlog_frames"]), (2, 4))
         self.assertEqual((report["rate_hz"], report["deadline_ms"]), (200, 5))
         self.assertEqual((report["pillar_rows"], report["pillar_cols"]), (16, 16))
         self.assertFalse(report["interrupted"])
