@@ -73,7 +73,9 @@ SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
   plan.calibration = live.calibration;
   PlanOptions asked = options.plan;
   if (is_scene(options.source) && asked.scene.empty()) asked.scene = options.source;
-  return plan_of(asked, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
+  plan = plan_of(asked, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
+  check(plan, options.source);  // Before frames are loaded, which may take a while.
+  return plan;
 }
 
 /// Frames in memory on their way through a processor, over and over.
@@ -85,7 +87,7 @@ class Replay {
   [[nodiscard]] int capacity() const { return capacity_; }
   [[nodiscard]] int in_flight() const { return processor_.in_flight(); }
   void submit(std::uint64_t frame) {
-    processor_.submit(live_.frames[frame % live_.frames.size()].view());
+    processor_.submit(live_.loaded[frame % live_.loaded.size()].view());
   }
   void receive() { status_ = processor_.receive().status; }
 
@@ -159,11 +161,11 @@ void live(const LiveOptions& options) {
   report.source = options.source;
   report.schedule = schedule_of(options);
   report.deadline = deadline_of(options);
-  const LiveFrames frames = load_live_frames(options.source, report.schedule.frames,
-                                             options.memory_limit_mib << 20U, options.quiet);
-  report.frames_loaded = frames.frames.size();
-  report.frames_in_source = frames.in_source;
+  LiveFrames frames = open_live_frames(options.source);
   const SolverPlan plan = plan_of(options, frames);
+  load(frames, report.schedule.frames, options.memory_limit_mib << 20U, options.quiet);
+  report.frames_in_source = frames.in_source;
+  report.frames_loaded = frames.loaded.size();
   // The device's threads inherit how this one is scheduled; memory is locked once it is there.
   if (options.realtime) report.realtime.emplace().scheduling_refused = ask_for_realtime();
   Processor processor(

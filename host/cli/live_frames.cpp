@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
@@ -15,81 +16,70 @@ namespace {
 
 constexpr std::uint64_t kMiB = 1U << 20U;
 
-struct Bounds {
-  std::string file;
-  std::uint64_t most;
-  std::uint64_t memory_bytes;
-  bool quiet;
-};
-
-std::uint64_t frames_to_load(const LiveFrames& live, const Bounds& bounds) {
-  if (live.in_source == 0) {
-    throw Error(bounds.file, "it has no frames", "give a recording with one at least");
-  }
+std::uint64_t frames_to_load(const LiveFrames& live, std::uint64_t most,
+                             std::uint64_t memory_bytes) {
   const std::uint64_t frame_bytes = live.skin.sensels() * size_of(live.sensel_type);
-  const std::uint64_t fitting = bounds.memory_bytes / frame_bytes;
+  const std::uint64_t fitting = memory_bytes / frame_bytes;
   if (fitting == 0) {
-    throw Error(bounds.file,
+    throw Error(live.file,
                 fmt::format("a frame takes {} bytes, and {} MiB are allowed", frame_bytes,
-                            bounds.memory_bytes / kMiB),
+                            memory_bytes / kMiB),
                 fmt::format("give --memory-limit {}", frame_bytes / kMiB + 1));
   }
-  return std::min({live.in_source, bounds.most, fitting});
+  return std::min({live.in_source, most, fitting});
 }
 
-/// Fills `live.frames`; `fill(index, frame)` makes one.
-template <class Fill>
-void load(LiveFrames& live, const Bounds& bounds, const char* verb, const Fill& fill) {
-  const std::uint64_t frames = frames_to_load(live, bounds);
-  live.frames.reserve(frames);
-  Progress progress(verb, frames, bounds.quiet);
-  for (std::uint64_t index = 0; index < frames; ++index) {
-    if (is_interrupted()) {
-      throw Error(bounds.file, "interrupted before its frames were loaded", "start again");
-    }
-    live.frames.emplace_back(live.sensel_type, live.skin.rows, live.skin.cols);
-    fill(index, live.frames.back());
-    progress.show(index + 1);
+LiveFrames simulated(const std::string& file) {
+  const auto simulator = std::make_shared<const Simulator>(load_scene(file));
+  const Scene& scene = simulator->scene();
+  const auto truth =
+      std::make_shared<ForceField>(scene.skin.pillar_rows(), scene.skin.pillar_cols());
+  return {
+      .file = file,
+      .skin = scene.skin,
+      .sensel_type = simulator->sensel_type(),
+      .calibration = simulator->calibration(),
+      .in_source = scene.frames,
+      .make = [simulator, truth](std::uint64_t index,
+                                 FrameBuffer& frame) { simulator->render(index, frame, *truth); },
+      .loaded = {}};
+}
+
+LiveFrames recorded(const std::string& file) {
+  const std::shared_ptr<FrameSource> source = open_frames(file);
+  for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
+  if (source->frames() == 0) {
+    throw Error(file, "it has no frames", "give a recording with one at least");
   }
-}
-
-LiveFrames simulated(const Bounds& bounds) {
-  const Simulator simulator(load_scene(bounds.file));
-  const Skin& skin = simulator.scene().skin;
-  LiveFrames live = {.skin = skin,
-                     .sensel_type = simulator.sensel_type(),
-                     .calibration = simulator.calibration(),
-                     .frames = {},
-                     .in_source = simulator.scene().frames};
-  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
-  load(live, bounds, "Simulating",
-       [&](std::uint64_t index, FrameBuffer& frame) { simulator.render(index, frame, truth); });
-  return live;
-}
-
-LiveFrames recorded(const Bounds& bounds) {
-  const std::unique_ptr<FrameSource> source = open_frames(bounds.file);
-  for (const std::string& remark : source->remarks()) {
-    fmt::print(stderr, "{}: {}\n", bounds.file, remark);
-  }
-  LiveFrames live = {.skin = source->skin(),
-                     .sensel_type = source->sensel_type(),
-                     .calibration = source->calibration(),
-                     .frames = {},
-                     .in_source = source->frames()};
-  load(live, bounds, "Reading",
-       [&](std::uint64_t index, FrameBuffer& frame) { source->read(index, frame); });
-  return live;
+  return {.file = file,
+          .skin = source->skin(),
+          .sensel_type = source->sensel_type(),
+          .calibration = source->calibration(),
+          .in_source = source->frames(),
+          .make = [source](std::uint64_t index, FrameBuffer& frame) { source->read(index, frame); },
+          .loaded = {}};
 }
 
 }  // namespace
 
 bool is_scene(const std::string& file) { return file.ends_with(".toml"); }
 
-LiveFrames load_live_frames(const std::string& file, std::uint64_t most, std::uint64_t memory_bytes,
-                            bool quiet) {
-  const Bounds bounds = {file, most, memory_bytes, quiet};
-  return is_scene(file) ? simulated(bounds) : recorded(bounds);
+LiveFrames open_live_frames(const std::string& file) {
+  return is_scene(file) ? simulated(file) : recorded(file);
+}
+
+void load(LiveFrames& live, std::uint64_t most, std::uint64_t memory_bytes, bool quiet) {
+  const std::uint64_t frames = frames_to_load(live, most, memory_bytes);
+  live.loaded.reserve(frames);
+  Progress progress(is_scene(live.file) ? "Simulating" : "Reading", frames, quiet);
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    if (is_interrupted()) {
+      throw Error(live.file, "interrupted before its frames were loaded", "start again");
+    }
+    live.loaded.emplace_back(live.sensel_type, live.skin.rows, live.skin.cols);
+    live.make(index, live.loaded.back());
+    progress.show(index + 1);
+  }
 }
 
 }  // namespace pillarfield::cli

@@ -211,6 +211,8 @@ class BadArguments(LiveTest):
     def test_sources_that_cannot_be_read(self):
         self.assert_fails("live", self.folder / "absent.h5", says=["absent.h5"])
         self.assert_fails("live", self.folder / "absent.toml", says=["absent.toml"])
+        self.assert_fails("live", self.scene, "--calibration", self.folder / "none.h5",
+                          says=["none.h5"])
         noise = self.folder / "noise.h5"
         noise.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
         self.assert_fails("live", noise, says=["noise.h5"])
