@@ -23,14 +23,16 @@ void catch_interrupts() {
   std::signal(SIGTERM, note_interrupt);
 }
 
+bool is_interrupted() { return interrupted != 0; }
+
 void stop_if_interrupted(std::uint64_t frames, const std::filesystem::path& output) {
-  if (interrupted == 0) return;
+  if (!is_interrupted()) return;
   throw Error(output.string(), fmt::format("interrupted after {} frames", frames),
               "an HDF5 output keeps them, under this name + \".part\"");
 }
 
 void stop_if_interrupted_before(const std::filesystem::path& output) {
-  if (interrupted == 0) return;
+  if (!is_interrupted()) return;
   throw Error(output.string(), "interrupted before it was written", "start again");
 }
 

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   Work work;
   add_simulate(app, work);
   add_solve(app, work);
+  add_live(app, work);
   add_compare(app, work);
   add_calibrate(app, work);
   add_testbed(app, work);

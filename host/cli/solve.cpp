@@ -4,21 +4,18 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
-#include "cli/choice.h"
 #include "cli/command.h"
 #include "cli/device_options.h"
 #include "cli/interrupt.h"
+#include "cli/plan_options.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
-#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
-#include "pillarfield/scene.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -26,16 +23,7 @@ namespace {
 struct SolveOptions {
   std::string input;
   std::string output;
-  std::string scene;
-  std::string calibration;
-  std::optional<Estimator> estimator;
-  std::vector<std::string> outputs;
-  std::optional<double> threshold_counts;
-  std::optional<double> counts_per_newton;
-  std::optional<double> full_scale_counts;
-  std::optional<double> parity_tolerance_counts;
-  std::optional<double> noise_counts;
-  std::optional<double> baseline_time_s;
+  PlanOptions plan;
   DeviceOptions device;
   bool json = false;
   bool quiet = false;
@@ -47,10 +35,6 @@ struct SolveSummary {
   double seconds_in_all = 0;
   double seconds_in_solver = 0;
 };
-
-bool asks_for(const SolveOptions& options, const char* output) {
-  return std::ranges::find(options.outputs, output) != options.outputs.end();
-}
 
 /// Seconds from one frame to the next; throws where the file does not tell.
 double frame_interval(const SolveOptions& options, FrameSource& source) {
@@ -65,44 +49,14 @@ double frame_interval(const SolveOptions& options, FrameSource& source) {
               "solve without following the baseline");
 }
 
-/// The plan that the file asks for, then the scene, the calibration, and the command line.
+/// The plan that the file asks for, and after it the command line.
 SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
   plan.sensel_type = source.sensel_type();
   plan.calibration = source.calibration();
-  std::optional<double> baseline_time_s;
-  if (!options.scene.empty()) {
-    const Scene scene = load_scene(options.scene);
-    plan.skin.counts_per_newton = scene.skin.counts_per_newton;
-    plan.skin.threshold_counts = scene.skin.threshold_counts;
-    plan.skin.full_scale_counts = scene.skin.full_scale_counts;
-    plan.skin.power_law = scene.skin.power_law;
-    set_solver(plan, scene);
-    baseline_time_s = scene.baseline_time_s;
-  }
-  if (!options.calibration.empty()) {
-    const SkinCalibration calibration = read_calibration_file(options.calibration);
-    require_fitting(calibration, plan.skin, options.input);
-    apply(calibration, plan.skin, plan.calibration);
-  }
-  if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
-  if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
-  if (options.full_scale_counts) plan.skin.full_scale_counts = options.full_scale_counts;
-  if (options.parity_tolerance_counts) {
-    plan.parity_tolerance_counts = options.parity_tolerance_counts;
-  }
-  if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
-  if (baseline_time_s) {
-    plan.baseline_rate = baseline_rate(*baseline_time_s, frame_interval(options, source));
-  }
-  if (options.noise_counts) plan.noise_counts = options.noise_counts;
-  if (options.estimator) plan.estimator = *options.estimator;
-  if (!options.outputs.empty()) {
-    plan.angles = asks_for(options, "angles");
-    plan.uncertainty = asks_for(options, "uncertainty");
-  }
-  return plan;
+  return plan_of(options.plan, std::move(plan), options.input,
+                 [&] { return frame_interval(options, source); });
 }
 
 ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {
@@ -274,34 +228,7 @@ void add_solve(CLI::App& app, Work& work) {
       ->add_option("-o,--output", options->output,
                    "Force fields to write; the ending chooses: .h5, .csv or .npy")
       ->required();
-  command->add_option("--scene", options->scene,
-                      "Take the sensor's constants and the parity test from a scene file");
-  command->add_option("--calibration", options->calibration,
-                      "Take planes and constants from a calibration made by calibrate");
-  add_choice<Estimator>(*command, "--estimator", options->estimator,
-                        {{"direct", Estimator::direct}, {"paper", Estimator::paper}},
-                        "How forces are estimated: direct, or the paper's equations [direct]");
-  command
-      ->add_option("--outputs", options->outputs,
-                   "What is written: forces; angles adds magnitude, theta and phi; uncertainty "
-                   "adds standard deviations and the ends of ambiguous forces [forces]")
-      ->check(CLI::IsMember({"forces", "angles", "uncertainty"}))
-      ->delimiter(',');
-  command->add_option("--threshold", options->threshold_counts,
-                      "Readings above so many counts are usable [the file's]");
-  command->add_option("--counts-per-newton", options->counts_per_newton,
-                      "Counts per newton and pillar [the file's]");
-  command->add_option("--full-scale", options->full_scale_counts,
-                      "Readings of so many counts or more are saturated [the file's]");
-  command->add_option("--parity-tolerance", options->parity_tolerance_counts,
-                      "Flag pillars whose redundant reading is off by more counts [not tested]");
-  command->add_option("--noise", options->noise_counts,
-                      "Standard deviation of a reading, counts [the calibration's or scene's]");
-  command
-      ->add_option("--follow-baseline", options->baseline_time_s,
-                   "Let the tare of untouched sensels follow a drift, time constant in seconds "
-                   "[stays]")
-      ->check(CLI::Range(1e-6, 1e9).description("SECONDS"));
+  add_plan_options(*command, options->plan);
   add_device_options(*command, options->device);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");

@@ -8,7 +8,7 @@ import unittest
 
 from command import PROGRAM, SCENES, SOURCE, CommandTest, run, run_json
 
-COMMANDS = ["simulate", "solve", "compare", "calibrate", "testbed", "info", "completion"]
+COMMANDS = ["simulate", "solve", "live", "compare", "calibrate", "testbed", "info", "completion"]
 FINGER = SOURCE.parent / "shared/data/tekscan/iscan_6900_finger_45deg.csv"
 
 SMALL_SCENE = """

@@ -1,0 +1,85 @@
+#include "cli/live_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "cli/interrupt.h"
+#include "cli/progress.h"
+#include "pillarfield/error.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/simulator.h"
+
+namespace pillarfield::cli {
+namespace {
+
+constexpr std::uint64_t kMiB = 1U << 20U;
+
+std::uint64_t frames_to_load(const LiveFrames& live, std::uint64_t most,
+                             std::uint64_t memory_bytes) {
+  const std::uint64_t frame_bytes = live.skin.sensels() * size_of(live.sensel_type);
+  const std::uint64_t fitting = memory_bytes / frame_bytes;
+  if (fitting == 0) {
+    throw Error(live.file,
+                fmt::format("a frame takes {} bytes, and {} MiB are allowed", frame_bytes,
+                            memory_bytes / kMiB),
+                fmt::format("give --memory-limit {}", frame_bytes / kMiB + 1));
+  }
+  return std::min({live.in_source, most, fitting});
+}
+
+LiveFrames simulated(const std::string& file) {
+  const auto simulator = std::make_shared<const Simulator>(load_scene(file));
+  const Scene& scene = simulator->scene();
+  const auto truth =
+      std::make_shared<ForceField>(scene.skin.pillar_rows(), scene.skin.pillar_cols());
+  return {
+      .file = file,
+      .skin = scene.skin,
+      .sensel_type = simulator->sensel_type(),
+      .calibration = simulator->calibration(),
+      .in_source = scene.frames,
+      .make = [simulator, truth](std::uint64_t index,
+                                 FrameBuffer& frame) { simulator->render(index, frame, *truth); },
+      .loaded = {}};
+}
+
+LiveFrames recorded(const std::string& file) {
+  const std::shared_ptr<FrameSource> source = open_frames(file);
+  for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
+  if (source->frames() == 0) {
+    throw Error(file, "it has no frames", "give a recording with one at least");
+  }
+  return {.file = file,
+          .skin = source->skin(),
+          .sensel_type = source->sensel_type(),
+          .calibration = source->calibration(),
+          .in_source = source->frames(),
+          .make = [source](std::uint64_t index, FrameBuffer& frame) { source->read(index, frame); },
+          .loaded = {}};
+}
+
+}  // namespace
+
+bool is_scene(const std::string& file) { return file.ends_with(".toml"); }
+
+LiveFrames open_live_frames(const std::string& file) {
+  return is_scene(file) ? simulated(file) : recorded(file);
+}
+
+void load(LiveFrames& live, std::uint64_t most, std::uint64_t memory_bytes, bool quiet) {
+  const std::uint64_t frames = frames_to_load(live, most, memory_bytes);
+  live.loaded.reserve(frames);
+  Progress progress(is_scene(live.file) ? "Simulating" : "Reading", frames, quiet);
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    if (is_interrupted()) {
+      throw Error(live.file, "interrupted before its frames were loaded", "start again");
+    }
+    live.loaded.emplace_back(live.sensel_type, live.skin.rows, live.skin.cols);
+    live.make(index, live.loaded.back());
+    progress.show(index + 1);
+  }
+}
+
+}  // namespace pillarfield::cli

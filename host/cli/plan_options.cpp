@@ -1,0 +1,110 @@
+#include "cli/plan_options.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/choice.h"
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/scene.h"
+
+namespace pillarfield::cli {
+namespace {
+
+/// Time constant with which --everything follows the baseline, unless something else is said.
+constexpr double kBaselineTimeS = 10;
+
+bool asks_for(const PlanOptions& options, const char* output) {
+  return std::ranges::find(options.outputs, output) != options.outputs.end();
+}
+
+/// Applies the scene; returns the time constant of the baseline that it asks for.
+std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
+  const Scene scene = load_scene(file);
+  plan.skin.counts_per_newton = scene.skin.counts_per_newton;
+  plan.skin.threshold_counts = scene.skin.threshold_counts;
+  plan.skin.full_scale_counts = scene.skin.full_scale_counts;
+  plan.skin.power_law = scene.skin.power_law;
+  set_solver(plan, scene);
+  return scene.baseline_time_s;
+}
+
+void apply_calibration(const std::string& file, const std::string& source, SolverPlan& plan) {
+  const SkinCalibration calibration = read_calibration_file(file);
+  require_fitting(calibration, plan.skin, source);
+  apply(calibration, plan.skin, plan.calibration);
+}
+
+void apply_numbers(const PlanOptions& options, SolverPlan& plan) {
+  if (options.threshold_counts) plan.skin.threshold_counts = *options.threshold_counts;
+  if (options.counts_per_newton) plan.skin.counts_per_newton = *options.counts_per_newton;
+  if (options.full_scale_counts) plan.skin.full_scale_counts = options.full_scale_counts;
+  if (options.parity_tolerance_counts) {
+    plan.parity_tolerance_counts = options.parity_tolerance_counts;
+  }
+  if (options.noise_counts) plan.noise_counts = options.noise_counts;
+}
+
+/// Turns on what can be asked of any skin, leaving what was said.
+void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s) {
+  plan.angles = true;
+  plan.uncertainty = true;
+  if (!baseline_time_s) baseline_time_s = kBaselineTimeS;
+  if (!plan.parity_tolerance_counts) {
+    // The residual is one of four readings, the doubt five deviations of three.
+    plan.parity_tolerance_counts = region_doubt(plan) * std::sqrt(4.0 / 3);
+  }
+}
+
+}  // namespace
+
+void add_plan_options(CLI::App& command, PlanOptions& options) {
+  command.add_option("--scene", options.scene,
+                     "Take the sensor's constants and the parity test from a scene file");
+  command.add_option("--calibration", options.calibration,
+                     "Take planes and constants from a calibration made by calibrate");
+  add_choice<Estimator>(command, "--estimator", options.estimator,
+                        {{"direct", Estimator::direct}, {"paper", Estimator::paper}},
+                        "How forces are estimated: direct, or the paper's equations [direct]");
+  command
+      .add_option("--outputs", options.outputs,
+                  "What is computed: forces; angles adds magnitude, theta and phi; uncertainty "
+                  "adds standard deviations and the ends of ambiguous forces [forces]")
+      ->check(CLI::IsMember({"forces", "angles", "uncertainty"}))
+      ->delimiter(',');
+  command.add_option("--threshold", options.threshold_counts,
+                     "Readings above so many counts are usable [the file's]");
+  command.add_option("--counts-per-newton", options.counts_per_newton,
+                     "Counts per newton and pillar [the file's]");
+  command.add_option("--full-scale", options.full_scale_counts,
+                     "Readings of so many counts or more are saturated [the file's]");
+  command.add_option("--parity-tolerance", options.parity_tolerance_counts,
+                     "Flag pillars whose redundant reading is off by more counts [not tested]");
+  command.add_option("--noise", options.noise_counts,
+                     "Standard deviation of a reading, counts [the calibration's or scene's]");
+  command
+      .add_option("--follow-baseline", options.baseline_time_s,
+                  "Let the tare of untouched sensels follow a drift, time constant in seconds "
+                  "[stays]")
+      ->check(CLI::Range(1e-6, 1e9).description("SECONDS"));
+  command.add_flag("--everything", options.everything,
+                   "All outputs, the parity test, and the baseline followed; needs the noise");
+}
+
+SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::string& source,
+                   const std::function<double()>& frame_interval_s) {
+  std::optional<double> baseline_time_s;
+  if (!options.scene.empty()) baseline_time_s = apply_scene(options.scene, plan);
+  if (!options.calibration.empty()) apply_calibration(options.calibration, source, plan);
+  apply_numbers(options, plan);
+  if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
+  if (options.estimator) plan.estimator = *options.estimator;
+  if (!options.outputs.empty()) {
+    plan.angles = asks_for(options, "angles");
+    plan.uncertainty = asks_for(options, "uncertainty");
+  }
+  if (options.everything) ask_for_everything(plan, baseline_time_s);
+  if (baseline_time_s) plan.baseline_rate = baseline_rate(*baseline_time_s, frame_interval_s());
+  return plan;
+}
+
+}  // namespace pillarfield::cli

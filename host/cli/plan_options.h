@@ -1,0 +1,39 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield::cli {
+
+/// What is computed and from which sensor, as far as the command line says.
+struct PlanOptions {
+  std::string scene;
+  std::string calibration;
+  std::optional<Estimator> estimator;
+  std::vector<std::string> outputs;
+  std::optional<double> threshold_counts;
+  std::optional<double> counts_per_newton;
+  std::optional<double> full_scale_counts;
+  std::optional<double> parity_tolerance_counts;
+  std::optional<double> noise_counts;
+  std::optional<double> baseline_time_s;
+  bool everything = false;
+};
+
+/// --scene, --calibration, --estimator, ... of every command that solves frames.
+void add_plan_options(CLI::App& command, PlanOptions& options);
+
+/// The plan for frames of the skin, sensel type and calibration of `plan`: what the scene says of
+/// them, then the calibration, then the other options. `source` names the frames in messages;
+/// `frame_interval_s` is asked, where the baseline is followed, for the seconds between two frames.
+/// Throws Error where a file cannot be read or does not fit.
+[[nodiscard]] SolverPlan plan_of(const PlanOptions& options, SolverPlan plan,
+                                 const std::string& source,
+                                 const std::function<double()>& frame_interval_s);
+
+}  // namespace pillarfield::cli

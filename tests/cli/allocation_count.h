@@ -1,0 +1,10 @@
+#pragma once
+
+#include <cstdint>
+
+namespace pillarfield::cli_test {
+
+/// How often the program has asked operator new for memory. Linking this file replaces it.
+[[nodiscard]] std::uint64_t allocations();
+
+}  // namespace pillarfield::cli_test
