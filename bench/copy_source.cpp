@@ -17,6 +17,23 @@ const char* sensel_macro(SenselType type) {
   return "float";
 }
 
+/// Bytes ahead of the reading and of the writing at which what is next is asked for: of some tried,
+/// those that served the hand-written loop best.
+constexpr const char* kAskingAhead = R"(
+#define READ_AHEAD 4096
+#define WRITE_AHEAD 1024
+#if PREFETCHING && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define ASK_TO_READ(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + READ_AHEAD), 0)
+#define ASK_TO_WRITE(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + WRITE_AHEAD), 1)
+#endif
+#endif
+#ifndef ASK_TO_READ
+#define ASK_TO_READ(pointer)
+#define ASK_TO_WRITE(pointer)
+#endif
+)";
+
 /// What is read: one word of a pillar, or 16 of as many pillars. A function for each type of value.
 constexpr const char* kReading = R"(
 #define uchar_of_one(p, q) as_uint((uchar4)((p)[0], (p)[1], (q)[0], (q)[1]))
@@ -26,14 +43,22 @@ constexpr const char* kReading = R"(
   (as_uint((p)[0]) ^ as_uint((p)[1]) ^ as_uint((q)[0]) ^ as_uint((q)[1]))
 
 uint16 uchar_of_many(global const uchar* p, global const uchar* q) {
+  ASK_TO_READ(p);
+  ASK_TO_READ(q);
   return (uint16)(as_uint4(vload16(0, p)), as_uint4(vload16(1, p)), as_uint4(vload16(0, q)),
                   as_uint4(vload16(1, q)));
 }
 uint16 ushort_of_many(global const ushort* p, global const ushort* q) {
+  ASK_TO_READ(p);
+  ASK_TO_READ(q);
   return (uint16)(as_uint8(vload16(0, p)), as_uint8(vload16(1, p))) ^
          (uint16)(as_uint8(vload16(0, q)), as_uint8(vload16(1, q)));
 }
 uint16 float_of_many(global const float* p, global const float* q) {
+  ASK_TO_READ(p);
+  ASK_TO_READ(p + 16);
+  ASK_TO_READ(q);
+  ASK_TO_READ(q + 16);
   return as_uint16(vload16(0, p)) ^ as_uint16(vload16(1, p)) ^ as_uint16(vload16(0, q)) ^
          as_uint16(vload16(1, q));
 }
@@ -70,9 +95,11 @@ void write_many(uint16 words, global float* results, ulong pitch, global uchar* 
 #ifdef STREAM
     STREAM(as_float16(words), float16, results + plane * pitch);
 #else
+    ASK_TO_WRITE(results + plane * pitch);
     vstore16(as_float16(words), 0, results + plane * pitch);
 #endif
   }
+  ASK_TO_WRITE(status);
   vstore16(bytes, 0, status);
 }
 
@@ -138,15 +165,15 @@ kernel void empty(void) {}
 
 }  // namespace
 
-std::string copy_source(const Streams& streams, int lanes, CopyStores stores) {
+std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind) {
   return fmt::format(
              "#define SENSEL {}\n#define MASK {}\n#define CALIBRATION_PLANES {}\n"
              "#define RESULT_PLANES {}\n#define FOLLOW {}\n#define LANES {}\n#define STREAMING "
              "{}\n",
              sensel_macro(streams.sensel_type), streams.mask ? 1 : 0, streams.calibration_planes,
              streams.result_planes, streams.tare_follows ? 1 : 0, lanes > 1 ? 16 : 1,
-             stores == CopyStores::streaming ? 1 : 0) +
-         kReading + kWriting + kEntryPoints;
+             kind.streaming ? 1 : 0, kind.prefetching ? 1 : 0) +
+         kAskingAhead + kReading + kWriting + kEntryPoints;
 }
 
 }  // namespace pillarfield::bench

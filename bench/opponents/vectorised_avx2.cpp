@@ -6,6 +6,7 @@
 #include <array>
 #include <cstring>
 
+#include "bench/opponents/ask_ahead.h"
 #include "bench/opponents/half_counts.h"
 
 #define PF_AVX2 __attribute__((target("avx2"))) static inline
@@ -140,6 +141,7 @@ PF_AVX2 __m256i load(const std::uint8_t* readings) {
 template <bool streaming>
 PF_AVX2 void solve_32(const std::uint8_t* top, const std::uint8_t* bottom, const HalfCounts& solve,
                       const ForcePlanes& to) {
+  ask_ahead<32, streaming>(top, bottom, to);
   const Solved low = solve_16(load(top), load(bottom), solve);
   store_forces<streaming>(to, low, solve);
   const Solved high = solve_16(load(top + 32), load(bottom + 32), solve);

@@ -3,6 +3,7 @@
 #ifdef __x86_64__
 #include <immintrin.h>
 
+#include "bench/opponents/ask_ahead.h"
 #include "bench/opponents/half_counts.h"
 
 #define PF_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl"))) static inline
@@ -126,6 +127,7 @@ PF_AVX512 void store_some(float* plane, __m512i half_counts, float newtons, __mm
 template <bool streaming>
 PF_AVX512 void solve_64(const std::uint8_t* top, const std::uint8_t* bottom,
                         const HalfCounts& solve, const ForcePlanes& to) {
+  ask_ahead<64, streaming>(top, bottom, to);
   const Solved low = solve_32(_mm512_loadu_si512(top), _mm512_loadu_si512(bottom), solve);
   store_all<streaming>(to.shear_x, low.shear_x, solve.shear_scale);
   store_all<streaming>(to.shear_y, low.shear_y, solve.shear_scale);
