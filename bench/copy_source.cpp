@@ -17,20 +17,16 @@ const char* sensel_macro(SenselType type) {
   return "float";
 }
 
-/// Bytes ahead of the reading and of the writing at which what is next is asked for: of some tried,
-/// those that served the hand-written loop best.
+/// So many bytes ahead of the reading what is next is asked for, as the hand-written loop does.
 constexpr const char* kAskingAhead = R"(
 #define READ_AHEAD 4096
-#define WRITE_AHEAD 1024
 #if PREFETCHING && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
-#define ASK_TO_READ(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + READ_AHEAD), 0)
-#define ASK_TO_WRITE(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + WRITE_AHEAD), 1)
+#define ASK_TO_READ(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + READ_AHEAD))
 #endif
 #endif
 #ifndef ASK_TO_READ
 #define ASK_TO_READ(pointer)
-#define ASK_TO_WRITE(pointer)
 #endif
 )";
 
@@ -95,11 +91,9 @@ void write_many(uint16 words, global float* results, ulong pitch, global uchar* 
 #ifdef STREAM
     STREAM(as_float16(words), float16, results + plane * pitch);
 #else
-    ASK_TO_WRITE(results + plane * pitch);
     vstore16(as_float16(words), 0, results + plane * pitch);
 #endif
   }
-  ASK_TO_WRITE(status);
   vstore16(bytes, 0, status);
 }
 
@@ -163,16 +157,19 @@ kernel void copy_streams(global const SENSEL* restrict raw, ulong row_stride, ui
 kernel void empty(void) {}
 )";
 
+template <class Value>
+std::string define(const char* macro, const Value& value) {
+  return fmt::format("#define {} {}\n", macro, value);
+}
+
 }  // namespace
 
 std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind) {
-  return fmt::format(
-             "#define SENSEL {}\n#define MASK {}\n#define CALIBRATION_PLANES {}\n"
-             "#define RESULT_PLANES {}\n#define FOLLOW {}\n#define LANES {}\n#define STREAMING "
-             "{}\n",
-             sensel_macro(streams.sensel_type), streams.mask ? 1 : 0, streams.calibration_planes,
-             streams.result_planes, streams.tare_follows ? 1 : 0, lanes > 1 ? 16 : 1,
-             kind.streaming ? 1 : 0, kind.prefetching ? 1 : 0) +
+  return define("SENSEL", sensel_macro(streams.sensel_type)) + define("MASK", int{streams.mask}) +
+         define("CALIBRATION_PLANES", streams.calibration_planes) +
+         define("RESULT_PLANES", streams.result_planes) +
+         define("FOLLOW", int{streams.tare_follows}) + define("LANES", lanes > 1 ? 16 : 1) +
+         define("STREAMING", int{kind.streaming}) + define("PREFETCHING", int{kind.prefetching}) +
          kAskingAhead + kReading + kWriting + kEntryPoints;
 }
 

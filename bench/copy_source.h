@@ -12,7 +12,7 @@ namespace pillarfield::bench {
 struct CopyKind {
   const char* name;
   bool streaming;    ///< stores go past the caches
-  bool prefetching;  ///< what is read and written later is asked for before
+  bool prefetching;  ///< what is read later is asked for before
 };
 inline constexpr CopyKind kCopyKinds[] = {{"cached", false, false},
                                           {"streaming", true, false},

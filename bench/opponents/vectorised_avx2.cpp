@@ -141,7 +141,6 @@ PF_AVX2 __m256i load(const std::uint8_t* readings) {
 template <bool streaming>
 PF_AVX2 void solve_32(const std::uint8_t* top, const std::uint8_t* bottom, const HalfCounts& solve,
                       const ForcePlanes& to) {
-  ask_ahead<32, streaming>(top, bottom, to);
   const Solved low = solve_16(load(top), load(bottom), solve);
   store_forces<streaming>(to, low, solve);
   const Solved high = solve_16(load(top + 32), load(bottom + 32), solve);
@@ -193,6 +192,7 @@ PF_AVX2 void solve_row(const Row& row, std::uint32_t head, std::uint32_t cols,
   solve_some(row, col, solve);
   for (; col + 32 <= cols; col += 32) {
     const Row rest = from(row, col);
+    ask_ahead<32>(rest.top, rest.bottom);
     solve_32<streaming>(rest.top, rest.bottom, solve, rest.to);
   }
   solve_some(from(row, col), cols - col, solve);

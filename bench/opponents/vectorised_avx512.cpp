@@ -127,7 +127,6 @@ PF_AVX512 void store_some(float* plane, __m512i half_counts, float newtons, __mm
 template <bool streaming>
 PF_AVX512 void solve_64(const std::uint8_t* top, const std::uint8_t* bottom,
                         const HalfCounts& solve, const ForcePlanes& to) {
-  ask_ahead<64, streaming>(top, bottom, to);
   const Solved low = solve_32(_mm512_loadu_si512(top), _mm512_loadu_si512(bottom), solve);
   store_all<streaming>(to.shear_x, low.shear_x, solve.shear_scale);
   store_all<streaming>(to.shear_y, low.shear_y, solve.shear_scale);
@@ -189,6 +188,7 @@ PF_AVX512 void solve_row(const Row& row, std::uint32_t head, std::uint32_t cols,
   solve_range(row, 0, col, solve);
   for (; col + 64 <= cols; col += 64) {
     const Row rest = from(row, col);
+    ask_ahead<64>(rest.top, rest.bottom);
     solve_64<streaming>(rest.top, rest.bottom, solve, rest.to);
   }
   solve_range(row, col, cols, solve);

@@ -7,6 +7,8 @@
 
 #include <cstring>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "bench/variants.h"
@@ -180,6 +182,12 @@ TEST(Ceiling, BytesAreThoseOfThePlan) {
   SolverPlan following = bare_plan(8, SenselType::f32);
   add_stage(following, "baseline");
   EXPECT_EQ(streams_of(following).bytes_per_pillar(), 16U + 2 * 16 + 12 + 1);
+}
+
+TEST(Ceiling, KindsAreProgramsOfTheirOwn) {
+  std::set<std::string> sources;
+  for (const CopyKind& kind : kCopyKinds) sources.insert(copy_source({}, 16, kind));
+  EXPECT_EQ(sources.size(), std::size(kCopyKinds));
 }
 
 TEST(EmptyLaunch, Returns) { EmptyLaunch(test_device()).run(3); }
