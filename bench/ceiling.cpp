@@ -33,7 +33,7 @@ cl::Buffer numbered(const cl::Context& context, std::size_t count) {
 }  // namespace
 
 CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frames& frames,
-                       CopyStores stores, int frames_in_flight)
+                       const CopyKind& kind, int frames_in_flight)
     : context_(device.state().context),
       device_(device.state().device),
       skin_(plan.skin),
@@ -51,7 +51,7 @@ CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frame
         cl::NDRange((skin_.pillar_cols() + kGroup - 1) / kGroup * kGroup, skin_.pillar_rows());
     local_ = cl::NDRange(kGroup, 1);
   }
-  const cl::Program program = device.state().program(copy_source(streams_, lanes, stores));
+  const cl::Program program = device.state().program(copy_source(streams_, lanes, kind));
   for (int i = 0; i < frames_in_flight; ++i) slots_.push_back(make_slot(program));
 }
 
@@ -110,7 +110,7 @@ std::vector<std::byte> CopyKernel::results() const {
 
 EmptyLaunch::EmptyLaunch(const Device& device)
     : queue_(device.state().context, device.state().device),
-      kernel_(device.state().program(copy_source({}, 1, CopyStores::cached)), "empty") {}
+      kernel_(device.state().program(copy_source({}, 1, kCopyKinds[0])), "empty") {}
 
 void EmptyLaunch::run(int launches) {
   for (int i = 0; i < launches; ++i) {

@@ -17,8 +17,8 @@ namespace pillarfield::bench {
 /// `frames` must outlive it.
 class CopyKernel {
  public:
-  CopyKernel(const Device& device, const SolverPlan& plan, const Frames& frames, CopyStores stores,
-             int frames_in_flight);
+  CopyKernel(const Device& device, const SolverPlan& plan, const Frames& frames,
+             const CopyKind& kind, int frames_in_flight);
 
   /// Copies so many frames.
   void run(int frames);

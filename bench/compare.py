@@ -95,7 +95,8 @@ def main():
     times = {"old": [], "new": []}
     order = turns(arguments.pairs)
     for number, which in enumerate(order, 1):
-        print(f"run {number} of {len(order)}", end="\r", file=sys.stderr, flush=True)
+        if sys.stderr.isatty():
+            print(f"run {number} of {len(order)}", end="\r", file=sys.stderr, flush=True)
         times[which].append(run(programs[which], arguments.filter, arguments.seconds))
     print("\n".join(compare(times["old"], times["new"])))
 

@@ -17,6 +17,19 @@ const char* sensel_macro(SenselType type) {
   return "float";
 }
 
+/// So many bytes ahead of the reading what is next is asked for, as the hand-written loop does.
+constexpr const char* kAskingAhead = R"(
+#define READ_AHEAD 4096
+#if PREFETCHING && defined(__has_builtin)
+#if __has_builtin(__builtin_prefetch)
+#define ASK_TO_READ(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + READ_AHEAD))
+#endif
+#endif
+#ifndef ASK_TO_READ
+#define ASK_TO_READ(pointer)
+#endif
+)";
+
 /// What is read: one word of a pillar, or 16 of as many pillars. A function for each type of value.
 constexpr const char* kReading = R"(
 #define uchar_of_one(p, q) as_uint((uchar4)((p)[0], (p)[1], (q)[0], (q)[1]))
@@ -26,14 +39,22 @@ constexpr const char* kReading = R"(
   (as_uint((p)[0]) ^ as_uint((p)[1]) ^ as_uint((q)[0]) ^ as_uint((q)[1]))
 
 uint16 uchar_of_many(global const uchar* p, global const uchar* q) {
+  ASK_TO_READ(p);
+  ASK_TO_READ(q);
   return (uint16)(as_uint4(vload16(0, p)), as_uint4(vload16(1, p)), as_uint4(vload16(0, q)),
                   as_uint4(vload16(1, q)));
 }
 uint16 ushort_of_many(global const ushort* p, global const ushort* q) {
+  ASK_TO_READ(p);
+  ASK_TO_READ(q);
   return (uint16)(as_uint8(vload16(0, p)), as_uint8(vload16(1, p))) ^
          (uint16)(as_uint8(vload16(0, q)), as_uint8(vload16(1, q)));
 }
 uint16 float_of_many(global const float* p, global const float* q) {
+  ASK_TO_READ(p);
+  ASK_TO_READ(p + 16);
+  ASK_TO_READ(q);
+  ASK_TO_READ(q + 16);
   return as_uint16(vload16(0, p)) ^ as_uint16(vload16(1, p)) ^ as_uint16(vload16(0, q)) ^
          as_uint16(vload16(1, q));
 }
@@ -136,17 +157,20 @@ kernel void copy_streams(global const SENSEL* restrict raw, ulong row_stride, ui
 kernel void empty(void) {}
 )";
 
+template <class Value>
+std::string define(const char* macro, const Value& value) {
+  return fmt::format("#define {} {}\n", macro, value);
+}
+
 }  // namespace
 
-std::string copy_source(const Streams& streams, int lanes, CopyStores stores) {
-  return fmt::format(
-             "#define SENSEL {}\n#define MASK {}\n#define CALIBRATION_PLANES {}\n"
-             "#define RESULT_PLANES {}\n#define FOLLOW {}\n#define LANES {}\n#define STREAMING "
-             "{}\n",
-             sensel_macro(streams.sensel_type), streams.mask ? 1 : 0, streams.calibration_planes,
-             streams.result_planes, streams.tare_follows ? 1 : 0, lanes > 1 ? 16 : 1,
-             stores == CopyStores::streaming ? 1 : 0) +
-         kReading + kWriting + kEntryPoints;
+std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind) {
+  return define("SENSEL", sensel_macro(streams.sensel_type)) + define("MASK", int{streams.mask}) +
+         define("CALIBRATION_PLANES", streams.calibration_planes) +
+         define("RESULT_PLANES", streams.result_planes) +
+         define("FOLLOW", int{streams.tare_follows}) + define("LANES", lanes > 1 ? 16 : 1) +
+         define("STREAMING", int{kind.streaming}) + define("PREFETCHING", int{kind.prefetching}) +
+         kAskingAhead + kReading + kWriting + kEntryPoints;
 }
 
 }  // namespace pillarfield::bench

@@ -7,11 +7,17 @@
 
 namespace pillarfield::bench {
 
-/// How a copy kernel stores what it writes.
-enum class CopyStores : std::uint8_t {
-  cached,     ///< as any program does
-  streaming,  ///< past the caches, where the compiler of the device knows how
+/// How a copy kernel goes about it, where the compiler of the device knows how; nobody can tell
+/// beforehand what is fastest on a device.
+struct CopyKind {
+  const char* name;
+  bool streaming;    ///< stores go past the caches
+  bool prefetching;  ///< what is read later is asked for before
 };
+inline constexpr CopyKind kCopyKinds[] = {{"cached", false, false},
+                                          {"streaming", true, false},
+                                          {"prefetching", false, true},
+                                          {"streaming_prefetching", true, true}};
 
 /// OpenCL C of the kernels `copy_streams`, which reads and writes all of `streams` and does nothing
 /// else that takes time, and `empty`. With 16 lanes a work-item copies a row of pillars, with one a
@@ -20,7 +26,7 @@ enum class CopyStores : std::uint8_t {
 /// The bits of all that is read for as many pillars as are copied at once are folded by exclusive
 /// or into one word for each, which is what every result plane gets, and the status bytes folded
 /// once more: each bit that is read moves one value of every plane.
-std::string copy_source(const Streams& streams, int lanes, CopyStores stores);
+std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind);
 
 /// Floats from one plane to the next in the buffers of calibration and results: whole pages.
 constexpr std::uint64_t plane_pitch(std::uint64_t values) { return (values + 1023) / 1024 * 1024; }

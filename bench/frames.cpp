@@ -102,7 +102,7 @@ class Contacts {
   Contacts(const Skin& skin, double share, double turns)
       : rows_(skin.pillar_rows()), cols_(skin.pillar_cols()), turns_(turns) {
     constexpr double kContacts = kGridRows * kGridCols;
-    const double pillars = static_cast<double>(skin.pillars());
+    const auto pillars = static_cast<double>(skin.pillars());
     radius_ = std::sqrt(share * pillars / (kContacts * std::numbers::pi));
   }
 

@@ -2,25 +2,32 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <utility>
 
 namespace pillarfield::bench {
 
 CeilingEntry::CeilingEntry(Race& race, const Device& device, const SolverPlan& plan,
                            const Frames& frames, int frames_in_flight)
-    : pillars_(static_cast<double>(plan.skin.pillars())),
-      cached_(device, plan, frames, CopyStores::cached, frames_in_flight),
-      streaming_(device, plan, frames, CopyStores::streaming, frames_in_flight),
-      cached_entry_(race.add([this](int count) { cached_.run(count); })),
-      streaming_entry_(race.add([this](int count) { streaming_.run(count); })) {}
+    : pillars_(static_cast<double>(plan.skin.pillars())) {
+  for (const CopyKind& kind : kCopyKinds) {
+    auto kernel = std::make_unique<CopyKernel>(device, plan, frames, kind, frames_in_flight);
+    const std::size_t number = race.add([copy = kernel.get()](int count) { copy->run(count); });
+    entries_.push_back({fmt::format("copy_{}", kind.name), std::move(kernel), number});
+    // Devices with a work-item for each pillar have one kind.
+    if (device.info().lanes == 1) return;
+  }
+}
 
 std::size_t CeilingEntry::fastest(const Race& race) const {
-  return race.fastest(std::array{cached_entry_, streaming_entry_});
+  std::vector<std::size_t> numbers;
+  for (const Entry& entry : entries_) numbers.push_back(entry.number);
+  return race.fastest(numbers);
 }
 
 void CeilingEntry::tell(const Race& race, Measurement& measured) const {
-  measured.counters["copy_cached"] = race.median(cached_entry_) * 1e9 / pillars_;
-  measured.counters["copy_streaming"] = race.median(streaming_entry_) * 1e9 / pillars_;
+  for (const Entry& entry : entries_) {
+    measured.counters[entry.name] = race.median(entry.number) * 1e9 / pillars_;
+  }
 }
 
 Measurement measurement_of(const Race& race, std::size_t contestant, const SolverPlan& plan) {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "bench/ceiling.h"
 #include "bench/frame_solver.h"
 #include "bench/measurement.h"
@@ -8,24 +12,26 @@
 
 namespace pillarfield::bench {
 
-/// The copy kernels of a plan as contestants of a race.
+/// The copy kernels of a plan, of every kind, as contestants of a race.
 class CeilingEntry {
  public:
   CeilingEntry(Race& race, const Device& device, const SolverPlan& plan, const Frames& frames,
                int frames_in_flight);
 
-  /// After the race: the faster of the two, which is the ceiling.
+  /// After the race: the fastest of them, which is the ceiling.
   [[nodiscard]] std::size_t fastest(const Race& race) const;
 
-  /// The counters `copy_cached` and `copy_streaming`, ns per pillar.
+  /// The counters `copy_<kind>`, ns per pillar.
   void tell(const Race& race, Measurement& measured) const;
 
  private:
+  struct Entry {
+    std::string name;
+    std::unique_ptr<CopyKernel> kernel;  ///< the race keeps its address
+    std::size_t number;                  ///< in the race
+  };
   double pillars_;
-  CopyKernel cached_;
-  CopyKernel streaming_;
-  std::size_t cached_entry_;
-  std::size_t streaming_entry_;
+  std::vector<Entry> entries_;
 };
 
 /// What every row that solves frames says of its plan and of the contestant that does.

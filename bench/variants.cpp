@@ -95,6 +95,7 @@ SolverPlan bare_plan(std::uint32_t pillars_a_side, SenselType type) {
 
 std::vector<std::string_view> stage_names() {
   std::vector<std::string_view> names;
+  names.reserve(kStages.size());
   for (const Stage& stage : kStages) names.push_back(stage.name);
   return names;
 }

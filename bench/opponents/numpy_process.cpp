@@ -58,6 +58,7 @@ ForceField read_result(const std::filesystem::path& path, const Skin& skin) {
 /// Starts a program whose standard input and output are `socket`; -1 where there is none.
 pid_t spawn(std::vector<std::string> words, int socket) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   posix_spawn_file_actions_t actions;
@@ -120,7 +121,7 @@ void NumpyProcess::start(const char* python, const SolverPlan& plan) {
   close(ends[1]);
 }
 
-std::string NumpyProcess::read_line() {
+std::string NumpyProcess::read_line() const {
   std::string line;
   char character = 0;
   while (recv(socket_, &character, 1, 0) == 1 && character != '\n') line += character;

@@ -29,7 +29,7 @@ class NumpyProcess {
 
  private:
   void start(const char* python, const SolverPlan& plan);
-  std::string read_line();
+  [[nodiscard]] std::string read_line() const;
 
   std::filesystem::path folder_;
   ForceField first_;

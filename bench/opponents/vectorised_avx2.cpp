@@ -6,9 +6,10 @@
 #include <array>
 #include <cstring>
 
+#include "bench/opponents/ask_ahead.h"
 #include "bench/opponents/half_counts.h"
 
-#define PF_AVX2 __attribute__((target("avx2"))) static inline
+#define PF_AVX2 __attribute__((target("avx2"))) inline
 
 namespace pillarfield::bench {
 namespace {
@@ -94,7 +95,7 @@ PF_AVX2 Solved solve_16(__m256i top, __m256i bottom, const HalfCounts& solve) {
   const __m256i opposite = _mm256_or_si256(_mm256_andnot_si256(falling_any, rising_full),
                                            _mm256_andnot_si256(rising_any, falling_full));
 
-  Solved solved;
+  Solved solved{};
   solved.shear_x = _mm256_sub_epi16(along_rising, along_falling);
   solved.shear_y = _mm256_add_epi16(along_rising, along_falling);
   solved.normal = sum;
@@ -166,8 +167,8 @@ struct Row {
 PF_AVX2 void solve_some(const Row& row, std::size_t count, const HalfCounts& solve) {
   std::array<std::uint8_t, 64> top{};
   std::array<std::uint8_t, 64> bottom{};
-  std::array<std::array<float, 32>, 3> forces;
-  std::array<std::uint8_t, 32> status;
+  std::array<std::array<float, 32>, 3> forces{};
+  std::array<std::uint8_t, 32> status{};
   std::memcpy(top.data(), row.top, 2 * count);
   std::memcpy(bottom.data(), row.bottom, 2 * count);
   solve_32<false>(top.data(), bottom.data(), solve,
@@ -191,6 +192,7 @@ PF_AVX2 void solve_row(const Row& row, std::uint32_t head, std::uint32_t cols,
   solve_some(row, col, solve);
   for (; col + 32 <= cols; col += 32) {
     const Row rest = from(row, col);
+    ask_ahead<32>(rest.top, rest.bottom);
     solve_32<streaming>(rest.top, rest.bottom, solve, rest.to);
   }
   solve_some(from(row, col), cols - col, solve);

@@ -3,9 +3,10 @@
 #ifdef __x86_64__
 #include <immintrin.h>
 
+#include "bench/opponents/ask_ahead.h"
 #include "bench/opponents/half_counts.h"
 
-#define PF_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl"))) static inline
+#define PF_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl"))) inline
 
 namespace pillarfield::bench {
 namespace {
@@ -80,7 +81,7 @@ PF_AVX512 Solved solve_32(__m512i top, __m512i bottom, const HalfCounts& solve) 
                            may_press(can_hide & rising_full & (u2 ^ u4), v2, v4, rising, solve);
   const __mmask32 opposite = (rising_full & ~(u2 | u4)) | (falling_full & ~(u1 | u3));
 
-  Solved solved;
+  Solved solved{};
   solved.shear_x = _mm512_sub_epi16(along_rising, along_falling);
   solved.shear_y = _mm512_add_epi16(along_rising, along_falling);
   solved.normal = sum;
@@ -187,6 +188,7 @@ PF_AVX512 void solve_row(const Row& row, std::uint32_t head, std::uint32_t cols,
   solve_range(row, 0, col, solve);
   for (; col + 64 <= cols; col += 64) {
     const Row rest = from(row, col);
+    ask_ahead<64>(rest.top, rest.bottom);
     solve_64<streaming>(rest.top, rest.bottom, solve, rest.to);
   }
   solve_range(row, col, cols, solve);

@@ -7,6 +7,8 @@
 
 #include <cstring>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "bench/variants.h"
@@ -30,10 +32,10 @@ const Device& test_device() { return DeviceForTests::device.value(); }
 /// A copy kernel whose inputs can be changed bit by bit.
 class Copy {
  public:
-  Copy(const SolverPlan& plan, CopyStores stores)
+  Copy(const SolverPlan& plan, const CopyKind& kind)
       : plan_(plan),
         frames_(plan.skin, plan.sensel_type, {}),
-        kernel_(test_device(), plan, frames_, stores, 1),
+        kernel_(test_device(), plan, frames_, kind, 1),
         queue_(test_device().state().context, test_device().state().device) {}
 
   /// What the first frame becomes.
@@ -111,7 +113,7 @@ Skin odd_skin() {
   return skin;
 }
 
-class EveryCopy : public testing::TestWithParam<std::tuple<SenselType, CopyStores>> {
+class EveryCopy : public testing::TestWithParam<std::tuple<SenselType, CopyKind>> {
  protected:
   static SolverPlan plan(std::string_view stage) {
     SolverPlan plan;
@@ -120,12 +122,12 @@ class EveryCopy : public testing::TestWithParam<std::tuple<SenselType, CopyStore
     add_stage(plan, stage);
     return plan;
   }
-  static CopyStores stores() { return std::get<CopyStores>(GetParam()); }
+  static CopyKind kind() { return std::get<CopyKind>(GetParam()); }
 };
 
 TEST_P(EveryCopy, EverySenselMovesEveryResult) {
   for (const char* const stage : {"none", "all"}) {
-    Copy copy(plan(stage), stores());
+    Copy copy(plan(stage), kind());
     expect_all_moved(copy, copy.kernel().frame(0), 0, size_of(copy.plan().sensel_type));
   }
 }
@@ -133,7 +135,7 @@ TEST_P(EveryCopy, EverySenselMovesEveryResult) {
 TEST_P(EveryCopy, EveryCalibrationPlaneMovesEveryResult) {
   SolverPlan all = plan("all");
   all.calibration.noise.assign(all.skin.sensels(), 1);
-  Copy copy(all, stores());
+  Copy copy(all, kind());
   const Streams streams = streams_of(all);
   ASSERT_EQ(streams.calibration_planes, 4);
   for (int i = 0; i < streams.calibration_planes; ++i) {
@@ -144,7 +146,7 @@ TEST_P(EveryCopy, EveryCalibrationPlaneMovesEveryResult) {
 }
 
 TEST_P(EveryCopy, TareThatFollowsIsWritten) {
-  Copy copy(plan("baseline"), stores());
+  Copy copy(plan("baseline"), kind());
   const cl::CommandQueue queue(test_device().state().context, test_device().state().device);
   const auto tare = [&] {
     std::vector<std::uint32_t> values(copy.plan().skin.sensels());
@@ -162,14 +164,14 @@ TEST_P(EveryCopy, TareThatFollowsIsWritten) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Copies, EveryCopy,
-    testing::Combine(testing::Values(SenselType::u8, SenselType::u16, SenselType::f32),
-                     testing::Values(CopyStores::cached, CopyStores::streaming)),
-    [](const auto& copy) {
-      return std::string(name_of(std::get<SenselType>(copy.param))) +
-             (std::get<CopyStores>(copy.param) == CopyStores::cached ? "_cached" : "_streaming");
-    });
+INSTANTIATE_TEST_SUITE_P(Copies, EveryCopy,
+                         testing::Combine(testing::Values(SenselType::u8, SenselType::u16,
+                                                          SenselType::f32),
+                                          testing::ValuesIn(kCopyKinds)),
+                         [](const auto& copy) {
+                           return std::string(name_of(std::get<SenselType>(copy.param))) + "_" +
+                                  std::get<CopyKind>(copy.param).name;
+                         });
 
 TEST(Ceiling, BytesAreThoseOfThePlan) {
   SolverPlan plan = bare_plan(8);
@@ -180,6 +182,12 @@ TEST(Ceiling, BytesAreThoseOfThePlan) {
   SolverPlan following = bare_plan(8, SenselType::f32);
   add_stage(following, "baseline");
   EXPECT_EQ(streams_of(following).bytes_per_pillar(), 16U + 2 * 16 + 12 + 1);
+}
+
+TEST(Ceiling, KindsAreProgramsOfTheirOwn) {
+  std::set<std::string> sources;
+  for (const CopyKind& kind : kCopyKinds) sources.insert(copy_source({}, 16, kind));
+  EXPECT_EQ(sources.size(), std::size(kCopyKinds));
 }
 
 TEST(EmptyLaunch, Returns) { EmptyLaunch(test_device()).run(3); }

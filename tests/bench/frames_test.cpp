@@ -27,12 +27,12 @@ class EveryType : public testing::TestWithParam<SenselType> {};
 
 TEST_P(EveryType, WholeSkinIsInTheRegionThatIsAskedFor) {
   const SolverPlan plan = bare_plan(37, GetParam());
-  const std::pair<Touch, Region> kWanted[] = {{Touch::one, Region::one},
+  const std::pair<Touch, Region> touches[] = {{Touch::one, Region::one},
                                               {Touch::two, Region::two},
                                               {Touch::three, Region::three},
                                               {Touch::four, Region::four},
                                               {Touch::silent, Region::none}};
-  for (const auto& [touch, wanted] : kWanted) {
+  for (const auto& [touch, wanted] : touches) {
     const Frames frames(plan.skin, GetParam(), {touch, 1});
     const auto regions = regions_of(plan, frames[1]);
     EXPECT_EQ(std::ranges::count(regions, wanted), std::ssize(regions)) << name_of(wanted);

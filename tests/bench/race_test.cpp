@@ -18,7 +18,7 @@ class Machine {
   }
 
   /// A contestant that takes `seconds` a frame on the machine as it was at first.
-  Work contestant(std::string name, double seconds) {
+  Work contestant(const char* name, double seconds) {
     return [this, name, seconds](int frames) {
       turns_ += name;
       frames_ += frames;
