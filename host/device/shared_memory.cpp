@@ -5,29 +5,29 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::align_val_t kPage{4096};
+constexpr std::size_t kPageSize = 4096;
+constexpr std::align_val_t kPage{kPageSize};
 
 struct FreePages {
   void operator()(std::byte* pages) const { ::operator delete[](pages, kPage); }
 };
 
-struct SharedPlane {
-  std::unique_ptr<std::byte[], FreePages> pages;
-  cl::Buffer buffer;
-  std::size_t bytes = 0;
-};
-
+/// All planes of a result in one block, each on its own page: handing it to the device and back is
+/// one command each way, and commands are what a small frame's time goes into.
 class SharedMemory final : public SlotMemory {
  public:
   SharedMemory(const cl::Context& context, const SolverPlan& plan) : context_(context) {
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
       if (!is_wanted(plan, plane)) continue;
-      const std::size_t bytes = plan.skin.pillars() * value_size(plane);
-      SharedPlane& shared = planes_.at(plane);
-      shared.bytes = bytes;
-      shared.pages.reset(static_cast<std::byte*>(::operator new[](bytes, kPage)));
-      shared.buffer =
-          cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, shared.pages.get());
+      regions_.at(plane) = {bytes_, plan.skin.pillars() * value_size(plane)};
+      bytes_ += (regions_.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
+    }
+    pages_.reset(static_cast<std::byte*>(::operator new[](bytes_, kPage)));
+    all_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_.get());
+    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+      if (regions_.at(plane).size == 0) continue;
+      buffers_.at(plane) = all_.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION,
+                                                &regions_.at(plane));
     }
   }
 
@@ -41,32 +41,30 @@ class SharedMemory final : public SlotMemory {
   }
 
   void release(const cl::CommandQueue& queue) override {
-    if (!mapped_) return;
-    for (const SharedPlane& plane : planes_) {
-      if (plane.bytes != 0) queue.enqueueUnmapMemObject(plane.buffer, plane.pages.get());
-    }
+    if (mapped_) queue.enqueueUnmapMemObject(all_, pages_.get());
     mapped_ = false;
   }
 
   void fetch(const cl::CommandQueue& queue) override {
-    for (const SharedPlane& plane : planes_) {
-      if (plane.bytes != 0) {
-        queue.enqueueMapBuffer(plane.buffer, CL_FALSE, CL_MAP_READ, 0, plane.bytes);
-      }
-    }
+    queue.enqueueMapBuffer(all_, CL_FALSE, CL_MAP_READ, 0, bytes_);
     mapped_ = true;
   }
 
   [[nodiscard]] const cl::Buffer& buffer(std::size_t plane) const override {
-    return planes_.at(plane).buffer;
+    return buffers_.at(plane);
   }
   [[nodiscard]] const std::byte* host(std::size_t plane) const override {
-    return planes_.at(plane).pages.get();
+    const cl_buffer_region& region = regions_.at(plane);
+    return region.size == 0 ? nullptr : pages_.get() + region.origin;
   }
 
  private:
   cl::Context context_;
-  std::array<SharedPlane, kAllPlanes> planes_;
+  std::size_t bytes_ = 0;
+  std::array<cl_buffer_region, kAllPlanes> regions_{};
+  std::unique_ptr<std::byte[], FreePages> pages_;
+  cl::Buffer all_;
+  std::array<cl::Buffer, kAllPlanes> buffers_;
   bool mapped_ = false;
 };
 
