@@ -135,32 +135,47 @@ PF_INLINE bool any_lane(Mask mask) {
 PF_DEFINE_STORE(pair, float)
 PF_DEFINE_STORE(readings, PF_SENSEL)
 
-/* Writes the first `count` lanes. */
-PF_INLINE void store_plane(Real value, global float* plane, uint count) {
+/* The lanes of a block that are written. */
+typedef struct {
+  uint first;
+  uint end;
+} Lanes;
+
+PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES; }
+
+/* Results that are more than the caches hold go past them (PF_STREAM); full blocks alone, which
+ * then begin on a boundary of their size. */
 #if PF_LANES == 1
-  *plane = value;
+#define PF_STORE_BLOCK(value, plane) *(plane) = (value)
+#elif defined(PF_STREAM)
+#define PF_STORE_BLOCK(value, plane) __builtin_nontemporal_store(value, (global Real*)(plane))
 #else
-  if (count == PF_LANES) {
-    PF_VSTORE(value, 0, plane);
-  } else {
-    float lanes[PF_LANES];
-    PF_VSTORE(value, 0, lanes);
-    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
-  }
+#define PF_STORE_BLOCK(value, plane) PF_VSTORE(value, 0, plane)
 #endif
+
+PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
+  if (are_all(lanes)) {
+    PF_STORE_BLOCK(value, plane);
+  } else {
+#if PF_LANES > 1
+    float values[PF_LANES];
+    PF_VSTORE(value, 0, values);
+    for (uint i = lanes.first; i < lanes.end; ++i) plane[i] = values[i];
+#endif
+  }
 }
 
-PF_INLINE void store_status(Bits value, global uchar* plane, uint count) {
+PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
 #if PF_LANES == 1
   *plane = (uchar)value;
 #else
   const PF_LANE_TYPE(uchar) bytes = PF_JOIN(as_uchar, PF_LANES)(value);
-  if (count == PF_LANES) {
+  if (are_all(lanes)) {
     PF_VSTORE(bytes, 0, plane);
   } else {
-    uchar lanes[PF_LANES];
-    PF_VSTORE(bytes, 0, lanes);
-    for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
+    uchar values[PF_LANES];
+    PF_VSTORE(bytes, 0, values);
+    for (uint i = lanes.first; i < lanes.end; ++i) plane[i] = values[i];
   }
 #endif
 }

@@ -17,7 +17,8 @@ PF_INLINE Real level_of(Real tare, Real gain, Real good) {
 }
 
 #ifdef PF_LARGEST_READING
-#define PF_IS_AWAKE(reading, level) (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
+#define PF_IS_AWAKE(reading, level) \
+  (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
 #else
 #define PF_IS_AWAKE(reading, level) ((reading) >= (level))
 #endif

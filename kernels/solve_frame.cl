@@ -19,6 +19,7 @@
  *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: uncertainty is written
  *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from its plane instead
  *   PF_BASELINE                     stage: follow_baseline.cl
+ *   PF_STREAM                       results go past the caches: load_store.h
  *   PF_SKIP_SILENT                  silent blocks are left as they are: silence.h
  *   PF_WAKE_PLANE or PF_WAKE        readings that wake a sensel, each its own or one for all
  *
@@ -70,10 +71,11 @@ typedef struct {
   global uchar* silent; /* of each block: its results are those of silence; or null */
 } Output;
 
-/* Solves `count` pillars of a row. `raw` is the sensel at their upper left, `offset` its place in
- * the calibration planes, and `index` that of the first pillar in the results. */
+/* Solves `count` pillars of a row and writes `lanes` of them. `raw` is the sensel at their upper
+ * left, `offset` its place in the calibration planes, and `index` that of the first pillar in the
+ * results. */
 PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* raw, size_t offset,
-                           size_t index, uint count) {
+                           size_t index, uint count, Lanes lanes) {
   const Planes planes = input.planes;
   global const PF_SENSEL* const below = raw + input.row_stride;
   const SenselPair top = read_sensels(raw, planes, offset, count);
@@ -83,17 +85,17 @@ PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* r
   const Diagonals diagonals = pillar_diagonals(pillar);
   const ParitySum sum = parity_sum(diagonals);
   const Force force = estimate(pillar, diagonals, sum);
-  store_plane(force.shear_x, output.shear_x + index, count);
-  store_plane(force.shear_y, output.shear_y + index, count);
-  store_plane(force.normal, output.normal + index, count);
-  store_status(status_of(pillar, diagonals, sum), output.status + index, count);
+  store_plane(force.shear_x, output.shear_x + index, lanes);
+  store_plane(force.shear_y, output.shear_y + index, lanes);
+  store_plane(force.normal, output.normal + index, lanes);
+  store_status(status_of(pillar, diagonals, sum), output.status + index, lanes);
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
   const Direction direction = direction_of(force);
 #endif
 #ifdef PF_ANGLES
-  store_plane(direction.magnitude, output.magnitude + index, count);
-  store_plane(direction.theta, output.theta + index, count);
-  store_plane(direction.phi, output.phi + index, count);
+  store_plane(direction.magnitude, output.magnitude + index, lanes);
+  store_plane(direction.theta, output.theta + index, lanes);
+  store_plane(direction.phi, output.phi + index, lanes);
 #endif
 #ifdef PF_UNCERTAINTY
   const RealPair noise_top = read_noise(raw, planes, offset, count);
@@ -107,15 +109,15 @@ PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* r
   if (any_lane(!is_settled(pillar, sum))) {
     interval = direction_interval(pillar, diagonals, sum, direction, scale);
   }
-  store_plane(deviations.shear_x, output.deviation_x + index, count);
-  store_plane(deviations.shear_y, output.deviation_y + index, count);
-  store_plane(deviations.normal, output.deviation_normal + index, count);
-  store_plane(interval.theta_low, output.theta_low + index, count);
-  store_plane(interval.theta_high, output.theta_high + index, count);
-  store_plane(interval.phi_low, output.phi_low + index, count);
-  store_plane(interval.phi_high, output.phi_high + index, count);
-  store_plane(interval.magnitude_low, output.magnitude_low + index, count);
-  store_plane(interval.magnitude_high, output.magnitude_high + index, count);
+  store_plane(deviations.shear_x, output.deviation_x + index, lanes);
+  store_plane(deviations.shear_y, output.deviation_y + index, lanes);
+  store_plane(deviations.normal, output.deviation_normal + index, lanes);
+  store_plane(interval.theta_low, output.theta_low + index, lanes);
+  store_plane(interval.theta_high, output.theta_high + index, lanes);
+  store_plane(interval.phi_low, output.phi_low + index, lanes);
+  store_plane(interval.phi_high, output.phi_high + index, lanes);
+  store_plane(interval.magnitude_low, output.magnitude_low + index, lanes);
+  store_plane(interval.magnitude_high, output.magnitude_high + index, lanes);
 #endif
 }
 
@@ -133,9 +135,19 @@ PF_INLINE bool may_skip(Input input, global uchar* silent_block, global const PF
 #endif
 }
 
+/* The lanes of the block at `col` that no other block of its row writes. `place` is where it would
+ * begin, `skew` before the row's first pillar. */
+PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
+  const uint first = max(place, skew) - skew;
+  const uint end = min(place + PF_LANES - skew, cols);
+  const Lanes lanes = {first - col, end - col};
+  return lanes;
+}
+
 /* Solves the blocks of a pillar row that are this work-item's. Blocks begin where a result is on a
  * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
- * moved into the row, and solve again what their neighbour solves as well. */
+ * moved into the row, and solve again what their neighbours solve as well. Written again it is the
+ * same; only past the caches each line must be written once. */
 PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols) {
   const size_t first_index = (size_t)row * pillar_cols;
   const uint skew = (uint)(first_index % PF_LANES);
@@ -154,7 +166,12 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
     PF_PREFETCH(raw + 3 * stride);
     if (may_skip(input, silent_blocks + block, raw, offset, count)) continue;
     prefetch_planes(input.planes, offset + 2 * input.planes.stride);
-    solve_block(input, output, raw, offset, first_index + col, count);
+#ifdef PF_STREAM
+    const Lanes lanes = own_lanes(block * PF_LANES, skew, col, pillar_cols);
+#else
+    const Lanes lanes = {0, count};
+#endif
+    solve_block(input, output, raw, offset, first_index + col, count, lanes);
   }
 }
 

@@ -111,6 +111,7 @@ std::string kernel_source(const SolverPlan& plan, int lanes, const SpeedPaths& p
     }
   };
   define(definitions(plan));
+  if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));
   for (const KernelFile& file : kernel_files()) {
     source += fmt::format("#line 1 \"{}\"\n", file.name);

@@ -33,6 +33,21 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
+/// The paths with what the device leaves to choose decided.
+SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
+                        const Processor::Options& options) {
+  SpeedPaths paths = options.paths;
+  if (paths.stores != Stores::automatic) return paths;
+  std::size_t bytes = 0;
+  for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+    if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plane);
+  }
+  const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
+  const bool exceed = bytes * static_cast<std::size_t>(options.frames_in_flight) > cache;
+  paths.stores = exceed ? Stores::streaming : Stores::cached;
+  return paths;
+}
+
 }  // namespace
 
 struct Processor::State {
@@ -46,9 +61,10 @@ struct Processor::State {
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
     settings.lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
-    settings.program = device.state().program(kernel_source(wanted, settings.lanes, options.paths));
+    settings.paths = decide_paths(device, wanted, options);
+    settings.program =
+        device.state().program(kernel_source(wanted, settings.lanes, settings.paths));
     settings.shares_memory = shares_memory;
-    settings.paths = options.paths;
     slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
     for (int i = 0; i < options.frames_in_flight; ++i) {
       slots.emplace_back(device.state(), wanted, settings, calibration, baseline);

@@ -50,14 +50,23 @@ class Device {
 /// before CPUs. Throws Error that lists every device and why it was passed over.
 [[nodiscard]] Device open_device(std::string_view index_or_name = {});
 
+/// How results are written.
+enum class Stores : std::uint8_t {
+  automatic,  ///< streaming where the results of all slots exceed the caches, else cached
+  cached,
+  streaming,  ///< past the caches, where the device's compiler can
+};
+
 /// Ways to the same results, bit for bit, that differ in speed.
 struct SpeedPaths {
   /// Blocks of pillars whose sensels are all silent, and were so when their slot was last written,
   /// are not solved again.
   bool skip_silent = true;
+  Stores stores = Stores::automatic;
 };
 
-/// The OpenCL C that is compiled for a plan on a device with so many lanes, complete.
+/// The OpenCL C that is compiled for a plan on a device with so many lanes, complete. Stores are
+/// streaming only where `paths` says so.
 [[nodiscard]] std::string kernel_source(const SolverPlan& plan, int lanes,
                                         const SpeedPaths& paths = {});
 
