@@ -24,26 +24,27 @@ typedef struct {
   global PF_SENSEL* wake;
 } SenselRow;
 
-/* The tares, and the levels that follow from them, under `count` pillars. */
-PF_INLINE void follow_row(SenselRow row, Mask untouched, Real rate, uint count) {
-  const RealPair readings = load_readings(row.raw, count);
+/* The tares, and the levels that follow from them, under PF_LANES pillars, of which `lanes` are
+ * written. */
+PF_INLINE void follow_row(SenselRow row, Mask untouched, Real rate, Lanes lanes) {
+  const RealPair readings = load_readings(row.raw);
   RealPair good = {(Real)(1.0f), (Real)(1.0f)};
 #ifdef PF_MASK
-  good = load_mask(row.mask, count);
+  good = load_mask(row.mask);
 #endif
-  RealPair tares = load_plane(row.tare, count);
+  RealPair tares = load_plane(row.tare);
   tares.left = follow_tare(tares.left, judge_reading(readings.left, good.left), untouched, rate);
   tares.right =
       follow_tare(tares.right, judge_reading(readings.right, good.right), untouched, rate);
-  store_pair(tares, row.tare, count);
+  store_pair(tares, row.tare, lanes);
 #ifdef PF_SKIP_SILENT
   RealPair gains = {(Real)(1.0f), (Real)(1.0f)};
 #ifdef PF_GAIN
-  gains = load_plane(row.gain, count);
+  gains = load_plane(row.gain);
 #endif
   const RealPair levels = {level_of(tares.left, gains.left, good.left),
                            level_of(tares.right, gains.right, good.right)};
-  store_readings(levels, row.wake, count);
+  store_readings(levels, row.wake, lanes);
 #endif
 }
 
@@ -65,15 +66,17 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw, ulong row_stri
   const uint step = (uint)get_global_size(0) * PF_LANES;
   for (uint at = band.first; at < band.end; ++at) {
     const uint row = first_row + at * interval;
-    for (uint col = (uint)get_global_id(0) * PF_LANES; col < pillar_cols; col += step) {
-      const uint count = min(pillar_cols - col, (uint)PF_LANES);
+    for (uint place = (uint)get_global_id(0) * PF_LANES; place < pillar_cols; place += step) {
+      /* The last block is moved into the row; its neighbour has followed some of it already. */
+      const uint col = min(place, pillar_cols - PF_LANES);
+      const Lanes lanes = {place - col, PF_LANES};
       const Bits around = status_around(status, row, col, pillar_rows, pillar_cols);
       const Mask untouched = !mask_of(around & PF_BITS(PF_STATUS_PRESSED));
       for (uint side = 0; side < 2; ++side) {
         const size_t offset = (2 * row + side) * plane_stride + 2 * col;
         const SenselRow sensels = {raw + (2 * row + side) * row_stride + 2 * col, gain + offset,
                                    mask + offset, tare + offset, wake + offset};
-        follow_row(sensels, untouched, (Real)(rate), count);
+        follow_row(sensels, untouched, (Real)(rate), lanes);
       }
     }
   }

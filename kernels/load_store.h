@@ -14,24 +14,20 @@ typedef struct {
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
-/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. Where a row has
- * fewer than PF_LANES, nothing beyond it is read, and the other lanes are zero. */
+/* load_<name>(row): the sensels under PF_LANES neighbouring pillars, as Real. */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type, split)                              \
-  PF_INLINE RealPair load_##name(global const type* row, uint count) { \
-    RealPair pair;                                                     \
-    pair.left = (Real)row[0];                                          \
-    pair.right = (Real)row[1];                                         \
-    return pair;                                                       \
+#define PF_DEFINE_LOAD(name, type, split)                  \
+  PF_INLINE RealPair load_##name(global const type* row) { \
+    RealPair pair;                                         \
+    pair.left = (Real)row[0];                              \
+    pair.right = (Real)row[1];                             \
+    return pair;                                           \
   }
 #else
 
-#define PF_DEFINE_LOAD(name, type, split)                                                 \
-  PF_INLINE RealPair load_##name(global const type* row, uint count) {                    \
-    if (count == PF_LANES) return split(PF_VLOAD(0, row), PF_VLOAD(1, row));              \
-    type padded[2 * PF_LANES];                                                            \
-    for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0; \
-    return split(PF_VLOAD(0, padded), PF_VLOAD(1, padded));                               \
+#define PF_DEFINE_LOAD(name, type, split)                  \
+  PF_INLINE RealPair load_##name(global const type* row) { \
+    return split(PF_VLOAD(0, row), PF_VLOAD(1, row));      \
   }
 
 #define PF_TO_REAL PF_JOIN(convert_float, PF_LANES)
@@ -79,14 +75,23 @@ PF_DEFINE_LOAD(readings, PF_SENSEL, PF_JOIN(split_, PF_SENSEL))
 PF_DEFINE_LOAD(plane, float, split_float)
 PF_DEFINE_LOAD(mask, uchar, split_uchar)
 
-/* Whether a mask is true in any lane. */
-PF_INLINE bool any_lane(Mask mask) {
+/* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
+PF_INLINE bool any_bits(Bits bits) {
 #if PF_LANES == 1
-  return mask;
+  return bits != 0;
+#elif PF_LANES == 2
+  return as_short(bits) != 0;
+#elif PF_LANES == 4
+  return as_int(bits) != 0;
+#elif PF_LANES == 8
+  return as_long(bits) != 0;
 #else
-  return any(mask);
+  const long2 halves = as_long2(bits);
+  return (halves.x | halves.y) != 0;
 #endif
 }
+
+PF_INLINE bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 /* Brings the values of PF_LANES pillars in one row of sensels towards the caches. What may lie past
  * the end of a plane is not touched by it; where a compiler has no word for it, nothing happens. */
@@ -102,39 +107,6 @@ PF_INLINE bool any_lane(Mask mask) {
 #define PF_PREFETCH(row)
 #endif
 
-/* store_<name>(pair, row, count): writes what load_<name> reads; whole values where type has no
- * fractions. */
-#if PF_LANES == 1
-#define PF_DEFINE_STORE(name, type)                                          \
-  PF_INLINE void store_##name(RealPair pair, global type* row, uint count) { \
-    row[0] = (type)pair.left;                                                \
-    row[1] = (type)pair.right;                                               \
-  }
-#else
-#define PF_DEFINE_STORE(name, type)                                                          \
-  PF_INLINE void store_##name(RealPair pair, global type* row, uint count) {                 \
-    const PF_LANE_TYPE(type) left = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.left);   \
-    const PF_LANE_TYPE(type) right = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.right); \
-    PF_LANE_TYPE(type) low, high;                                                            \
-    low.even = left.lo;                                                                      \
-    low.odd = right.lo;                                                                      \
-    high.even = left.hi;                                                                     \
-    high.odd = right.hi;                                                                     \
-    if (count == PF_LANES) {                                                                 \
-      PF_VSTORE(low, 0, row);                                                                \
-      PF_VSTORE(high, 1, row);                                                               \
-    } else {                                                                                 \
-      type values[2 * PF_LANES];                                                             \
-      PF_VSTORE(low, 0, values);                                                             \
-      PF_VSTORE(high, 1, values);                                                            \
-      for (uint i = 0; i < 2 * count; ++i) row[i] = values[i];                               \
-    }                                                                                        \
-  }
-#endif
-
-PF_DEFINE_STORE(pair, float)
-PF_DEFINE_STORE(readings, PF_SENSEL)
-
 /* The lanes of a block that are written. */
 typedef struct {
   uint first;
@@ -142,6 +114,39 @@ typedef struct {
 } Lanes;
 
 PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES; }
+
+/* store_<name>(pair, row, lanes): writes what load_<name> reads; whole values where type has no
+ * fractions. */
+#if PF_LANES == 1
+#define PF_DEFINE_STORE(name, type)                                           \
+  PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) { \
+    row[0] = (type)pair.left;                                                 \
+    row[1] = (type)pair.right;                                                \
+  }
+#else
+#define PF_DEFINE_STORE(name, type)                                                          \
+  PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) {                \
+    const PF_LANE_TYPE(type) left = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.left);   \
+    const PF_LANE_TYPE(type) right = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.right); \
+    PF_LANE_TYPE(type) low, high;                                                            \
+    low.even = left.lo;                                                                      \
+    low.odd = right.lo;                                                                      \
+    high.even = left.hi;                                                                     \
+    high.odd = right.hi;                                                                     \
+    if (are_all(lanes)) {                                                                    \
+      PF_VSTORE(low, 0, row);                                                                \
+      PF_VSTORE(high, 1, row);                                                               \
+    } else {                                                                                 \
+      type values[2 * PF_LANES];                                                             \
+      PF_VSTORE(low, 0, values);                                                             \
+      PF_VSTORE(high, 1, values);                                                            \
+      for (uint i = 2 * lanes.first; i < 2 * lanes.end; ++i) row[i] = values[i];             \
+    }                                                                                        \
+  }
+#endif
+
+PF_DEFINE_STORE(pair, float)
+PF_DEFINE_STORE(readings, PF_SENSEL)
 
 /* Results that are more than the caches hold go past them (PF_STREAM); full blocks alone, which
  * then begin on a boundary of their size. */

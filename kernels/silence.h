@@ -23,31 +23,25 @@ PF_INLINE Real level_of(Real tare, Real gain, Real good) {
 #define PF_IS_AWAKE(reading, level) ((reading) >= (level))
 #endif
 
-#if PF_LANES > 1
-/* All bits of the lanes in which a sensel of one row is awake, or-ed over both sides. */
-#define PF_AWAKE_LANES(raw, level_low, level_high) \
-  (PF_IS_AWAKE(PF_VLOAD(0, raw), level_low) | PF_IS_AWAKE(PF_VLOAD(1, raw), level_high))
-#endif
-
 /* Whether no sensel under PF_LANES pillars is awake. `wake` is the level of the first one. */
 PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
                          global const PF_SENSEL* wake, size_t wake_stride) {
-#ifdef PF_WAKE_PLANE
-#define PF_LEVEL(i, row) (wake + row * wake_stride)[i]
-#else
-#define PF_LEVEL(i, row) (PF_SENSEL)(PF_WAKE)
-#endif
 #if PF_LANES == 1
-  return !(PF_IS_AWAKE(raw[0], PF_LEVEL(0, 0)) || PF_IS_AWAKE(raw[1], PF_LEVEL(1, 0)) ||
-           PF_IS_AWAKE(raw[row_stride], PF_LEVEL(0, 1)) ||
-           PF_IS_AWAKE(raw[row_stride + 1], PF_LEVEL(1, 1)));
+#define PF_READING(place, i) (place)[i]
 #else
-#ifdef PF_WAKE_PLANE
-#undef PF_LEVEL
-#define PF_LEVEL(i, row) PF_VLOAD(i, wake + row * wake_stride)
+#define PF_READING(place, i) PF_VLOAD(i, place)
 #endif
-  return !any(PF_AWAKE_LANES(raw, PF_LEVEL(0, 0), PF_LEVEL(1, 0)) |
-              PF_AWAKE_LANES(raw + row_stride, PF_LEVEL(0, 1), PF_LEVEL(1, 1)));
+#ifdef PF_WAKE_PLANE
+#define PF_LEVEL(row, i) PF_READING(wake + row * wake_stride, i)
+#else
+#define PF_LEVEL(row, i) (PF_SENSEL)(PF_WAKE)
+#endif
+#define PF_AWAKE(row, i) PF_IS_AWAKE(PF_READING(raw + row * row_stride, i), PF_LEVEL(row, i))
+#if PF_LANES == 1
+  return !(PF_AWAKE(0, 0) || PF_AWAKE(0, 1) || PF_AWAKE(1, 0) || PF_AWAKE(1, 1));
+#else
+  return !any_bits(PF_JOIN(
+      convert_char, PF_LANES)(PF_AWAKE(0, 0) | PF_AWAKE(0, 1) | PF_AWAKE(1, 0) | PF_AWAKE(1, 1)));
 #endif
 }
 

@@ -3,10 +3,9 @@
  *
  * The host writes what a plan asks for as the first lines of the program:
  *
- *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16
- *   PF_SENSEL                       uchar, ushort or float
- *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count (ForceScale)
- *   PF_THRESHOLD                    counts
+ *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16; no
+ * more than a row has PF_SENSEL                       uchar, ushort or float PF_SHEAR_SCALE,
+ * PF_NORMAL_SCALE newtons per count (ForceScale) PF_THRESHOLD                    counts
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
  *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
@@ -71,17 +70,20 @@ typedef struct {
   global uchar* silent; /* of each block: its results are those of silence; or null */
 } Output;
 
-/* Solves `count` pillars of a row and writes `lanes` of them. `raw` is the sensel at their upper
- * left, `offset` its place in the calibration planes, and `index` that of the first pillar in the
- * results. */
-PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* raw, size_t offset,
-                           size_t index, uint count, Lanes lanes) {
-  const Planes planes = input.planes;
-  global const PF_SENSEL* const below = raw + input.row_stride;
-  const SenselPair top = read_sensels(raw, planes, offset, count);
-  const SenselPair bottom = read_sensels(below, planes, offset + planes.stride, count);
-  const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
+/* Where the pillars of a block are: `raw` is the sensel at their upper left, `offset` its place in
+ * the calibration planes, and `index` that of the first pillar in the results. `lanes` of them
+ * are written. */
+typedef struct {
+  global const PF_SENSEL* raw;
+  size_t offset;
+  size_t index;
+  Lanes lanes;
+} Block;
 
+/* From corrected sensels to the results. */
+PF_INLINE void solve_pillars(Pillar pillar, Block block, Input input, Output output) {
+  const size_t index = block.index;
+  const Lanes lanes = block.lanes;
   const Diagonals diagonals = pillar_diagonals(pillar);
   const ParitySum sum = parity_sum(diagonals);
   const Force force = estimate(pillar, diagonals, sum);
@@ -98,8 +100,10 @@ PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* r
   store_plane(direction.phi, output.phi + index, lanes);
 #endif
 #ifdef PF_UNCERTAINTY
-  const RealPair noise_top = read_noise(raw, planes, offset, count);
-  const RealPair noise_bottom = read_noise(below, planes, offset + planes.stride, count);
+  const size_t stride = input.planes.stride;
+  const RealPair noise_top = read_noise(block.raw, input.planes, block.offset);
+  const RealPair noise_bottom =
+      read_noise(block.raw + input.row_stride, input.planes, block.offset + stride);
   const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
   const Force deviations = force_deviations(pillar, diagonals, noises, scale);
@@ -121,13 +125,43 @@ PF_INLINE void solve_block(Input input, Output output, global const PF_SENSEL* r
 #endif
 }
 
+/* The sensel, of which is known in every lane that it is neither missing nor saturated. */
+PF_INLINE Sensel sound_sensel(Sensel sensel) {
+  const Mask none = sensel.reading < sensel.reading;
+  sensel.missing = none;
+  sensel.saturated = none;
+  return sensel;
+}
+
+PF_INLINE Mask is_unsound(Sensel sensel) { return sensel.missing || sensel.saturated; }
+
+/* Most blocks have no missing and no saturated sensel. For them the compiler gets the same text
+ * with those masks false, and leaves half of it out. */
+PF_INLINE void solve_block(Block block, Input input, Output output) {
+  const Planes planes = input.planes;
+  const SenselPair top = read_sensels(block.raw, planes, block.offset);
+  const SenselPair bottom =
+      read_sensels(block.raw + input.row_stride, planes, block.offset + planes.stride);
+  const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
+#if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_FULL_SCALE) || defined(PF_LARGEST_READING))
+  const Mask unsound = is_unsound(pillar.s1) || is_unsound(pillar.s2) || is_unsound(pillar.s3) ||
+                       is_unsound(pillar.s4);
+  if (!any_lane(unsound)) {
+    const Pillar sound = {sound_sensel(pillar.s1), sound_sensel(pillar.s2), sound_sensel(pillar.s3),
+                          sound_sensel(pillar.s4)};
+    solve_pillars(sound, block, input, output);
+    return;
+  }
+#endif
+  solve_pillars(pillar, block, input, output);
+}
+
 /* Whether a block's results are those of silence already; if not, notes what they are now to be. */
 PF_INLINE bool may_skip(Input input, global uchar* silent_block, global const PF_SENSEL* raw,
-                        size_t offset, uint count) {
+                        size_t offset) {
 #ifdef PF_SKIP_SILENT
   const bool was_silent = *silent_block;
-  const bool silent = count == PF_LANES &&
-                      is_silent(raw, input.row_stride, input.wake + offset, input.planes.stride);
+  const bool silent = is_silent(raw, input.row_stride, input.wake + offset, input.planes.stride);
   if (silent != was_silent) *silent_block = silent;
   return silent && was_silent;
 #else
@@ -152,26 +186,26 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
   const size_t first_index = (size_t)row * pillar_cols;
   const uint skew = (uint)(first_index % PF_LANES);
   const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
-  const uint count = min(pillar_cols, (uint)PF_LANES);
-  const uint last_col = pillar_cols - count;
+  const uint last_col = pillar_cols - PF_LANES;
   const size_t stride = input.row_stride;
   const size_t first_offset = 2 * row * input.planes.stride;
   global const PF_SENSEL* const first_raw = input.raw + 2 * row * stride;
   global uchar* const silent_blocks = output.silent + (size_t)row * blocks_of_row(pillar_cols);
-  for (uint block = (uint)get_global_id(0); block < blocks; block += (uint)get_global_size(0)) {
-    const uint col = min(max(block * PF_LANES, skew) - skew, last_col);
+  for (uint at = (uint)get_global_id(0); at < blocks; at += (uint)get_global_size(0)) {
+    const uint col = min(max(at * PF_LANES, skew) - skew, last_col);
     global const PF_SENSEL* const raw = first_raw + 2 * col;
     const size_t offset = first_offset + 2 * col;
     PF_PREFETCH(raw + 2 * stride);
     PF_PREFETCH(raw + 3 * stride);
-    if (may_skip(input, silent_blocks + block, raw, offset, count)) continue;
+    if (may_skip(input, silent_blocks + at, raw, offset)) continue;
     prefetch_planes(input.planes, offset + 2 * input.planes.stride);
 #ifdef PF_STREAM
-    const Lanes lanes = own_lanes(block * PF_LANES, skew, col, pillar_cols);
+    const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
 #else
-    const Lanes lanes = {0, count};
+    const Lanes lanes = {0, PF_LANES};
 #endif
-    solve_block(input, output, raw, offset, first_index + col, count, lanes);
+    const Block block = {raw, offset, first_index + col, lanes};
+    solve_block(block, input, output);
   }
 }
 

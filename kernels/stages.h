@@ -51,25 +51,25 @@ typedef struct {
   Sensel right;
 } SenselPair;
 
-/* The sensels of one row under `count` pillars. `offset` is the first one's place in the planes. */
-PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset,
-                                  uint count) {
-  const RealPair readings = load_readings(raw, count);
+/* The sensels of one row under PF_LANES pillars. `offset` is the first one's place in the planes.
+ */
+PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset) {
+  const RealPair readings = load_readings(raw);
   RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
   RealPair gains = tares;
   RealPair dead_zones = tares;
   RealPair good = tares;
 #ifdef PF_TARE
-  tares = load_plane(planes.tare + offset, count);
+  tares = load_plane(planes.tare + offset);
 #endif
 #ifdef PF_GAIN
-  gains = load_plane(planes.gain + offset, count);
+  gains = load_plane(planes.gain + offset);
 #endif
 #ifdef PF_DEAD_ZONE
-  dead_zones = load_plane(planes.dead_zone + offset, count);
+  dead_zones = load_plane(planes.dead_zone + offset);
 #endif
 #ifdef PF_MASK
-  good = load_mask(planes.mask + offset, count);
+  good = load_mask(planes.mask + offset);
 #endif
   SenselPair pair;
   pair.left = prepare_sensel(readings.left, tares.left, gains.left, dead_zones.left, good.left);
@@ -80,21 +80,20 @@ PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, si
 
 #ifdef PF_UNCERTAINTY
 /* The noise of those sensels as the corrections leave it, counts. */
-PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t offset,
-                              uint count) {
+PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t offset) {
   RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
 #ifdef PF_NOISE
-  noise = load_plane(planes.noise + offset, count);
+  noise = load_plane(planes.noise + offset);
 #endif
 #ifdef PF_GAIN
-  const RealPair gains = load_plane(planes.gain + offset, count);
+  const RealPair gains = load_plane(planes.gain + offset);
   noise.left = noise.left * gains.left;
   noise.right = noise.right * gains.right;
 #endif
 #ifdef PF_POWER_EXPONENT
-  RealPair readings = load_readings(raw, count);
+  RealPair readings = load_readings(raw);
 #ifdef PF_TARE
-  const RealPair tares = load_plane(planes.tare + offset, count);
+  const RealPair tares = load_plane(planes.tare + offset);
   readings.left = readings.left - tares.left;
   readings.right = readings.right - tares.right;
 #endif

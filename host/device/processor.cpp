@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <bit>
 #include <string>
 
 #include "device/slot.h"
@@ -33,6 +35,12 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
+/// A row has at least as many pillars as are solved at once.
+int decide_lanes(const Device& device, const SolverPlan& plan, const Processor::Options& options) {
+  const int wanted = options.lanes != 0 ? options.lanes : device.info().lanes;
+  return std::min(wanted, static_cast<int>(std::bit_floor(plan.skin.pillar_cols())));
+}
+
 /// The paths with what the device leaves to choose decided.
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options) {
@@ -60,7 +68,7 @@ struct Processor::State {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
-    settings.lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
+    settings.lanes = decide_lanes(device, wanted, options);
     settings.paths = decide_paths(device, wanted, options);
     settings.program =
         device.state().program(kernel_source(wanted, settings.lanes, settings.paths));

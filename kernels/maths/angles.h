@@ -14,6 +14,6 @@ static inline Direction direction_of(Force force) {
   direction.magnitude = length_3(force.shear_x, force.shear_y, force.normal);
   direction.theta = angle_of(shear, force.normal);
   /* Subtracted, not negated: a component +0 must not become -0, on the far side of the cut. */
-  direction.phi = shear > zero ? angle_of(zero - force.shear_y, zero - force.shear_x) : zero;
+  direction.phi = angle_of(zero - force.shear_y, zero - force.shear_x);
   return direction;
 }

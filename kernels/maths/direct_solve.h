@@ -146,8 +146,6 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
   return force_at(diagonals, sum.middle, scale);
 }
 
-static inline Real least_of(Real a, Real b) { return a < b ? a : b; }
-
 /* Whether the silent one of four sensels may press, where the three others are usable: its silence
  * hides something, and parity leaves it more than -`doubt` counts. That of a usable sensel reads
  * above zero, so the least of all four is asked. (D9) */

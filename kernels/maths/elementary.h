@@ -3,9 +3,8 @@
  * are those of the C++ library. Largest errors, measured against 113 bits, and what each costs in
  * instructions: docs/derivations/elementary.md. */
 
-#if !defined(__cplusplus) || PF_PRECISION == 32
-
 static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
+static inline Real least_of(Real a, Real b) { return a < b ? a : b; }
 
 /* A power of two that brings squares of numbers up to `largest` into range, and its inverse. */
 typedef struct {
@@ -23,21 +22,22 @@ static inline Scaling scaling_for(Real largest) {
   return scaling;
 }
 
+/* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) of numbers that are scaled already. */
+static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
+static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
+
+#if !defined(__cplusplus) || PF_PRECISION == 32
+
 /* sqrt(x^2 + y^2), without overflow and underflow on the way; 1.25 ULP. */
 static inline Real length_2(Real x, Real y) {
   const Scaling scaling = scaling_for(larger_of(fabs(x), fabs(y)));
-  const Real a = x * scaling.down;
-  const Real b = y * scaling.down;
-  return sqrt(a * a + b * b) * scaling.up;
+  return plain_length_2(x * scaling.down, y * scaling.down) * scaling.up;
 }
 
 /* sqrt(x^2 + y^2 + z^2), as before; 1.5 ULP. */
 static inline Real length_3(Real x, Real y, Real z) {
   const Scaling scaling = scaling_for(larger_of(larger_of(fabs(x), fabs(y)), fabs(z)));
-  const Real a = x * scaling.down;
-  const Real b = y * scaling.down;
-  const Real c = z * scaling.down;
-  return sqrt(a * a + b * b + c * c) * scaling.up;
+  return plain_length_3(x * scaling.down, y * scaling.down, z * scaling.down) * scaling.up;
 }
 
 /* The angle of the point (x, y) from the x axis, (-pi, pi]; zero at the origin; 2 ULP. */

@@ -127,9 +127,13 @@ static inline Real larger_side(DifferenceInterval interval) {
 
 /* phi of the shear whose differences are these (M2, M5); zero without shear. */
 static inline Real phi_of(Real rising, Real falling) {
-  const Real zero = PF_REAL(0.0);
-  const Mask none = (rising == zero) && (falling == zero);
-  return none ? zero : angle_of(zero - (rising + falling), falling - rising);
+  return angle_of(PF_REAL(0.0) - (rising + falling), falling - rising);
+}
+
+static inline Diagonal scaled(Diagonal d, Real factor) {
+  d.p = d.p * factor;
+  d.q = d.q * factor;
+  return d;
 }
 
 /* Whether both ends are the estimate: the parity sum is a point, and no two lifted sensels share
@@ -161,21 +165,25 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
                                                    ForceScale scale) {
   const Real zero = PF_REAL(0.0);
   const Real pi = PF_REAL(3.14159265358979323846);
-  const Diagonal a = diagonals.rising;
-  const Diagonal b = diagonals.falling;
+  const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const Mask a_loose = is_lifted(pillar.s1) && is_lifted(pillar.s3);
   const Mask b_loose = is_lifted(pillar.s2) && is_lifted(pillar.s4);
   const Mask silent = a_loose && b_loose;
-  const Real a_most = a.p + a.q;
-  const Real b_most = b.p + b.q;
-  const Real most = silent ? (a_most < b_most ? a_most : b_most) : sum.high;
+
+  /* Counts, scaled so that no product overflows or vanishes. */
+  const Scaling scaling =
+      scaling_for(larger_of(larger_of(diagonals.rising.p, diagonals.rising.q),
+                            larger_of(diagonals.falling.p, diagonals.falling.q)));
+  const Diagonal a = scaled(diagonals.rising, scaling.down);
+  const Diagonal b = scaled(diagonals.falling, scaling.down);
+  const Real low = sum.low * scaling.down;
+  const Real most = silent ? least_of(a.p + a.q, b.p + b.q) : sum.high * scaling.down;
 
   /* At the least parity sum the force is longest, flattest and, if it may turn, freest. */
-  const DifferenceInterval a_flat = difference_interval(a, a_loose, sum.low);
-  const DifferenceInterval b_flat = difference_interval(b, b_loose, sum.low);
+  const DifferenceInterval a_flat = difference_interval(a, a_loose, low);
+  const DifferenceInterval b_flat = difference_interval(b, b_loose, low);
   const Real a_side = larger_side(a_flat);
   const Real b_side = larger_side(b_flat);
-  const Real flat = length_2(a_side, b_side);
   const Real a_steep = diagonal_difference(a, most);
   const Real b_steep = diagonal_difference(b, most);
 
@@ -186,9 +194,16 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Real b_reading = b_sloped ? (b.p_stands ? b.p : b.q) : zero;
   const Real share = (a_sloped && b_sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
   const Real free = share * (a_reading + b_reading);
-  const Real least = free < sum.low ? sum.low : (free > most ? most : free);
+  const Real least = free < low ? low : (free > most ? most : free);
   const Real a_short = diagonal_difference(a, least);
   const Real b_short = diagonal_difference(b, least);
+
+  /* Either the parity sum begins at zero, where the force lies in the plane; or it is known, and
+   * the estimate is the steepest force. */
+  const Mask from_zero = !(low > zero);
+  const Real slope = plain_length_2(from_zero ? a_steep : a_side, from_zero ? b_steep : b_side);
+  const Real tilt = angle_of(slope, from_zero ? most : low);
+  const Real in_plane = (a_side > zero || b_side > zero) ? quarter_turn : zero;
 
   /* Two corners between which the shear turns, and which way. */
   const Mask loose = a_loose || b_loose;
@@ -196,22 +211,20 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Real b_from = b_loose ? b_flat.low : b_flat.high;
   const Real a_to = loose ? a_flat.high : a_steep;
   const Real b_to = loose ? b_flat.high : b_steep;
-  const Real unit = flat > zero ? flat : PF_REAL(1.0); /* So that no product overflows. */
-  const Mask clockwise = (a_from / unit) * b_to < (b_from / unit) * a_to;
+  const Mask clockwise = a_from * b_to < b_from * a_to;
   const Real phi_from = phi_of(a_from, b_from);
   const Real phi_to = phi_of(a_to, b_to);
   const Mask any_phi = silent && (most > zero);
-
-  const Mask settled = is_settled(pillar, sum);
-  const Real theta_low = angle_of(length_2(a_steep, b_steep), most);
-  const Real theta_high = angle_of(flat, sum.low);
   const Real phi_low = any_phi ? -pi : (clockwise ? phi_to : phi_from);
   const Real phi_high = any_phi ? pi : (clockwise ? phi_from : phi_to);
-  const Real magnitude_low = scale.normal * length_3(a_short, b_short, least);
-  const Real magnitude_high = scale.normal * length_3(a_side, b_side, sum.low);
+
+  const Real newtons = scale.normal * scaling.up;
+  const Real magnitude_low = newtons * plain_length_3(a_short, b_short, least);
+  const Real magnitude_high = newtons * plain_length_3(a_side, b_side, low);
+  const Mask settled = is_settled(pillar, sum);
   DirectionInterval interval;
-  interval.theta_low = settled ? estimate.theta : theta_low;
-  interval.theta_high = settled ? estimate.theta : theta_high;
+  interval.theta_low = (settled || !from_zero) ? estimate.theta : tilt;
+  interval.theta_high = settled ? estimate.theta : (from_zero ? in_plane : tilt);
   interval.phi_low = settled ? estimate.phi : phi_low;
   interval.phi_high = settled ? estimate.phi : phi_high;
   interval.magnitude_low = settled ? estimate.magnitude : magnitude_low;
