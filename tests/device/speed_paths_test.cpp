@@ -1,0 +1,186 @@
+// However a frame is solved faster, the result is the same, bit for bit: every way against the one
+// that skips nothing and stores as usual, over frames in which contacts come and go.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "pillarfield/processor.h"
+#include "random_plan.h"
+
+namespace pillarfield {
+namespace {
+
+/// Frames of a skin that is silent but for one contact, which moves, and is absent at times.
+class MovingContact {
+ public:
+  MovingContact(const SolverPlan& plan, std::uint32_t seed) : plan_(plan), random_(seed) {}
+
+  FrameBuffer next() {
+    const Skin& skin = plan_.skin;
+    FrameBuffer frame(plan_.sensel_type, skin.rows, skin.cols);
+    const bool pressed = frame_ % 4 != 3;
+    const double center_row = uniform(0, skin.rows);
+    const double center_col = uniform(0, skin.cols);
+    for (std::size_t row = 0; row < skin.rows; ++row) {
+      for (std::size_t col = 0; col < skin.cols; ++col) {
+        const std::size_t at = row * skin.cols + col;
+        const double distance = std::hypot(static_cast<double>(row) - center_row,
+                                           static_cast<double>(col) - center_col);
+        const double contact = pressed && distance < 9 ? uniform(0, 230) : 0;
+        const float tare = plan_.calibration.tare.empty() ? 0 : plan_.calibration.tare[at];
+        write(frame, at, std::max(0.0, tare + uniform(-1, 1.5) + contact));
+      }
+    }
+    ++frame_;
+    return frame;
+  }
+
+ private:
+  double uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+  void write(FrameBuffer& frame, std::size_t at, double reading) {
+    switch (plan_.sensel_type) {
+      case SenselType::u8:
+        frame.readings<std::uint8_t>()[at] = static_cast<std::uint8_t>(std::min(reading, 255.0));
+        return;
+      case SenselType::u16:
+        frame.readings<std::uint16_t>()[at] = static_cast<std::uint16_t>(reading);
+        return;
+      case SenselType::f32:
+        break;
+    }
+    // Once in a while a sensel drops out, or its converter does.
+    constexpr float kAbsurd[] = {std::numeric_limits<float>::quiet_NaN(), -1e38F, 1e38F};
+    const double kind = uniform(0, 1);
+    frame.readings<float>()[at] = kind < 0.998
+                                      ? static_cast<float>(reading)
+                                      : kAbsurd[static_cast<std::size_t>(uniform(0, 2.999))];
+  }
+
+  const SolverPlan& plan_;
+  std::mt19937 random_;
+  int frame_ = 0;
+};
+
+void expect_bits(std::span<const float> actual, std::span<const float> expected, const char* plane,
+                 int frame) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected[i]))
+        << plane << " of pillar " << i << " in frame " << frame;
+  }
+}
+
+void expect_all_bits(const ForceFieldView& actual, const ForceFieldView& expected, int frame) {
+  expect_bits(actual.shear_x, expected.shear_x, "shear_x", frame);
+  expect_bits(actual.shear_y, expected.shear_y, "shear_y", frame);
+  expect_bits(actual.normal, expected.normal, "normal", frame);
+  expect_bits(actual.magnitude, expected.magnitude, "magnitude", frame);
+  expect_bits(actual.theta, expected.theta, "theta", frame);
+  expect_bits(actual.phi, expected.phi, "phi", frame);
+  for (std::size_t plane = 0; plane < kUncertaintyPlanes; ++plane) {
+    const auto which = static_cast<Uncertainty>(plane);
+    expect_bits(actual.uncertainty[which], expected.uncertainty[which], name_of(which), frame);
+  }
+  ASSERT_TRUE(std::ranges::equal(actual.status, expected.status)) << "status in frame " << frame;
+}
+
+constexpr SpeedPaths kPlain = {.skip_silent = false, .stores = Stores::cached};
+
+/// Both ways through the same frames, two in flight, so that slots are used by turns.
+void expect_same(const Device& device, const SolverPlan& plan, int lanes, const SpeedPaths& paths,
+                 Memory memory = Memory::automatic) {
+  Processor reference(device, plan, {.lanes = lanes, .paths = kPlain});
+  Processor fast(device, plan,
+                 {.memory = memory, .frames_in_flight = 2, .lanes = lanes, .paths = paths});
+  MovingContact contact(plan, 5);
+  std::vector<FrameBuffer> frames;
+  for (int i = 0; i < 14; ++i) frames.push_back(contact.next());
+  for (int i = 0; i < 14; ++i) {
+    fast.submit(frames[static_cast<std::size_t>(i)].view());
+    reference.submit(frames[static_cast<std::size_t>(i)].view());
+    expect_all_bits(fast.receive(), reference.receive(), i);
+    if (testing::Test::HasFatalFailure()) return;
+  }
+  EXPECT_EQ(fast.tare(), reference.tare());
+}
+
+/// Little is silent by chance: the noise of MovingContact stays below every threshold.
+SolverPlan quiet_plan(std::uint32_t rows, std::uint32_t cols, SenselType type) {
+  SolverPlan plan = full_plan(rows, cols, type, 3);
+  for (float& tare : plan.calibration.tare) tare = std::abs(tare);
+  plan.angles = true;
+  plan.uncertainty = true;
+  return plan;
+}
+
+struct SpeedPath {
+  SenselType type;
+  int lanes;
+};
+
+class SpeedPathTest : public testing::TestWithParam<SpeedPath> {
+ protected:
+  Device device_ = open_device();
+};
+
+TEST_P(SpeedPathTest, SkippingSilentBlocksChangesNoBit) {
+  expect_same(device_, quiet_plan(40, 2 * 53, GetParam().type), GetParam().lanes,
+              {.skip_silent = true, .stores = Stores::cached});
+}
+
+TEST_P(SpeedPathTest, StoresPastTheCachesChangeNoBit) {
+  expect_same(device_, quiet_plan(40, 2 * 53, GetParam().type), GetParam().lanes,
+              {.skip_silent = false, .stores = Stores::streaming});
+}
+
+TEST_P(SpeedPathTest, BothTogetherWithACopyOfTheResultsChangeNoBit) {
+  SolverPlan plan = bare_plan(44, 2 * 39, GetParam().type);
+  plan.skin.threshold_counts = 3;
+  expect_same(device_, plan, GetParam().lanes, {.skip_silent = true, .stores = Stores::streaming},
+              Memory::staged);
+}
+
+TEST_P(SpeedPathTest, SilenceIsThatOfTheTareThatFollows) {
+  SolverPlan plan = quiet_plan(40, 2 * 37, GetParam().type);
+  plan.uncertainty = false;
+  plan.baseline_rate = 0.3;
+  for (const int interval : {1, 3}) {
+    plan.baseline_interval = interval;
+    expect_same(device_, plan, GetParam().lanes, {.skip_silent = true});
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Paths, SpeedPathTest,
+    testing::Values(SpeedPath{SenselType::u8, 16}, SpeedPath{SenselType::u8, 1},
+                    SpeedPath{SenselType::u16, 8}, SpeedPath{SenselType::f32, 16},
+                    SpeedPath{SenselType::f32, 2}),
+    [](const auto& path) {
+      return std::string(name_of(path.param.type)) + "_lanes" + std::to_string(path.param.lanes);
+    });
+
+/// That blocks are skipped at all: what is written into a silent block's results stays there.
+TEST(SpeedPaths, ASilentBlockIsNotWrittenAgain) {
+  const Device device = open_device();
+  if (!device.info().shares_memory) GTEST_SKIP() << "the device does not share memory";
+  SolverPlan plan = bare_plan(8, 2 * 64, SenselType::u8);
+  plan.skin.threshold_counts = 3;
+  for (const bool skip : {true, false}) {
+    Processor processor(device, plan, {.frames_in_flight = 1, .paths = {.skip_silent = skip}});
+    FrameBuffer frame(SenselType::u8, plan.skin.rows, plan.skin.cols);
+    processor.submit(frame.view());
+    const ForceFieldView forces = processor.receive();
+    const_cast<float&>(forces.normal[5]) = 42;  // The test's mark, against the contract.
+    processor.submit(frame.view());
+    EXPECT_EQ(processor.receive().normal[5], skip ? 42.0F : 0.0F);
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
