@@ -10,24 +10,34 @@ typedef struct {
   Real right;
 } RealPair;
 
+#ifdef PF_WHOLE
+typedef struct {
+  Counts left;
+  Counts right;
+} CountsPair;
+#else
+typedef RealPair CountsPair;
+#endif
+
 #define PF_LANE_TYPE(type) PF_JOIN(type, PF_LANES)
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
-/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real. Where a row has
- * fewer than PF_LANES, nothing beyond it is read, and the other lanes are zero. */
+/* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real; readings as
+ * Counts. Where a row has fewer than PF_LANES, nothing beyond it is read, and the other lanes are
+ * zero. */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type, split)                              \
-  PF_INLINE RealPair load_##name(global const type* row, uint count) { \
-    RealPair pair;                                                     \
-    pair.left = (Real)row[0];                                          \
-    pair.right = (Real)row[1];                                         \
-    return pair;                                                       \
+#define PF_DEFINE_LOAD(name, type, Pair, split)                    \
+  PF_INLINE Pair load_##name(global const type* row, uint count) { \
+    Pair pair;                                                     \
+    pair.left = (Real)row[0];                                      \
+    pair.right = (Real)row[1];                                     \
+    return pair;                                                   \
   }
 #else
 
-#define PF_DEFINE_LOAD(name, type, split)                                                 \
-  PF_INLINE RealPair load_##name(global const type* row, uint count) {                    \
+#define PF_DEFINE_LOAD(name, type, Pair, split)                                           \
+  PF_INLINE Pair load_##name(global const type* row, uint count) {                        \
     if (count == PF_LANES) return split(PF_VLOAD(0, row), PF_VLOAD(1, row));              \
     type padded[2 * PF_LANES];                                                            \
     for (uint i = 0; i < 2 * PF_LANES; ++i) padded[i] = i < 2 * count ? row[i] : (type)0; \
@@ -73,11 +83,33 @@ PF_DEFINE_SPLIT_OF_INTEGERS(ushort, uint, 16u)
 PF_DEFINE_SPLIT(uchar)
 PF_DEFINE_SPLIT(ushort)
 #endif
+
+#ifdef PF_WHOLE
+PF_INLINE CountsPair split_whole(PF_LANE_TYPE(uchar) low, PF_LANE_TYPE(uchar) high) {
+  CountsPair pair;
+#ifdef __ENDIAN_LITTLE__
+  const PF_LANE_TYPE(ushort) both = (PF_LANE_TYPE(ushort))(PF_JOIN(as_ushort, PF_HALF_LANES)(low),
+                                                           PF_JOIN(as_ushort, PF_HALF_LANES)(high));
+  pair.left = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff) * (short)PF_WHOLE;
+  pair.right = PF_JOIN(as_short, PF_LANES)(both >> 8) * (short)PF_WHOLE;
+#else
+  pair.left = PF_JOIN(convert_short, PF_LANES)((PF_LANE_TYPE(uchar))(low.even, high.even));
+  pair.right = PF_JOIN(convert_short, PF_LANES)((PF_LANE_TYPE(uchar))(low.odd, high.odd));
+  pair.left *= (short)PF_WHOLE;
+  pair.right *= (short)PF_WHOLE;
+#endif
+  return pair;
+}
+#endif
 #endif
 
-PF_DEFINE_LOAD(readings, PF_SENSEL, PF_JOIN(split_, PF_SENSEL))
-PF_DEFINE_LOAD(plane, float, split_float)
-PF_DEFINE_LOAD(mask, uchar, split_uchar)
+#ifdef PF_WHOLE
+PF_DEFINE_LOAD(readings, uchar, CountsPair, split_whole)
+#else
+PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
+#endif
+PF_DEFINE_LOAD(plane, float, RealPair, split_float)
+PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
 /* Whether a mask is true in any lane. */
 PF_INLINE bool any_lane(Mask mask) {

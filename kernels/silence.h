@@ -6,6 +6,7 @@
  * sensel never wakes; a reading at the end of its type's range, NaN and absurd ones always do. */
 #ifdef PF_SKIP_SILENT
 
+#ifdef PF_BASELINE
 /* The level of sensels with these tares and gains; `good` is zero where one is masked. */
 PF_INLINE Real level_of(Real tare, Real gain, Real good) {
   const Real lowest = (Real)(PF_WAKE_LOWEST);
@@ -15,9 +16,11 @@ PF_INLINE Real level_of(Real tare, Real gain, Real good) {
   const Real bounded = level < lowest ? lowest : (level < highest ? level : highest);
   return good == (Real)(0.0f) ? (Real)(PF_WAKE_NEVER) : bounded;
 }
+#endif
 
 #ifdef PF_LARGEST_READING
-#define PF_IS_AWAKE(reading, level) (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
+#define PF_IS_AWAKE(reading, level) \
+  (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
 #else
 #define PF_IS_AWAKE(reading, level) ((reading) >= (level))
 #endif

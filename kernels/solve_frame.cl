@@ -5,7 +5,8 @@
  *
  *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16
  *   PF_SENSEL                       uchar, ushort or float
- *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count (ForceScale)
+ *   PF_WHOLE                        counts are whole numbers of 1 / PF_WHOLE counts: portable.h
+ *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count, or per that unit (ForceScale)
  *   PF_THRESHOLD                    counts
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
@@ -22,7 +23,8 @@
  *   PF_SKIP_SILENT                  silent blocks are left as they are: silence.h
  *   PF_WAKE_PLANE or PF_WAKE        readings that wake a sensel, each its own or one for all
  *
- * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
+ * A stage that is not named leaves no trace. Constants are exact (hexadecimal); with PF_WHOLE those
+ * in counts are whole numbers of its unit. */
 
 PF_INLINE Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
@@ -34,9 +36,9 @@ PF_INLINE Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
 }
 
 PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum) {
-  Bits status = direct_status(pillar, diagonals, sum, (Real)(PF_DOUBT));
+  Bits status = direct_status(pillar, diagonals, sum, (Counts)(PF_DOUBT));
 #ifdef PF_PARITY_TOLERANCE
-  const Bits at_odds = bits_of(fails_parity(pillar, sum, (Real)(PF_PARITY_TOLERANCE)));
+  const Bits at_odds = bits_of(fails_parity(pillar, sum, (Counts)(PF_PARITY_TOLERANCE)));
   status = status | (at_odds & PF_BITS(PF_STATUS_INCONSISTENT));
 #endif
   return status;
