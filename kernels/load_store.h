@@ -167,13 +167,17 @@ PF_INLINE bool any_lane(Mask mask) {
 PF_DEFINE_STORE(pair, float)
 PF_DEFINE_STORE(readings, PF_SENSEL)
 
+typedef struct __attribute__((packed)) {
+  Real value;
+} UnalignedReal;
+
 /* Writes the first `count` lanes. */
 PF_INLINE void store_plane(Real value, global float* plane, uint count) {
 #if PF_LANES == 1
   *plane = value;
 #else
   if (count == PF_LANES) {
-    PF_VSTORE(value, 0, plane);
+    ((global UnalignedReal*)plane)->value = value;
   } else {
     float lanes[PF_LANES];
     PF_VSTORE(value, 0, lanes);

@@ -142,7 +142,7 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
   const size_t first_index = (size_t)row * pillar_cols;
   const uint skew = (uint)(first_index % PF_LANES);
   const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
-  const uint count = min(pillar_cols, (uint)PF_LANES);
+  const uint count = PF_LANES;
   const uint last_col = pillar_cols - count;
   const size_t stride = input.row_stride;
   const size_t first_offset = 2 * row * input.planes.stride;
