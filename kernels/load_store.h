@@ -23,6 +23,20 @@ typedef RealPair CountsPair;
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
+/* Vectors at any address. Drivers take those of vload and vstore apart (PoCL 3.1: bytes one by one,
+ * 16 floats into three), but not a member of a packed structure. */
+#if PF_LANES > 1
+#define PF_DEFINE_PACKED(type)             \
+  typedef struct __attribute__((packed)) { \
+    PF_LANE_TYPE(type) value;              \
+  } packed_##type;
+PF_DEFINE_PACKED(uchar)
+PF_DEFINE_PACKED(ushort)
+PF_DEFINE_PACKED(float)
+#define PF_LOAD_WHOLE(type, place) (((global const packed_##type*)(place))->value)
+#define PF_STORE_WHOLE(type, lanes, place) ((global packed_##type*)(place))->value = (lanes)
+#endif
+
 /* load_<name>(row, count): the sensels under `count` neighbouring pillars, as Real; readings as
  * Counts. Where a row has fewer than PF_LANES, nothing beyond it is read, and the other lanes are
  * zero. */
@@ -83,40 +97,54 @@ PF_DEFINE_SPLIT_OF_INTEGERS(ushort, uint, 16u)
 PF_DEFINE_SPLIT(uchar)
 PF_DEFINE_SPLIT(ushort)
 #endif
+#endif
 
 #ifdef PF_WHOLE
-PF_INLINE CountsPair split_whole(PF_LANE_TYPE(uchar) low, PF_LANE_TYPE(uchar) high) {
+/* Both readings of a pillar are one integer, as above. */
+PF_INLINE CountsPair load_readings(global const uchar* row, uint count) {
+  PF_LANE_TYPE(ushort) both = 0;
+  if (count == PF_LANES) {
+    both = PF_LOAD_WHOLE(ushort, row);
+  } else {
+    ushort padded[PF_LANES];
+    for (uint i = 0; i < PF_LANES; ++i) {
+      padded[i] = i < count ? (ushort)(row[2 * i] | row[2 * i + 1] << 8) : (ushort)0;
+    }
+    both = PF_VLOAD(0, padded);
+  }
   CountsPair pair;
-#ifdef __ENDIAN_LITTLE__
-  const PF_LANE_TYPE(ushort) both = (PF_LANE_TYPE(ushort))(PF_JOIN(as_ushort, PF_HALF_LANES)(low),
-                                                           PF_JOIN(as_ushort, PF_HALF_LANES)(high));
   pair.left = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff) * (short)PF_WHOLE;
   pair.right = PF_JOIN(as_short, PF_LANES)(both >> 8) * (short)PF_WHOLE;
-#else
-  pair.left = PF_JOIN(convert_short, PF_LANES)((PF_LANE_TYPE(uchar))(low.even, high.even));
-  pair.right = PF_JOIN(convert_short, PF_LANES)((PF_LANE_TYPE(uchar))(low.odd, high.odd));
-  pair.left *= (short)PF_WHOLE;
-  pair.right *= (short)PF_WHOLE;
-#endif
   return pair;
 }
-#endif
-#endif
-
-#ifdef PF_WHOLE
-PF_DEFINE_LOAD(readings, uchar, CountsPair, split_whole)
 #else
 PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 #endif
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
 PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
+/* Whether there is any bit in any lane. `any` goes through the lanes' signs instead. */
+PF_INLINE bool any_bit(Bits bits) {
+#if PF_LANES == 16
+  const ulong2 words = as_ulong2(bits);
+  return (words.s0 | words.s1) != 0;
+#elif PF_LANES == 8
+  return as_ulong(bits) != 0;
+#elif PF_LANES == 4
+  return as_uint(bits) != 0;
+#elif PF_LANES == 2
+  return as_ushort(bits) != 0;
+#else
+  return bits != 0;
+#endif
+}
+
 /* Whether a mask is true in any lane. */
 PF_INLINE bool any_lane(Mask mask) {
 #if PF_LANES == 1
   return mask;
 #else
-  return any(mask);
+  return any_bit(bits_of(mask));
 #endif
 }
 
@@ -167,17 +195,13 @@ PF_INLINE bool any_lane(Mask mask) {
 PF_DEFINE_STORE(pair, float)
 PF_DEFINE_STORE(readings, PF_SENSEL)
 
-typedef struct __attribute__((packed)) {
-  Real value;
-} UnalignedReal;
-
 /* Writes the first `count` lanes. */
 PF_INLINE void store_plane(Real value, global float* plane, uint count) {
 #if PF_LANES == 1
   *plane = value;
 #else
   if (count == PF_LANES) {
-    ((global UnalignedReal*)plane)->value = value;
+    PF_STORE_WHOLE(float, value, plane);
   } else {
     float lanes[PF_LANES];
     PF_VSTORE(value, 0, lanes);
@@ -192,7 +216,7 @@ PF_INLINE void store_status(Bits value, global uchar* plane, uint count) {
 #else
   const PF_LANE_TYPE(uchar) bytes = PF_JOIN(as_uchar, PF_LANES)(value);
   if (count == PF_LANES) {
-    PF_VSTORE(bytes, 0, plane);
+    PF_STORE_WHOLE(uchar, bytes, plane);
   } else {
     uchar lanes[PF_LANES];
     PF_VSTORE(bytes, 0, lanes);

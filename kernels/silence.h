@@ -48,8 +48,9 @@ PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
 #undef PF_LEVEL
 #define PF_LEVEL(i, row) PF_VLOAD(i, wake + row * wake_stride)
 #endif
-  return !any(PF_AWAKE_LANES(raw, PF_LEVEL(0, 0), PF_LEVEL(1, 0)) |
-              PF_AWAKE_LANES(raw + row_stride, PF_LEVEL(0, 1), PF_LEVEL(1, 1)));
+  return !any_bit(PF_JOIN(convert_char, PF_LANES)(
+      PF_AWAKE_LANES(raw, PF_LEVEL(0, 0), PF_LEVEL(1, 0)) |
+      PF_AWAKE_LANES(raw + row_stride, PF_LEVEL(0, 1), PF_LEVEL(1, 1))));
 #endif
 }
 
