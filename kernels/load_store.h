@@ -100,21 +100,16 @@ PF_DEFINE_SPLIT(ushort)
 #endif
 
 #ifdef PF_WHOLE
-/* Both readings of a pillar are one integer, as above. */
+/* Both readings of a pillar are one integer, as above; `count` is PF_LANES. */
 PF_INLINE CountsPair load_readings(global const uchar* row, uint count) {
-  PF_LANE_TYPE(ushort) both = 0;
-  if (count == PF_LANES) {
-    both = PF_LOAD_WHOLE(ushort, row);
-  } else {
-    ushort padded[PF_LANES];
-    for (uint i = 0; i < PF_LANES; ++i) {
-      padded[i] = i < count ? (ushort)(row[2 * i] | row[2 * i + 1] << 8) : (ushort)0;
-    }
-    both = PF_VLOAD(0, padded);
-  }
-  CountsPair pair;
-  pair.left = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff) * (short)PF_WHOLE;
-  pair.right = PF_JOIN(as_short, PF_LANES)(both >> 8) * (short)PF_WHOLE;
+  const PF_LANE_TYPE(ushort) both = PF_LOAD_WHOLE(ushort, row);
+  const PF_LANE_TYPE(short) lower = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff);
+  const PF_LANE_TYPE(short) upper = PF_JOIN(as_short, PF_LANES)(both >> 8);
+#ifdef __ENDIAN_LITTLE__
+  const CountsPair pair = {lower * (short)PF_WHOLE, upper * (short)PF_WHOLE};
+#else
+  const CountsPair pair = {upper * (short)PF_WHOLE, lower * (short)PF_WHOLE};
+#endif
   return pair;
 }
 #else

@@ -26,7 +26,7 @@ PF_INLINE Real level_of(Real tare, Real gain, Real good) {
 #endif
 
 #if PF_LANES > 1
-/* All bits of the lanes in which a sensel of one row is awake, or-ed over both sides. */
+/* The lanes in which a sensel of one row is awake, or-ed over both sides. */
 #define PF_AWAKE_LANES(raw, level_low, level_high) \
   (PF_IS_AWAKE(PF_VLOAD(0, raw), level_low) | PF_IS_AWAKE(PF_VLOAD(1, raw), level_high))
 #endif
@@ -48,9 +48,18 @@ PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
 #undef PF_LEVEL
 #define PF_LEVEL(i, row) PF_VLOAD(i, wake + row * wake_stride)
 #endif
+#if defined(PF_WAKE) && !defined(PF_LARGEST_READING)
+  /* One level for all, and no NaN: only the highest is to be asked. */
+  const PF_LANE_TYPE(PF_SENSEL) above = max(PF_VLOAD(0, raw), PF_VLOAD(1, raw));
+  global const PF_SENSEL* const below_raw = raw + row_stride;
+  const PF_LANE_TYPE(PF_SENSEL) below = max(PF_VLOAD(0, below_raw), PF_VLOAD(1, below_raw));
   return !any_bit(PF_JOIN(convert_char, PF_LANES)(
-      PF_AWAKE_LANES(raw, PF_LEVEL(0, 0), PF_LEVEL(1, 0)) |
-      PF_AWAKE_LANES(raw + row_stride, PF_LEVEL(0, 1), PF_LEVEL(1, 1))));
+      PF_IS_AWAKE(max(above, below), (PF_LANE_TYPE(PF_SENSEL))(PF_LEVEL(0, 0)))));
+#else
+  return !any_bit(PF_JOIN(
+      convert_char, PF_LANES)(PF_AWAKE_LANES(raw, PF_LEVEL(0, 0), PF_LEVEL(1, 0)) |
+                              PF_AWAKE_LANES(raw + row_stride, PF_LEVEL(0, 1), PF_LEVEL(1, 1))));
+#endif
 #endif
 }
 

@@ -3,7 +3,8 @@
  *
  * The host writes what a plan asks for as the first lines of the program:
  *
- *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16
+ *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16, and
+ *                                   no more than a row has
  *   PF_SENSEL                       uchar, ushort or float
  *   PF_WHOLE                        counts are whole numbers of 1 / PF_WHOLE counts: portable.h
  *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count, or per that unit (ForceScale)
@@ -142,7 +143,7 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
   const size_t first_index = (size_t)row * pillar_cols;
   const uint skew = (uint)(first_index % PF_LANES);
   const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
-  const uint count = PF_LANES;
+  const uint count = PF_LANES; /* A row has as many. */
   const uint last_col = pillar_cols - count;
   const size_t stride = input.row_stride;
   const size_t first_offset = 2 * row * input.planes.stride;

@@ -6,6 +6,7 @@
 
 #include "core/force_scale.h"
 #include "core/wake_levels.h"
+#include "device/block_lanes.h"
 #include "device/kernel_files.h"
 #include "pillarfield/processor.h"
 
@@ -158,7 +159,8 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   return stages;
 }
 
-std::string kernel_source(const SolverPlan& plan, int lanes, const SpeedPaths& paths) {
+std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& paths) {
+  const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
   std::string source = fmt::format("#define PF_LANES {}\n", lanes);
   const auto define = [&](const std::vector<Definition>& all) {
     for (const Definition& definition : all) {

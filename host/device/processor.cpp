@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "device/block_lanes.h"
 #include "device/slot.h"
 #include "pillarfield/error.h"
 
@@ -45,7 +46,8 @@ struct Processor::State {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
-    settings.lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
+    settings.lanes =
+        block_lanes(options.lanes != 0 ? options.lanes : device.info().lanes, skin.pillar_cols());
     settings.program = device.state().program(kernel_source(wanted, settings.lanes, options.paths));
     settings.shares_memory = shares_memory;
     settings.paths = options.paths;

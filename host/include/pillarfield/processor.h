@@ -61,7 +61,7 @@ struct SpeedPaths {
 };
 
 /// The OpenCL C that is compiled for a plan on a device with so many lanes, complete.
-[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int lanes,
+[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int device_lanes,
                                         const SpeedPaths& paths = {});
 
 /// The stages that kernel_source holds, in their order, one name each.
