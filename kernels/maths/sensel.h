@@ -11,13 +11,13 @@ typedef struct {
   Mask missing;   /* tells nothing: dead, absent, masked, or not a number; reads zero */
 } Sensel;
 
-/* A sensel that read `raw` and has nothing wrong with it: `raw < raw` is false in every lane. */
+/* A sensel that read `raw` and has nothing wrong with it. */
 static inline Sensel raw_sensel(Counts raw) {
   Sensel sensel;
   sensel.reading = raw;
-  sensel.usable = raw < raw;
-  sensel.missing = sensel.usable;
-  sensel.saturated = sensel.usable;
+  sensel.usable = mask_of(PF_BITS(0));
+  sensel.missing = mask_of(PF_BITS(0));
+  sensel.saturated = mask_of(PF_BITS(0));
   return sensel;
 }
 
