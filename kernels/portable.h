@@ -4,7 +4,7 @@
  *
  *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
  *   Real     float, or floatN of lanes  floatN         float                  double
- *   Counts   Real                       shortN         float                  double
+ *   Counts   as Real                    shortN         float                  double
  *   Mask     int, or intN               shortN         bool                   bool
  *   Bits     char, or charN             charN          int                    int
  *
@@ -17,16 +17,16 @@
  *   mask_of(b)    true where b has any bit
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
- * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration and takes half the
- * instructions (docs/derivations/direct_solve.md, section 6); no sensel is then missing, and only
- * pillar_model.h, sensel.h and direct_solve.h are of use.
+ * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
+ * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, and of
+ * maths only pillar_model.h, sensel.h and direct_solve.h are of use.
  *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
  *
  * What may stand in kernels/maths is what means the same in all of them: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; choices written c ? x : y with both sides of lane
- * type; structs passed by value;
+ * type; structs passed by value; of Counts in programs of whole numbers + - and comparisons alone;
  * + - * /, comparisons, fabs, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction:
  * the device and a host built with -ffp-contract=off then agree bit for bit in all but the last
  * six.

@@ -97,7 +97,7 @@ TEST_F(WholeNumbers, EveryLaneWidth) {
 }
 
 TEST_F(WholeNumbers, EveryFullScale) {
-  for (const double full_scale : {2.5, 3.0, 20.5, 250.5, 255.0, 4000.0}) {
+  for (const double full_scale : {2.5, 3.0, 20.5, 250.1, 250.5, 255.0, 4000.0}) {
     SCOPED_TRACE(full_scale);
     SolverPlan plan = plan_of(2);
     plan.skin.full_scale_counts = full_scale;
@@ -106,7 +106,7 @@ TEST_F(WholeNumbers, EveryFullScale) {
 }
 
 TEST_F(WholeNumbers, EveryParityTolerance) {
-  for (const double tolerance : {0.0, 0.25, 1.0, 3.7, 250.1, 5000.0}) {
+  for (const double tolerance : {0.0, 0.25, 1.0, 3.7, 3.9, 250.1, 5000.0}) {
     SCOPED_TRACE(tolerance);
     SolverPlan plan = plan_of(0.5);
     plan.parity_tolerance_counts = tolerance;
@@ -114,8 +114,9 @@ TEST_F(WholeNumbers, EveryParityTolerance) {
   }
 }
 
+/// The doubt of 0.636 is a little more than 6 counts, by which readings 7, 7 and 20 differ.
 TEST_F(WholeNumbers, EveryDoubt) {
-  for (const double noise : {0.0, 0.1, 0.4, 3.0, 20.0, 1e6}) {
+  for (const double noise : {0.0, 0.1, 0.4, 0.636, 3.0, 20.0, 1e6}) {
     SCOPED_TRACE(noise);
     SolverPlan plan = plan_of(2);
     plan.noise_counts = noise;
