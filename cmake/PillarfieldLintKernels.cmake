@@ -1,5 +1,5 @@
 # Compiles the kernels with clang's own OpenCL C 1.2 front end, which warns where drivers do not:
-# every sensel type and lane width, with no stage and with all of them.
+# every sensel type and lane width, with no stage and with all of them, and in whole numbers.
 find_program(PILLARFIELD_CLANG NAMES clang clang-14)
 mark_as_advanced(PILLARFIELD_CLANG)
 if(NOT PILLARFIELD_CLANG)
@@ -8,10 +8,14 @@ if(NOT PILLARFIELD_CLANG)
 endif()
 
 set(lint_includes "")
+set(lint_whole_includes "")
 set(lint_kernels "")
 foreach(path IN LISTS kernel_paths)
   if(NOT path MATCHES "\\.cl$")
     list(APPEND lint_includes -include ${path})
+    if(NOT path MATCHES "/(elementary|paper_solve|angles|uncertainty)\\.h$")
+      list(APPEND lint_whole_includes -include ${path})
+    endif()
   else()
     list(APPEND lint_kernels ${path})
   endif()
@@ -22,17 +26,23 @@ set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DP
 set(lint_skipping -DPF_SKIP_SILENT -DPF_WAKE=1 -DPF_WAKE_THRESHOLD=1.0f -DPF_WAKE_STEP=1.0f
   -DPF_WAKE_LOWEST=0.0f -DPF_WAKE_HIGHEST=1.0f -DPF_WAKE_NEVER=1.0f)
 
+set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
+  -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
+  -Wno-unused-function -Werror -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f)
+
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" -DPF_PAPER "-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
-      list(APPEND lint_commands COMMAND ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
-        -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
-        -Wno-unused-function -Werror -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        -DPF_SHEAR_SCALE=1.0f -DPF_NORMAL_SCALE=1.0f -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f
-        ${stages} ${lint_includes}
-        ${lint_kernels})
+    foreach(stages "" -DPF_PAPER "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
+      list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
+        -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f ${stages} ${lint_includes} ${lint_kernels})
     endforeach()
+  endforeach()
+endforeach()
+foreach(lanes 2 4 8 16)
+  foreach(stages "" "${lint_skipping};-DPF_FULL_SCALE=255;-DPF_PARITY_TOLERANCE=1")
+    list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=uchar -DPF_LANES=${lanes}
+      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_DOUBT=1 ${stages} ${lint_whole_includes} ${lint_kernels})
   endforeach()
 endforeach()
 set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")

@@ -1,8 +1,14 @@
 /* How values of PF_LANES pillars at once come from memory and go there. For the entry points;
  * PF_LANES and PF_SENSEL are of the program's first lines. */
 
-/* Structures of lanes go through memory wherever a call remains. */
+/* PoCL, which a processor is solved on with lanes, leaves calls as they are, and structures of
+ * lanes then go through memory. Other drivers inline, or like Oclgrind do not know the attribute.
+ */
+#ifdef POCL_DEVICE_ADDRESS_BITS
 #define PF_INLINE static inline __attribute__((always_inline))
+#else
+#define PF_INLINE static inline
+#endif
 
 /* The values of `PF_LANES` pillars in one row of sensels. */
 typedef struct {
@@ -10,24 +16,49 @@ typedef struct {
   Real right;
 } RealPair;
 
+#ifdef PF_WHOLE
+typedef struct {
+  Counts left;
+  Counts right;
+} CountsPair;
+#else
+typedef RealPair CountsPair;
+#endif
+
 #define PF_LANE_TYPE(type) PF_JOIN(type, PF_LANES)
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
-/* load_<name>(row): the sensels under PF_LANES neighbouring pillars, as Real. */
+/* Vectors at any address. Drivers take those of vload and vstore apart (PoCL 3.1: bytes one by one,
+ * 16 floats into three), but not a member of a packed structure. */
+#if PF_LANES > 1
+#define PF_DEFINE_PACKED(type)             \
+  typedef struct __attribute__((packed)) { \
+    PF_LANE_TYPE(type) value;              \
+  } packed_##type;
+PF_DEFINE_PACKED(uchar)
+PF_DEFINE_PACKED(ushort)
+PF_DEFINE_PACKED(float)
+#define PF_LOAD_WHOLE(type, place) (((global const PF_JOIN(packed_, type)*)(place))->value)
+#define PF_STORE_WHOLE(type, lanes, place) \
+  ((global PF_JOIN(packed_, type)*)(place))->value = (lanes)
+#endif
+
+/* load_<name>(row): the sensels under PF_LANES neighbouring pillars, as Real; readings as Counts.
+ */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type, split)                  \
-  PF_INLINE RealPair load_##name(global const type* row) { \
-    RealPair pair;                                         \
-    pair.left = (Real)row[0];                              \
-    pair.right = (Real)row[1];                             \
-    return pair;                                           \
+#define PF_DEFINE_LOAD(name, type, Pair, split)        \
+  PF_INLINE Pair load_##name(global const type* row) { \
+    Pair pair;                                         \
+    pair.left = (Real)row[0];                          \
+    pair.right = (Real)row[1];                         \
+    return pair;                                       \
   }
 #else
 
-#define PF_DEFINE_LOAD(name, type, split)                  \
-  PF_INLINE RealPair load_##name(global const type* row) { \
-    return split(PF_VLOAD(0, row), PF_VLOAD(1, row));      \
+#define PF_DEFINE_LOAD(name, type, Pair, split)                                  \
+  PF_INLINE Pair load_##name(global const type* row) {                           \
+    return split(PF_LOAD_WHOLE(type, row), PF_LOAD_WHOLE(type, row + PF_LANES)); \
   }
 
 #define PF_TO_REAL PF_JOIN(convert_float, PF_LANES)
@@ -71,9 +102,24 @@ PF_DEFINE_SPLIT(ushort)
 #endif
 #endif
 
-PF_DEFINE_LOAD(readings, PF_SENSEL, PF_JOIN(split_, PF_SENSEL))
-PF_DEFINE_LOAD(plane, float, split_float)
-PF_DEFINE_LOAD(mask, uchar, split_uchar)
+#ifdef PF_WHOLE
+/* Both readings of a pillar are one integer, as above. */
+PF_INLINE CountsPair load_readings(global const uchar* row) {
+  const PF_LANE_TYPE(ushort) both = PF_LOAD_WHOLE(ushort, row);
+  const PF_LANE_TYPE(short) lower = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff);
+  const PF_LANE_TYPE(short) upper = PF_JOIN(as_short, PF_LANES)(both >> 8);
+#ifdef __ENDIAN_LITTLE__
+  const CountsPair pair = {lower * (short)PF_WHOLE, upper * (short)PF_WHOLE};
+#else
+  const CountsPair pair = {upper * (short)PF_WHOLE, lower * (short)PF_WHOLE};
+#endif
+  return pair;
+}
+#else
+PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
+#endif
+PF_DEFINE_LOAD(plane, float, RealPair, split_float)
+PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
 /* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
 PF_INLINE bool any_bits(Bits bits) {
@@ -94,16 +140,13 @@ PF_INLINE bool any_bits(Bits bits) {
 PF_INLINE bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 /* Brings the values of PF_LANES pillars in one row of sensels towards the caches. What may lie past
- * the end of a plane is not touched by it; where a compiler has no word for it, nothing happens. */
-#if PF_LANES > 1 && defined(__has_builtin)
-#if __has_builtin(__builtin_prefetch)
+ * the end of a plane is not touched by it; other drivers than PoCL may not know the word. */
+#if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
 #define PF_PREFETCH(row)                                                       \
   for (size_t byte_ = 0; byte_ < 2 * PF_LANES * sizeof(*(row)); byte_ += 64) { \
     __builtin_prefetch((const void*)((size_t)(row) + byte_));                  \
   }
-#endif
-#endif
-#ifndef PF_PREFETCH
+#else
 #define PF_PREFETCH(row)
 #endif
 
@@ -152,10 +195,10 @@ PF_DEFINE_STORE(readings, PF_SENSEL)
  * then begin on a boundary of their size. */
 #if PF_LANES == 1
 #define PF_STORE_BLOCK(value, plane) *(plane) = (value)
-#elif defined(PF_STREAM)
+#elif defined(PF_STREAM) && defined(POCL_DEVICE_ADDRESS_BITS)
 #define PF_STORE_BLOCK(value, plane) __builtin_nontemporal_store(value, (global Real*)(plane))
 #else
-#define PF_STORE_BLOCK(value, plane) PF_VSTORE(value, 0, plane)
+#define PF_STORE_BLOCK(value, plane) PF_STORE_WHOLE(float, value, plane)
 #endif
 
 PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
@@ -176,7 +219,7 @@ PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
 #else
   const PF_LANE_TYPE(uchar) bytes = PF_JOIN(as_uchar, PF_LANES)(value);
   if (are_all(lanes)) {
-    PF_VSTORE(bytes, 0, plane);
+    PF_STORE_WHOLE(uchar, bytes, plane);
   } else {
     uchar values[PF_LANES];
     PF_VSTORE(bytes, 0, values);

@@ -1,23 +1,32 @@
 /* The only file that knows the language, the precision and the number of lanes.
  *
- * It gives kernels/maths three types and two macros. The same text then compiles three ways:
+ * It gives kernels/maths four types and three macros. The same text then compiles four ways:
  *
- *              OpenCL C                      C++, PF_PRECISION 32    C++, PF_PRECISION 64
- *   Real       float, or floatN of lanes     float                   double
- *   Mask       int, or intN                  bool                    bool
- *   Bits       char, or charN                int                     int
+ *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
+ *   Real     float, or floatN of lanes  floatN         float                  double
+ *   Counts   as Real                    shortN         float                  double
+ *   Mask     int, or intN               shortN         bool                   bool
+ *   Bits     char, or charN             charN          int                    int
  *
- *   PF_REAL(x)   the constant x in every lane, of Real's own precision
- *   PF_BITS(x)   the integer x in every lane
- *   bits_of(m)   all bits where the mask m is true, none elsewhere
- *   mask_of(b)   true where b has any bit
+ *   PF_REAL(x)    the constant x in every lane, of Real's own precision
+ *   PF_COUNTS(x)  the whole constant x in every lane
+ *   PF_BITS(x)    the integer x in every lane
+ *   half_of(c)    c / 2
+ *   real_of(c)    c as Real
+ *   bits_of(m)    all bits where the mask m is true, none elsewhere
+ *   mask_of(b)    true where b has any bit
+ *
+ * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
+ * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
+ * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, and of
+ * maths only pillar_model.h, sensel.h and direct_solve.h are of use.
  *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
- * PF_LANES (1, 2, 4, 8 or 16) from the program's first lines.
+ * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
  *
- * What may stand in kernels/maths is what means the same in all three: masks joined by && and
+ * What may stand in kernels/maths is what means the same in all of them: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; choices written c ? x : y with both sides of lane
- * type; structs passed by value;
+ * type; structs passed by value; of Counts in programs of whole numbers + - and comparisons alone;
  * + - * /, comparisons, fabs, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction:
  * the device and a host built with -ffp-contract=off then agree bit for bit in all but the last
  * six.
@@ -35,18 +44,37 @@ typedef char Bits;
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
 #else
+#ifdef PF_WHOLE
+#define PF_MASK_LANE short
+#else
+#define PF_MASK_LANE int
+#endif
 typedef PF_JOIN(float, PF_LANES) Real;
-typedef PF_JOIN(int, PF_LANES) Mask;
+typedef PF_JOIN(PF_MASK_LANE, PF_LANES) Mask;
 typedef PF_JOIN(char, PF_LANES) Bits;
 static inline Bits bits_of(Mask mask) { return PF_JOIN(convert_char, PF_LANES)(mask); }
-static inline Mask mask_of(Bits bits) { return PF_JOIN(convert_int, PF_LANES)(bits != (Bits)(0)); }
+static inline Mask mask_of(Bits bits) {
+  return PF_JOIN(PF_JOIN(convert_, PF_MASK_LANE), PF_LANES)(bits != (Bits)(0));
+}
+#endif
+
+#ifdef PF_WHOLE
+typedef PF_JOIN(short, PF_LANES) Counts;
+static inline Counts half_of(Counts counts) { return counts >> 1; }
+static inline Real real_of(Counts counts) { return PF_JOIN(convert_float, PF_LANES)(counts); }
+#else
+typedef Real Counts;
+static inline Counts half_of(Counts counts) { return 0.5f * counts; }
+static inline Real real_of(Counts counts) { return counts; }
 #endif
 #define PF_REAL(x) ((Real)(x##f))
+#define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
 
 #else /* C++ */
 
 #undef PF_REAL
+#undef PF_COUNTS
 #undef PF_BITS
 #if PF_PRECISION == 64
 using Real = double;
@@ -55,9 +83,13 @@ using Real = double;
 using Real = float;
 #define PF_REAL(x) (x##f)
 #endif
+using Counts = Real;
 using Mask = bool;
 using Bits = int;
+#define PF_COUNTS(x) (static_cast<Counts>(x))
 #define PF_BITS(x) (x)
+static inline Counts half_of(Counts counts) { return PF_REAL(0.5) * counts; }
+static inline Real real_of(Counts counts) { return counts; }
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
 

@@ -6,6 +6,7 @@
  * sensel never wakes; a reading at the end of its type's range, NaN and absurd ones always do. */
 #ifdef PF_SKIP_SILENT
 
+#ifdef PF_BASELINE
 /* The level of sensels with these tares and gains; `good` is zero where one is masked. */
 PF_INLINE Real level_of(Real tare, Real gain, Real good) {
   const Real lowest = (Real)(PF_WAKE_LOWEST);
@@ -15,6 +16,7 @@ PF_INLINE Real level_of(Real tare, Real gain, Real good) {
   const Real bounded = level < lowest ? lowest : (level < highest ? level : highest);
   return good == (Real)(0.0f) ? (Real)(PF_WAKE_NEVER) : bounded;
 }
+#endif
 
 #ifdef PF_LARGEST_READING
 #define PF_IS_AWAKE(reading, level) \
@@ -29,7 +31,7 @@ PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
 #if PF_LANES == 1
 #define PF_READING(place, i) (place)[i]
 #else
-#define PF_READING(place, i) PF_VLOAD(i, place)
+#define PF_READING(place, i) PF_LOAD_WHOLE(PF_SENSEL, (place) + (i)*PF_LANES)
 #endif
 #ifdef PF_WAKE_PLANE
 #define PF_LEVEL(row, i) PF_READING(wake + row * wake_stride, i)
@@ -39,6 +41,13 @@ PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
 #define PF_AWAKE(row, i) PF_IS_AWAKE(PF_READING(raw + row * row_stride, i), PF_LEVEL(row, i))
 #if PF_LANES == 1
   return !(PF_AWAKE(0, 0) || PF_AWAKE(0, 1) || PF_AWAKE(1, 0) || PF_AWAKE(1, 1));
+#elif defined(PF_WAKE) && !defined(PF_LARGEST_READING)
+  /* One level for all, and no NaN: only the highest is to be asked. */
+  global const PF_SENSEL* const below_raw = raw + row_stride;
+  const PF_LANE_TYPE(PF_SENSEL) above = max(PF_READING(raw, 0), PF_READING(raw, 1));
+  const PF_LANE_TYPE(PF_SENSEL) below = max(PF_READING(below_raw, 0), PF_READING(below_raw, 1));
+  return !any_bits(PF_JOIN(convert_char, PF_LANES)(
+      PF_IS_AWAKE(max(above, below), (PF_LANE_TYPE(PF_SENSEL))(PF_LEVEL(0, 0)))));
 #else
   return !any_bits(PF_JOIN(
       convert_char, PF_LANES)(PF_AWAKE(0, 0) | PF_AWAKE(0, 1) | PF_AWAKE(1, 0) | PF_AWAKE(1, 1)));

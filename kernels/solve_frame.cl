@@ -3,9 +3,12 @@
  *
  * The host writes what a plan asks for as the first lines of the program:
  *
- *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16; no
- * more than a row has PF_SENSEL                       uchar, ushort or float PF_SHEAR_SCALE,
- * PF_NORMAL_SCALE newtons per count (ForceScale) PF_THRESHOLD                    counts
+ *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16, and
+ *                                   no more than a row has
+ *   PF_SENSEL                       uchar, ushort or float
+ *   PF_WHOLE                        counts are whole numbers of 1 / PF_WHOLE counts: portable.h
+ *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count, or per that unit (ForceScale)
+ *   PF_THRESHOLD                    counts
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
  *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
@@ -22,7 +25,8 @@
  *   PF_SKIP_SILENT                  silent blocks are left as they are: silence.h
  *   PF_WAKE_PLANE or PF_WAKE        readings that wake a sensel, each its own or one for all
  *
- * A stage that is not named leaves no trace. Constants are exact (hexadecimal). */
+ * A stage that is not named leaves no trace. Constants are exact (hexadecimal); with PF_WHOLE those
+ * in counts are whole numbers of its unit. */
 
 PF_INLINE Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
@@ -34,9 +38,9 @@ PF_INLINE Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
 }
 
 PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum) {
-  Bits status = direct_status(pillar, diagonals, sum, (Real)(PF_DOUBT));
+  Bits status = direct_status(pillar, diagonals, sum, (Counts)(PF_DOUBT));
 #ifdef PF_PARITY_TOLERANCE
-  const Bits at_odds = bits_of(fails_parity(pillar, sum, (Real)(PF_PARITY_TOLERANCE)));
+  const Bits at_odds = bits_of(fails_parity(pillar, sum, (Counts)(PF_PARITY_TOLERANCE)));
   status = status | (at_odds & PF_BITS(PF_STATUS_INCONSISTENT));
 #endif
   return status;
@@ -127,7 +131,7 @@ PF_INLINE void solve_pillars(Pillar pillar, Block block, Input input, Output out
 
 /* The sensel, of which is known in every lane that it is neither missing nor saturated. */
 PF_INLINE Sensel sound_sensel(Sensel sensel) {
-  const Mask none = sensel.reading < sensel.reading;
+  const Mask none = (Mask)(0);
   sensel.missing = none;
   sensel.saturated = none;
   return sensel;

@@ -2,7 +2,7 @@
  * macros are listed in solve_frame.cl. */
 
 /* A raw reading, and what is wrong with it before any calibration. */
-PF_INLINE Sensel judge_reading(Real raw, Real good) {
+PF_INLINE Sensel judge_reading(Counts raw, Counts good) {
   Sensel sensel = raw_sensel(raw);
 #ifdef PF_LARGEST_READING
   sensel = reject_absurd(sensel, (Real)(PF_LARGEST_READING));
@@ -11,13 +11,13 @@ PF_INLINE Sensel judge_reading(Real raw, Real good) {
   sensel = apply_mask(sensel, good);
 #endif
 #ifdef PF_FULL_SCALE
-  sensel = mark_saturated(sensel, (Real)(PF_FULL_SCALE));
+  sensel = mark_saturated(sensel, (Counts)(PF_FULL_SCALE));
 #endif
   return sensel;
 }
 
 /* A raw reading through the stages of the plan. */
-PF_INLINE Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, Real good) {
+PF_INLINE Sensel prepare_sensel(Counts raw, Counts tare, Real gain, Counts dead_zone, Counts good) {
   Sensel sensel = judge_reading(raw, good);
 #ifdef PF_TARE
   sensel = subtract_tare(sensel, tare);
@@ -29,7 +29,7 @@ PF_INLINE Sensel prepare_sensel(Real raw, Real tare, Real gain, Real dead_zone, 
   sensel = apply_power_law(sensel, (Real)(PF_POWER_EXPONENT), (Real)(PF_POWER_REFERENCE),
                            (Real)(PF_POWER_LARGEST));
 #endif
-  sensel = classify(sensel, (Real)(PF_THRESHOLD));
+  sensel = classify(sensel, (Counts)(PF_THRESHOLD));
 #ifdef PF_DEAD_ZONE
   sensel = fill_dead_zone(sensel, dead_zone);
 #endif
@@ -54,11 +54,11 @@ typedef struct {
 /* The sensels of one row under PF_LANES pillars. `offset` is the first one's place in the planes.
  */
 PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset) {
-  const RealPair readings = load_readings(raw);
-  RealPair tares = {(Real)(0.0f), (Real)(0.0f)};
-  RealPair gains = tares;
-  RealPair dead_zones = tares;
-  RealPair good = tares;
+  const CountsPair readings = load_readings(raw);
+  CountsPair tares = {(Counts)(0), (Counts)(0)};
+  CountsPair dead_zones = tares;
+  CountsPair good = tares;
+  RealPair gains = {(Real)(0.0f), (Real)(0.0f)};
 #ifdef PF_TARE
   tares = load_plane(planes.tare + offset);
 #endif

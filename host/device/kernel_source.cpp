@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "core/force_scale.h"
 #include "core/wake_levels.h"
+#include "device/block_lanes.h"
 #include "device/kernel_files.h"
 #include "pillarfield/processor.h"
 
@@ -32,21 +35,67 @@ const char* sensel_macro(SenselType type) {
   return "float";
 }
 
-/// What a plan asks of the kernel, in the order of the stages.
-std::vector<Definition> definitions(const SolverPlan& plan) {
+/// Whole numbers stand for quarters of a count: readings are whole counts, a threshold is whole or
+/// a half, and the middle of an interval halves their sum.
+constexpr int kQuarters = 4;
+
+/// Counts beyond which a constant is like any larger one to readings of 8 bits, and thresholds are
+/// not made whole: eight of them fit into 16 bits as quarters.
+constexpr double kManyCounts = 1000;
+
+/// Whether all that the solve of a plan computes in counts is a whole number of quarters, and no
+/// sensel is missing (docs/derivations/direct_solve.md, section 6).
+bool is_whole(const SolverPlan& plan) {
+  const Calibration& calibration = plan.calibration;
+  const auto threshold = static_cast<float>(plan.skin.threshold_counts);
+  const bool corrects = !calibration.tare.empty() || !calibration.gain.empty() ||
+                        !calibration.dead_zone.empty() || !calibration.mask.empty() ||
+                        plan.baseline_rate || plan.skin.power_law;
+  const bool halves = threshold <= kManyCounts && 2 * threshold == std::floor(2 * threshold);
+  const bool saturates_below =
+      plan.skin.full_scale_counts && static_cast<float>(*plan.skin.full_scale_counts) <= threshold;
+  return plan.sensel_type == SenselType::u8 && plan.estimator == Estimator::direct && !corrects &&
+         !plan.angles && !plan.uncertainty && halves && !saturates_below;
+}
+
+/// A constant in counts with which readings and what is made of them are compared. As a whole
+/// number it is rounded up or down such that whole numbers compare with it alike.
+class CountsMacro {
+ public:
+  explicit CountsMacro(bool whole) : whole_(whole) {}
+  /// For x > value.
+  [[nodiscard]] std::string above(double value) const { return text(value, std::floor); }
+  /// For x >= value, and x > -value.
+  [[nodiscard]] std::string from(double value) const { return text(value, std::ceil); }
+
+ private:
+  [[nodiscard]] std::string text(double value, double (*round)(double)) const {
+    if (!whole_) return hex_float(value);
+    const double quarters = kQuarters * std::min<double>(static_cast<float>(value), kManyCounts);
+    return fmt::format("{}", static_cast<int>(round(quarters)));
+  }
+
+  bool whole_;
+};
+
+/// What a plan asks of the kernel, in the order of the stages; `whole` if in whole numbers.
+std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
   const Skin& skin = plan.skin;
   const Calibration& calibration = plan.calibration;
   const ForceScale scale = force_scale(skin.counts_per_newton);
+  const int units_per_count = whole ? kQuarters : 1;
+  const CountsMacro counts(whole);
   std::vector<Definition> all;
   const auto add = [&](bool wanted, const char* macro, std::string value, const char* stage) {
     if (wanted) all.push_back({macro, std::move(value), stage});
   };
   const bool floating = plan.sensel_type == SenselType::f32;
   add(true, "PF_SENSEL", sensel_macro(plan.sensel_type), "load");
+  add(whole, "PF_WHOLE", fmt::format("{}", kQuarters), nullptr);
   add(floating, "PF_LARGEST_READING", hex_float(kMaxCounts), "reject_absurd");
   add(!calibration.mask.empty(), "PF_MASK", "", "mask");
   if (skin.full_scale_counts) {
-    add(true, "PF_FULL_SCALE", hex_float(*skin.full_scale_counts), "saturation");
+    add(true, "PF_FULL_SCALE", counts.from(*skin.full_scale_counts), "saturation");
   }
   add(!calibration.tare.empty() || plan.baseline_rate, "PF_TARE", "", "tare");
   add(!calibration.gain.empty(), "PF_GAIN", "", "gain");
@@ -55,15 +104,16 @@ std::vector<Definition> definitions(const SolverPlan& plan) {
     add(true, "PF_POWER_REFERENCE", hex_float(skin.power_law->reference_counts), nullptr);
     add(true, "PF_POWER_LARGEST", hex_float(kMaxCounts), nullptr);
   }
-  add(true, "PF_THRESHOLD", hex_float(skin.threshold_counts), "classify");
+  add(true, "PF_THRESHOLD", counts.above(skin.threshold_counts), "classify");
   add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");
   const bool paper = plan.estimator == Estimator::paper;
-  add(true, "PF_SHEAR_SCALE", hex_float(scale.shear), paper ? "paper_solve" : "direct_solve");
-  add(true, "PF_NORMAL_SCALE", hex_float(scale.normal), nullptr);
+  add(true, "PF_SHEAR_SCALE", hex_float(scale.shear / units_per_count),
+      paper ? "paper_solve" : "direct_solve");
+  add(true, "PF_NORMAL_SCALE", hex_float(scale.normal / units_per_count), nullptr);
   add(paper, "PF_PAPER", "", nullptr);
-  add(true, "PF_DOUBT", hex_float(region_doubt(plan)), nullptr);
+  add(true, "PF_DOUBT", counts.from(region_doubt(plan)), nullptr);
   if (plan.parity_tolerance_counts) {
-    add(true, "PF_PARITY_TOLERANCE", hex_float(*plan.parity_tolerance_counts), "parity_test");
+    add(true, "PF_PARITY_TOLERANCE", counts.above(*plan.parity_tolerance_counts), "parity_test");
   }
   add(plan.angles, "PF_ANGLES", "", "angles");
   if (plan.uncertainty) {
@@ -91,11 +141,17 @@ std::vector<Definition> silence_definitions(const SolverPlan& plan) {
   return all;
 }
 
+/// Whether a program of whole numbers has a use for a file: the others are of fractions.
+bool serves_whole_numbers(std::string_view file) {
+  return file != "maths/elementary.h" && file != "maths/paper_solve.h" &&
+         file != "maths/angles.h" && file != "maths/uncertainty.h";
+}
+
 }  // namespace
 
 std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   std::vector<std::string> stages;
-  for (const Definition& definition : definitions(plan)) {
+  for (const Definition& definition : definitions(plan, false)) {
     if (definition.stage != nullptr) stages.emplace_back(definition.stage);
   }
   stages.emplace_back("store");
@@ -103,17 +159,21 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   return stages;
 }
 
-std::string kernel_source(const SolverPlan& plan, int lanes, const SpeedPaths& paths) {
+std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& paths) {
+  const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
   std::string source = fmt::format("#define PF_LANES {}\n", lanes);
   const auto define = [&](const std::vector<Definition>& all) {
     for (const Definition& definition : all) {
       source += fmt::format("#define {} {}\n", definition.macro, definition.value);
     }
   };
-  define(definitions(plan));
+  // A lane of its own is 32 bits wide anyway.
+  const bool whole = paths.whole_numbers && lanes > 1 && is_whole(plan);
+  define(definitions(plan, whole));
   if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));
   for (const KernelFile& file : kernel_files()) {
+    if (whole && !serves_whole_numbers(file.name)) continue;
     source += fmt::format("#line 1 \"{}\"\n", file.name);
     source += file.text;
   }

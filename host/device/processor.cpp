@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <bit>
 #include <string>
 
+#include "device/block_lanes.h"
 #include "device/slot.h"
 #include "pillarfield/error.h"
 
@@ -35,12 +34,6 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
-/// A row has at least as many pillars as are solved at once.
-int decide_lanes(const Device& device, const SolverPlan& plan, const Processor::Options& options) {
-  const int wanted = options.lanes != 0 ? options.lanes : device.info().lanes;
-  return std::min(wanted, static_cast<int>(std::bit_floor(plan.skin.pillar_cols())));
-}
-
 /// The paths with what the device leaves to choose decided.
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options) {
@@ -51,7 +44,8 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
     if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plane);
   }
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
-  const bool exceed = bytes * static_cast<std::size_t>(options.frames_in_flight) > cache;
+  const bool exceed =
+      cache != 0 && bytes * static_cast<std::size_t>(options.frames_in_flight) > cache;
   paths.stores = exceed ? Stores::streaming : Stores::cached;
   return paths;
 }
@@ -68,7 +62,8 @@ struct Processor::State {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
-    settings.lanes = decide_lanes(device, wanted, options);
+    settings.lanes =
+        block_lanes(options.lanes != 0 ? options.lanes : device.info().lanes, skin.pillar_cols());
     settings.paths = decide_paths(device, wanted, options);
     settings.program =
         device.state().program(kernel_source(wanted, settings.lanes, settings.paths));

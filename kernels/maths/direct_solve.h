@@ -17,8 +17,8 @@ typedef struct {
 
 /* Two opposite sensels. A sensel stands when V is taken to be its reading. */
 typedef struct {
-  Real p; /* readings, counts */
-  Real q;
+  Counts p; /* readings, counts */
+  Counts q;
   Mask p_stands;
   Mask q_stands;
   Mask full; /* p + q measures the parity sum */
@@ -32,9 +32,9 @@ typedef struct {
 
 /* The interval in which the parity sum lies, counts; a point where the force is determined. */
 typedef struct {
-  Real low;
-  Real high;
-  Real middle;
+  Counts low;
+  Counts high;
+  Counts middle;
   Mask ambiguous; /* low is below high */
 } ParitySum;
 
@@ -70,8 +70,8 @@ static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact
 static inline Diagonals pillar_diagonals(Pillar pillar) {
   const Mask rising_pressed = both_pressed(pillar.s1, pillar.s3);
   const Mask falling_pressed = both_pressed(pillar.s2, pillar.s4);
-  const Real rising = pillar.s1.reading + pillar.s3.reading;
-  const Real falling = pillar.s2.reading + pillar.s4.reading;
+  const Counts rising = pillar.s1.reading + pillar.s3.reading;
+  const Counts falling = pillar.s2.reading + pillar.s4.reading;
   const Mask contact = is_pressed(pillar.s1) || is_pressed(pillar.s2) || is_pressed(pillar.s3) ||
                        is_pressed(pillar.s4);
   Diagonals diagonals;
@@ -85,58 +85,62 @@ static inline Diagonals pillar_diagonals(Pillar pillar) {
 /* The upper end of the interval where no diagonal is full (D5): the least that a diagonal without a
  * missing sensel allows. Where both have one, nothing bounds the sum; the interval then is the one
  * about the smallest force that explains the readings. Zero without contact: nothing stands. */
-static inline Real parity_bound(Diagonal a, Diagonal b) {
-  const Real a_sum = a.p + a.q;
-  const Real b_sum = b.p + b.q;
-  const Real least = a_sum < b_sum ? a_sum : b_sum;
-  const Real closed = a.open ? b_sum : (b.open ? a_sum : least);
+static inline Counts parity_bound(Diagonal a, Diagonal b) {
+  const Counts a_sum = a.p + a.q;
+  const Counts b_sum = b.p + b.q;
+  const Counts least = a_sum < b_sum ? a_sum : b_sum;
   const Mask a_stands = a.p_stands || a.q_stands;
   const Mask b_stands = b.p_stands || b.q_stands;
+#ifdef PF_WHOLE /* No sensel is missing. */
+  const Counts bound = least;
+#else
+  const Counts closed = a.open ? b_sum : (b.open ? a_sum : least);
   const Real share = (a_stands && b_stands) ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
-  const Real bound = (a.open && b.open) ? share * (a_sum + b_sum) : closed;
-  return (a_stands || b_stands) ? bound : PF_REAL(0.0);
+  const Counts bound = (a.open && b.open) ? share * (a_sum + b_sum) : closed;
+#endif
+  return (a_stands || b_stands) ? bound : PF_COUNTS(0);
 }
 
 /* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5). */
 static inline ParitySum parity_sum(Diagonals diagonals) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
-  const Real a_sum = a.p + a.q;
-  const Real b_sum = b.p + b.q;
-  const Real mean = PF_REAL(0.5) * (a_sum + b_sum);
-  const Real measured = a.full ? (b.full ? mean : a_sum) : b_sum;
+  const Counts a_sum = a.p + a.q;
+  const Counts b_sum = b.p + b.q;
+  const Counts mean = half_of(a_sum + b_sum);
+  const Counts measured = a.full ? (b.full ? mean : a_sum) : b_sum;
   const Mask determined = a.full || b.full;
-  const Real bound = parity_bound(a, b);
+  const Counts bound = parity_bound(a, b);
   ParitySum sum;
-  sum.low = determined ? measured : PF_REAL(0.0);
+  sum.low = determined ? measured : PF_COUNTS(0);
   sum.high = determined ? measured : bound;
-  sum.middle = determined ? measured : PF_REAL(0.5) * bound;
-  sum.ambiguous = !determined && (bound > PF_REAL(0.0));
+  sum.middle = determined ? measured : half_of(bound);
+  sum.ambiguous = !determined && (bound > PF_COUNTS(0));
   return sum;
 }
 
 /* V_p and V_q of a diagonal whose parity sum is `sum`: a sensel that does not stand has what parity
  * leaves for it. Of use where one of the two stands. */
-static inline Real filled_p(Diagonal d, Real sum) { return d.p_stands ? d.p : sum - d.q; }
-static inline Real filled_q(Diagonal d, Real sum) { return d.q_stands ? d.q : sum - d.p; }
+static inline Counts filled_p(Diagonal d, Counts sum) { return d.p_stands ? d.p : sum - d.q; }
+static inline Counts filled_q(Diagonal d, Counts sum) { return d.q_stands ? d.q : sum - d.p; }
 
 /* V_p - V_q of a diagonal whose parity sum is `sum`: two sensels that do not stand share equally
  * (D3). */
-static inline Real diagonal_difference(Diagonal d, Real sum) {
-  const Real difference = filled_p(d, sum) - filled_q(d, sum);
-  return (d.p_stands || d.q_stands) ? difference : PF_REAL(0.0);
+static inline Counts diagonal_difference(Diagonal d, Counts sum) {
+  const Counts difference = filled_p(d, sum) - filled_q(d, sum);
+  return (d.p_stands || d.q_stands) ? difference : PF_COUNTS(0);
 }
 
 /* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 every sum of the
  * interval gives a force that explains the readings: together they are the segment of possible
  * forces. */
-static inline Force force_at(Diagonals diagonals, Real sum, ForceScale scale) {
-  const Real rising = diagonal_difference(diagonals.rising, sum);
-  const Real falling = diagonal_difference(diagonals.falling, sum);
+static inline Force force_at(Diagonals diagonals, Counts sum, ForceScale scale) {
+  const Counts rising = diagonal_difference(diagonals.rising, sum);
+  const Counts falling = diagonal_difference(diagonals.falling, sum);
   Force force;
-  force.shear_x = (rising - falling) * scale.shear;
-  force.shear_y = (rising + falling) * scale.shear;
-  force.normal = sum * scale.normal;
+  force.shear_x = real_of(rising - falling) * scale.shear;
+  force.shear_y = real_of(rising + falling) * scale.shear;
+  force.normal = real_of(sum) * scale.normal;
   return force;
 }
 
@@ -146,17 +150,19 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
   return force_at(diagonals, sum.middle, scale);
 }
 
+static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
+
 /* Whether the silent one of four sensels may press, where the three others are usable: its silence
  * hides something, and parity leaves it more than -`doubt` counts. That of a usable sensel reads
  * above zero, so the least of all four is asked. (D9) */
-static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Real sum, Real doubt) {
+static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Counts sum, Counts doubt) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
-  const Real least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),
-                                     least_of(filled_p(b, sum), filled_q(b, sum)));
-  const Real least_reading = least_of(least_of(pillar.s1.reading, pillar.s2.reading),
-                                      least_of(pillar.s3.reading, pillar.s4.reading));
-  return (least_filled > -doubt) && (least_reading > PF_REAL(0.0));
+  const Counts least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),
+                                       least_of(filled_p(b, sum), filled_q(b, sum)));
+  const Counts least_reading = least_of(least_of(pillar.s1.reading, pillar.s2.reading),
+                                        least_of(pillar.s3.reading, pillar.s4.reading));
+  return (least_filled > -doubt) && (least_reading > PF_COUNTS(0));
 }
 
 /* The masks of a sensel as Bits. */
@@ -184,7 +190,7 @@ static inline Bits one_lifted_of(State p, State q) {
 /* The status byte, bits 0 to 6. Ambiguous are a force that is one of a segment, and a region that
  * is 1 or 2; what parity says of the latter is off by `doubt` counts at most. Two opposite sensels
  * usable while the other two are lifted contradict the model and are inconsistent. */
-static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Real doubt) {
+static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts doubt) {
   const State s1 = state_of(pillar.s1);
   const State s2 = state_of(pillar.s2);
   const State s3 = state_of(pillar.s3);
@@ -212,14 +218,15 @@ static inline Mask one_lifted(Sensel p, Sensel q) {
 /* Whether a redundant reading disagrees by more than `tolerance` counts: with four usable, the
  * parity residual (D7); with three, what parity leaves for the lifted sensel beyond what its
  * silence can hide (D8). */
-static inline Mask fails_parity(Pillar pillar, ParitySum sum, Real tolerance) {
+static inline Mask fails_parity(Pillar pillar, ParitySum sum, Counts tolerance) {
   const Mask rising_usable = pillar.s1.usable && pillar.s3.usable;
   const Mask falling_usable = pillar.s2.usable && pillar.s4.usable;
-  const Real rising = pillar.s1.reading + pillar.s3.reading;
-  const Real falling = pillar.s2.reading + pillar.s4.reading;
+  const Counts rising = pillar.s1.reading + pillar.s3.reading;
+  const Counts falling = pillar.s2.reading + pillar.s4.reading;
   const Mask rising_hides = falling_usable && one_lifted(pillar.s1, pillar.s3);
   const Mask falling_hides = rising_usable && one_lifted(pillar.s2, pillar.s4);
-  return (rising_usable && falling_usable && (fabs(rising - falling) > tolerance)) ||
+  const Mask residual_fails = (rising - falling > tolerance) || (falling - rising > tolerance);
+  return (rising_usable && falling_usable && residual_fails) ||
          (rising_hides && (sum.high - rising > tolerance)) ||
          (falling_hides && (sum.high - falling > tolerance));
 }

@@ -4,7 +4,6 @@
  * instructions: docs/derivations/elementary.md. */
 
 static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
-static inline Real least_of(Real a, Real b) { return a < b ? a : b; }
 
 /* A power of two that brings squares of numbers up to `largest` into range, and its inverse. */
 typedef struct {

@@ -5,45 +5,48 @@
 /* A reading in counts and what it tells of the model's V. After `classify` at most one mask is set;
  * a sensel with none is lifted. */
 typedef struct {
-  Real reading;
+  Counts reading;
   Mask usable;    /* V is the reading, which is above the threshold */
   Mask saturated; /* V is at least the reading, which is above the threshold */
   Mask missing;   /* tells nothing: dead, absent, masked, or not a number; reads zero */
 } Sensel;
 
-/* A sensel that read `raw` and has nothing wrong with it: `raw < raw` is false in every lane. */
-static inline Sensel raw_sensel(Real raw) {
+/* A sensel that read `raw` and has nothing wrong with it. */
+static inline Sensel raw_sensel(Counts raw) {
   Sensel sensel;
   sensel.reading = raw;
-  sensel.usable = raw < raw;
-  sensel.missing = sensel.usable;
-  sensel.saturated = sensel.usable;
+  sensel.usable = mask_of(PF_BITS(0));
+  sensel.missing = mask_of(PF_BITS(0));
+  sensel.saturated = mask_of(PF_BITS(0));
   return sensel;
 }
 
+#ifndef PF_WHOLE
 /* NaN, infinity and readings beyond `largest` count as missing; for float32 sensels. */
 static inline Sensel reject_absurd(Sensel sensel, Real largest) {
   sensel.missing = sensel.missing || !(fabs(sensel.reading) <= largest);
   return sensel;
 }
+#endif
 
 /* `good` is zero where the sensel is masked. */
-static inline Sensel apply_mask(Sensel sensel, Real good) {
-  sensel.missing = sensel.missing || (good == PF_REAL(0.0));
+static inline Sensel apply_mask(Sensel sensel, Counts good) {
+  sensel.missing = sensel.missing || (good == PF_COUNTS(0));
   return sensel;
 }
 
 /* A reading of `full_scale` counts or more is saturated; to be asked of the raw reading. */
-static inline Sensel mark_saturated(Sensel sensel, Real full_scale) {
+static inline Sensel mark_saturated(Sensel sensel, Counts full_scale) {
   sensel.saturated = (sensel.reading >= full_scale) && !sensel.missing;
   return sensel;
 }
 
-static inline Sensel subtract_tare(Sensel sensel, Real tare) {
+static inline Sensel subtract_tare(Sensel sensel, Counts tare) {
   sensel.reading = sensel.reading - tare;
   return sensel;
 }
 
+#ifndef PF_WHOLE
 static inline Sensel apply_gain(Sensel sensel, Real gain) {
   sensel.reading = sensel.reading * gain;
   return sensel;
@@ -72,21 +75,23 @@ static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate)
   const Real followed = tare + rate * (raw.reading - tare);
   return (untouched && !(raw.missing || raw.saturated)) ? followed : tare;
 }
+#endif
 
 /* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
  * others are lifted, and read the threshold, which is the most that their silence can hide; or
  * missing, and read zero. A saturated sensel that its calibration brings down to the threshold
  * tells nothing. */
-static inline Sensel classify(Sensel sensel, Real threshold) {
+static inline Sensel classify(Sensel sensel, Counts threshold) {
   const Mask answers = (sensel.reading > threshold) && !sensel.missing;
   const Mask tells_nothing = sensel.missing || (sensel.saturated && !answers);
   sensel.missing = tells_nothing;
   sensel.usable = answers && !sensel.saturated;
   sensel.saturated = answers && sensel.saturated;
-  sensel.reading = answers ? sensel.reading : (tells_nothing ? PF_REAL(0.0) : threshold);
+  sensel.reading = answers ? sensel.reading : (tells_nothing ? PF_COUNTS(0) : threshold);
   return sensel;
 }
 
+#ifndef PF_WHOLE
 /* A level such that every reading below it, in steps of `step` (1: whole readings, 0: any), is
  * silent after tare and gain: the highest but for rounding. It is found by the arithmetic of the
  * stages, which only rises with the reading. `lowest` where numbers are too large to tell. */
@@ -97,10 +102,11 @@ static inline Real wake_level(Real tare, Real gain, Real threshold, Real step, R
   const Mask is_silent_below = (below - tare) * gain <= threshold;
   return is_silent ? silent + step : (is_silent_below ? below + step : lowest);
 }
+#endif
 
 /* Gives back the `dead_zone` counts that a sensel swallows before it answers, and that the silence
  * of a lifted one can hide as well. */
-static inline Sensel fill_dead_zone(Sensel sensel, Real dead_zone) {
+static inline Sensel fill_dead_zone(Sensel sensel, Counts dead_zone) {
   sensel.reading = sensel.missing ? sensel.reading : sensel.reading + dead_zone;
   return sensel;
 }

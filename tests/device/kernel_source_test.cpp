@@ -25,7 +25,7 @@ std::string macro(const std::string& source, const std::string& name) {
 }
 
 TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
-  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  const SolverPlan plan = bare_plan(8, 32, SenselType::u8);
   const std::vector<std::string> expected = {"load", "classify", "direct_solve", "store"};
   EXPECT_EQ(kernel_stages(plan), expected);
   const std::string source = kernel_source(plan, 16);
@@ -76,6 +76,48 @@ TEST(KernelSource, ConstantsAreExact) {
   EXPECT_EQ(std::strtof(macro(source, "PF_NORMAL_SCALE").c_str(), nullptr),
             static_cast<float>(1 / (2 * 317.0)));
   EXPECT_EQ(macro(source, "PF_THRESHOLD").find("0x"), 0U);
+}
+
+TEST(KernelSource, WholeNumbersAreThoseOfBareBytes) {
+  const auto is_whole = [](auto&& change, int lanes = 16) {
+    SolverPlan plan = bare_plan(8, 64, SenselType::u8);
+    change(plan);
+    return macro(kernel_source(plan, lanes), "PF_WHOLE") != "(none)";
+  };
+  EXPECT_TRUE(is_whole([](SolverPlan&) {}));
+  EXPECT_TRUE(is_whole([](SolverPlan& plan) {
+    plan.skin.threshold_counts = 2.5;
+    plan.skin.full_scale_counts = 250.3;
+    plan.parity_tolerance_counts = 3.7;
+    plan.noise_counts = 0.4;
+  }));
+  EXPECT_FALSE(is_whole([](SolverPlan&) {}, 1));
+  const auto is_not = [&](auto&& change) { EXPECT_FALSE(is_whole(change)); };
+  is_not([](SolverPlan& plan) { plan.sensel_type = SenselType::u16; });
+  is_not([](SolverPlan& plan) { plan.estimator = Estimator::paper; });
+  is_not([](SolverPlan& plan) { plan.angles = true; });
+  is_not([](SolverPlan& plan) {
+    plan.uncertainty = true;
+    plan.noise_counts = 1;
+  });
+  is_not([](SolverPlan& plan) { plan.baseline_rate = 0.1; });
+  is_not([](SolverPlan& plan) { plan.skin.power_law = PowerLaw{0.9, 50}; });
+  is_not([](SolverPlan& plan) { plan.skin.threshold_counts = 2.3; });
+  is_not([](SolverPlan& plan) { plan.skin.threshold_counts = 1e9; });
+  is_not([](SolverPlan& plan) {
+    plan.skin.threshold_counts = 20;
+    plan.skin.full_scale_counts = 20;
+  });
+  is_not([](SolverPlan& plan) { plan.calibration.tare.assign(512, 0); });
+  is_not([](SolverPlan& plan) { plan.calibration.gain.assign(512, 1); });
+  is_not([](SolverPlan& plan) { plan.calibration.dead_zone.assign(512, 0); });
+  is_not([](SolverPlan& plan) { plan.calibration.mask.assign(512, 1); });
+}
+
+TEST(KernelSource, ABlockIsNoWiderThanARow) {
+  EXPECT_EQ(macro(kernel_source(bare_plan(8, 32, SenselType::u8), 16), "PF_LANES"), "16");
+  EXPECT_EQ(macro(kernel_source(bare_plan(8, 31, SenselType::u8), 16), "PF_LANES"), "8");
+  EXPECT_EQ(macro(kernel_source(bare_plan(8, 3, SenselType::u8), 16), "PF_LANES"), "1");
 }
 
 TEST(KernelSource, EmbeddedFilesAreThoseOfTheTree) {

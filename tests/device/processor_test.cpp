@@ -133,9 +133,11 @@ class EveryPath : public testing::TestWithParam<Path> {
   }
 
   /// Solves random frames of `plan` and expects the bits of the C++ loop.
-  static void expect_host_bits(const SolverPlan& plan, std::size_t padding) {
+  static void expect_host_bits(const SolverPlan& plan, std::size_t padding,
+                               const SpeedPaths& paths = {}) {
     const Path& path = GetParam();
-    Processor processor(test_device(), plan, {.memory = path.memory, .lanes = path.lanes});
+    Processor processor(test_device(), plan,
+                        {.memory = path.memory, .lanes = path.lanes, .paths = paths});
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const RandomFrame frame(plan, padding, seed);
       processor.submit(frame.view());
@@ -148,7 +150,9 @@ class EveryPath : public testing::TestWithParam<Path> {
 class FurtherStages : public EveryPath {};
 
 TEST_P(EveryPath, BareSolveHasTheBitsOfTheHost) {
-  expect_host_bits(bare_plan(34, 2 * 53, GetParam().type), 0);
+  const SolverPlan plan = bare_plan(34, 2 * 53, GetParam().type);
+  expect_host_bits(plan, 0);
+  expect_host_bits(plan, 0, {.whole_numbers = false});
 }
 
 TEST_P(EveryPath, AllStagesHaveTheBitsOfTheHost) {
@@ -234,6 +238,10 @@ TEST_P(FurtherStages, PowerLawIsThatOfTheHost) {
 
 TEST_P(EveryPath, OddAndStridedFramesHaveTheBitsOfTheHost) {
   expect_host_bits(full_plan(9, 2 * 21 + 1, GetParam().type, 8), 11);
+}
+
+TEST_P(EveryPath, OddAndStridedBareFramesHaveTheBitsOfTheHost) {
+  expect_host_bits(bare_plan(9, 2 * 21 + 1, GetParam().type), 11);
 }
 
 TEST_P(EveryPath, SmallestSkinHasTheBitsOfTheHost) {

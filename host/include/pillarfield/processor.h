@@ -62,12 +62,15 @@ struct SpeedPaths {
   /// Blocks of pillars whose sensels are all silent, and were so when their slot was last written,
   /// are not solved again.
   bool skip_silent = true;
+  /// The direct solve of 8-bit readings without calibration, angles and uncertainty goes in 16-bit
+  /// integers.
+  bool whole_numbers = true;
   Stores stores = Stores::automatic;
 };
 
 /// The OpenCL C that is compiled for a plan on a device with so many lanes, complete. Stores are
 /// streaming only where `paths` says so.
-[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int lanes,
+[[nodiscard]] std::string kernel_source(const SolverPlan& plan, int device_lanes,
                                         const SpeedPaths& paths = {});
 
 /// The stages that kernel_source holds, in their order, one name each.

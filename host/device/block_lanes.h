@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+namespace pillarfield {
+
+/// Pillars that a work-item solves at once: the device's lanes, but no more than a row has.
+constexpr int block_lanes(int lanes, std::uint32_t pillar_cols) {
+  while (lanes > 1 && static_cast<std::uint32_t>(lanes) > pillar_cols) lanes /= 2;
+  return lanes;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,128 @@
+// The solve in 16-bit integers: the bits of the host's single precision, whatever a pillar reads
+// and wherever a plan puts its limits.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <optional>
+#include <span>
+
+#include "core/host_solve.h"
+#include "pillarfield/processor.h"
+#include "random_plan.h"
+
+namespace pillarfield {
+namespace {
+
+/// Readings about every limit of the plans below.
+constexpr std::array<std::uint8_t, 13> kReadings = {0,  1,   2,   3,   4,   7,  20,
+                                                    21, 127, 250, 251, 254, 255};
+
+/// All combinations of four of them, a pillar each; the order mixes them within a block.
+FrameBuffer all_pillars() {
+  constexpr std::size_t kSide = kReadings.size() * kReadings.size();
+  FrameBuffer frame(SenselType::u8, 2 * kSide, 2 * kSide);
+  const auto bytes = frame.bytes();
+  const auto reading = [](std::size_t i) { return std::byte{kReadings[i % kReadings.size()]}; };
+  for (std::size_t row = 0; row < kSide; ++row) {
+    for (std::size_t col = 0; col < kSide; ++col) {
+      const std::size_t first = 4 * row * kSide + 2 * col;
+      bytes[first] = reading(row);
+      bytes[first + 1] = reading(row / kReadings.size());
+      bytes[first + 2 * kSide] = reading(col);
+      bytes[first + 2 * kSide + 1] = reading(col / kReadings.size());
+    }
+  }
+  return frame;
+}
+
+class WholeNumbers : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { device_.emplace(open_device()); }
+  static void TearDownTestSuite() { device_.reset(); }
+
+  static SolverPlan plan_of(double threshold_counts) {
+    SolverPlan plan = bare_plan(frame_.view().rows, frame_.view().cols, SenselType::u8);
+    plan.skin.threshold_counts = threshold_counts;
+    plan.skin.counts_per_newton = 317;
+    return plan;
+  }
+
+  /// The plan in integers and in single precision, on the device, against the host.
+  static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
+    const ForceField expected = solve_on_host(plan, frame_.view());
+    for (const bool whole : {true, false}) {
+      Processor processor(*device_, plan, {.lanes = lanes, .paths = {.whole_numbers = whole}});
+      processor.submit(frame_.view());
+      const ForceFieldView forces = processor.receive();
+      expect_same(forces.shear_x, expected.shear_x, "shear_x");
+      expect_same(forces.shear_y, expected.shear_y, "shear_y");
+      expect_same(forces.normal, expected.normal, "normal");
+      EXPECT_TRUE(std::ranges::equal(forces.status, expected.status));
+    }
+  }
+
+ private:
+  static void expect_same(std::span<const float> actual, std::span<const float> expected,
+                          const char* plane) {
+    ASSERT_EQ(actual.size(), expected.size());
+    for (std::size_t i = 0; i < actual.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected[i]))
+          << plane << " of pillar " << i << ": " << actual[i] << " is not " << expected[i];
+    }
+  }
+
+  static inline std::optional<Device> device_;
+  static inline const FrameBuffer frame_ = all_pillars();
+};
+
+TEST_F(WholeNumbers, EveryThreshold) {
+  for (const double threshold : {0.0, 0.5, 2.0, 2.3, 2.5, 126.5, 254.0, 255.0, 300.0, 1000.0}) {
+    SCOPED_TRACE(threshold);
+    expect_host_bits(plan_of(threshold));
+  }
+}
+
+TEST_F(WholeNumbers, EveryLaneWidth) {
+  SolverPlan plan = plan_of(2.5);
+  plan.skin.full_scale_counts = 250.5;
+  plan.parity_tolerance_counts = 3.7;
+  plan.noise_counts = 0.4;
+  for (const int lanes : {1, 2, 4, 8, 16}) {
+    SCOPED_TRACE(lanes);
+    expect_host_bits(plan, lanes);
+  }
+}
+
+TEST_F(WholeNumbers, EveryFullScale) {
+  for (const double full_scale : {2.5, 3.0, 20.5, 250.1, 250.5, 255.0, 4000.0}) {
+    SCOPED_TRACE(full_scale);
+    SolverPlan plan = plan_of(2);
+    plan.skin.full_scale_counts = full_scale;
+    expect_host_bits(plan);
+  }
+}
+
+TEST_F(WholeNumbers, EveryParityTolerance) {
+  for (const double tolerance : {0.0, 0.25, 1.0, 3.7, 3.9, 250.1, 5000.0}) {
+    SCOPED_TRACE(tolerance);
+    SolverPlan plan = plan_of(0.5);
+    plan.parity_tolerance_counts = tolerance;
+    expect_host_bits(plan);
+  }
+}
+
+/// The doubt of 0.636 is a little more than 6 counts, by which readings 7, 7 and 20 differ.
+TEST_F(WholeNumbers, EveryDoubt) {
+  for (const double noise : {0.0, 0.1, 0.4, 0.636, 3.0, 20.0, 1e6}) {
+    SCOPED_TRACE(noise);
+    SolverPlan plan = plan_of(2);
+    plan.noise_counts = noise;
+    expect_host_bits(plan);
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
