@@ -25,7 +25,7 @@ set(lint_skipping -DPF_SKIP_SILENT -DPF_WAKE=1 -DPF_WAKE_THRESHOLD=1.0f -DPF_WAK
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" -DPF_PAPER "${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
+    foreach(stages "" "-DPF_PAPER;-DPF_HALF" "${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
       list(APPEND lint_commands COMMAND ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
         -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
         -Wno-unused-function -Werror -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}

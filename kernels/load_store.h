@@ -135,16 +135,51 @@ PF_INLINE bool any_lane(Mask mask) {
 PF_DEFINE_STORE(pair, float)
 PF_DEFINE_STORE(readings, PF_SENSEL)
 
-/* Writes the first `count` lanes. */
-PF_INLINE void store_plane(Real value, global float* plane, uint count) {
+/* A value of a result, and as many as there are lanes. */
+#ifdef PF_HALF
+typedef ushort Result;
+#else
+typedef float Result;
+#endif
 #if PF_LANES == 1
-  *plane = value;
+typedef Result Results;
+#elif defined(PF_HALF)
+typedef PF_LANE_TYPE(ushort) Results;
+/* PoCL's vstore takes vectors of short values apart. */
+typedef Results ResultsAnywhere __attribute__((aligned(2)));
+#define PF_STORE_RESULTS(results, plane) (*(global ResultsAnywhere*)(plane) = (results))
+#else
+typedef Real Results;
+#define PF_STORE_RESULTS(results, plane) PF_VSTORE(results, 0, plane)
+#endif
+
+/* As the planes of a result have them. */
+PF_INLINE Results results_of(Real value) {
+#ifndef PF_HALF
+  return value;
+#elif PF_LANES == 1
+  return (ushort)half_bits(value);
+#elif defined(__F16C__)
+  /* An instruction of the processor that rounds as half_bits does, to which no function of OpenCL C
+   * leads that returns a value. */
+  typedef __fp16 Halves __attribute__((ext_vector_type(PF_LANES)));
+  return __builtin_astype(__builtin_convertvector(value, Halves), Results);
+#else
+  return PF_JOIN(convert_ushort, PF_LANES)(half_bits(value));
+#endif
+}
+
+/* Writes the first `count` lanes. */
+PF_INLINE void store_plane(Real value, global Result* plane, uint count) {
+  const Results results = results_of(value);
+#if PF_LANES == 1
+  *plane = results;
 #else
   if (count == PF_LANES) {
-    PF_VSTORE(value, 0, plane);
+    PF_STORE_RESULTS(results, plane);
   } else {
-    float lanes[PF_LANES];
-    PF_VSTORE(value, 0, lanes);
+    Result lanes[PF_LANES];
+    PF_VSTORE(results, 0, lanes);
     for (uint i = 0; i < count; ++i) plane[i] = lanes[i];
   }
 #endif

@@ -22,7 +22,7 @@ class SharedMemory final : public SlotMemory {
   SharedMemory(const cl::Context& context, const SolverPlan& plan) : context_(context) {
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
       if (!is_wanted(plan, plane)) continue;
-      const std::size_t bytes = plan.skin.pillars() * value_size(plane);
+      const std::size_t bytes = plan.skin.pillars() * value_size(plan, plane);
       SharedPlane& shared = planes_.at(plane);
       shared.bytes = bytes;
       shared.pages.reset(static_cast<std::byte*>(::operator new[](bytes, kPage)));
