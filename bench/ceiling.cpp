@@ -61,7 +61,7 @@ CopyKernel::Slot CopyKernel::make_slot(const cl::Program& program) const {
   Slot slot;
   slot.queue = cl::CommandQueue(context_, device_);
   slot.kernel = cl::Kernel(program, "copy_streams");
-  slot.results = cl::Buffer(context_, CL_MEM_READ_WRITE, planes * pitch * sizeof(float));
+  slot.results = cl::Buffer(context_, CL_MEM_READ_WRITE, planes * pitch * streams_.result_size);
   slot.status = cl::Buffer(context_, CL_MEM_READ_WRITE, pitch);
   cl_uint argument = kRawArgument + 1;
   slot.kernel.setArg(argument++, cl_ulong{skin_.cols});
@@ -96,12 +96,12 @@ void CopyKernel::run(int frames) {
 std::vector<std::byte> CopyKernel::results() const {
   const Slot& slot = slots_[(started_ + slots_.size() - 1) % slots_.size()];
   const auto planes = static_cast<std::size_t>(streams_.result_planes);
-  const std::size_t plane_bytes = skin_.pillars() * sizeof(float);
+  const std::size_t plane_bytes = skin_.pillars() * streams_.result_size;
   std::vector<std::byte> bytes(planes * plane_bytes + skin_.pillars());
   for (std::size_t plane = 0; plane < planes; ++plane) {
     slot.queue.enqueueReadBuffer(slot.results, CL_TRUE,
-                                 plane * plane_pitch(skin_.pillars()) * sizeof(float), plane_bytes,
-                                 bytes.data() + plane * plane_bytes);
+                                 plane * plane_pitch(skin_.pillars()) * streams_.result_size,
+                                 plane_bytes, bytes.data() + plane * plane_bytes);
   }
   slot.queue.enqueueReadBuffer(slot.status, CL_TRUE, 0, skin_.pillars(),
                                bytes.data() + planes * plane_bytes);

@@ -28,7 +28,7 @@ inline constexpr CopyKind kCopyKinds[] = {{"cached", false, false},
 /// once more: each bit that is read moves one value of every plane.
 std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind);
 
-/// Floats from one plane to the next in the buffers of calibration and results: whole pages.
+/// Values from one plane to the next in the buffers of calibration and results: whole pages.
 constexpr std::uint64_t plane_pitch(std::uint64_t values) { return (values + 1023) / 1024 * 1024; }
 
 }  // namespace pillarfield::bench

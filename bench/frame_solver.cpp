@@ -6,14 +6,23 @@ FrameSolver::FrameSolver(const Device& device, const SolverPlan& plan, const Fra
                          const Processor::Options& options)
     : frames_(&frames),
       most_in_flight_(options.frames_in_flight),
+      half_output_(plan.half_output),
       processor_(device, plan, options) {}
 
 void FrameSolver::run(int frames) {
   for (int i = 0; i < frames; ++i) {
-    if (processor_.in_flight() == most_in_flight_) static_cast<void>(processor_.receive());
+    if (processor_.in_flight() == most_in_flight_) receive();
     processor_.submit((*frames_)[submitted_++]);
   }
-  while (processor_.in_flight() > 0) static_cast<void>(processor_.receive());
+  while (processor_.in_flight() > 0) receive();
+}
+
+void FrameSolver::receive() {
+  if (half_output_) {
+    static_cast<void>(processor_.receive_half());
+  } else {
+    static_cast<void>(processor_.receive());
+  }
 }
 
 ForceFieldView FrameSolver::solve(const FrameView& frame) {

@@ -19,8 +19,11 @@ class FrameSolver {
   ForceFieldView solve(const FrameView& frame);
 
  private:
+  void receive();
+
   const Frames* frames_;
   int most_in_flight_;
+  bool half_output_;
   Processor processor_;
   std::size_t submitted_ = 0;
 };

@@ -1,32 +1,37 @@
 /* The only file that knows the language, the precision and the number of lanes.
  *
- * It gives kernels/maths four types and three macros. The same text then compiles four ways:
+ * It gives kernels/maths five types and four macros. The same text then compiles four ways:
  *
  *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
  *   Real     float, or floatN of lanes  floatN         float                  double
  *   Counts   as Real                    shortN         float                  double
  *   Mask     int, or intN               shortN         bool                   bool
  *   Bits     char, or charN             charN          int                    int
+ *   Word     uint, or uintN             uintN          std::uint32_t          none
  *
  *   PF_REAL(x)    the constant x in every lane, of Real's own precision
  *   PF_COUNTS(x)  the whole constant x in every lane
  *   PF_BITS(x)    the integer x in every lane
+ *   PF_WORD(x)    as well
  *   half_of(c)    c / 2
  *   real_of(c)    c as Real
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
+ *   word_of(r)    the bits of r
+ *   real_of_word(w)  what w are the bits of
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
  * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, and of
- * maths only pillar_model.h, sensel.h and direct_solve.h are of use.
+ * maths only pillar_model.h, sensel.h, direct_solve.h and half.h are of use.
  *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
  *
  * What may stand in kernels/maths is what means the same in all of them: masks joined by && and
- * ||, negated by !; Bits joined by &, | and ~; choices written c ? x : y with both sides of lane
- * type; structs passed by value; of Counts in programs of whole numbers + - and comparisons alone;
+ * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts; choices
+ * written c ? x : y with both sides of lane type; structs passed by value; of Counts in programs of
+ * whole numbers + - and comparisons alone;
  * + - * /, comparisons, fabs, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction:
  * the device and a host built with -ffp-contract=off then agree bit for bit in all but the last
  * six.
@@ -41,8 +46,11 @@
 typedef float Real;
 typedef int Mask;
 typedef char Bits;
+typedef uint Word;
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
+static inline Word word_of(Real value) { return as_uint(value); }
+static inline Real real_of_word(Word word) { return as_float(word); }
 #else
 #ifdef PF_WHOLE
 #define PF_MASK_LANE short
@@ -52,10 +60,13 @@ static inline Mask mask_of(Bits bits) { return bits != 0; }
 typedef PF_JOIN(float, PF_LANES) Real;
 typedef PF_JOIN(PF_MASK_LANE, PF_LANES) Mask;
 typedef PF_JOIN(char, PF_LANES) Bits;
+typedef PF_JOIN(uint, PF_LANES) Word;
 static inline Bits bits_of(Mask mask) { return PF_JOIN(convert_char, PF_LANES)(mask); }
 static inline Mask mask_of(Bits bits) {
   return PF_JOIN(PF_JOIN(convert_, PF_MASK_LANE), PF_LANES)(bits != (Bits)(0));
 }
+static inline Word word_of(Real value) { return PF_JOIN(as_uint, PF_LANES)(value); }
+static inline Real real_of_word(Word word) { return PF_JOIN(as_float, PF_LANES)(word); }
 #endif
 
 #ifdef PF_WHOLE
@@ -70,18 +81,24 @@ static inline Real real_of(Counts counts) { return counts; }
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
+#define PF_WORD(x) ((Word)(x##u))
 
 #else /* C++ */
 
 #undef PF_REAL
 #undef PF_COUNTS
 #undef PF_BITS
+#undef PF_WORD
 #if PF_PRECISION == 64
 using Real = double;
 #define PF_REAL(x) (x)
 #else
 using Real = float;
 #define PF_REAL(x) (x##f)
+#define PF_WORD(x) (x##U)
+using Word = std::uint32_t;
+static inline Word word_of(Real value) { return std::bit_cast<Word>(value); }
+static inline Real real_of_word(Word word) { return std::bit_cast<Real>(word); }
 #endif
 using Counts = Real;
 using Mask = bool;

@@ -8,7 +8,8 @@ namespace pillarfield::bench {
 BareSolve bare_solve(const SolverPlan& plan) {
   if (plan.sensel_type != SenselType::u8 || plan.estimator != Estimator::direct ||
       !plan.calibration.empty() || plan.skin.full_scale_counts || plan.skin.power_law ||
-      plan.parity_tolerance_counts || plan.baseline_rate || plan.angles || plan.uncertainty) {
+      plan.parity_tolerance_counts || plan.baseline_rate || plan.angles || plan.uncertainty ||
+      plan.half_output) {
     throw Error("opponent", "the plan is not the bare direct solve of uint8 frames",
                 "take a plan without stages");
   }

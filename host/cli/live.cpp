@@ -31,6 +31,7 @@ struct LiveOptions {
   int frames_in_flight = 2;
   double spin_us = 0;
   std::uint64_t memory_limit_mib = 1024;
+  bool half = false;
   bool realtime = false;
   bool strict = false;
   PlanOptions plan;
@@ -74,6 +75,7 @@ SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
   PlanOptions asked = options.plan;
   if (is_scene(options.source) && asked.scene.empty()) asked.scene = options.source;
   plan = plan_of(asked, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
+  plan.half_output = options.half;
   check(plan, options.source);  // Before frames are loaded, which may take a while.
   return plan;
 }
@@ -81,15 +83,20 @@ SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
 /// Frames in memory on their way through a processor, over and over.
 class Replay {
  public:
-  Replay(const LiveFrames& live, Processor& processor, int frames_in_flight)
-      : live_(live), processor_(processor), capacity_(frames_in_flight) {}
+  Replay(const LiveFrames& live, Processor& processor, const LiveOptions& options)
+      : live_(live),
+        processor_(processor),
+        capacity_(options.frames_in_flight),
+        half_(options.half) {}
 
   [[nodiscard]] int capacity() const { return capacity_; }
   [[nodiscard]] int in_flight() const { return processor_.in_flight(); }
   void submit(std::uint64_t frame) {
     processor_.submit(live_.loaded[frame % live_.loaded.size()].view());
   }
-  void receive() { status_ = processor_.receive().status; }
+  void receive() {
+    status_ = half_ ? processor_.receive_half().status : processor_.receive().status;
+  }
 
   /// Solves a frame in every slot: the first result of a slot takes its memory page by page.
   void warm_up() {
@@ -106,6 +113,7 @@ class Replay {
   const LiveFrames& live_;
   Processor& processor_;
   int capacity_;
+  bool half_;
   std::span<const std::uint8_t> status_;
 };
 
@@ -171,7 +179,7 @@ void live(const LiveOptions& options) {
   Processor processor(
       open_device(options.device.name), plan,
       {.memory = options.device.memory, .frames_in_flight = options.frames_in_flight});
-  Replay replay(frames, processor, options.frames_in_flight);
+  Replay replay(frames, processor, options);
   report.frames_in_flight = options.frames_in_flight;
   LiveRun run(report.schedule);
   replay.warm_up();
@@ -209,6 +217,8 @@ void add_run_options(CLI::App& command, LiveOptions& options) {
       .add_option("--memory-limit", options.memory_limit_mib,
                   "Frames are loaded beforehand, into so many MiB at most [1024]")
       ->check(CLI::Range(1U, 1U << 20U));
+  command.add_flag("--half", options.half,
+                   "Forces of half precision, which take fewer bytes to memory");
   command.add_flag("--realtime", options.realtime,
                    "Ask for real-time scheduling and locked memory; says so where refused");
   command.add_flag("--strict", options.strict,

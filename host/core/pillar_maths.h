@@ -2,7 +2,9 @@
 
 // kernels/maths as C++: in single precision, which matches the device bit for bit, and in double.
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace pillarfield::single_precision {
 #define PF_PRECISION 32
@@ -16,6 +18,7 @@ namespace pillarfield::single_precision {
 // and what is made of them
 #include "kernels/maths/angles.h"
 #include "kernels/maths/direct_solve.h"
+#include "kernels/maths/half.h"
 // and the rest
 #include "kernels/maths/paper_solve.h"
 #include "kernels/maths/uncertainty.h"

@@ -39,14 +39,15 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options) {
   SpeedPaths paths = options.paths;
   if (paths.stores != Stores::automatic) return paths;
+  paths.stores = Stores::cached;
+  if (plan.half_output) return paths;  // Half a cache line at a time is slow to stream.
   std::size_t bytes = 0;
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-    if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plane);
+    if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plan, plane);
   }
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
-  const bool exceed =
-      cache != 0 && bytes * static_cast<std::size_t>(options.frames_in_flight) > cache;
-  paths.stores = exceed ? Stores::streaming : Stores::cached;
+  const std::size_t all = bytes * static_cast<std::size_t>(options.frames_in_flight);
+  if (cache != 0 && all > cache) paths.stores = Stores::streaming;
   return paths;
 }
 
@@ -57,6 +58,7 @@ struct Processor::State {
       : device(opened),
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
+        half_output(wanted.half_output),
         shares_memory(decide_sharing(options.memory, opened)),
         calibration(opened.state().context, wanted, options.paths) {
     baseline.follows = wanted.baseline_rate.has_value();
@@ -82,7 +84,7 @@ struct Processor::State {
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front().submit(frame.view());
-    static_cast<void>(slots.front().receive());
+    slots.front().wait();
   }
 
   [[nodiscard]] Slot& slot(std::uint64_t frame) { return slots[frame % slots.size()]; }
@@ -90,6 +92,7 @@ struct Processor::State {
   Device device;
   Skin skin;
   SenselType sensel_type;
+  bool half_output;
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
@@ -134,14 +137,30 @@ void Processor::submit(const FrameView& frame) {
   ++state_->submitted;
 }
 
-ForceFieldView Processor::receive() {
+template <class Value>
+FieldView<Value> Processor::receive_oldest() {
   if (state_->submitted == state_->received) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
-  const ForceFieldView forces = with_opencl_errors(
-      state_->device.info().name, [&] { return state_->slot(state_->received).receive(); });
+  Slot& slot = state_->slot(state_->received);
+  with_opencl_errors(state_->device.info().name, [&] { slot.wait(); });
   ++state_->received;
-  return forces;
+  return slot.results<Value>();
+}
+
+ForceFieldView Processor::receive() {
+  if (state_->half_output) {
+    throw Error("Processor::receive", "the plan has half_output", "call receive_half()");
+  }
+  return receive_oldest<float>();
+}
+
+HalfFieldView Processor::receive_half() {
+  if (!state_->half_output) {
+    throw Error("Processor::receive_half", "the plan has no half_output",
+                "call receive(), or set half_output");
+  }
+  return receive_oldest<Half>();
 }
 
 int Processor::in_flight() const { return static_cast<int>(state_->submitted - state_->received); }

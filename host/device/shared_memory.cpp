@@ -19,7 +19,7 @@ class SharedMemory final : public SlotMemory {
   SharedMemory(const cl::Context& context, const SolverPlan& plan) : context_(context) {
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
       if (!is_wanted(plan, plane)) continue;
-      regions_.at(plane) = {bytes_, plan.skin.pillars() * value_size(plane)};
+      regions_.at(plane) = {bytes_, plan.skin.pillars() * value_size(plan, plane)};
       bytes_ += (regions_.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
     }
     pages_.reset(static_cast<std::byte*>(::operator new[](bytes_, kPage)));

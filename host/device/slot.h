@@ -53,7 +53,11 @@ class Slot {
   void submit(const FrameView& frame);
 
   /// Waits for it.
-  ForceFieldView receive();
+  void wait();
+
+  /// What it became, after wait(). `Value` is that of the plan's results: float or Half.
+  template <class Value>
+  [[nodiscard]] FieldView<Value> results() const;
 
  private:
   /// Solves and follows after the frame before has.

@@ -31,7 +31,7 @@ class StagedMemory final : public SlotMemory {
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
       if (!is_wanted(plan, plane)) continue;
       planes_.at(plane) =
-          Stage(context, queue, CL_MEM_READ_WRITE, plan.skin.pillars() * value_size(plane));
+          Stage(context, queue, CL_MEM_READ_WRITE, plan.skin.pillars() * value_size(plan, plane));
     }
   }
 

@@ -120,6 +120,14 @@ class Run(LiveTest):
         for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
             self.assertNotIn(stage, plain["stages"])
 
+    def test_half_precision_is_another_way_to_store(self):
+        arguments = (self.scene, "--rate", 50, "--seconds", 0.1)
+        single = self.live(*arguments)
+        half = self.live(*arguments, "--half")
+        expected = ["store_half" if stage == "store" else stage for stage in single["stages"]]
+        self.assertEqual(half["stages"], expected)
+        self.assertGreater(half["contact_share"], 0.3)
+
     def test_everything_of_solve_is_the_same(self):
         recording = self.folder / "ball.h5"
         run("simulate", self.scene, "-o", recording)

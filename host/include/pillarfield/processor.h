@@ -108,8 +108,11 @@ class Processor {
   void submit(const FrameView& frame);
 
   /// Waits for the oldest frame in flight. Its spans stay valid until `frames_in_flight` further
-  /// frames were submitted. Throws Error when none is in flight.
+  /// frames were submitted. Throws Error when none is in flight, or the plan has half_output.
   [[nodiscard]] ForceFieldView receive();
+
+  /// The same of a plan with half_output, and of no other.
+  [[nodiscard]] HalfFieldView receive_half();
 
   /// The tare [sensel rows, cols] as the frames submitted so far leave it, in counts; waits for
   /// them. Empty where the plan has none and follows none.
@@ -120,6 +123,9 @@ class Processor {
   [[nodiscard]] const Device& device() const;
 
  private:
+  template <class Value>
+  FieldView<Value> receive_oldest();
+
   struct State;
   std::unique_ptr<State> state_;
 };
