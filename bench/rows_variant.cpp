@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
-#include <utility>
 
-#include "bench/noisy_frames.h"
+#include "bench/noisy_frame_store.h"
 #include "bench/rows.h"
 #include "bench/solve_race.h"
 #include "bench/solve_variant.h"
@@ -17,44 +15,18 @@ namespace {
 
 constexpr std::size_t kFrames = 32;  ///< 80 MB of uint8 sensels: more than caches hold
 
-/// Frames of a square metre: those of bare uint8 sensels, on which the copy runs that all variants
-/// are measured by, and those that were wanted last.
-class FrameStore {
- public:
-  const Frames& bare() {
-    if (!bare_) bare_.emplace(plan_of(SolveVariant{}, kSquareMetre), kFrames);
-    return bare_->frames();
-  }
-
-  const Frames& of(const SolverPlan& plan) {
-    const Kind wanted = {plan.sensel_type, !plan.calibration.empty()};
-    if (wanted == Kind{SenselType::u8, false}) return bare();
-    if (!last_ || wanted != kind_) {
-      last_.reset();  // Before the next are made: they are large.
-      last_.emplace(plan, kFrames);
-      kind_ = wanted;
-    }
-    return last_->frames();
-  }
-
- private:
-  using Kind = std::pair<SenselType, bool>;  ///< and whether calibrated
-  std::optional<NoisyFrames> bare_;
-  std::optional<NoisyFrames> last_;
-  Kind kind_;
-};
-
 /// `over_bare_copy` is the time over that of the copy of the bare uint8 solve: 17 bytes a pillar.
-Measurement race_variant(const Session& session, const SolveVariant& variant, FrameStore& store) {
+Measurement race_variant(const Session& session, const SolveVariant& variant,
+                         NoisyFrameStore& store) {
   const SolverPlan plan = plan_of(variant, kSquareMetre);
   const SolverPlan bare = plan_of(SolveVariant{}, kSquareMetre);
-  const Frames& frames = store.of(plan);
+  const Frames& frames = store.of(plan).frames();
   const int in_flight = Processor::Options{}.frames_in_flight;
   VariantSolver solver(session.device, variant, plan, frames);
   Race race;
   const std::size_t solve = race.add([&](int count) { solver.run(count); });
   CeilingEntry ceiling(race, session.device, plan, frames, in_flight);
-  CeilingEntry bare_copy(race, session.device, bare, store.bare(), in_flight);
+  CeilingEntry bare_copy(race, session.device, bare, store.bare().frames(), in_flight);
   race.run(session.length);
   Measurement measured = measurement_of(race, solve, plan);
   measured.counters["of_ceiling"] = race.ratio(ceiling.fastest(race), solve);
@@ -67,7 +39,7 @@ Measurement race_variant(const Session& session, const SolveVariant& variant, Fr
 }  // namespace
 
 void add_variant_rows(const Session& session) {
-  const auto store = std::make_shared<FrameStore>();
+  const auto store = std::make_shared<NoisyFrameStore>(kSquareMetre, kFrames);
   for (const SolveVariant& variant : solve_variants()) {
     add_row(fmt::format("variant/{}", name_of(variant)),
             [&session, variant, store] { return race_variant(session, variant, *store); });
