@@ -102,6 +102,7 @@ plot $empty using 1:4:2:3:(0):4 with boxxyerror linecolor '#999999' title 'empty
 constexpr const char* kLiveScript = R"(
 set logscale xy
 set xlabel 'latency (ms)'
+set xtics (0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500)
 set ylabel 'frames'
 set xrange [least_ms : most_ms]
 set yrange [0.7 : *]
