@@ -69,18 +69,18 @@ struct Constants {
   const std::uint8_t* mask;
 };
 
-template <class Reading, Stages kStages>
+template <class Reading, Stages stages>
 maths::Sensel sensel_at(const Constants& is, const Reading* readings, std::size_t at) {
   maths::Sensel sensel = maths::raw_sensel(static_cast<double>(readings[at]));
   if constexpr (std::is_same_v<Reading, float>) sensel = maths::reject_absurd(sensel, kMaxCounts);
-  if constexpr (kStages.calibration) sensel = maths::apply_mask(sensel, is.mask[at]);
-  if constexpr (kStages.saturation) sensel = maths::mark_saturated(sensel, is.full_scale);
-  if constexpr (kStages.calibration) {
+  if constexpr (stages.calibration) sensel = maths::apply_mask(sensel, is.mask[at]);
+  if constexpr (stages.saturation) sensel = maths::mark_saturated(sensel, is.full_scale);
+  if constexpr (stages.calibration) {
     sensel = maths::subtract_tare(sensel, is.tare[at]);
     sensel = maths::apply_gain(sensel, is.gain[at]);
   }
   sensel = maths::classify(sensel, is.threshold);
-  if constexpr (kStages.calibration) sensel = maths::fill_dead_zone(sensel, is.dead_zone[at]);
+  if constexpr (stages.calibration) sensel = maths::fill_dead_zone(sensel, is.dead_zone[at]);
   return sensel;
 }
 
@@ -107,14 +107,14 @@ class Store {
   std::uint8_t* status_;
 };
 
-template <Stages kStages>
+template <Stages stages>
 void solve_uncertainty(const Constants& is, const std::array<std::size_t, 4>& sensels,
                        const maths::Pillar& pillar, const maths::Diagonals& diagonals,
                        const maths::ParitySum& sum, const maths::Direction& direction,
                        const Store& to, std::size_t index) {
-  constexpr std::size_t kFirst = kForcePlanes + (kStages.angles ? kAnglePlanes : 0);
+  constexpr std::size_t kFirst = kForcePlanes + (stages.angles ? kAnglePlanes : 0);
   const auto noise = [&](std::size_t n) {
-    return kStages.calibration ? is.noise * is.gain[sensels[n]] : is.noise;
+    return stages.calibration ? is.noise * is.gain[sensels[n]] : is.noise;
   };
   const maths::Force deviations = maths::force_deviations(
       pillar, diagonals, {noise(0), noise(1), noise(2), noise(3)}, is.scale);
@@ -125,31 +125,31 @@ void solve_uncertainty(const Constants& is, const std::array<std::size_t, 4>& se
                  ends.magnitude_high);
 }
 
-template <class Reading, Stages kStages>
+template <class Reading, Stages stages>
 void solve_pillar(const Constants& is, const Reading* readings,
                   const std::array<std::size_t, 4>& sensels, const Store& to, std::size_t index) {
   const auto sensel = [&](std::size_t n) {
-    return sensel_at<Reading, kStages>(is, readings, sensels[n]);
+    return sensel_at<Reading, stages>(is, readings, sensels[n]);
   };
   const maths::Pillar pillar = {sensel(0), sensel(1), sensel(2), sensel(3)};
   const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
   const maths::ParitySum sum = maths::parity_sum(diagonals);
-  const maths::Force force = kStages.paper ? maths::paper_force(pillar, diagonals, sum, is.scale)
-                                           : maths::direct_force(diagonals, sum, is.scale);
+  const maths::Force force = stages.paper ? maths::paper_force(pillar, diagonals, sum, is.scale)
+                                          : maths::direct_force(diagonals, sum, is.scale);
   to.planes_from(0, index, force.shear_x, force.shear_y, force.normal);
   to.status(index, maths::direct_status(pillar, diagonals, sum, is.doubt));
-  if constexpr (kStages.angles || kStages.uncertainty) {
+  if constexpr (stages.angles || stages.uncertainty) {
     const maths::Direction direction = maths::direction_of(force);
-    if constexpr (kStages.angles) {
+    if constexpr (stages.angles) {
       to.planes_from(kForcePlanes, index, direction.magnitude, direction.theta, direction.phi);
     }
-    if constexpr (kStages.uncertainty) {
-      solve_uncertainty<kStages>(is, sensels, pillar, diagonals, sum, direction, to, index);
+    if constexpr (stages.uncertainty) {
+      solve_uncertainty<stages>(is, sensels, pillar, diagonals, sum, direction, to, index);
     }
   }
 }
 
-template <class Reading, Stages kStages>
+template <class Reading, Stages stages>
 void solve_rows(const SolverPlan& plan, const void* data, std::size_t first, std::size_t last,
                 DoubleLoop::Planes& to) {
   const Constants constants(plan);
@@ -160,17 +160,17 @@ void solve_rows(const SolverPlan& plan, const void* data, std::size_t first, std
   for (std::size_t row = first; row < last; ++row) {
     for (std::size_t col = 0; col < pillar_cols; ++col) {
       const std::size_t left = 2 * row * cols + 2 * col;
-      solve_pillar<Reading, kStages>(constants, readings,
-                                     {left + 1, left, left + cols, left + cols + 1}, store,
-                                     row * pillar_cols + col);
+      solve_pillar<Reading, stages>(constants, readings,
+                                    {left + 1, left, left + cols, left + cols + 1}, store,
+                                    row * pillar_cols + col);
     }
   }
 }
 
-template <class Reading, std::size_t... kPlaces>
-DoubleLoop::SolveRows find(const Stages& wanted, std::index_sequence<kPlaces...> /*places*/) {
+template <class Reading, std::size_t... places>
+DoubleLoop::SolveRows find(const Stages& wanted, std::index_sequence<places...> /*sequence*/) {
   DoubleLoop::SolveRows found = nullptr;
-  ((found = kCompiled[kPlaces] == wanted ? solve_rows<Reading, kCompiled[kPlaces]> : found), ...);
+  ((found = kCompiled[places] == wanted ? solve_rows<Reading, kCompiled[places]> : found), ...);
   return found;
 }
 

@@ -98,6 +98,7 @@ bool Goal::is_met() const {
 
 std::vector<Goal> goals(const SpeedRun& run) {
   std::vector<Goal> all;
+  all.reserve(kRules.size());
   for (const Rule& rule : kRules) {
     all.push_back({rule.what, rule.at_least, rule.limit, rule.measure(run)});
   }

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <string>
 
 #include "pillarfield/error.h"
@@ -64,7 +63,9 @@ std::map<double, double> spread_of(const BenchRun& bench, const std::string& who
 }
 
 double most_of(const std::map<double, double>& spread) {
-  return std::ranges::max(spread | std::views::values);
+  double most = 0;
+  for (const auto& [from_us, share] : spread) most = std::max(most, share);
+  return most;
 }
 
 /// Boxes: their place, their ends, their height.

@@ -66,7 +66,7 @@ std::string load_now() {
 std::string load_before(const BenchRun& bench) {
   std::array<double, 3> loads{};
   const std::string text = bench.context("load_avg");
-  if (std::sscanf(text.c_str(), "[%lf,%lf,%lf", &loads[0], &loads[1], &loads[2]) != 3) return "";
+  if (std::sscanf(text.c_str(), "[%lf,%lf,%lf", loads.data(), &loads[1], &loads[2]) != 3) return "";
   return fmt::format("{:.2f}, {:.2f}, {:.2f}", loads[0], loads[1], loads[2]);
 }
 

@@ -79,6 +79,7 @@ std::vector<Outcome> measure(const SpeedContext& context) {
 /// The front by time over the bare copy and an error.
 std::vector<std::size_t> front_by(const std::vector<Outcome>& outcomes, double ForceError::*error) {
   std::vector<CostAndError> points;
+  points.reserve(outcomes.size());
   for (const Outcome& outcome : outcomes) {
     points.push_back({outcome.over_bare_copy, outcome.error.*error});
   }

@@ -44,7 +44,7 @@ double idle_noise(const SolverPlan& plan) {
       const auto v =
           double_precision::model_readings(frames.truth(0, row, col), plan.skin.counts_per_newton);
       if (v.v2 > 0) continue;
-      const double reading = readings[std::size_t{4} * row * kSide + 2 * col];
+      const double reading = readings[std::size_t{4} * row * kSide + std::size_t{2} * col];
       squares += reading * reading;
       ++count;
     }

@@ -12,8 +12,12 @@ namespace pillarfield::report {
 inline BenchRun made_up_run(const std::map<std::string, std::string>& rows) {
   std::string text;
   for (const auto& [name, members] : rows) {
-    text += (text.empty() ? "" : ",") +
-            (R"({"name":")" + name + R"(","run_type":"iteration",)" + members + "}");
+    if (!text.empty()) text += ",";
+    text += R"({"run_type":"iteration","name":")";
+    text += name;
+    text += "\",";
+    text += members;
+    text += "}";
   }
   return {"made_up.json",
           R"({"context":{"device":"none","num_cpus":2},"benchmarks":[)" + text + "]}"};
