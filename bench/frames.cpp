@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "core/ideal_readings.h"
 #include "core/pillar_sensels.h"
@@ -177,6 +178,9 @@ Frames::Frames(const Skin& skin, SenselType type, const Scenery& scenery) : skin
   for (std::size_t i = 0; i < count; ++i) frames_.emplace_back(type, skin.rows, skin.cols);
   fill(frames_, type, skin, scenery);
 }
+
+Frames::Frames(const Skin& skin, std::vector<FrameBuffer> frames)
+    : skin_(skin), frames_(std::move(frames)) {}
 
 double Frames::contact() const {
   std::size_t pressed = 0;

@@ -35,6 +35,8 @@ class Frames {
  public:
   /// 64 frames, or as many as a gibibyte holds.
   Frames(const Skin& skin, SenselType type, const Scenery& scenery);
+  /// Frames of that skin that somebody else made, one or more.
+  Frames(const Skin& skin, std::vector<FrameBuffer> frames);
 
   [[nodiscard]] std::size_t size() const { return frames_.size(); }
   /// Frames repeat from the size() th on.

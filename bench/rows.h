@@ -12,5 +12,8 @@ void add_size_rows(const Session& session);      ///< size/, contact/, regions/
 void add_plan_rows(const Session& session);      ///< type/, output/, estimator/, lanes/, stage/
 void add_time_rows(const Session& session);      ///< latency/, throughput/
 void add_opponent_rows(const Session& session);  ///< opponent/
+void add_by_hand_rows(const Session& session);   ///< by_hand/
+void add_spread_rows(const Session& session);    ///< spread/
+void add_variant_rows(const Session& session);   ///< variant/
 
 }  // namespace pillarfield::bench

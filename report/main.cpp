@@ -4,10 +4,9 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
-#include "pillarfield/error.h"
+#include "report/page.h"
 #include "report/section.h"
 
 namespace pillarfield::report {
@@ -50,13 +49,6 @@ std::string text_of_all(const Context& context) {
   return text;
 }
 
-void write(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw Error(path.string(), "cannot be written", "check the folder and the disk");
-}
-
 }  // namespace
 }  // namespace pillarfield::report
 
@@ -69,7 +61,7 @@ int main(int count, char** words) {
   try {
     const Context context{words[1]};
     std::filesystem::create_directories(context.docs / "pictures/accuracy");
-    write(context.docs / "accuracy.md", text_of_all(context));
+    write_page(context.docs / "accuracy.md", text_of_all(context));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "pillarfield_report: %s\n", error.what());
     return 1;

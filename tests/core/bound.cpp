@@ -42,11 +42,13 @@ double trace_of_inverse(const std::array<Row, 3>& m) {
   return (minor_of(0, 1) + minor_of(1, 2) + minor_of(0, 2)) / determinant;
 }
 
-int usable_bits(const std::array<double, 4>& v, const PillarSensor& sensor) {
+int usable_bits(const std::array<double, 4>& v, const Sensels& sensels) {
   int bits = 0;
-  for (std::size_t n = 0; n < 4; ++n) bits |= v[n] > sensor.threshold_counts ? 1 << n : 0;
+  for (std::size_t n = 0; n < 4; ++n) bits |= v[n] > sensels[n].threshold_counts ? 1 << n : 0;
   return bits;
 }
+
+Sensels all_alike(const PillarSensor& sensor) { return {sensor, sensor, sensor, sensor}; }
 
 /// Readings of one pillar, again and again, each time with other noise.
 class NoisyReadings {
@@ -105,33 +107,51 @@ double information(double deviations) {
 }
 
 double least_error(Force force, const PillarSensor& sensor) {
-  const double counts = sensor.noise_counts / sensor.counts_per_newton;
-  const std::array<double, 4> v = readings_of(force, sensor);
+  return least_error(force, all_alike(sensor));
+}
+
+double least_error(Force force, const Sensels& sensels) {
+  const double unit = sensels[0].noise_counts;  // So that no weight is far from 1.
+  const std::array<double, 4> v = readings_of(force, sensels[0]);
   std::array<Row, 3> sum{};
   for (std::size_t n = 0; n < 4; ++n) {
     if (v[n] <= 0) continue;  // A lifted pillar tells nothing of how far.
-    const double weight = information((v[n] - sensor.threshold_counts) / sensor.noise_counts);
+    const double noise = sensels[n].noise_counts;
+    const double told = information((v[n] - sensels[n].threshold_counts) / noise);
+    const double weight = told * (unit / noise) * (unit / noise);
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) sum[i][j] += weight * kModel[n][i] * kModel[n][j];
     }
   }
-  return counts * std::sqrt(trace_of_inverse(sum));
+  return unit / sensels[0].counts_per_newton * std::sqrt(trace_of_inverse(sum));
 }
 
 bool is_far_from_borders(Force force, const PillarSensor& sensor, double deviations) {
-  return std::ranges::all_of(readings_of(force, sensor), [&](double v) {
-    return std::abs(v - sensor.threshold_counts) >= deviations * sensor.noise_counts;
-  });
+  return is_far_from_borders(force, all_alike(sensor), deviations);
+}
+
+bool is_far_from_borders(Force force, const Sensels& sensels, double deviations) {
+  const std::array<double, 4> v = readings_of(force, sensels[0]);
+  for (std::size_t n = 0; n < 4; ++n) {
+    const double distance = std::abs(v[n] - sensels[n].threshold_counts);
+    if (!(distance >= deviations * sensels[n].noise_counts)) return false;
+  }
+  return true;
 }
 
 int usable_sensels(Force force, const PillarSensor& sensor) {
-  return std::popcount(static_cast<unsigned>(usable_bits(readings_of(force, sensor), sensor)));
+  return usable_sensels(force, all_alike(sensor));
+}
+
+int usable_sensels(Force force, const Sensels& sensels) {
+  const int bits = usable_bits(readings_of(force, sensels[0]), sensels);
+  return std::popcount(static_cast<unsigned>(bits));
 }
 
 RmsError rms_error(Force force, const PillarSensor& sensor, Estimator estimator, int draws,
                    std::uint64_t number) {
   const std::array<double, 4> v = readings_of(force, sensor);
-  const int expected = usable_bits(v, sensor);
+  const int expected = usable_bits(v, all_alike(sensor));
   NoisyReadings noisy(v, sensor.noise_counts, number);
   double sum = 0;
   double sum_of_rightly_read = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "core/one_pillar.h"
@@ -21,11 +22,17 @@ using Force = double_precision::Force;
 /// The Cramér–Rao bound: the least RMS of |estimate − force| of unbiased estimates, N (B3).
 [[nodiscard]] double least_error(Force force, const PillarSensor& sensor);
 
+/// The sensels 1 to 4 of a pillar where they are not alike, but for their counts per newton.
+using Sensels = std::array<PillarSensor, 4>;
+[[nodiscard]] double least_error(Force force, const Sensels& sensels);
+
 /// Whether every V is `deviations` standard deviations or more above the threshold or below.
 [[nodiscard]] bool is_far_from_borders(Force force, const PillarSensor& sensor, double deviations);
+[[nodiscard]] bool is_far_from_borders(Force force, const Sensels& sensels, double deviations);
 
 /// How many sensels read above the threshold when there is no noise.
 [[nodiscard]] int usable_sensels(Force force, const PillarSensor& sensor);
+[[nodiscard]] int usable_sensels(Force force, const Sensels& sensels);
 
 /// RMS of |estimate − force| over random readings, N.
 struct RmsError {

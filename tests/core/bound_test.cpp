@@ -77,6 +77,20 @@ TEST(LeastError, IsThatOfFourAndOfThreeReadingsWhateverTheDirection) {
   EXPECT_GT(in_two, 30);
 }
 
+TEST(LeastError, OfUnequalSensorsIsThatOfTheirVariances) {
+  // V = (50, 30, -10, 10), of which three are usable: N = (V2 + V4) / 2, and the shear along the
+  // diagonals is sqrt(2) (V1 - N) and (V2 - V4) / sqrt(2).
+  Sensels sensels;
+  sensels[0] = sensor_of(0.4);
+  sensels[1] = sensor_of(0.5);
+  sensels[2] = sensor_of(0.6);
+  sensels[3] = sensor_of(0.8);
+  const Force force = {10 * std::numbers::sqrt2, 20 * std::numbers::sqrt2, 20};
+  const double variance = 0.4 * 0.4 + 3 * (0.5 * 0.5 + 0.8 * 0.8) / 4;
+  EXPECT_EQ(usable_sensels(force, sensels), 3);
+  EXPECT_NEAR(least_error(force, sensels), std::sqrt(variance), 1e-6);
+}
+
 TEST(LeastError, LosesNoMoreThanWhatASilentSenselAdds) {
   // B5: a fourth reading of weight w takes 5 w / (1 + 3 w) from the squared bound of 5/2.
   const PillarSensor sensor = sensor_of(1);
