@@ -92,10 +92,11 @@ constexpr const char* kStoreValues = R"(
 kernel void store_values(global const float* values, global Result* results) {
   const size_t first = get_global_id(0) * PF_LANES;
 #if PF_LANES == 1
-  store_plane(values[first], results + first, 1);
+  const Lanes lanes = {0, 1};
+  store_plane(values[first], results + first, lanes);
 #else
-  store_plane(PF_VLOAD(0, values + first), results + first,
-              get_global_id(0) % 2 == 0 ? PF_LANES : PF_LANES - 1);
+  const Lanes lanes = {0, get_global_id(0) % 2 == 0 ? PF_LANES : PF_LANES - 1};
+  store_plane(PF_VLOAD(0, values + first), results + first, lanes);
 #endif
 }
 )";
