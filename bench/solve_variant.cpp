@@ -12,7 +12,7 @@ constexpr std::string_view kStages[] = {"none", "angles", "uncertainty", "calibr
 constexpr SenselType kTypes[] = {SenselType::u8, SenselType::u16, SenselType::f32};
 constexpr Estimator kEstimators[] = {Estimator::direct, Estimator::paper};
 constexpr Arithmetic kArithmetics[] = {Arithmetic::device_float, Arithmetic::host_double};
-constexpr Results kResults[] = {Results::float32};
+constexpr Results kResults[] = {Results::float32, Results::half};
 
 const char* name_of(Arithmetic arithmetic) {
   return arithmetic == Arithmetic::device_float ? "float" : "double";
@@ -32,6 +32,8 @@ const char* short_name_of(SenselType type) {
 
 const char* name_of(Results results) {
   switch (results) {
+    case Results::half:
+      return "half";
     case Results::float32:
       break;
   }
@@ -40,6 +42,10 @@ const char* name_of(Results results) {
 
 bool exists(const SolveVariant& variant) {
   const bool wants_uncertainty = variant.stage == "uncertainty" || variant.stage == "all";
+  if (variant.results == Results::half &&
+      (variant.estimator == Estimator::paper || variant.arithmetic == Arithmetic::host_double)) {
+    return false;
+  }
   return !(variant.estimator == Estimator::paper && wants_uncertainty);
 }
 
@@ -77,6 +83,7 @@ double count_scale(SenselType type) { return type == SenselType::u16 ? 16 : 1; }
 SolverPlan plan_of(const SolveVariant& variant, std::uint32_t pillars_a_side) {
   SolverPlan plan = bare_plan(pillars_a_side, variant.type);
   plan.estimator = variant.estimator;
+  plan.half_output = variant.results == Results::half;
   if (variant.stage == "calibration") {
     add_calibration(plan);
   } else {

@@ -16,7 +16,7 @@ enum class Arithmetic : std::uint8_t {
 };
 
 /// How results other than the status are stored.
-enum class Results : std::uint8_t { float32 };
+enum class Results : std::uint8_t { float32, half };
 
 /// One way to solve the frames of a sensor with noise.
 struct SolveVariant {

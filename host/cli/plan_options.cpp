@@ -13,6 +13,13 @@ namespace {
 /// Time constant with which --everything follows the baseline, unless something else is said.
 constexpr double kBaselineTimeS = 10;
 
+/// Frames in which --everything lets all pillar rows have their turn, where the baseline is slow
+/// enough: a hundred turns in its time constant at least.
+int turns_of(double baseline_time_s, double frame_interval_s) {
+  constexpr double kMostFrames = 16;
+  return static_cast<int>(std::clamp(baseline_time_s / (100 * frame_interval_s), 1.0, kMostFrames));
+}
+
 bool asks_for(const PlanOptions& options, const char* output) {
   return std::ranges::find(options.outputs, output) != options.outputs.end();
 }
@@ -86,6 +93,11 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
                   "Let the tare of untouched sensels follow a drift, time constant in seconds "
                   "[stays]")
       ->check(CLI::Range(1e-6, 1e9).description("SECONDS"));
+  command
+      .add_option("--baseline-interval", options.baseline_interval,
+                  "Follow it in one pillar row of so many after each frame, at that share of the "
+                  "cost [1; --everything: up to 16]")
+      ->check(CLI::Range(1, 1024).description("FRAMES"));
   command.add_flag("--everything", options.everything,
                    "All outputs, the parity test, and the baseline followed; needs the noise");
 }
@@ -103,7 +115,11 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
     plan.uncertainty = asks_for(options, "uncertainty");
   }
   if (options.everything) ask_for_everything(plan, baseline_time_s);
-  if (baseline_time_s) plan.baseline_rate = baseline_rate(*baseline_time_s, frame_interval_s());
+  if (!baseline_time_s) return plan;
+  const double interval_s = frame_interval_s();
+  plan.baseline_rate = baseline_rate(*baseline_time_s, interval_s);
+  if (options.everything) plan.baseline_interval = turns_of(*baseline_time_s, interval_s);
+  if (options.baseline_interval) plan.baseline_interval = *options.baseline_interval;
   return plan;
 }
 

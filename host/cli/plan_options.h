@@ -22,6 +22,7 @@ struct PlanOptions {
   std::optional<double> parity_tolerance_counts;
   std::optional<double> noise_counts;
   std::optional<double> baseline_time_s;
+  std::optional<int> baseline_interval;
   bool everything = false;
 };
 

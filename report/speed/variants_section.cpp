@@ -146,7 +146,8 @@ std::string front_text(const std::vector<Outcome>& outcomes) {
 }
 
 /// A strip of the chart for each type of sensel; colours for estimator and arithmetic, shapes for
-/// stages. Columns of the data: time, error, colour, shape, whether on the front.
+/// stages, hollow ones where results are in half precision. Columns of the data: time, error,
+/// colour, shape, whether on the front.
 constexpr const char* kScript = R"(
 set logscale x
 set xrange [least_time : most_time]
@@ -196,6 +197,7 @@ plot NaN with points pointtype 7 linetype 6 title 'direct, float', \
      NaN with points pointtype 11 linecolor '#444444' title 'uncertainty', \
      NaN with points pointtype 5 linecolor '#444444' title 'calibration', \
      NaN with points pointtype 13 linecolor '#444444' title 'all', \
+     NaN with points pointtype 6 linecolor '#444444' title 'half results', \
      NaN with points pointtype 6 linewidth 1.5 linecolor '#000000' pointsize 2 \
         title 'Pareto front'
 unset multiplot
@@ -211,8 +213,9 @@ int colour_of(const SolveVariant& variant) {
 int shape_of(const SolveVariant& variant) {
   constexpr std::array<std::pair<std::string_view, int>, 5> kShapes = {
       {{"none", 7}, {"angles", 9}, {"uncertainty", 11}, {"calibration", 5}, {"all", 13}}};
-  return std::ranges::find(kShapes, variant.stage, &std::pair<std::string_view, int>::first)
-      ->second;
+  const int filled =
+      std::ranges::find(kShapes, variant.stage, &std::pair<std::string_view, int>::first)->second;
+  return variant.results == bench::Results::half ? filled - 1 : filled;
 }
 
 void draw(const std::filesystem::path& stem, const std::vector<Outcome>& outcomes) {

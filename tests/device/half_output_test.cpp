@@ -111,7 +111,7 @@ TEST_P(HalfOutputRounding, IsThatOfTheHost) {
   const cl::CommandQueue queue(device.context, device.device);
   const cl::Buffer from(device.context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
                         values.size() * sizeof(float), values.data());
-  const SolverPlan plan = in_halves(bare_plan(8, 8, SenselType::u8));
+  const SolverPlan plan = in_halves(bare_plan(8, 64, SenselType::u8));
   for (const int lanes : {1, 2, 4, 8, 16}) {
     cl::Kernel kernel(device.program(GetParam() + kernel_source(plan, lanes) + kStoreValues),
                       "store_values");
