@@ -159,7 +159,7 @@ class Work(CommandTest):
     def test_kernel_holds_only_the_stages_of_its_scene(self):
         text = run("info", "--kernel", self.scene).stdout
         self.assertIn("kernel void solve_frame", text)
-        self.assertIn("#define PF_FULL_SCALE 0x1.fep+7f", text)
+        self.assertIn("#define PF_FULL_SCALE 1020\n", text)
         self.assertNotIn("#define PF_TARE", text)
         self.scene.write_text(SMALL_SCENE.replace("noise_counts", "tare_counts = 3\nnoise_counts"))
         self.assertIn("#define PF_TARE", run("info", "--kernel", self.scene).stdout)
