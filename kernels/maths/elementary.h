@@ -1,7 +1,7 @@
 /* Lengths and angles. In single precision from + - * / and sqrt alone, so that every device that
  * rounds them correctly gives the same bits, and a vector of lanes costs no call; in double they
  * are those of the C++ library. Largest errors, measured against 113 bits, and what each costs in
- * instructions: docs/derivations/elementary.md. */
+ * docs/derivations/elementary.md. */
 
 static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
 
@@ -39,7 +39,7 @@ static inline Real length_3(Real x, Real y, Real z) {
   return plain_length_3(x * scaling.down, y * scaling.down, z * scaling.down) * scaling.up;
 }
 
-/* The angle of the point (x, y) from the x axis, (-pi, pi]; zero at the origin; 2 ULP. */
+/* The angle of the point (x, y) from the x axis, (-pi, pi]; zero at the origin; 3 ULP. */
 static inline Real angle_of(Real y, Real x) {
   const Real zero = PF_REAL(0.0);
   const Real pi = PF_REAL(3.14159265358979323846);
