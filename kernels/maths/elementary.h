@@ -1,6 +1,6 @@
 /* Lengths and angles. In single precision from + - * / and sqrt alone, so that every device that
  * rounds them correctly gives the same bits, and a vector of lanes costs no call; in double they
- * are those of the C++ library. Largest errors, measured against 113 bits, and what each costs in
+ * are those of the C++ library. Largest errors, measured against 113 bits:
  * docs/derivations/elementary.md. */
 
 static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
