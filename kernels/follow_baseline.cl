@@ -62,7 +62,7 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw, ulong row_stri
                             global const uchar* restrict status, global float* restrict tare,
                             global PF_SENSEL* restrict wake, float rate, uint first_row,
                             uint interval) {
-  const Band band = band_of_rows((pillar_rows - first_row + interval - 1) / interval);
+  const Band band = band_of_rows((pillar_rows + interval - 1 - first_row) / interval);
   const uint step = (uint)get_global_size(0) * PF_LANES;
   for (uint at = band.first; at < band.end; ++at) {
     const uint row = first_row + at * interval;

@@ -222,14 +222,14 @@ PF_INLINE Results results_of(Real value) {
 #ifndef PF_HALF
   return value;
 #elif PF_LANES == 1
-  return (ushort)half_bits(value);
+  return (ushort)bits_of_half(value);
 #elif defined(__F16C__)
-  /* An instruction of the processor that rounds as half_bits does, to which no function of OpenCL C
-   * leads that returns a value. */
+  /* An instruction of the processor that rounds as bits_of_half does, to which no function of
+   * OpenCL C leads that returns a value. */
   typedef __fp16 Halves __attribute__((ext_vector_type(PF_LANES)));
   return __builtin_astype(__builtin_convertvector(value, Halves), Results);
 #else
-  return PF_JOIN(convert_ushort, PF_LANES)(half_bits(value));
+  return PF_JOIN(convert_ushort, PF_LANES)(bits_of_half(value));
 #endif
 }
 

@@ -13,7 +13,7 @@
  *   PF_COUNTS(x)  the whole constant x in every lane
  *   PF_BITS(x)    the integer x in every lane
  *   PF_WORD(x)    as well
- *   half_of(c)    c / 2
+ *   halved(c)    c / 2
  *   real_of(c)    c as Real
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
@@ -71,11 +71,11 @@ static inline Real real_of_word(Word word) { return PF_JOIN(as_float, PF_LANES)(
 
 #ifdef PF_WHOLE
 typedef PF_JOIN(short, PF_LANES) Counts;
-static inline Counts half_of(Counts counts) { return counts >> 1; }
+static inline Counts halved(Counts counts) { return counts >> 1; }
 static inline Real real_of(Counts counts) { return PF_JOIN(convert_float, PF_LANES)(counts); }
 #else
 typedef Real Counts;
-static inline Counts half_of(Counts counts) { return 0.5f * counts; }
+static inline Counts halved(Counts counts) { return 0.5f * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 #endif
 #define PF_REAL(x) ((Real)(x##f))
@@ -105,7 +105,7 @@ using Mask = bool;
 using Bits = int;
 #define PF_COUNTS(x) (static_cast<Counts>(x))
 #define PF_BITS(x) (x)
-static inline Counts half_of(Counts counts) { return PF_REAL(0.5) * counts; }
+static inline Counts halved(Counts counts) { return PF_REAL(0.5) * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }

@@ -18,7 +18,7 @@ float to_float(Half half) {
 }
 
 Half to_half(float value) {
-  return {static_cast<std::uint16_t>(single_precision::half_bits(value))};
+  return {static_cast<std::uint16_t>(single_precision::bits_of_half(value))};
 }
 
 }  // namespace pillarfield

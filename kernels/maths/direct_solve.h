@@ -107,14 +107,14 @@ static inline ParitySum parity_sum(Diagonals diagonals) {
   const Diagonal b = diagonals.falling;
   const Counts a_sum = a.p + a.q;
   const Counts b_sum = b.p + b.q;
-  const Counts mean = half_of(a_sum + b_sum);
+  const Counts mean = halved(a_sum + b_sum);
   const Counts measured = a.full ? (b.full ? mean : a_sum) : b_sum;
   const Mask determined = a.full || b.full;
   const Counts bound = parity_bound(a, b);
   ParitySum sum;
   sum.low = determined ? measured : PF_COUNTS(0);
   sum.high = determined ? measured : bound;
-  sum.middle = determined ? measured : half_of(bound);
+  sum.middle = determined ? measured : halved(bound);
   sum.ambiguous = !determined && (bound > PF_COUNTS(0));
   return sum;
 }

@@ -5,7 +5,7 @@
 /* The bits of the half that is nearest to `value`, of two the even one: the lower 16 of each word.
  * Halves are normal from 2^-14 on, and multiples of 2^-24 below; from 65520 on the nearest is
  * infinity. NaN stays one, quiet, with the upper bits of its payload. All as vcvtps2ph of x86. */
-static inline Word half_bits(Real value) {
+static inline Word bits_of_half(Real value) {
   const Word infinity = PF_WORD(0x7f800000);
   const Word bits = word_of(value);
   const Word sign = bits & PF_WORD(0x80000000);

@@ -102,7 +102,7 @@ kernel void store_values(global const float* values, global Result* results) {
 )";
 
 /// What the first lines of a program may say: whether the processor's own instruction rounds, where
-/// it has one, or half_bits.
+/// it has one, or bits_of_half.
 class HalfOutputRounding : public testing::TestWithParam<const char*> {};
 
 TEST_P(HalfOutputRounding, IsThatOfTheHost) {

@@ -76,7 +76,8 @@ TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
   using Real = RealOf<TypeParam>;
   const auto open = [](const PillarOf<TypeParam>& pillar, Real doubt) {
     const auto diagonals = pillar_diagonals(pillar);
-    return (direct_status(pillar, diagonals, parity_sum(diagonals), doubt) & status::kAmbiguous) != 0;
+    return (direct_status(pillar, diagonals, parity_sum(diagonals), doubt) & status::kAmbiguous) !=
+           0;
   };
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto under = [&](Real opposite, Real threshold) {
