@@ -1,0 +1,46 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// An arrow for each cell: the force that acts on the skin there, as a vector in space. Its quad
+// faces the eye; lengths in it are pixels.
+#include "bindings.glsl"
+#include "surface.glsl"
+
+layout(std430, binding = kCellsBinding) readonly buffer CellsBlock { Cell cells[]; };
+layout(location = 0) noperspective out vec2 local;        // along and across, from the tail
+layout(location = 1) noperspective out float arrow_length;  // pixels
+
+const float kAir = 2.0;  // pixels around the arrow for its outline
+
+vec2 pixels_of(vec4 clip) { return (clip.xy / clip.w * 0.5 + 0.5) * scene.viewport.zw; }
+
+void main() {
+  const Cell cell = cells[gl_InstanceIndex];
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // Outside: no arrow.
+  if (cell.force.w == 0.0) return;
+  if (length(cell.force.xyz) < scene.range.z * cell.force.w) return;
+
+  const vec3 place = surface_position(cell.place.xy, scene.readings.w, scene.sheet.w);
+  const mat3 basis = surface_basis(cell.place.xy, scene.readings.w, scene.sheet.w);
+  const vec3 way = basis * vec3(cell.force.xy, -cell.force.z) * scene.arrow.x;
+  const vec4 tail_clip = scene.clip_from_world * vec4(place - scene.arrow.w * way, 1.0);
+  const vec4 tip_clip = scene.clip_from_world * vec4(place + (1.0 - scene.arrow.w) * way, 1.0);
+  vec2 tail = pixels_of(tail_clip);
+  vec2 tip = pixels_of(tip_clip);
+
+  // Shorter ones are lengthened about their place, so that every direction can be read.
+  const float drawn = distance(tail, tip);
+  if (drawn < 0.25) return;  // It points at the eye.
+  const vec2 along = (tip - tail) / drawn;
+  arrow_length = max(drawn, scene.arrow.y);
+  const vec2 anchor = mix(tail, tip, scene.arrow.w);
+  tail = anchor - along * arrow_length * scene.arrow.w;
+  tip = tail + along * arrow_length;
+
+  const float reach = 2.2 * scene.arrow.z + kAir;
+  const vec2 corners[6] = vec2[6](vec2(0, -1), vec2(1, -1), vec2(0, 1), vec2(0, 1), vec2(1, -1), vec2(1, 1));
+  const vec2 corner = corners[gl_VertexIndex];
+  local = vec2(mix(-kAir, arrow_length + kAir, corner.x), corner.y * reach);
+  const vec2 pixel = tail + along * local.x + vec2(-along.y, along.x) * local.y;
+  const vec4 end = mix(tail_clip, tip_clip, corner.x);
+  gl_Position = vec4((pixel / scene.viewport.zw * 2.0 - 1.0) * end.w, end.z, end.w);
+}

@@ -1,0 +1,33 @@
+// The descriptor set, and how planes of the field are read.
+#ifndef PILLARFIELD_SHADERS_BINDINGS
+#define PILLARFIELD_SHADERS_BINDINGS
+
+#include "shared.h"
+
+layout(binding = kSceneBinding) uniform SceneBlock { Scene scene; };
+layout(binding = kColoursBinding) uniform ColoursBlock { Colours colours; };
+layout(std430, binding = kFieldBinding) readonly buffer FieldBlock { uint field[]; };
+layout(std430, binding = kReadingsBinding) readonly buffer ReadingsBlock { uint readings[]; };
+
+vec4 colour_of_word(uint word) { return unpackUnorm4x8(word); }
+
+vec4 special_colour(uint special) {
+  return colour_of_word(colours.specials[special >> 2u][special & 3u]);
+}
+
+bool has_plane(uint plane) { return plane != kNoPlane; }
+
+float plane_value(uint plane, uint pillar) { return uintBitsToFloat(field[plane + pillar]); }
+
+uint status_of(uint pillar) {
+  return field[scene.force.w + (pillar >> 2u)] >> (8u * (pillar & 3u)) & 255u;
+}
+
+// The status byte: kernels/maths/status.h.
+bool is_usable(uint status) { return (status & 15u) != 0u; }
+bool is_ambiguous(uint status) { return (status & 16u) != 0u; }
+bool is_saturated(uint status) { return (status & 32u) != 0u; }
+bool is_inconsistent(uint status) { return (status & 64u) != 0u; }
+bool is_from_neighbours(uint status) { return (status & 128u) != 0u; }
+
+#endif

@@ -1,0 +1,77 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The heat map: from a pixel to its pillar, the pillar's value, and the value's colour.
+#include "value.glsl"
+
+layout(location = 0) in vec2 sheet_mm;
+layout(location = 0) out vec4 colour;
+
+const float kMostSamples = 6.0;
+
+// The value shown by a pixel that covers `pillars` (columns, rows) around `centre`: the mean over
+// those in contact, so that a touch smaller than a pixel keeps its colour. A pixel that stays
+// within a pillar shows that one alone.
+float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
+  const vec2 samples = min(ceil(pillars), vec2(kMostSamples));
+  float sum = 0.0;
+  float count = 0.0;
+  for (float j = 0.5; j < samples.y; j += 1.0) {
+    for (float i = 0.5; i < samples.x; i += 1.0) {
+      const uint pillar = pillar_at(centre + (vec2(i, j) / samples - 0.5) * pillars);
+      const uint status = status_of(pillar);
+      if (!is_usable(status) && !is_saturated(status) && !is_inconsistent(status)) continue;
+      flags |= status;
+      sum += value_of(pillar, status);
+      count += 1.0;
+    }
+  }
+  return sum / count;  // 0/0, not a number, where nothing is in contact.
+}
+
+vec4 mapped(float value) {
+  const float position = (value - scene.range.x) * scene.range.y;
+  int entry = int(floor(position));
+  entry = scene.shown.y == kCyclic ? entry & 255 : clamp(entry, 0, 255);
+  return colour_of_word(colours.entries[entry >> 2][entry & 3]);
+}
+
+bool on_hatch() {
+  const uint period = scene.shown.w;
+  return (uint(gl_FragCoord.x) + uint(gl_FragCoord.y)) % period < (period + 3u) / 4u;
+}
+
+void main() {
+  const vec2 place = pillar_place(sheet_mm);
+  const vec2 footprint = max(abs(dFdx(place)), abs(dFdy(place)));
+  const uint here = pillar_at(place);
+  const uint status = status_of(here);
+  if (scene.shown.y == kClasses) {
+    colour = special_colour(class_of(status));
+    return;
+  }
+
+  uint flags = status;
+  float value = 0.0;
+  bool idle = false;
+  if (scene.shown.y == kCyclic || max(footprint.x, footprint.y) < 1.5) {
+    value = value_of(here, status);
+    idle = !is_usable(status);
+  } else {
+    flags = 0u;
+    value = mean_value(place, footprint, flags);
+    idle = !is_usable(flags);
+  }
+
+  if (is_saturated(flags)) {
+    colour = special_colour(kSaturated);
+  } else if (is_inconsistent(flags)) {
+    colour = special_colour(kInconsistent);
+  } else if (idle || isnan(value)) {
+    colour = special_colour(kIdle);
+  } else {
+    colour = mapped(value);
+    if (is_ambiguous(flags) && scene.shown.z != 0u && on_hatch()) {
+      colour = mix(colour, special_colour(kAmbiguous), 0.6);
+    }
+  }
+}

@@ -1,0 +1,17 @@
+#version 450
+#extension GL_GOOGLE_include_directive : require
+// The skin as a mesh over its sheet, without vertex buffers: six vertices a tile.
+#include "bindings.glsl"
+#include "surface.glsl"
+
+layout(location = 0) out vec2 sheet_mm;
+
+void main() {
+  const uvec2 corners[6] = uvec2[6](uvec2(0, 0), uvec2(1, 0), uvec2(0, 1), uvec2(0, 1), uvec2(1, 0), uvec2(1, 1));
+  const uint tile = uint(gl_VertexIndex) / 6u;
+  const uvec2 mesh = scene.grid.zw;
+  const uvec2 corner = uvec2(tile % mesh.x, tile / mesh.x) + corners[uint(gl_VertexIndex) % 6u];
+  sheet_mm = (vec2(corner) / vec2(mesh) - 0.5) * scene.sheet.xy;
+  const vec3 place = surface_position(sheet_mm, scene.readings.w, scene.sheet.w);
+  gl_Position = scene.clip_from_world * vec4(place, 1.0);
+}

@@ -1,0 +1,118 @@
+// What C++ and GLSL both know: the structs that one writes and the other reads. Members are of 16
+// bytes, so that the rules of GLSL's std140 and std430 and those of C++ give the same layout.
+#ifndef PILLARFIELD_SHADERS_SHARED_H
+#define PILLARFIELD_SHADERS_SHARED_H
+
+#ifdef __cplusplus
+#include <array>
+#include <cstdint>
+
+namespace pillarfield::viewer::shader {
+
+using uint = std::uint32_t;
+struct vec4 {
+  float x = 0, y = 0, z = 0, w = 0;
+};
+struct uvec4 {
+  uint x = 0, y = 0, z = 0, w = 0;
+};
+using mat4 = std::array<float, 16>;  ///< column by column
+#define PF_CONSTANT inline constexpr
+#define PF_ARRAY(type, name, size) std::array<type, size> name
+#else
+#define PF_CONSTANT const
+#define PF_ARRAY(type, name, size) type name[size]
+#endif
+
+// Bindings of the one descriptor set that all pipelines share.
+PF_CONSTANT uint kSceneBinding = 0u;
+PF_CONSTANT uint kColoursBinding = 1u;
+PF_CONSTANT uint kFieldBinding = 2u;
+PF_CONSTANT uint kReadingsBinding = 3u;
+PF_CONSTANT uint kCellsBinding = 4u;
+
+// What the heat map shows; the order of Quantity in viewer/picture/quantity.h.
+PF_CONSTANT uint kNormal = 0u;
+PF_CONSTANT uint kShear = 1u;
+PF_CONSTANT uint kShearX = 2u;
+PF_CONSTANT uint kShearY = 3u;
+PF_CONSTANT uint kMagnitude = 4u;
+PF_CONSTANT uint kTheta = 5u;
+PF_CONSTANT uint kPhi = 6u;
+PF_CONSTANT uint kRegion = 7u;
+PF_CONSTANT uint kStatus = 8u;
+PF_CONSTANT uint kUncertainty = 9u;
+PF_CONSTANT uint kParity = 10u;
+
+// How a value becomes a colour; the order of Scale in viewer/picture/quantity.h.
+PF_CONSTANT uint kSequential = 0u;
+PF_CONSTANT uint kDiverging = 1u;
+PF_CONSTANT uint kCyclic = 2u;
+PF_CONSTANT uint kClasses = 3u;
+
+// Colours outside the maps; the order of Special in viewer/picture/colour_map.h.
+PF_CONSTANT uint kIdle = 0u;
+PF_CONSTANT uint kSaturated = 1u;
+PF_CONSTANT uint kInconsistent = 2u;
+PF_CONSTANT uint kAmbiguous = 3u;
+PF_CONSTANT uint kFromNeighbours = 4u;
+PF_CONSTANT uint kRegion1 = 5u;
+PF_CONSTANT uint kRegion2 = 6u;
+PF_CONSTANT uint kRegion3 = 7u;
+PF_CONSTANT uint kRegion4 = 8u;
+PF_CONSTANT uint kOpposite = 9u;
+PF_CONSTANT uint kSound = 10u;
+
+// A plane that a field does not have.
+PF_CONSTANT uint kNoPlane = 0xffffffffu;
+
+// Types of readings.
+PF_CONSTANT uint kReadings8 = 0u;
+PF_CONSTANT uint kReadings16 = 1u;
+PF_CONSTANT uint kReadingsFloat = 2u;
+
+// One picture: where from it is seen, of what, and how. Planes are counted in 4-byte words from the
+// beginning of the field's memory.
+struct Scene {
+  mat4 clip_from_world;
+  vec4 sheet;       // width, height, pillar pitch, radius of the surface: mm
+  uvec4 grid;       // pillar rows, pillar columns; columns and rows of the mesh
+  uvec4 force;      // planes: shear_x, shear_y, normal, status
+  uvec4 angles;     // planes: magnitude, theta, phi, none
+  uvec4 deviation;  // planes: standard deviations of shear_x, shear_y, normal; none
+  uvec4 span;       // planes: magnitude_low, magnitude_high, phi_low, phi_high
+  uvec4 incline;    // planes: theta_low, theta_high; none, none
+  uvec4 readings;   // type, readings from one row to the next, 1 where there are any, surface kind
+  uvec4 shown;      // quantity, scale, 1 where ambiguous pillars are hatched, hatch period: pixels
+  vec4 range;       // low end, table entries per unit; smallest force worth an arrow: N per pillar
+  vec4 viewport;    // left, top, width, height: pixels
+  uvec4 cells;      // first row and column of pillars, rows and columns of cells
+  uvec4 block;      // pillars along a cell; none
+  vec4 arrow;       // mm per newton, shortest and half a width: pixels; share of its length that
+                    // lies before its place
+  uvec4 ink;        // colours of an arrow's fill, its outline, a fan; none
+};
+
+// A table of 256 colours and those of Special; each is red + green·2^8 + blue·2^16 + alpha·2^24.
+struct Colours {
+  PF_ARRAY(uvec4, entries, 64);
+  PF_ARRAY(uvec4, specials, 4);
+};
+
+// What an arrow stands for: the forces under its cell, added.
+struct Cell {
+  vec4 force;  // shear_x, shear_y, normal: N; pillars in contact
+  vec4 place;  // x, y of its middle on the sheet: mm; none
+};
+
+#ifdef __cplusplus
+#undef PF_CONSTANT
+#undef PF_ARRAY
+static_assert(sizeof(Scene) == 64 + 15 * 16);
+static_assert(sizeof(Colours) == 68 * 16);
+static_assert(sizeof(Cell) == 32);
+
+}  // namespace pillarfield::viewer::shader
+#endif
+
+#endif

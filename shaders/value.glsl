@@ -1,0 +1,79 @@
+// What the heat map shows of a pillar. The same operations as value_of() in
+// viewer/picture/quantity.cpp.
+#ifndef PILLARFIELD_SHADERS_VALUE
+#define PILLARFIELD_SHADERS_VALUE
+
+#include "bindings.glsl"
+
+// Where a point of the sheet lies in the grid: columns from the left, rows from the top.
+vec2 pillar_place(vec2 sheet) {
+  return vec2(sheet.x, -sheet.y) / scene.sheet.z + 0.5 * vec2(scene.grid.yx);
+}
+
+uint pillar_at(vec2 place) {
+  const ivec2 index = clamp(ivec2(floor(place)), ivec2(0), ivec2(scene.grid.yx) - 1);
+  return uint(index.y) * scene.grid.y + uint(index.x);
+}
+
+float reading(uint row, uint col) {
+  const uint index = row * scene.readings.y + col;
+  if (scene.readings.x == kReadings8) {
+    return float(readings[index >> 2u] >> (8u * (index & 3u)) & 255u);
+  }
+  if (scene.readings.x == kReadings16) {
+    return float(readings[index >> 1u] >> (16u * (index & 1u)) & 65535u);
+  }
+  return uintBitsToFloat(readings[index]);
+}
+
+// V1 + V3 - V2 - V4.
+float parity_of(uint pillar) {
+  const uint row = 2u * (pillar / scene.grid.y);
+  const uint col = 2u * (pillar % scene.grid.y);
+  return reading(row, col + 1u) + reading(row + 1u, col) - reading(row, col) -
+         reading(row + 1u, col + 1u);
+}
+
+float uncertainty_of(uint pillar, uint status) {
+  const float x = plane_value(scene.deviation.x, pillar);
+  const float y = plane_value(scene.deviation.y, pillar);
+  const float z = plane_value(scene.deviation.z, pillar);
+  const float deviation = sqrt(x * x + y * y + z * z);
+  if (!is_ambiguous(status)) return deviation;
+  const float half_span =
+      0.5 * (plane_value(scene.span.y, pillar) - plane_value(scene.span.x, pillar));
+  return max(deviation, half_span);
+}
+
+float value_of(uint pillar, uint status) {
+  const float x = plane_value(scene.force.x, pillar);
+  const float y = plane_value(scene.force.y, pillar);
+  switch (scene.shown.x) {
+    case kNormal: return plane_value(scene.force.z, pillar);
+    case kShear: return sqrt(x * x + y * y);
+    case kShearX: return x;
+    case kShearY: return y;
+    case kMagnitude: return plane_value(scene.angles.x, pillar);
+    case kTheta: return plane_value(scene.angles.y, pillar);
+    case kPhi: return plane_value(scene.angles.z, pillar);
+    case kUncertainty: return uncertainty_of(pillar, status);
+    case kParity: return parity_of(pillar);
+  }
+  return 0.0;
+}
+
+// The colour of a pillar where classes are shown: its region, or what is wrong with it.
+uint class_of(uint status) {
+  const uint usable = status & 15u;
+  if (scene.shown.x == kRegion) {
+    if (usable == 5u || usable == 10u) return kOpposite;
+    const uint count = uint(bitCount(usable));
+    return count == 0u ? kIdle : kRegion1 + 4u - count;
+  }
+  if (is_saturated(status)) return kSaturated;
+  if (is_inconsistent(status)) return kInconsistent;
+  if (is_ambiguous(status)) return is_from_neighbours(status) ? kFromNeighbours : kAmbiguous;
+  return usable == 0u ? kIdle : kSound;
+}
+
+#endif

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "viewer/app/session.h"
+
+namespace pillarfield::viewer {
+
+// The panels of the window, each drawn with Dear ImGui into the current window of ImGui, as wide as
+// that is. Sizes follow Look::scale and the font.
+
+/// The exact values under the cursor: one compact block; says so where there is no pillar.
+void hover_panel(const Session& session);
+
+/// The inspected pillar, the paper's testbed interface (its Figure 7): four readings as bars,
+/// theta, phi, magnitude with uncertainty, the region diagram (Figure 3) with the live point, its
+/// uncertainty and, in region 3, the contour of Figure 4. Pins can be chosen and removed here.
+void pillar_panel(Session& session);
+
+/// The marked region: total force, centre of pressure, area, peak, mean, shares of the regions.
+void region_panel(Session& session);
+
+/// Force over time of pinned pillars and the marked region, with the play head.
+void time_panel(Session& session);
+
+}  // namespace pillarfield::viewer

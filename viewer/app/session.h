@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "viewer/field/player.h"
+#include "viewer/field/selection.h"
+#include "viewer/picture/look.h"
+
+namespace pillarfield::viewer {
+
+/// A pillar that was clicked, and what it did since.
+struct Pin {
+  PillarIndex pillar;
+  History history;
+};
+
+/// A rectangle that was dragged, and what its sum did since.
+struct MarkedRegion {
+  PillarRect rect;
+  History history;
+};
+
+/// What was measured of drawing, lately (the last second or so).
+struct DrawStatistics {
+  double frames_hz = 0;
+  double draw_ms_median = 0;     ///< from the begin of recording to the picture being there
+  double latency_ms_median = 0;  ///< from a field being produced to its picture being presented
+  bool in_place = false;         ///< the solver's memory is read without a copy
+};
+
+/// Everything that the window's panels show and change. One thread.
+struct Session {
+  Player* player = nullptr;
+  Look look;
+  std::optional<ShownField> field;  ///< the one on display
+  std::optional<PillarIndex> hovered;
+  std::vector<Pin> pins;  ///< kMostPins at most, the last one is inspected
+  std::optional<MarkedRegion> region;
+  DrawStatistics draw;
+  bool show_help = false;
+  bool show_panels = true;
+  std::string notice;  ///< one line about what was done last: "wrote field.png"
+
+  static constexpr std::size_t kMostPins = 6;
+};
+
+}  // namespace pillarfield::viewer

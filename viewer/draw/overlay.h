@@ -1,0 +1,15 @@
+#pragma once
+
+#include "viewer/draw/interface.h"
+#include "viewer/field/field_producer.h"
+#include "viewer/gpu/vulkan.h"
+#include "viewer/picture/look.h"
+
+namespace pillarfield::viewer {
+
+/// Writes what stands around and upon the field: title, axes in millimetres, the colour bar with
+/// its numbers and unit, and the meaning of colours and arrows. `interface.draw()` then draws it.
+void write_overlay(const Interface& interface, const ShownField& field, const SourceInfo& source,
+                   const Look& look, const Layout& layout, vk::Extent2D size);
+
+}  // namespace pillarfield::viewer

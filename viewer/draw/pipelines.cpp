@@ -1,0 +1,130 @@
+#include "viewer/draw/pipelines.h"
+
+#include <array>
+
+#include "shaders/arrow_frag.h"
+#include "shaders/arrow_vert.h"
+#include "shaders/cells_comp.h"
+#include "shaders/fan_frag.h"
+#include "shaders/fan_vert.h"
+#include "shaders/heat_frag.h"
+#include "shaders/heat_vert.h"
+#include "shaders/shared.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+using Stage = vk::ShaderStageFlagBits;
+using Type = vk::DescriptorType;
+
+struct Binding {
+  std::uint32_t index;
+  Type type;
+  vk::ShaderStageFlags stages;
+};
+
+/// The one table of what shaders see.
+constexpr std::array<Binding, 5> kBindings{{
+    {shader::kSceneBinding, Type::eUniformBuffer,
+     Stage::eVertex | Stage::eFragment | Stage::eCompute},
+    {shader::kColoursBinding, Type::eUniformBuffer,
+     Stage::eVertex | Stage::eFragment | Stage::eCompute},
+    {shader::kFieldBinding, Type::eStorageBuffer,
+     Stage::eVertex | Stage::eFragment | Stage::eCompute},
+    {shader::kReadingsBinding, Type::eStorageBuffer, Stage::eVertex | Stage::eFragment},
+    {shader::kCellsBinding, Type::eStorageBuffer, Stage::eVertex | Stage::eCompute},
+}};
+
+vk::raii::DescriptorSetLayout make_set_layout(const gpu::Device& device) {
+  std::array<vk::DescriptorSetLayoutBinding, kBindings.size()> bindings;
+  for (std::size_t i = 0; i < kBindings.size(); ++i) {
+    const Binding& binding = kBindings.at(i);
+    bindings.at(i) = {binding.index, binding.type, 1, binding.stages};
+  }
+  return {device.handle(), vk::DescriptorSetLayoutCreateInfo({}, bindings)};
+}
+
+vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
+  const std::array sizes{vk::DescriptorPoolSize(Type::eUniformBuffer, 2),
+                         vk::DescriptorPoolSize(Type::eStorageBuffer, 3)};
+  return {device.handle(), vk::DescriptorPoolCreateInfo(
+                               vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes)};
+}
+
+template <std::size_t size>
+vk::raii::ShaderModule make_module(const gpu::Device& device, const std::uint32_t (&code)[size]) {
+  return {device.handle(), vk::ShaderModuleCreateInfo({}, sizeof(code), code)};
+}
+
+/// How a pipeline meets the depth of what was drawn before.
+enum class Depth { written, tested };
+
+vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout layout,
+                                 vk::RenderPass render_pass, const vk::raii::ShaderModule& vertex,
+                                 const vk::raii::ShaderModule& fragment, Depth depth) {
+  const std::array stages{
+      vk::PipelineShaderStageCreateInfo({}, Stage::eVertex, *vertex, "main"),
+      vk::PipelineShaderStageCreateInfo({}, Stage::eFragment, *fragment, "main")};
+  const vk::PipelineVertexInputStateCreateInfo no_vertices;
+  const vk::PipelineInputAssemblyStateCreateInfo triangles({},
+                                                           vk::PrimitiveTopology::eTriangleList);
+  const vk::PipelineViewportStateCreateInfo viewport({}, 1, nullptr, 1, nullptr);
+  vk::PipelineRasterizationStateCreateInfo raster;
+  raster.lineWidth = 1;
+  const vk::PipelineMultisampleStateCreateInfo one_sample({}, vk::SampleCountFlagBits::e1);
+  const vk::PipelineDepthStencilStateCreateInfo depth_state(
+      {}, VK_TRUE, depth == Depth::written ? VK_TRUE : VK_FALSE, vk::CompareOp::eLessOrEqual);
+  using Factor = vk::BlendFactor;
+  using Channel = vk::ColorComponentFlagBits;
+  const vk::PipelineColorBlendAttachmentState blend(
+      depth == Depth::written ? VK_FALSE : VK_TRUE, Factor::eSrcAlpha, Factor::eOneMinusSrcAlpha,
+      vk::BlendOp::eAdd, Factor::eOne, Factor::eOneMinusSrcAlpha, vk::BlendOp::eAdd,
+      Channel::eR | Channel::eG | Channel::eB | Channel::eA);
+  const vk::PipelineColorBlendStateCreateInfo blending({}, VK_FALSE, {}, blend);
+  const std::array dynamic{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+  const vk::PipelineDynamicStateCreateInfo dynamics({}, dynamic);
+  const vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &triangles, nullptr,
+                                            &viewport, &raster, &one_sample, &depth_state,
+                                            &blending, &dynamics, layout, render_pass);
+  return {device.handle(), nullptr, info};
+}
+
+}  // namespace
+
+Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
+    : device_(&device), set_layout_(make_set_layout(device)), pool_(make_pool(device)) {
+  layout_ =
+      vk::raii::PipelineLayout(device.handle(), vk::PipelineLayoutCreateInfo({}, *set_layout_));
+  vk::raii::DescriptorSets sets(device.handle(),
+                                vk::DescriptorSetAllocateInfo(*pool_, *set_layout_));
+  set_ = std::move(sets.front());
+
+  const auto cells = make_module(device, cells_comp);
+  const vk::PipelineShaderStageCreateInfo stage({}, Stage::eCompute, *cells, "main");
+  cells_ = vk::raii::Pipeline(device.handle(), nullptr,
+                              vk::ComputePipelineCreateInfo({}, stage, *layout_));
+  heat_ = make_pipeline(device, *layout_, render_pass, make_module(device, heat_vert),
+                        make_module(device, heat_frag), Depth::written);
+  arrows_ = make_pipeline(device, *layout_, render_pass, make_module(device, arrow_vert),
+                          make_module(device, arrow_frag), Depth::tested);
+  fans_ = make_pipeline(device, *layout_, render_pass, make_module(device, fan_vert),
+                        make_module(device, fan_frag), Depth::tested);
+}
+
+void Pipelines::bind(const Bindings& bindings) {
+  const std::array buffers{
+      vk::DescriptorBufferInfo(bindings.scene, 0, VK_WHOLE_SIZE),
+      vk::DescriptorBufferInfo(bindings.colours, 0, VK_WHOLE_SIZE),
+      vk::DescriptorBufferInfo(bindings.field, 0, VK_WHOLE_SIZE),
+      vk::DescriptorBufferInfo(bindings.readings, 0, VK_WHOLE_SIZE),
+      vk::DescriptorBufferInfo(bindings.cells, 0, VK_WHOLE_SIZE),
+  };
+  std::array<vk::WriteDescriptorSet, kBindings.size()> writes;
+  for (std::size_t i = 0; i < kBindings.size(); ++i) {
+    const Binding& binding = kBindings.at(i);
+    writes.at(i) = {*set_, binding.index, 0, 1, binding.type, nullptr, &buffers.at(i)};
+  }
+  device_->handle().updateDescriptorSets(writes, nullptr);
+}
+
+}  // namespace pillarfield::viewer

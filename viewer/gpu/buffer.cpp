@@ -1,0 +1,41 @@
+#include "viewer/gpu/buffer.h"
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::viewer::gpu {
+namespace {
+
+constexpr auto kHostPointer = vk::ExternalMemoryHandleTypeFlagBits::eHostAllocationEXT;
+
+}  // namespace
+
+Buffer::Buffer(const Device& device, std::size_t bytes, vk::BufferUsageFlags usage, Place place)
+    : size_(bytes), buffer_(device.handle(), vk::BufferCreateInfo({}, bytes, usage)) {
+  using Property = vk::MemoryPropertyFlagBits;
+  const auto needs = buffer_.getMemoryRequirements();
+  const std::uint32_t type =
+      place == Place::host ? device.memory_type(needs.memoryTypeBits,
+                                                Property::eHostVisible | Property::eHostCoherent,
+                                                Property::eHostCached)
+                           : device.memory_type(needs.memoryTypeBits, {}, Property::eDeviceLocal);
+  memory_ = vk::raii::DeviceMemory(device.handle(), {needs.size, type});
+  buffer_.bindMemory(*memory_, 0);
+  if (place == Place::host) data_ = static_cast<std::byte*>(memory_.mapMemory(0, VK_WHOLE_SIZE));
+}
+
+Buffer::Buffer(const Device& device, std::span<const std::byte> pages, vk::BufferUsageFlags usage)
+    : size_(pages.size()) {
+  const vk::ExternalMemoryBufferCreateInfo external(kHostPointer);
+  buffer_ = vk::raii::Buffer(device.handle(),
+                             vk::BufferCreateInfo({}, size_, usage, {}, {}, {}, &external));
+  // Vulkan takes host memory as non-const even where it is only read.
+  void* const address = const_cast<std::byte*>(pages.data());
+  const auto possible = device.handle().getMemoryHostPointerPropertiesEXT(kHostPointer, address);
+  const auto needs = buffer_.getMemoryRequirements();
+  const std::uint32_t type = device.memory_type(possible.memoryTypeBits & needs.memoryTypeBits, {});
+  const vk::ImportMemoryHostPointerInfoEXT import(kHostPointer, address);
+  memory_ = vk::raii::DeviceMemory(device.handle(), vk::MemoryAllocateInfo(size_, type, &import));
+  buffer_.bindMemory(*memory_, 0);
+}
+
+}  // namespace pillarfield::viewer::gpu

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "viewer/picture/look.h"
+
+namespace pillarfield::viewer {
+
+/// The command line.
+struct Options {
+  std::filesystem::path source;
+  std::string device;  ///< of OpenCL, for solving
+  std::string gpu;     ///< of Vulkan, for drawing
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+  double scale = 0;          ///< 0: that of the display; 1 without one
+  bool copy_fields = false;  ///< fields are copied to the graphics device even where it could read
+                             ///< them in place
+  bool validate = false;
+  bool headless = false;
+  bool paused = false;
+
+  Quantity quantity = Quantity::normal;
+  std::optional<Range> range;  ///< unset: what fits the source
+  std::optional<ColourMap> map;
+  Theme theme = Theme::dark;
+  bool orbit = false;
+  std::optional<double> azimuth;    ///< rad
+  std::optional<double> elevation;  ///< rad
+  double zoom = 1;
+  std::optional<Vec2> centre_mm;
+  Surface surface;
+  bool arrows = true;
+  bool fans = false;
+  bool hatch = true;
+  bool legend = true;
+
+  std::filesystem::path png;
+  std::filesystem::path video;
+  std::filesystem::path csv;
+  std::uint64_t first_frame = 0;  ///< first shown; of --frame and --frames
+  std::uint64_t end_frame = 0;    ///< after the last one rendered; 0: first_frame + 1
+};
+
+/// Parses; on --help and --version prints them. Returns the exit status where the program is to
+/// end, else nothing.
+[[nodiscard]] std::optional<int> parse_options(int argc, char** argv, Options& options);
+
+/// How the first picture looks: what the options say, and what fits the source for the rest. A few
+/// frames, evenly spread, are produced for that.
+[[nodiscard]] Look first_look(const Options& options, FieldProducer& producer, double scale,
+                              const Viewport& plot_hint);
+
+}  // namespace pillarfield::viewer
