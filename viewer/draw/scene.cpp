@@ -102,11 +102,11 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const 
   const double hatch = std::max(std::round(5 * look.scale), 4.0);
   scene.shown = {static_cast<uint>(look.quantity), static_cast<uint>(info_of(look.quantity).scale),
                  look.hatch ? 1u : 0u, static_cast<uint>(hatch)};
-  scene.range = {look.range.low, static_cast<float>(kColours) / (look.range.high - look.range.low),
+  scene.range = {look.range.low, look.range.high - look.range.low,
                  kSmallestForceShare * narrow(full_arrow_n(look)), 0};
   scene.viewport = {narrow(plot.x), narrow(plot.y), narrow(plot.width), narrow(plot.height)};
   scene.cells = cells_in_sight(source, look, plot, block);
-  scene.block = {block, 0, 0, 0};
+  scene.block = {block, from_above ? 1u : 0u, 0, 0};
   scene.arrow = {narrow(arrow_mm_per_newton(look, pitch, block)), narrow(6 * look.scale),
                  narrow(1.3 * look.scale), from_above ? 0.5f : 1.0f};
   const Colour white{255, 255, 255};
