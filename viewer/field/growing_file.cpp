@@ -41,7 +41,8 @@ bool GrowingFile::reopen(const std::function<void(const std::filesystem::path&)>
     try {
       open(path());
       return true;
-    } catch (const Error&) {  // Perhaps the next time.
+    } catch (const Error&) {                              // Perhaps the next time.
+    } catch (const std::filesystem::filesystem_error&) {  // It got its final name just now.
     }
   }
   seen_ = {};

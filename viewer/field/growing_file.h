@@ -16,9 +16,9 @@ class GrowingFile {
   /// and is finished goes on under NAME.
   [[nodiscard]] bool may_have_changed();
 
-  /// Calls `open` with the path until it throws no Error, five times at most within a twentieth of
-  /// a second: its writer may be about it. False where it threw each time; the file then counts as
-  /// changed when asked next.
+  /// Calls `open` with the path until it throws no Error nor filesystem_error, five times at most
+  /// within a twentieth of a second: its writer may be about it. False where it threw each time;
+  /// the file then counts as changed when asked next.
   bool reopen(const std::function<void(const std::filesystem::path&)>& open);
 
   /// Its name by now.

@@ -147,8 +147,9 @@ void expect_followed(const std::string& kind) {
   const auto path = directory / (kind + ".h5");
   Writer writer(kind, path, kFrames);
   writer.wait_for_flush();
-  const auto part = directory / (kind + ".h5.part");
-  const auto producer = open_producer(std::filesystem::exists(part) ? part : path, {});
+  std::unique_ptr<FieldProducer> producer;
+  GrowingFile file(directory / (kind + ".h5.part"));  // Or finished already.
+  ASSERT_TRUE(file.reopen([&](const auto& by_now) { producer = open_producer(by_now, {}); }));
   while (true) {
     const std::uint64_t frames = producer->info().frames;
     expect_written(producer->produce(frames - 1));
