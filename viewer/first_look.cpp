@@ -48,7 +48,7 @@ float quantile(std::vector<float> values, double share) {
 
 double full_arrow(FieldProducer& producer, Quantity quantity) {
   const float typical = quantile(survey(producer, quantity), kShareOfArrow);
-  return typical > 0 ? nice_ceiling(typical) : 1;
+  return typical > 0 ? round_ceiling(typical) : 1;
 }
 
 Range in_own_unit(const Range& shown, Quantity quantity) {

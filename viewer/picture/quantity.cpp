@@ -118,13 +118,13 @@ float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t ro
   return parity_of(field.raw, row, col);
 }
 
-/// A single-precision number not below `value`; as round as nice_ceiling() makes it.
+/// A single-precision number not below `value`; as round as round_ceiling() makes it.
 float nice_float(float value) {
   constexpr double kMost = 1e38;
   // A value that was stored as 0.1 is a little more in single precision, and fits 0.1 all the same.
   const double exact = std::clamp(double{value}, 1e-37, kMost);
-  const auto nice = static_cast<float>(nice_ceiling(exact * (1 - 0x1p-23)));
-  return nice >= value ? nice : static_cast<float>(std::min(nice_ceiling(exact), kMost));
+  const auto nice = static_cast<float>(round_ceiling(exact * (1 - 0x1p-23)));
+  return nice >= value ? nice : static_cast<float>(std::min(round_ceiling(exact), kMost));
 }
 
 }  // namespace

@@ -66,9 +66,8 @@ struct Range {
 /// saturated, nor inconsistent; zero where there is none.
 [[nodiscard]] float largest(Quantity quantity, const ShownField& field);
 
-/// The range that fits largest values seen: 1, 2 or 5 times a power of ten, not below any of them,
-/// and 1 where there is nothing to fit; theta [0, pi/2], phi [-pi, pi], and of classes [0, how
-/// many] always.
+/// The range that fits largest values seen: up to their round_ceiling(), and 1 where there is
+/// nothing to fit; theta [0, pi/2], phi [-pi, pi], and of classes [0, how many] always.
 [[nodiscard]] Range fitting_range(Quantity quantity, float largest_value);
 
 /// The value of one pillar, as the heat map's shader computes it: in single precision, without

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <initializer_list>
 
 namespace pillarfield::viewer {
 namespace {
@@ -28,13 +29,17 @@ double value_of(Decimal decimal) {
   return decimal.exponent < 0 ? digits / power : digits * power;
 }
 
-Decimal nice_at_least(double value) {
-  for (int exponent = static_cast<int>(std::floor(std::log10(value))) - 1;; ++exponent) {
-    for (const int digits : {1, 2, 5}) {
+/// The least of `steps` (ascending, within a power of ten), times a power of ten, not below
+/// `value`.
+Decimal least_not_below(double value, std::initializer_list<int> steps) {
+  for (int exponent = static_cast<int>(std::floor(std::log10(value))) - 2;; ++exponent) {
+    for (const int digits : steps) {
       if (value_of({digits, exponent}) >= value) return {digits, exponent};
     }
   }
 }
+
+Decimal nice_at_least(double value) { return least_not_below(value, {1, 2, 5}); }
 
 Decimal next_nicer(Decimal nice) {
   if (nice.digits == 5) return {1, nice.exponent + 1};
@@ -106,6 +111,10 @@ std::vector<Tick> ticks(double low, double high, int most) {
 }
 
 double nice_ceiling(double value) { return value_of(nice_at_least(value)); }
+
+double round_ceiling(double value) {
+  return value_of(least_not_below(value, {10, 12, 15, 20, 25, 30, 40, 50, 60, 80}));
+}
 
 std::string three_digits(double value) {
   if (value == 0) return "0";

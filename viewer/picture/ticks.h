@@ -18,6 +18,9 @@ struct Tick {
 /// 1, 2 or 5 times a power of ten, the least not below `value` (1e-300..1e300).
 [[nodiscard]] double nice_ceiling(double value);
 
+/// The same in smaller steps: 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6 or 8 times a power of ten.
+[[nodiscard]] double round_ceiling(double value);
+
 /// A number for a reader: three significant digits, SI-free, "0.0123", "12.3", "1230", a real minus
 /// sign; "0", and "1.23e7" from ten million on or below a ten-thousandth; "–" for what is no
 /// number.

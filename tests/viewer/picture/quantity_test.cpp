@@ -261,7 +261,7 @@ TEST(FittingRange, IsNotBelowTheLargestAndNotFarAbove) {
     const Range sequential = fitting_range(Quantity::normal, seen);
     EXPECT_EQ(sequential.low, 0);
     EXPECT_GE(sequential.high, seen);
-    EXPECT_LE(sequential.high, 2.51F * seen);
+    EXPECT_LE(sequential.high, 1.34F * seen);
     const Range diverging = fitting_range(Quantity::shear_y, seen);
     EXPECT_EQ(diverging.low, -diverging.high);
     EXPECT_EQ(diverging.high, sequential.high);
@@ -271,11 +271,11 @@ TEST(FittingRange, IsNotBelowTheLargestAndNotFarAbove) {
 }
 
 TEST(FittingRange, IsRound) {
-  EXPECT_EQ(fitting_range(Quantity::normal, 0.3F).high, 0.5F);
+  EXPECT_EQ(fitting_range(Quantity::normal, 0.29F).high, 0.3F);
   EXPECT_EQ(fitting_range(Quantity::normal, 0.1F).high, 0.1F);
-  EXPECT_EQ(fitting_range(Quantity::normal, std::nextafter(0.1F, 1.0F)).high, 0.2F);
-  EXPECT_EQ(fitting_range(Quantity::normal, 7).high, 10);
-  EXPECT_EQ(fitting_range(Quantity::parity, 130).high, 200);
+  EXPECT_EQ(fitting_range(Quantity::normal, std::nextafter(0.1F, 1.0F)).high, 0.12F);
+  EXPECT_EQ(fitting_range(Quantity::normal, 7).high, 8);
+  EXPECT_EQ(fitting_range(Quantity::parity, 130).high, 150);
 }
 
 TEST(FittingRange, OfAnglesAndClassesIsFixed) {

@@ -124,6 +124,19 @@ TEST(NiceCeiling, KeepsNiceNumbersAsTheyAreWritten) {
   }
 }
 
+TEST(RoundCeiling, IsNearAndKeepsItsOwn) {
+  for (double value = 1e-7; value < 1e7; value *= 1.0371) {
+    const double round = round_ceiling(value);
+    EXPECT_GE(round, value);
+    EXPECT_LE(round, 1.3334 * value);
+    EXPECT_EQ(round_ceiling(round), round);
+    EXPECT_LE(round, nice_ceiling(value));
+  }
+  for (const double round : {0.012, 0.1, 0.15, 0.25, 3.0, 4.0, 60.0, 8e5}) {
+    EXPECT_EQ(round_ceiling(round), round);
+  }
+}
+
 TEST(ThreeDigits, AreThreeAndRounded) {
   EXPECT_EQ(three_digits(0.01234), "0.0123");
   EXPECT_EQ(three_digits(12.345), "12.3");
