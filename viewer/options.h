@@ -22,6 +22,7 @@ struct Options {
   bool validate = false;
   bool headless = false;
   bool paused = false;
+  bool statistics = false;  ///< one line of JSON on standard output when the window closes
 
   Quantity quantity = Quantity::normal;
   std::optional<Range> range;  ///< unset: what fits the source
