@@ -17,15 +17,17 @@ void main() {
   const Cell cell = cells[gl_InstanceIndex];
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // Outside: no arrow.
   if (cell.force.w == 0.0) return;
-  if (length(cell.force.xyz) < scene.range.z * cell.force.w) return;
-
   const vec3 place = surface_position(cell.place.xy, scene.readings.w, scene.sheet.w);
   const mat3 basis = surface_basis(cell.place.xy, scene.readings.w, scene.sheet.w);
-  const vec3 way = basis * vec3(cell.force.xy, -cell.force.z) * scene.arrow.x;
+  // From above only shear can be seen; a normal force would dip half of the arrow into the skin.
+  const float pressing = scene.block.y != 0u ? 0.0 : cell.force.z;
+  const vec3 way = basis * vec3(cell.force.xy, -pressing) * scene.arrow.x;
   const vec4 tail_clip = scene.clip_from_world * vec4(place - scene.arrow.w * way, 1.0);
   const vec4 tip_clip = scene.clip_from_world * vec4(place + (1.0 - scene.arrow.w) * way, 1.0);
   vec2 tail = pixels_of(tail_clip);
   vec2 tip = pixels_of(tip_clip);
+
+  if (length(way) < scene.arrow.x * scene.range.z * cell.force.w) return;  // Too faint.
 
   // Shorter ones are lengthened about their place, so that every direction can be read.
   const float drawn = distance(tail, tip);
@@ -42,5 +44,6 @@ void main() {
   local = vec2(mix(-kAir, arrow_length + kAir, corner.x), corner.y * reach);
   const vec2 pixel = tail + along * local.x + vec2(-along.y, along.x) * local.y;
   const vec4 end = mix(tail_clip, tip_clip, corner.x);
-  gl_Position = vec4((pixel / scene.viewport.zw * 2.0 - 1.0) * end.w, end.z, end.w);
+  // A little nearer than the skin that its tip touches.
+  gl_Position = vec4((pixel / scene.viewport.zw * 2.0 - 1.0) * end.w, end.z - 2e-4 * end.w, end.w);
 }

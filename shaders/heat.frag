@@ -19,8 +19,8 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
     for (float i = 0.5; i < samples.x; i += 1.0) {
       const uint pillar = pillar_at(centre + (vec2(i, j) / samples - 0.5) * pillars);
       const uint status = status_of(pillar);
-      if (!is_usable(status) && !is_saturated(status) && !is_inconsistent(status)) continue;
       flags |= status;
+      if (!is_usable(status)) continue;
       sum += value_of(pillar, status);
       count += 1.0;
     }
@@ -29,8 +29,7 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
 }
 
 vec4 mapped(float value) {
-  const float position = (value - scene.range.x) * scene.range.y;
-  int entry = int(floor(position));
+  int entry = int(floor((value - scene.range.x) / scene.range.y * 256.0));
   entry = scene.shown.y == kCyclic ? entry & 255 : clamp(entry, 0, 255);
   return colour_of_word(colours.entries[entry >> 2][entry & 3]);
 }
@@ -43,35 +42,20 @@ bool on_hatch() {
 void main() {
   const vec2 place = pillar_place(sheet_mm);
   const vec2 footprint = max(abs(dFdx(place)), abs(dFdy(place)));
-  const uint here = pillar_at(place);
-  const uint status = status_of(here);
-  if (scene.shown.y == kClasses) {
-    colour = special_colour(class_of(status));
+  const bool one_pillar = scene.shown.y >= kCyclic || max(footprint.x, footprint.y) < 1.5;
+  const uint pillar = pillar_at(place);
+  uint status = status_of(pillar);
+  float value = 0.0;
+  if (!one_pillar) value = mean_value(place, footprint, status);
+
+  const uint special = special_of(status);
+  if (special != kMapped) {
+    colour = special_colour(special);
     return;
   }
-
-  uint flags = status;
-  float value = 0.0;
-  bool idle = false;
-  if (scene.shown.y == kCyclic || max(footprint.x, footprint.y) < 1.5) {
-    value = value_of(here, status);
-    idle = !is_usable(status);
-  } else {
-    flags = 0u;
-    value = mean_value(place, footprint, flags);
-    idle = !is_usable(flags);
-  }
-
-  if (is_saturated(flags)) {
-    colour = special_colour(kSaturated);
-  } else if (is_inconsistent(flags)) {
-    colour = special_colour(kInconsistent);
-  } else if (idle || isnan(value)) {
-    colour = special_colour(kIdle);
-  } else {
-    colour = mapped(value);
-    if (is_ambiguous(flags) && scene.shown.z != 0u && on_hatch()) {
-      colour = mix(colour, special_colour(kAmbiguous), 0.6);
-    }
+  if (one_pillar) value = value_of(pillar, status);
+  colour = isnan(value) ? special_colour(kIdle) : mapped(value);
+  if (is_ambiguous(status) && scene.shown.z != 0u && on_hatch()) {
+    colour = mix(colour, special_colour(kAmbiguous), 0.6);
   }
 }

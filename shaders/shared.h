@@ -84,10 +84,10 @@ struct Scene {
   uvec4 incline;    // planes: theta_low, theta_high; none, none
   uvec4 readings;   // type, readings from one row to the next, 1 where there are any, surface kind
   uvec4 shown;      // quantity, scale, 1 where ambiguous pillars are hatched, hatch period: pixels
-  vec4 range;       // low end, table entries per unit; smallest force worth an arrow: N per pillar
+  vec4 range;       // low end, its width; smallest force worth an arrow: N per pillar; none
   vec4 viewport;    // left, top, width, height: pixels
   uvec4 cells;      // first row and column of pillars, rows and columns of cells
-  uvec4 block;      // pillars along a cell; none
+  uvec4 block;      // pillars along a cell; 1 where the skin is seen from above; none
   vec4 arrow;       // mm per newton, shortest and half a width: pixels; share of its length that
                     // lies before its place
   uvec4 ink;        // colours of an arrow's fill, its outline, a fan; none

@@ -26,23 +26,25 @@ float reading(uint row, uint col) {
   return uintBitsToFloat(readings[index]);
 }
 
-// V1 + V3 - V2 - V4.
 float parity_of(uint pillar) {
   const uint row = 2u * (pillar / scene.grid.y);
   const uint col = 2u * (pillar % scene.grid.y);
-  return reading(row, col + 1u) + reading(row + 1u, col) - reading(row, col) -
-         reading(row + 1u, col + 1u);
+  const float v1 = reading(row, col + 1u);
+  const float v2 = reading(row, col);
+  const float v3 = reading(row + 1u, col);
+  const float v4 = reading(row + 1u, col + 1u);
+  return (v1 + v3) - (v2 + v4);
 }
 
 float uncertainty_of(uint pillar, uint status) {
   const float x = plane_value(scene.deviation.x, pillar);
   const float y = plane_value(scene.deviation.y, pillar);
   const float z = plane_value(scene.deviation.z, pillar);
-  const float deviation = sqrt(x * x + y * y + z * z);
+  const float deviation = sqrt((x * x + y * y) + z * z);
   if (!is_ambiguous(status)) return deviation;
   const float half_span =
       0.5 * (plane_value(scene.span.y, pillar) - plane_value(scene.span.x, pillar));
-  return max(deviation, half_span);
+  return half_span > deviation ? half_span : deviation;
 }
 
 float value_of(uint pillar, uint status) {
@@ -62,18 +64,23 @@ float value_of(uint pillar, uint status) {
   return 0.0;
 }
 
-// The colour of a pillar where classes are shown: its region, or what is wrong with it.
-uint class_of(uint status) {
+// The colour of its own that a pillar has, or kMapped: special_of() of viewer/picture/colour_map.h.
+const uint kMapped = 0xffffffffu;
+
+uint region_colour(uint usable) {
+  if (usable == 5u || usable == 10u) return kOpposite;
+  return kRegion1 + 4u - uint(bitCount(usable));
+}
+
+uint special_of(uint status) {
   const uint usable = status & 15u;
-  if (scene.shown.x == kRegion) {
-    if (usable == 5u || usable == 10u) return kOpposite;
-    const uint count = uint(bitCount(usable));
-    return count == 0u ? kIdle : kRegion1 + 4u - count;
-  }
-  if (is_saturated(status)) return kSaturated;
+  if (scene.shown.x == kRegion && usable != 0u) return region_colour(usable);
   if (is_inconsistent(status)) return kInconsistent;
-  if (is_ambiguous(status)) return is_from_neighbours(status) ? kFromNeighbours : kAmbiguous;
-  return usable == 0u ? kIdle : kSound;
+  if (is_saturated(status)) return kSaturated;
+  if (usable == 0u) return kIdle;
+  if (scene.shown.x != kStatus) return scene.shown.x == kRegion ? kIdle : kMapped;
+  if (is_from_neighbours(status)) return kFromNeighbours;
+  return is_ambiguous(status) ? kAmbiguous : kSound;
 }
 
 #endif

@@ -22,7 +22,7 @@ struct Options {
   bool validate = false;
   bool headless = false;
   bool paused = false;
-  bool statistics = false;  ///< one line of JSON on standard output when the window closes
+  bool statistics = false;  ///< printed when the window is closed
 
   Quantity quantity = Quantity::normal;
   std::optional<Range> range;  ///< unset: what fits the source
@@ -50,9 +50,13 @@ struct Options {
 /// end, else nothing.
 [[nodiscard]] std::optional<int> parse_options(int argc, char** argv, Options& options);
 
-/// How the first picture looks: what the options say, and what fits the source for the rest. A few
-/// frames, evenly spread, are produced for that.
-[[nodiscard]] Look first_look(const Options& options, FieldProducer& producer, double scale,
-                              const Viewport& plot_hint);
+/// How the first picture looks: what the options say, and what fits the source for the rest; its
+/// view is not set. A few frames, evenly spread, are produced for that. Throws Error where the
+/// source has not what is to be shown.
+[[nodiscard]] Look first_look(const Options& options, FieldProducer& producer, double scale);
+
+/// From where it is seen first, in the plot of a picture's layout.
+[[nodiscard]] View first_view(const Options& options, const SourceInfo& source,
+                              const Viewport& plot);
 
 }  // namespace pillarfield::viewer

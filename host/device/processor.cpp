@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 
 #include "device/block_lanes.h"
 #include "device/slot.h"
+#include "device/slot_turns.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
-constexpr int kMaxFramesInFlight = 64;
+constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
 
 void check_options(const Processor::Options& options) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -51,6 +53,17 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
+[[noreturn]] void throw_no_slot(const SlotTurns& turns) {
+  if (turns.kept() == 0) {
+    throw Error("Processor::submit", fmt::format("all {} frames are in flight", turns.slots()),
+                "receive() one first, or ask for more frames_in_flight");
+  }
+  throw Error("Processor::submit",
+              fmt::format("of {} frames {} are in flight and {} are kept", turns.slots(),
+                          turns.in_flight(), turns.kept()),
+              "receive() one or give one back first, or ask for more frames_in_flight");
+}
+
 }  // namespace
 
 struct Processor::State {
@@ -60,7 +73,8 @@ struct Processor::State {
         sensel_type(wanted.sensel_type),
         half_output(wanted.half_output),
         shares_memory(decide_sharing(options.memory, opened)),
-        calibration(opened.state().context, wanted, options.paths) {
+        calibration(opened.state().context, wanted, options.paths),
+        turns(static_cast<std::size_t>(options.frames_in_flight)) {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
@@ -72,7 +86,8 @@ struct Processor::State {
     settings.shares_memory = shares_memory;
     slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
     for (int i = 0; i < options.frames_in_flight; ++i) {
-      slots.emplace_back(device.state(), wanted, settings, calibration, baseline);
+      slots.push_back(
+          std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
     warm_up();
     baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
@@ -83,11 +98,9 @@ struct Processor::State {
   /// which no real frame shall wait for. The baseline's rate is still zero: the tare stays.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
-    slots.front().submit(frame.view());
-    slots.front().wait();
+    slots.front()->submit(frame.view());
+    slots.front()->wait();
   }
-
-  [[nodiscard]] Slot& slot(std::uint64_t frame) { return slots[frame % slots.size()]; }
 
   Device device;
   Skin skin;
@@ -96,10 +109,28 @@ struct Processor::State {
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
-  std::vector<Slot> slots;
-  std::uint64_t submitted = 0;
-  std::uint64_t received = 0;
+  std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
+  SlotTurns turns;
 };
+
+struct Processor::Kept::State {
+  State(std::shared_ptr<const Slot> kept, std::shared_ptr<ReturnedSlots> to, std::size_t index)
+      : slot(std::move(kept)), returned(std::move(to)), number(index) {}
+  ~State() { returned->give_back(number); }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  std::shared_ptr<const Slot> slot;
+  std::shared_ptr<ReturnedSlots> returned;
+  std::size_t number;
+};
+
+Processor::Kept::Kept(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Processor::Kept::Kept(Kept&&) noexcept = default;
+Processor::Kept& Processor::Kept::operator=(Kept&&) noexcept = default;
+Processor::Kept::~Kept() = default;
+
+std::span<const std::byte> Processor::Kept::pages() const { return state_->slot->pages(); }
 
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options) {
   check_options(options);
@@ -127,24 +158,25 @@ void Processor::submit(const FrameView& frame) {
     throw Error("Processor::submit", "the frame has no data or rows that overlap",
                 "row_stride counts readings and is at least cols");
   }
-  if (state_->submitted - state_->received == state_->slots.size()) {
-    throw Error("Processor::submit",
-                fmt::format("all {} frames are in flight", state_->slots.size()),
-                "receive() one first, or ask for more frames_in_flight");
+  const std::optional<std::size_t> slot = state_->turns.next();
+  if (!slot) throw_no_slot(state_->turns);
+  try {
+    with_opencl_errors(state_->device.info().name, [&] { state_->slots[*slot]->submit(frame); });
+  } catch (...) {
+    state_->turns.returned()->give_back(*slot);
+    throw;
   }
-  with_opencl_errors(state_->device.info().name,
-                     [&] { state_->slot(state_->submitted).submit(frame); });
-  ++state_->submitted;
+  state_->turns.submit(*slot);
 }
 
 template <class Value>
 FieldView<Value> Processor::receive_oldest() {
-  if (state_->submitted == state_->received) {
+  if (state_->turns.in_flight() == 0) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
-  Slot& slot = state_->slot(state_->received);
+  Slot& slot = *state_->slots[state_->turns.oldest()];
   with_opencl_errors(state_->device.info().name, [&] { slot.wait(); });
-  ++state_->received;
+  state_->turns.receive();
   return slot.results<Value>();
 }
 
@@ -163,7 +195,18 @@ HalfFieldView Processor::receive_half() {
   return receive_oldest<Half>();
 }
 
-int Processor::in_flight() const { return static_cast<int>(state_->submitted - state_->received); }
+Processor::Kept Processor::keep() {
+  const std::optional<std::size_t> slot = state_->turns.keep();
+  if (!slot) {
+    throw Error("Processor::keep", "there is no frame to keep",
+                "keep() a frame once, after it was received and before its slot is used again");
+  }
+  return Kept(std::make_unique<Kept::State>(state_->slots[*slot], state_->turns.returned(), *slot));
+}
+
+int Processor::in_flight() const { return static_cast<int>(state_->turns.in_flight()); }
+
+int Processor::kept() const { return static_cast<int>(state_->turns.kept()); }
 
 std::vector<float> Processor::tare() const {
   return with_opencl_errors(state_->device.info().name, [&] {

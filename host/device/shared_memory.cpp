@@ -5,7 +5,6 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kPageSize = 4096;
 constexpr std::align_val_t kPage{kPageSize};
 
 struct FreePages {
@@ -16,18 +15,15 @@ struct FreePages {
 /// one command each way, and commands are what a small frame's time goes into.
 class SharedMemory final : public SlotMemory {
  public:
-  SharedMemory(const cl::Context& context, const SolverPlan& plan) : context_(context) {
+  SharedMemory(const cl::Context& context, const SolverPlan& plan)
+      : context_(context),
+        layout_(plan),
+        pages_(static_cast<std::byte*>(::operator new[](layout_.bytes, kPage))),
+        all_(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, layout_.bytes, pages_.get()) {
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-      if (!is_wanted(plan, plane)) continue;
-      regions_.at(plane) = {bytes_, plan.skin.pillars() * value_size(plan, plane)};
-      bytes_ += (regions_.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
-    }
-    pages_.reset(static_cast<std::byte*>(::operator new[](bytes_, kPage)));
-    all_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_.get());
-    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-      if (regions_.at(plane).size == 0) continue;
+      if (layout_.planes.at(plane).size == 0) continue;
       buffers_.at(plane) = all_.createSubBuffer(CL_MEM_READ_WRITE, CL_BUFFER_CREATE_TYPE_REGION,
-                                                &regions_.at(plane));
+                                                &layout_.planes.at(plane));
     }
   }
 
@@ -46,7 +42,7 @@ class SharedMemory final : public SlotMemory {
   }
 
   void fetch(const cl::CommandQueue& queue) override {
-    queue.enqueueMapBuffer(all_, CL_FALSE, CL_MAP_READ, 0, bytes_);
+    queue.enqueueMapBuffer(all_, CL_FALSE, CL_MAP_READ, 0, layout_.bytes);
     mapped_ = true;
   }
 
@@ -54,14 +50,16 @@ class SharedMemory final : public SlotMemory {
     return buffers_.at(plane);
   }
   [[nodiscard]] const std::byte* host(std::size_t plane) const override {
-    const cl_buffer_region& region = regions_.at(plane);
+    const cl_buffer_region& region = layout_.planes.at(plane);
     return region.size == 0 ? nullptr : pages_.get() + region.origin;
+  }
+  [[nodiscard]] std::span<const std::byte> pages() const override {
+    return {pages_.get(), layout_.bytes};
   }
 
  private:
   cl::Context context_;
-  std::size_t bytes_ = 0;
-  std::array<cl_buffer_region, kAllPlanes> regions_{};
+  ResultLayout layout_;
   std::unique_ptr<std::byte[], FreePages> pages_;
   cl::Buffer all_;
   std::array<cl::Buffer, kAllPlanes> buffers_;

@@ -59,6 +59,9 @@ class Slot {
   template <class Value>
   [[nodiscard]] FieldView<Value> results() const;
 
+  /// The block of whole pages that the results lie in.
+  [[nodiscard]] std::span<const std::byte> pages() const { return memory_->pages(); }
+
  private:
   /// Solves and follows after the frame before has.
   void launch_in_order();

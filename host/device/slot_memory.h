@@ -37,6 +37,17 @@ constexpr std::size_t value_size(const SolverPlan& plan, std::size_t plane) {
   return plan.half_output ? sizeof(Half) : sizeof(float);
 }
 
+inline constexpr std::size_t kPageSize = 4096;
+
+/// Where the planes of a result lie in one block of whole pages, each plane on a page of its own.
+/// A plane that the plan does not ask for has no size.
+struct ResultLayout {
+  explicit ResultLayout(const SolverPlan& plan);
+
+  std::array<cl_buffer_region, kAllPlanes> planes{};
+  std::size_t bytes = 0;  ///< of the block
+};
+
 /// A frame that the kernel can read.
 struct DeviceFrame {
   cl::Buffer readings;
@@ -63,6 +74,9 @@ class SlotMemory {
 
   /// The host's side of a plane, valid from the end of fetch() to the next release().
   [[nodiscard]] virtual const std::byte* host(std::size_t plane) const = 0;
+
+  /// The block that the host's sides of all planes lie in: whole pages, always the same.
+  [[nodiscard]] virtual std::span<const std::byte> pages() const = 0;
 };
 
 /// Zero copy: the kernel reads the caller's memory and writes the memory the caller reads.

@@ -1,87 +1,103 @@
 #include <cstring>
+#include <memory>
 
 #include "device/slot_memory.h"
 
 namespace pillarfield {
 namespace {
 
-/// A buffer of the device and memory of the host from which the driver copies without a detour.
-// Moving one releases what it held, which throws for an invalid handle only.
-struct Stage {  // NOLINT(bugprone-exception-escape)
-  Stage() = default;
-  Stage(const cl::Context& context, const cl::CommandQueue& queue, cl_mem_flags access,
-        std::size_t size)
-      : bytes(size),
-        on_device(context, access, size),
-        pinned(context, CL_MEM_ALLOC_HOST_PTR, size),
-        on_host(static_cast<std::byte*>(
-            queue.enqueueMapBuffer(pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, size))) {}
-
-  std::size_t bytes = 0;
-  cl::Buffer on_device;
-  cl::Buffer pinned;
-  std::byte* on_host = nullptr;
-};
-
-class StagedMemory final : public SlotMemory {
+/// Memory of the host from which, and to which, the driver copies without a detour.
+class PinnedMemory {
  public:
-  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan)
+  PinnedMemory(const cl::Context& context, const cl::CommandQueue& queue, std::size_t bytes)
       : queue_(queue),
-        frame_(context, queue, CL_MEM_READ_ONLY, plan.skin.sensels() * size_of(plan.sensel_type)) {
-    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-      if (!is_wanted(plan, plane)) continue;
-      planes_.at(plane) =
-          Stage(context, queue, CL_MEM_READ_WRITE, plan.skin.pillars() * value_size(plan, plane));
-    }
-  }
-
-  ~StagedMemory() override {
+        buffer_(context, CL_MEM_ALLOC_HOST_PTR, bytes),
+        mapped_(queue.enqueueMapBuffer(buffer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes)),
+        bytes_(bytes) {}
+  ~PinnedMemory() {
     try {
-      unmap(frame_);
-      for (const Stage& plane : planes_) unmap(plane);
+      queue_.enqueueUnmapMemObject(buffer_, mapped_);
       queue_.finish();
     } catch (const cl::Error&) {
       // The device is gone, and its memory with it.
     }
   }
-  StagedMemory(const StagedMemory&) = delete;
-  StagedMemory& operator=(const StagedMemory&) = delete;
+  PinnedMemory(const PinnedMemory&) = delete;
+  PinnedMemory& operator=(const PinnedMemory&) = delete;
+
+  [[nodiscard]] std::byte* data() const { return static_cast<std::byte*>(mapped_); }
+
+  /// The first page boundary in it.
+  [[nodiscard]] std::byte* first_page() const {
+    void* place = mapped_;
+    std::size_t space = bytes_;
+    return static_cast<std::byte*>(std::align(kPageSize, 1, place, space));
+  }
+
+ private:
+  cl::CommandQueue queue_;
+  cl::Buffer buffer_;
+  void* mapped_;
+  std::size_t bytes_;
+};
+
+class StagedMemory final : public SlotMemory {
+ public:
+  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan)
+      : frame_bytes_(plan.skin.sensels() * size_of(plan.sensel_type)),
+        frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
+        frame_on_host_(context, queue, frame_bytes_),
+        layout_(plan),
+        // Drivers align what they map as they like: a page more, to begin on a boundary.
+        results_on_host_(context, queue, layout_.bytes + kPageSize),
+        pages_(results_on_host_.first_page()) {
+    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+      if (layout_.planes.at(plane).size == 0) continue;
+      planes_.at(plane) = cl::Buffer(context, CL_MEM_READ_WRITE, layout_.planes.at(plane).size);
+    }
+  }
 
   DeviceFrame take(const cl::CommandQueue& queue, const FrameView& frame) override {
     const std::size_t row_bytes = frame.cols * size_of(frame.type);
     const std::size_t stride_bytes = frame.row_stride * size_of(frame.type);
     const auto* const readings = static_cast<const std::byte*>(frame.data);
     for (std::size_t row = 0; row < frame.rows; ++row) {
-      std::memcpy(frame_.on_host + row * row_bytes, readings + row * stride_bytes, row_bytes);
+      std::memcpy(frame_on_host_.data() + row * row_bytes, readings + row * stride_bytes,
+                  row_bytes);
     }
-    queue.enqueueWriteBuffer(frame_.on_device, CL_FALSE, 0, frame_.bytes, frame_.on_host);
-    return {frame_.on_device, frame.cols};
+    queue.enqueueWriteBuffer(frame_, CL_FALSE, 0, frame_bytes_, frame_on_host_.data());
+    return {frame_, frame.cols};
   }
 
   void release(const cl::CommandQueue&) override {}
 
   void fetch(const cl::CommandQueue& queue) override {
-    for (const Stage& plane : planes_) {
-      if (plane.bytes == 0) continue;
-      queue.enqueueReadBuffer(plane.on_device, CL_FALSE, 0, plane.bytes, plane.on_host);
+    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+      const cl_buffer_region& region = layout_.planes.at(plane);
+      if (region.size == 0) continue;
+      queue.enqueueReadBuffer(planes_.at(plane), CL_FALSE, 0, region.size, pages_ + region.origin);
     }
   }
 
   [[nodiscard]] const cl::Buffer& buffer(std::size_t plane) const override {
-    return planes_.at(plane).on_device;
+    return planes_.at(plane);
   }
   [[nodiscard]] const std::byte* host(std::size_t plane) const override {
-    return planes_.at(plane).on_host;
+    const cl_buffer_region& region = layout_.planes.at(plane);
+    return region.size == 0 ? nullptr : pages_ + region.origin;
+  }
+  [[nodiscard]] std::span<const std::byte> pages() const override {
+    return {pages_, layout_.bytes};
   }
 
  private:
-  void unmap(const Stage& stage) const {
-    if (stage.bytes != 0) queue_.enqueueUnmapMemObject(stage.pinned, stage.on_host);
-  }
-
-  cl::CommandQueue queue_;
-  Stage frame_;
-  std::array<Stage, kAllPlanes> planes_;
+  std::size_t frame_bytes_;
+  cl::Buffer frame_;
+  PinnedMemory frame_on_host_;
+  ResultLayout layout_;
+  std::array<cl::Buffer, kAllPlanes> planes_;
+  PinnedMemory results_on_host_;
+  std::byte* pages_;
 };
 
 }  // namespace

@@ -242,14 +242,10 @@ void write_arrow_scale(const Pen& pen, const SourceInfo& source, const Layout& l
                              point(x + length - head, middle + 3 * pen.unit()), pen.ink);
   const bool from_above = std::holds_alternative<TopView>(look.view);
   const char* what = from_above ? "shear" : "force";
-  const double sum = look.full_force_n * block * block;
-  if (block == 1) {
-    pen.text(x, y + 20 * pen.unit(), fmt::format("{} {} N", what, three_digits(sum)));
-    pen.text(x, y + 38 * pen.unit(), "on a pillar", pen.faint);
-  } else {
-    pen.text(x, y + 20 * pen.unit(), fmt::format("{} {} N", what, three_digits(sum)));
-    pen.text(x, y + 38 * pen.unit(), fmt::format("on {} × {} pillars", block, block), pen.faint);
-  }
+  const double sum = full_arrow_n(look) * block * block;
+  pen.text(x, y + 20 * pen.unit(), fmt::format("{} {} N", what, three_digits(sum)));
+  pen.text(x, y + 38 * pen.unit(),
+           block == 1 ? "on a pillar" : fmt::format("on {} × {} pillars", block, block), pen.faint);
 }
 
 void write_legend(const Pen& pen, const SourceInfo& source, const Layout& layout) {

@@ -21,8 +21,9 @@ gpu::Buffer uniform_buffer(const gpu::Device& device) {
 }
 
 vk::ClearColorValue paper(Theme theme) {
-  if (theme == Theme::dark) return std::array{0.055f, 0.067f, 0.086f, 1.0f};
-  return std::array{1.0f, 1.0f, 1.0f, 1.0f};
+  const Colour colour = background_of(theme);
+  const auto share = [](std::uint8_t value) { return static_cast<float>(value) / 255; };
+  return std::array{share(colour.red), share(colour.green), share(colour.blue), 1.0f};
 }
 
 void set_viewport(const vk::raii::CommandBuffer& commands, const Viewport& plot) {

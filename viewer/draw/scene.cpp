@@ -62,8 +62,12 @@ std::uint32_t arrow_block_of(const Look& look, const Viewport& plot, double pitc
   return arrow_block(pitch_mm * pixels_per_mm(look.view, plot), look.arrow_cell * look.scale);
 }
 
+double full_arrow_n(const Look& look) {
+  return std::holds_alternative<TopView>(look.view) ? look.full_shear_n : look.full_force_n;
+}
+
 double arrow_mm_per_newton(const Look& look, double pitch_mm, std::uint32_t block) {
-  return 1.5 * pitch_mm / (look.full_force_n * block);
+  return 1.5 * pitch_mm / (full_arrow_n(look) * block);
 }
 
 shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const Look& look,
@@ -98,11 +102,11 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const 
   const double hatch = std::max(std::round(5 * look.scale), 4.0);
   scene.shown = {static_cast<uint>(look.quantity), static_cast<uint>(info_of(look.quantity).scale),
                  look.hatch ? 1u : 0u, static_cast<uint>(hatch)};
-  scene.range = {look.range.low, static_cast<float>(kColours) / (look.range.high - look.range.low),
-                 kSmallestForceShare * narrow(look.full_force_n), 0};
+  scene.range = {look.range.low, look.range.high - look.range.low,
+                 kSmallestForceShare * narrow(full_arrow_n(look)), 0};
   scene.viewport = {narrow(plot.x), narrow(plot.y), narrow(plot.width), narrow(plot.height)};
   scene.cells = cells_in_sight(source, look, plot, block);
-  scene.block = {block, 0, 0, 0};
+  scene.block = {block, from_above ? 1u : 0u, 0, 0};
   scene.arrow = {narrow(arrow_mm_per_newton(look, pitch, block)), narrow(6 * look.scale),
                  narrow(1.3 * look.scale), from_above ? 0.5f : 1.0f};
   const Colour white{255, 255, 255};

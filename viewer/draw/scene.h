@@ -14,8 +14,10 @@ namespace pillarfield::viewer {
 /// Size of the skin's sheet, mm.
 [[nodiscard]] SkinSize skin_size(const SourceInfo& source);
 
-/// The mean force per pillar that makes an arrow as long as its cell and a half, and how many
-/// millimetres a newton then has in cells of `block` x `block` pillars.
+/// The mean force per pillar, N, whose arrow is as long as its cell and a half.
+[[nodiscard]] double full_arrow_n(const Look& look);
+
+/// How many millimetres a newton has in arrows of cells of `block` x `block` pillars.
 [[nodiscard]] double arrow_mm_per_newton(const Look& look, double pitch_mm, std::uint32_t block);
 
 /// The cell of the arrows of this look.

@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "pillarfield/skin_calibration.h"
+#include "pillarfield/calibration.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/skin.h"
 #include "viewer/field/shown_field.h"
 
 namespace pillarfield::viewer {
@@ -21,7 +23,7 @@ struct SourceInfo {
   std::uint64_t frames = 0;   ///< at least one
   double rate_hz = 100;       ///< frames per second of the source's own time
   bool has_readings = false;  ///< ShownField::raw has data
-  bool has_angles = false;    ///< magnitude, theta and phi
+  bool has_angles = false;    ///< magnitude, theta and phi; true of all sources there are
   bool has_uncertainty = false;
   std::string solver;  ///< "direct on NAME OF DEVICE, zero copy"; for a force file who solved it
   std::vector<std::string> remarks;  ///< what a user should know, one sentence each
@@ -30,21 +32,28 @@ struct SourceInfo {
 /// Makes the fields of a source, one by one and in any order. For one thread.
 class FieldProducer {
  public:
-  virtual ~FieldProducer() = default;
+  static constexpr int kMostShown = 6;
+
+  FieldProducer() = default;
+  virtual ~FieldProducer() = default;  ///< fields that are alive stay as they are
+  FieldProducer(const FieldProducer&) = delete;
+  FieldProducer& operator=(const FieldProducer&) = delete;
+
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
 
-  /// The field of frame `index`, read or solved now. At most kMostShown fields may be alive at a
-  /// time; throws Error beyond, and where reading or solving fails.
+  /// The field of frame `index`, read or solved now, always with angles. At most kMostShown fields
+  /// may be alive at a time, whose copies may go in any thread; throws Error beyond, and where
+  /// there is no such frame or reading or solving fails.
   [[nodiscard]] virtual ShownField produce(std::uint64_t index) = 0;
 
-  /// Looks whether the source has grown (a recording that is still being written); true if so.
+  /// Looks whether the source has grown (a recording that is still being written); true if its
+  /// number of frames is another now, which info() tells.
   virtual bool refresh() { return false; }
-
-  static constexpr int kMostShown = 6;
 };
 
 struct ProducerOptions {
   std::string device;  ///< as open_device() takes it
+  Memory memory = Memory::automatic;
   /// Frames of a scene are simulated beforehand, as many as it has and fit.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   std::uint64_t most_frames = 0;  ///< of a scene; 0: all
@@ -52,9 +61,10 @@ struct ProducerOptions {
 
 /// Opens a scene (.toml), a recording, a Tekscan ASCII export or a file of force fields, told apart
 /// by name (scenes) and content (the others). Frames of the first three are solved with angles, and
-/// with uncertainty where the noise is known. `progress` is called with shares 0..1 while a scene
-/// is simulated; it may throw to stop. Throws Error where the source cannot be opened or has no
-/// frames.
+/// with uncertainty where the noise is known and the estimator is direct. A scene's baseline is not
+/// followed, since frames may come in any order. `progress` is called with shares 0..1 while a
+/// scene is simulated; it may throw to stop. Throws Error where the source cannot be opened or has
+/// no frames.
 [[nodiscard]] std::unique_ptr<FieldProducer> open_producer(
     const std::filesystem::path& path, const ProducerOptions& options,
     const std::function<void(double)>& progress = {});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -30,21 +31,27 @@ struct PillarValues {
   std::optional<std::array<float, kUncertaintyPlanes>> uncertainty;
   std::uint8_t status = 0;
 };
+
+/// Of a pillar in the field. Throws Error for one that is not.
 [[nodiscard]] PillarValues values_at(const ShownField& field, PillarIndex pillar);
 
-/// What a rectangle of pillars adds up to. Pillars whose status has no usable sensel add nothing.
+/// What a rectangle of pillars adds up to. Pillars whose status has no usable sensel, or whose
+/// force is not finite, add no force and are not in contact.
 struct RegionSums {
   double shear_x = 0, shear_y = 0, normal = 0;  ///< total force, N
-  double moment_z = 0;  ///< of the shear about the centre of pressure, N mm, counter-clockwise
-  double centre_x_mm = 0,
-         centre_y_mm = 0;  ///< centre of pressure, from the middle of the skin; NaN without load
-  double area_mm2 = 0;     ///< of the pillars in contact
+  /// Of the shear about the centre of pressure, N mm, counter-clockwise; NaN without load.
+  double moment_z = 0;
+  /// Centre of pressure from the middle of the skin, + right and up; NaN without load.
+  double centre_x_mm = 0, centre_y_mm = 0;
+  double area_mm2 = 0;  ///< of the pillars in contact
   std::uint64_t pillars = 0, in_contact = 0;
   double peak_normal = 0, mean_normal = 0;  ///< N per pillar; the mean is over those in contact
   PillarIndex peak;                         ///< where
   std::array<std::uint64_t, kRegions> by_region{};  ///< pillars, indexed by Region
   std::uint64_t ambiguous = 0, saturated = 0, inconsistent = 0;
 };
+
+/// Of the part of `rect` that lies in the field.
 [[nodiscard]] RegionSums sums_over(const ShownField& field, const PillarRect& rect,
                                    double pillar_pitch_mm);
 
@@ -56,9 +63,10 @@ class History {
     std::uint64_t index;
     float shear_x, shear_y, normal;
   };
-  explicit History(std::size_t capacity = 4096);
-  void add(const Point& point);  ///< a time not later than the last one: what lies at or behind it
-                                 ///< is forgotten (the head went back)
+  explicit History(std::size_t capacity = 4096);  ///< one at least
+
+  /// Points at this time or later are forgotten first: the head went back.
+  void add(const Point& point);
   void clear();
   [[nodiscard]] const std::deque<Point>& points() const { return points_; }
 

@@ -17,12 +17,15 @@ struct Look {
   View view = TopView{};
   Surface surface;
   bool arrows = true;
-  bool fans = false;        ///< what ambiguous shear may be, once a pillar has a cell of its own
-  bool hatch = true;        ///< ambiguous pillars are hatched
-  double full_force_n = 1;  ///< mean force per pillar whose arrow is as long as its cell and a half
-  double arrow_cell = 18;   ///< least width of an arrow's cell, pixels at scale 1
-  double scale = 1;         ///< pixels of the display over those the sizes here are meant for
-  bool legend = true;       ///< axes, colour bar, legends and title
+  bool fans = false;  ///< what ambiguous shear may be, once a pillar has a cell of its own
+  bool hatch = true;  ///< ambiguous pillars are hatched
+  /// Mean force per pillar whose arrow is as long as its cell and a half; from above arrows are
+  /// those of shear.
+  double full_force_n = 1;
+  double full_shear_n = 1;
+  double arrow_cell = 18;  ///< least width of an arrow's cell, pixels at scale 1
+  double scale = 1;        ///< pixels of the display over those the sizes here are meant for
+  bool legend = true;      ///< axes, colour bar, legends and title
   std::string title;
 };
 

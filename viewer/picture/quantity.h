@@ -38,6 +38,20 @@ struct QuantityInfo {
 [[nodiscard]] const QuantityInfo& info_of(Quantity quantity);
 [[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
 
+/// Values of `status`, by what is worst.
+enum class StatusClass : std::uint8_t {
+  sound,
+  ambiguous,
+  from_neighbours,
+  saturated,
+  inconsistent
+};
+inline constexpr int kStatusClasses = 5;
+[[nodiscard]] StatusClass status_class(std::uint8_t status);
+
+/// Whether a sensel is usable or saturated: something presses.
+[[nodiscard]] bool is_pressed(std::uint8_t status);
+
 /// Whether a source has what it takes.
 [[nodiscard]] bool is_available(Quantity quantity, const SourceInfo& source);
 
@@ -48,16 +62,30 @@ struct Range {
   float high = 1;
 };
 
-/// The largest |value| of a quantity in a field, over pillars that are neither idle, nor saturated,
-/// nor inconsistent; zero where there is none.
+/// The largest finite |value| of a quantity in a field, over pillars that are neither idle, nor
+/// saturated, nor inconsistent; zero where there is none.
 [[nodiscard]] float largest(Quantity quantity, const ShownField& field);
 
-/// The range that fits largest values seen: 1, 2 or 5 times a power of ten, not below any of them;
-/// theta [0, pi/2] and phi [-pi, pi] always.
+/// The range that fits largest values seen: 1, 2 or 5 times a power of ten, not below any of them,
+/// and 1 where there is nothing to fit; theta [0, pi/2], phi [-pi, pi], and of classes [0, how
+/// many] always.
 [[nodiscard]] Range fitting_range(Quantity quantity, float largest_value);
 
-/// The value of one pillar, as the heat map's shader computes it (single precision, the same
-/// operations); NaN where the pillar has none (idle, or the source lacks it).
+/// The value of one pillar, as the heat map's shader computes it: in single precision, without
+/// contraction, by these operations, `x`, `y`, `n` being the planes shear_x, shear_y and normal.
+///
+///     normal, shear_x, shear_y     n, x, y
+///     shear                        sqrt(x*x + y*y)
+///     magnitude, theta, phi        as in their planes
+///     region                       float(region_of(status)): 1 to 5
+///     status                       float(status_class(status)): 0 to 4
+///     uncertainty                  s = sqrt((sx*sx + sy*sy) + sn*sn) of the deviations; where the
+///                                  status is ambiguous h = 0.5*(magnitude_high - magnitude_low),
+///                                  and h > s ? h : s
+///     parity                       (V1 + V3) - (V2 + V4) of the readings as floats
+///
+/// NaN where the source lacks what it takes, and where the pillar is idle: not is_pressed(); for
+/// region nothing usable, for status nothing pressed and no fault.
 [[nodiscard]] float value_of(Quantity quantity, const ShownField& field, std::uint32_t row,
                              std::uint32_t col);
 

@@ -24,15 +24,19 @@ struct SkinSize {
 };
 
 /// The surface the skin lies on: maps a point of the flat sheet to space, isometrically, with unit
-/// tangents along x and y and the outward normal. The same function stands in shaders/surface.glsl.
+/// tangents along x and y and the outward normal. The sheet's middle is the origin of space, its
+/// normal there z. The same function stands in shaders/surface.glsl.
 enum class SurfaceKind : std::uint32_t { plane, cylinder };
 struct Surface {
   SurfaceKind kind = SurfaceKind::plane;
-  double radius_mm = 0;  ///< of the cylinder, whose axis runs along y and whose crest is at x = 0
+  double radius_mm = 0;  ///< of the cylinder, whose axis runs along y and whose crest is at x = 0;
+                         ///< below kLeastRadiusMm it is a plane
 };
+inline constexpr double kLeastRadiusMm = 1e-3;
 struct SurfaceFrame {
-  Vec3 position, tangent_x, tangent_y, normal;
-};  ///< mm; unit vectors
+  Vec3 position;                      ///< mm
+  Vec3 tangent_x, tangent_y, normal;  ///< unit vectors
+};
 [[nodiscard]] SurfaceFrame frame_at(const Surface& surface, Vec2 point_mm);
 
 /// From above, without perspective; y up.
@@ -40,7 +44,7 @@ struct TopView {
   Vec2 centre_mm;  ///< of the sheet, in the middle of the viewport
   double pixels_per_mm = 1;
 };
-/// In perspective, around a target on the sheet.
+/// In perspective, around a target on the sheet. Angles are about the frame of the surface there.
 struct OrbitView {
   Vec2 target_mm;
   double azimuth = 0.6;    ///< rad, about the normal; 0: from below the picture's lower edge (-y)
@@ -55,10 +59,16 @@ struct Viewport {
   double x = 0, y = 0, width = 1, height = 1;
 };
 
-[[nodiscard]] TopView fit_top(const SkinSize& skin,
-                              const Viewport& viewport);  ///< whole skin, 4 % air
+/// The whole skin in the viewport, with 4 % of the viewport's sides free at either end or more.
+[[nodiscard]] TopView fit_top(const SkinSize& skin, const Viewport& viewport);
 [[nodiscard]] OrbitView fit_orbit(const SkinSize& skin, const Surface& surface,
                                   const Viewport& viewport);
+
+/// Arrows of this length from anywhere on the skin lie between the near and the far plane.
+inline constexpr double kArrowRoomMm = 60;
+
+/// What the shaders draw with. Depth is 0 at the near plane and 1 at the far one; both are as close
+/// about the skin and its arrows as the eye allows. Top views ignore the surface.
 [[nodiscard]] Matrix clip_from_world(const View& view, const Surface& surface, const SkinSize& skin,
                                      const Viewport& viewport);
 
@@ -72,10 +82,12 @@ struct Viewport {
                                        const SkinSize& skin, const Viewport& viewport, Vec2 pixel);
 
 /// Drags and wheels. `pixels` is the way of the mouse. All keep values within sensible limits.
-void pan(View& view, const Viewport& viewport, Vec2 pixels);
-void orbit(View& view, Vec2 pixels);
-void zoom(View& view, const Viewport& viewport, Vec2 pixel,
-          double factor);  ///< keeps the point under `pixel` there in a top view
+void pan(View& view, const Viewport& viewport, Vec2 pixels);  ///< what is there follows the mouse
+void orbit(View& view, Vec2 pixels);                          ///< top views stay as they are
+/// `factor` above 1 enlarges. In a top view the point under `pixel` stays there.
+void zoom(View& view, const Viewport& viewport, Vec2 pixel, double factor);
+/// Brings the middle of the view back onto the skin.
+void keep_on_skin(View& view, const SkinSize& skin);
 
 /// Pixels that a millimetre of the sheet takes in the middle of the viewport.
 [[nodiscard]] double pixels_per_mm(const View& view, const Viewport& viewport);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -79,7 +81,11 @@ struct SpeedPaths {
 /// Solves frames on a device, by the estimator and with the stages that a plan names.
 ///
 /// A ring of `frames_in_flight` slots: submit() starts a frame and returns; receive() waits for the
-/// oldest. Not for use by two threads at once.
+/// oldest. Not for use by two threads at once, save that a Kept may be given back from any thread.
+///
+/// A result that shall stay longer than the ring lets it is kept: keep() takes its slot out of the
+/// ring, nothing is written there, and other frames make do with the slots that are left. So a
+/// display may look at one result in place, without a copy, while others are solved.
 ///
 ///     Processor processor(open_device(), plan);
 ///     processor.submit(frame.view());
@@ -94,6 +100,26 @@ class Processor {
     SpeedPaths paths = {};
   };
 
+  /// A result that was kept. Its spans and its pages stay as they are until it is destroyed, which
+  /// gives its slot back. That may happen in any thread, while the processor solves, or after it is
+  /// gone: its memory then goes with the last Kept. A result is read before it is given back.
+  class Kept {
+   public:
+    Kept(Kept&&) noexcept;
+    Kept& operator=(Kept&&) noexcept;
+    ~Kept();
+
+    /// One block, on a boundary of 4096 bytes and of a multiple of them, that holds all planes of
+    /// the result. A slot always gives the same one.
+    [[nodiscard]] std::span<const std::byte> pages() const;
+
+   private:
+    friend class Processor;
+    struct State;
+    explicit Kept(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+  };
+
   /// Compiles (or finds compiled) the kernel and makes all buffers. Throws Error on a plan out of
   /// range or a device that fails.
   Processor(const Device& device, const SolverPlan& plan, const Options& options);
@@ -104,21 +130,27 @@ class Processor {
 
   /// Starts solving a frame of the plan's size and type, of any row stride. With shared memory the
   /// frame must stay as it is until it was received; with staged memory it may change at once.
-  /// Throws Error when all slots are in flight or the frame does not fit the plan.
+  /// Throws Error when all slots are in flight or kept, or the frame does not fit the plan.
   void submit(const FrameView& frame);
 
-  /// Waits for the oldest frame in flight. Its spans stay valid until `frames_in_flight` further
-  /// frames were submitted. Throws Error when none is in flight, or the plan has half_output.
+  /// Waits for the oldest frame in flight. Its spans stay valid until as many frames were submitted
+  /// after it as there are slots that are not kept, or for as long as it is kept. Throws Error when
+  /// none is in flight, or the plan has half_output.
   [[nodiscard]] ForceFieldView receive();
 
   /// The same of a plan with half_output, and of no other.
   [[nodiscard]] HalfFieldView receive_half();
+
+  /// Keeps the frame last received. Throws Error where none was received, it is kept already, or a
+  /// frame that was submitted since took its slot.
+  [[nodiscard]] Kept keep();
 
   /// The tare [sensel rows, cols] as the frames submitted so far leave it, in counts; waits for
   /// them. Empty where the plan has none and follows none.
   [[nodiscard]] std::vector<float> tare() const;
 
   [[nodiscard]] int in_flight() const;
+  [[nodiscard]] int kept() const;  ///< results that are kept now
   [[nodiscard]] bool shares_memory() const;
   [[nodiscard]] const Device& device() const;
 

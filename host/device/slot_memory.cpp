@@ -1,0 +1,13 @@
+#include "device/slot_memory.h"
+
+namespace pillarfield {
+
+ResultLayout::ResultLayout(const SolverPlan& plan) {
+  for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+    if (!is_wanted(plan, plane)) continue;
+    planes.at(plane) = {bytes, plan.skin.pillars() * value_size(plan, plane)};
+    bytes += (planes.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
+  }
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,44 @@
+#include "device/slot_turns.h"
+
+#include <bit>
+#include <utility>
+
+namespace pillarfield {
+
+std::optional<std::size_t> ReturnedSlots::take() {
+  // Mostly there are none, and looking is cheaper than exchanging.
+  const std::uint64_t bits = bits_.load(std::memory_order_acquire);
+  if (bits == 0) return std::nullopt;
+  const auto slot = static_cast<std::size_t>(std::countr_zero(bits));
+  bits_.fetch_and(~bit(slot), std::memory_order_acquire);
+  return slot;
+}
+
+std::size_t ReturnedSlots::size() const {
+  return static_cast<std::size_t>(std::popcount(bits_.load(std::memory_order_relaxed)));
+}
+
+SlotTurns::SlotTurns(std::size_t slots)
+    : slots_(slots), returned_(std::make_shared<ReturnedSlots>()) {
+  for (std::size_t slot = 0; slot < slots; ++slot) free_.push(slot);
+}
+
+std::optional<std::size_t> SlotTurns::next() {
+  if (const auto slot = returned_->take()) return slot;
+  if (free_.size() > 0) return free_.pop();
+  return std::exchange(last_received_, std::nullopt);
+}
+
+void SlotTurns::receive() {
+  if (last_received_) free_.push(*last_received_);
+  last_received_ = in_flight_.pop();
+}
+
+std::optional<std::size_t> SlotTurns::keep() { return std::exchange(last_received_, std::nullopt); }
+
+std::size_t SlotTurns::kept() const {
+  const std::size_t others = free_.size() + in_flight_.size() + (last_received_ ? 1 : 0);
+  return slots_ - others - returned_->size();
+}
+
+}  // namespace pillarfield

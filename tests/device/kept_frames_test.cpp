@@ -1,0 +1,296 @@
+// Results that are kept out of the ring while others are solved.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <random>
+#include <thread>
+
+#include "core/host_solve.h"
+#include "device/slot_turns.h"
+#include "pillarfield/error.h"
+#include "pillarfield/processor.h"
+#include "random_plan.h"
+
+namespace pillarfield {
+namespace {
+
+/// One device for all tests of this program; it is closed before the process ends.
+class DeviceForTests : public testing::Environment {
+ public:
+  void SetUp() override { device = open_device(); }
+  void TearDown() override { device.reset(); }
+  static inline std::optional<Device> device;
+};
+
+const testing::Environment* const kEnvironment =
+    testing::AddGlobalTestEnvironment(new DeviceForTests);
+
+const Device& test_device() { return DeviceForTests::device.value(); }
+
+template <class Value>
+bool same_bytes(std::span<const Value> left, std::span<const Value> right) {
+  return std::ranges::equal(std::as_bytes(left), std::as_bytes(right));
+}
+
+void expect_solved(const ForceFieldView& forces, const SolverPlan& plan, const RandomFrame& frame) {
+  const ForceField expected = solve_on_host(plan, frame.view());
+  EXPECT_TRUE(same_bytes<float>(forces.shear_x, expected.shear_x));
+  EXPECT_TRUE(same_bytes<float>(forces.shear_y, expected.shear_y));
+  EXPECT_TRUE(same_bytes<float>(forces.normal, expected.normal));
+  EXPECT_TRUE(same_bytes<std::uint8_t>(forces.status, expected.status));
+}
+
+std::vector<std::byte> copy_of(std::span<const std::byte> bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class Value>
+void expect_within(std::span<const std::byte> pages, std::span<const Value> plane) {
+  const std::span<const std::byte> bytes = std::as_bytes(plane);
+  EXPECT_GE(bytes.data(), pages.data());
+  EXPECT_LE(bytes.data() + bytes.size(), pages.data() + pages.size());
+}
+
+class KeptFrames : public testing::TestWithParam<Memory> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == Memory::shared && !test_device().info().shares_memory) {
+      GTEST_SKIP() << "this device does not share the host's memory";
+    }
+  }
+
+  [[nodiscard]] Processor processor(const SolverPlan& plan, int slots) const {
+    return {test_device(), plan, {.memory = GetParam(), .frames_in_flight = slots}};
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Memories, KeptFrames, testing::Values(Memory::shared, Memory::staged),
+                         [](const testing::TestParamInfo<Memory>& memory) {
+                           return memory.param == Memory::shared ? "shared" : "staged";
+                         });
+
+std::vector<RandomFrame> frames_of(const SolverPlan& plan, std::uint32_t count) {
+  std::vector<RandomFrame> frames;
+  for (std::uint32_t seed = 0; seed < count; ++seed) frames.emplace_back(plan, 0, seed);
+  return frames;
+}
+
+TEST_P(KeptFrames, StayAsTheyAreWhileOthersAreSolved) {
+  const SolverPlan plan = bare_plan(64, 90, SenselType::u8);
+  Processor ring = processor(plan, 3);
+  const std::vector<RandomFrame> frames = frames_of(plan, 20);
+  ring.submit(frames[0].view());
+  const ForceFieldView kept_forces = ring.receive();
+  const Processor::Kept kept = ring.keep();
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    ring.submit(frames[i].view());
+    const ForceFieldView forces = ring.receive();
+    expect_solved(forces, plan, frames[i]);
+    EXPECT_NE(forces.normal.data(), kept_forces.normal.data());
+  }
+  expect_solved(kept_forces, plan, frames[0]);
+}
+
+TEST_P(KeptFrames, PagesAreWholeAndHoldEveryPlane) {
+  SolverPlan plan = full_plan(34, 46, SenselType::u8, 3);
+  plan.angles = true;
+  plan.uncertainty = true;
+  Processor ring = processor(plan, 2);
+  const RandomFrame frame(plan, 0, 1);
+  ring.submit(frame.view());
+  const ForceFieldView forces = ring.receive();
+  const Processor::Kept kept = ring.keep();
+  const std::span<const std::byte> pages = kept.pages();
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pages.data()) % 4096, 0U);
+  EXPECT_EQ(pages.size() % 4096, 0U);
+  EXPECT_EQ(pages.size(), (3 + 3 + kUncertaintyPlanes + 1) * 4096) << "small planes, a page each";
+  for (const auto plane : {forces.shear_x, forces.shear_y, forces.normal, forces.magnitude,
+                           forces.theta, forces.phi}) {
+    expect_within(pages, plane);
+  }
+  for (const auto plane : forces.uncertainty) expect_within(pages, plane);
+  expect_within(pages, forces.status);
+}
+
+TEST_P(KeptFrames, HalfResultsAreKeptToo) {
+  SolverPlan plan = bare_plan(32, 32, SenselType::u8);
+  plan.half_output = true;
+  Processor ring = processor(plan, 2);
+  const std::vector<RandomFrame> frames = frames_of(plan, 6);
+  ring.submit(frames[0].view());
+  const HalfFieldView forces = ring.receive_half();
+  const Processor::Kept kept = ring.keep();
+  const auto before = copy_of(std::as_bytes(forces.normal));
+  expect_within(kept.pages(), forces.normal);
+  for (const RandomFrame& frame : frames) {
+    ring.submit(frame.view());
+    static_cast<void>(ring.receive_half());
+  }
+  EXPECT_EQ(copy_of(std::as_bytes(forces.normal)), before);
+}
+
+TEST_P(KeptFrames, GivingBackFreesTheSlot) {
+  const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
+  Processor ring = processor(plan, 2);
+  const std::vector<RandomFrame> frames = frames_of(plan, 8);
+  for (const RandomFrame& frame : frames) {
+    ring.submit(frame.view());
+    expect_solved(ring.receive(), plan, frame);
+    const Processor::Kept first = ring.keep();
+    ring.submit(frame.view());
+    expect_solved(ring.receive(), plan, frame);
+    const Processor::Kept second = ring.keep();
+    EXPECT_EQ(ring.kept(), 2);
+    EXPECT_NE(first.pages().data(), second.pages().data());
+  }
+  EXPECT_EQ(ring.kept(), 0);
+}
+
+TEST_P(KeptFrames, ExhaustionIsOneClearLineAndCanBeMended) {
+  const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
+  Processor ring = processor(plan, 2);
+  const std::vector<RandomFrame> frames = frames_of(plan, 2);
+  ring.submit(frames[0].view());
+  const ForceFieldView forces = ring.receive();
+  std::optional<Processor::Kept> kept = ring.keep();
+  ring.submit(frames[1].view());
+  try {
+    ring.submit(frames[1].view());
+    FAIL() << "three frames have no place in two slots";
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("of 2 frames 1 are in flight and 1 are kept"), std::string::npos) << text;
+    EXPECT_EQ(text.find('\n'), std::string::npos);
+  }
+  EXPECT_EQ(ring.in_flight(), 1);
+  expect_solved(forces, plan, frames[0]);
+  kept.reset();
+  ring.submit(frames[0].view());
+  expect_solved(ring.receive(), plan, frames[1]);
+  expect_solved(ring.receive(), plan, frames[0]);
+}
+
+TEST_P(KeptFrames, SilentBlocksOfASlotAreSkippedRightly) {
+  const SolverPlan plan = bare_plan(32, 64, SenselType::u8);
+  Processor ring = processor(plan, 3);
+  FrameBuffer silent(SenselType::u8, 32, 64);
+  const RandomFrame loud(plan, 0, 5);
+  std::mt19937 random(7);
+  std::deque<Processor::Kept> kept;
+  std::deque<std::pair<ForceFieldView, bool>> seen;
+  for (int i = 0; i < 60; ++i) {
+    const bool is_loud = random() % 2 == 0;
+    ring.submit(is_loud ? loud.view() : silent.view());
+    const ForceFieldView forces = ring.receive();
+    EXPECT_EQ(std::ranges::count(forces.status, 0) == std::ssize(forces.status), !is_loud);
+    if (is_loud) expect_solved(forces, plan, loud);
+    seen.emplace_back(forces, is_loud);
+    kept.push_back(ring.keep());
+    const auto stays = static_cast<std::size_t>(random() % 3);
+    for (; kept.size() > stays; kept.pop_front(), seen.pop_front()) {
+      const auto& [then, was_loud] = seen.front();
+      EXPECT_EQ(std::ranges::count(then.status, 0) == std::ssize(then.status), !was_loud);
+    }
+  }
+}
+
+TEST_P(KeptFrames, OutliveTheProcessor) {
+  const SolverPlan plan = bare_plan(64, 64, SenselType::u8);
+  const RandomFrame frame(plan, 0, 4);
+  const RandomFrame other(plan, 0, 5);
+  std::optional<Processor::Kept> kept;
+  ForceFieldView forces;
+  {
+    Processor ring = processor(plan, 2);
+    ring.submit(frame.view());
+    forces = ring.receive();
+    kept = ring.keep();
+    ring.submit(other.view());  // In flight when the processor goes.
+  }
+  expect_solved(forces, plan, frame);
+  std::jthread([&] { kept.reset(); }).join();
+}
+
+TEST_P(KeptFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
+  const SolverPlan plan = bare_plan(32, 32, SenselType::u8);
+  Processor ring = processor(plan, 4);
+  const std::vector<RandomFrame> frames = frames_of(plan, 4);
+  std::vector<ForceField> expected;
+  for (const RandomFrame& frame : frames) expected.push_back(solve_on_host(plan, frame.view()));
+  struct Shown {
+    Processor::Kept kept;
+    ForceFieldView forces;
+    std::size_t frame;
+  };
+  std::mutex mutex;
+  std::optional<Shown> waiting;
+  std::atomic<int> wrong = 0;
+  std::jthread display([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      std::unique_lock lock(mutex);
+      const std::optional<Shown> shown = std::exchange(waiting, std::nullopt);
+      lock.unlock();
+      if (!shown) continue;
+      if (!same_bytes<float>(shown->forces.normal, expected[shown->frame].normal)) ++wrong;
+    }
+  });
+  for (std::size_t i = 0; i < 2000; ++i) {
+    const std::size_t frame = i % frames.size();
+    ring.submit(frames[frame].view());
+    const ForceFieldView forces = ring.receive();
+    std::optional<Shown> next;
+    next.emplace(Shown{ring.keep(), forces, frame});
+    const std::scoped_lock lock(mutex);
+    std::swap(waiting, next);
+  }
+  display.request_stop();
+  display.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_P(KeptFrames, OnlyTheLastReceivedCanBeKept) {
+  const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  Processor ring = processor(plan, 2);
+  const RandomFrame frame(plan, 0, 1);
+  EXPECT_THROW(static_cast<void>(ring.keep()), Error) << "nothing was received";
+  ring.submit(frame.view());
+  EXPECT_THROW(static_cast<void>(ring.keep()), Error) << "it is in flight";
+  static_cast<void>(ring.receive());
+  ring.submit(frame.view());
+  const Processor::Kept kept = ring.keep();  // Its slot was not used since.
+  EXPECT_THROW(static_cast<void>(ring.keep()), Error) << "it is kept already";
+}
+
+/// What Processor promises of results that are not kept.
+TEST(SlotTurns, ASlotIsUsedAgainAfterAsManyFramesAsAreNotKept) {
+  for (std::size_t slots = 1; slots <= 6; ++slots) {
+    for (std::size_t kept = 0; kept < slots; ++kept) {
+      SlotTurns turns(slots);
+      for (std::size_t i = 0; i < kept; ++i) {
+        turns.submit(turns.next().value());
+        turns.receive();
+        ASSERT_TRUE(turns.keep());
+      }
+      std::deque<std::size_t> order;
+      for (std::size_t i = 0; i < 40; ++i) {
+        const std::size_t slot = turns.next().value();
+        turns.submit(slot);
+        turns.receive();
+        const auto last = std::ranges::find(order, slot);
+        const bool full = order.size() == slots - kept;
+        EXPECT_EQ(last, full ? order.begin() : order.end()) << "the oldest, once all were used";
+        order.push_back(slot);
+        if (full) order.pop_front();
+      }
+      EXPECT_EQ(turns.kept(), kept);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

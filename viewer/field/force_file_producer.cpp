@@ -1,0 +1,110 @@
+#include "viewer/field/force_file_producer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "viewer/field/direction.h"
+#include "viewer/field/frame_rate.h"
+#include "viewer/field/too_many_shown.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+std::string solver_of(const ForceFileInfo& info) {
+  if (info.estimator.empty()) return "not known";
+  return info.device.empty() ? info.estimator
+                             : fmt::format("{} on {}", info.estimator, info.device);
+}
+
+SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& reader) {
+  const ForceFileInfo& file = reader.info();
+  if (reader.frames() == 0) {
+    throw Error(path.string(), "it has no frames", "give a file with one at least");
+  }
+  SourceInfo info;
+  info.name = path.filename().string();
+  info.kind = "force field";
+  info.skin.rows = 2 * file.rows;
+  info.skin.cols = 2 * file.cols;
+  info.skin.sensel_pitch_mm = file.pillar_pitch_mm / 2;
+  info.frames = reader.frames();
+  info.has_angles = true;
+  info.has_uncertainty = file.uncertainty;
+  info.solver = solver_of(file);
+  info.remarks = reader.remarks();
+  return info;
+}
+
+void fill(PlaneBlock& block, const ForceField& forces) {
+  std::ranges::copy(forces.shear_x, block.plane(PlaneBlock::kShearX).begin());
+  std::ranges::copy(forces.shear_y, block.plane(PlaneBlock::kShearY).begin());
+  std::ranges::copy(forces.normal, block.plane(PlaneBlock::kNormal).begin());
+  std::ranges::copy(forces.status, block.status().begin());
+  std::size_t which = PlaneBlock::kUncertainty;
+  for (const auto& plane : forces.uncertainty) {
+    std::ranges::copy(plane, block.plane(which++).begin());
+  }
+  const std::span<float> magnitude = block.plane(PlaneBlock::kMagnitude);
+  const std::span<float> theta = block.plane(PlaneBlock::kTheta);
+  const std::span<float> phi = block.plane(PlaneBlock::kPhi);
+  for (std::size_t i = 0; i < forces.pillars(); ++i) {
+    const Direction direction =
+        direction_of(forces.shear_x[i], forces.shear_y[i], forces.normal[i]);
+    magnitude[i] = direction.magnitude;
+    theta[i] = direction.theta;
+    phi[i] = direction.phi;
+  }
+}
+
+}  // namespace
+
+ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
+    : file_(path), reader_(path), info_(info_of(path, *reader_)), blocks_(kMostShown, [this] {
+        return std::make_unique<PlaneBlock>(info_.skin.pillar_rows(), info_.skin.pillar_cols(),
+                                            info_.has_uncertainty);
+      }) {
+  info_.rate_hz = frame_rate(info_.frames,
+                             [this](std::uint64_t index) { return reader_->read(index, forces_); });
+}
+
+ShownField ForceFileProducer::produce(std::uint64_t index) {
+  if (!reader_) open();
+  const std::shared_ptr<PlaneBlock> block = blocks_.lend();
+  if (block == nullptr) throw_too_many_shown();
+  const double time_s = reader_->read(index, forces_);
+  fill(*block, forces_);
+  return {.forces = block->view(),
+          .raw = {},
+          .time_s = time_s,
+          .index = index,
+          .pages = block->pages(),
+          .keep_alive = block};
+}
+
+void ForceFileProducer::open() {
+  ForceFileReader reader(file_.path());
+  const ForceFileInfo& found = reader.info();
+  if (found.rows != info_.skin.pillar_rows() || found.cols != info_.skin.pillar_cols() ||
+      found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {
+    throw Error(file_.path().string(), "it became another file of forces", "open it anew");
+  }
+  reader_ = std::move(reader);
+}
+
+bool ForceFileProducer::refresh() {
+  if (!file_.has_changed()) return false;
+  reader_.reset();  // HDF5 shows a file that it has open as it was.
+  try {
+    open();
+  } catch (const Error&) {  // Its writer is about it; there will be another look.
+    file_.look_again();
+    return false;
+  }
+  const std::uint64_t before = std::exchange(info_.frames, reader_->frames());
+  return info_.frames != before;
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "pillarfield/force_file.h"
+#include "viewer/field/field_producer.h"
+#include "viewer/field/growing_file.h"
+#include "viewer/field/lending_pool.h"
+#include "viewer/field/plane_block.h"
+
+namespace pillarfield::viewer {
+
+/// Fields as a file has them, with magnitude and angles computed from the forces.
+class ForceFileProducer final : public FieldProducer {
+ public:
+  /// Throws Error where the file cannot be read or has no frames.
+  explicit ForceFileProducer(const std::filesystem::path& path);
+
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] ShownField produce(std::uint64_t index) override;
+  bool refresh() override;
+
+ private:
+  void open();
+
+  GrowingFile file_;
+  std::optional<ForceFileReader> reader_;  ///< none where it could not be opened again
+  SourceInfo info_;
+  ForceField forces_;  ///< as read last
+  LendingPool<PlaneBlock> blocks_;
+};
+
+}  // namespace pillarfield::viewer

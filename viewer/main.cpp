@@ -1,0 +1,43 @@
+// The `pillarfield-viewer` command. Exit status: 0 done, 1 the work failed, 2 the command line was
+// wrong.
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "viewer/app/app.h"
+#include "viewer/gpu/vulkan.h"
+#include "viewer/headless.h"
+
+namespace {
+
+constexpr int kFailed = 1;
+
+int complain(const char* message) noexcept {
+  std::fprintf(stderr, "pillarfield-viewer: %s\n", message);
+  return kFailed;
+}
+
+int run(int argc, char** argv) {
+  pillarfield::viewer::Options options;
+  if (const auto status = pillarfield::viewer::parse_options(argc, argv, options)) return *status;
+  if (!options.headless) return pillarfield::viewer::run_window(options);
+  pillarfield::viewer::run_headless(options);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return complain("out of memory; take a smaller patch, or fewer frames");
+  } catch (const vk::DeviceLostError&) {
+    return complain("the graphics device was lost; start again, or choose another with --gpu");
+  } catch (const std::exception& error) {
+    return complain(error.what());
+  } catch (...) {
+    return complain("an unknown failure; please report it");
+  }
+}

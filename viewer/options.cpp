@@ -1,0 +1,209 @@
+#include "viewer/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "pillarfield/version.h"
+#include "viewer/draw/scene.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+constexpr const char* kFooter = R"(
+SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solved while you watch, or
+a file of force fields from `pillarfield solve`. Keys and mouse: press ? in the window.
+
+Try:  pillarfield-viewer scenes/demo.toml
+      pillarfield-viewer scenes/spin.toml --headless --frame 5 --png spin.png
+      pillarfield-viewer forces.h5 --headless --frames 1:60 --size 1920x1080 --video touch.mp4)";
+
+/// Parses the numbers of "1280x720", "-0.5:0.5" or "10,20"; throws a complaint that shows the form.
+std::vector<double> numbers(const std::string& text, const std::string& separators,
+                            std::size_t count, const char* form) {
+  std::vector<double> values;
+  std::size_t begin = 0;
+  while (begin <= text.size()) {
+    const std::size_t end = std::min(text.find_first_of(separators, begin), text.size());
+    const std::string part = text.substr(begin, end - begin);
+    std::size_t used = 0;
+    try {
+      values.push_back(std::stod(part, &used));
+    } catch (const std::exception&) {
+      used = std::string::npos;
+    }
+    if (used != part.size()) break;
+    begin = end + 1;
+  }
+  if (begin <= text.size() || values.size() != count) {
+    throw CLI::ValidationError(fmt::format("'{}' is not of the form {}", text, form));
+  }
+  return values;
+}
+
+void require(bool holds, const std::string& complaint) {
+  if (!holds) throw CLI::ValidationError(complaint);
+}
+
+std::string quantity_names() {
+  std::string names;
+  for (int i = 0; i < kQuantities; ++i) {
+    names += fmt::format("{}{}", i == 0 ? "" : ", ", info_of(static_cast<Quantity>(i)).name);
+  }
+  return names;
+}
+
+void take_size(Options& options, const std::string& text) {
+  const auto size = numbers(text, "x", 2, "WIDTHxHEIGHT, in pixels");
+  require(size[0] >= 320 && size[0] <= 8192 && size[1] >= 240 && size[1] <= 8192,
+          "a picture has 320x240 to 8192x8192 pixels");
+  options.width = static_cast<std::uint32_t>(size[0]);
+  options.height = static_cast<std::uint32_t>(size[1]);
+}
+
+void take_layer(Options& options, const std::string& text) {
+  const auto quantity = quantity_named(text);
+  require(quantity.has_value(),
+          fmt::format("'{}' is no layer; there are {}", text, quantity_names()));
+  options.quantity = *quantity;
+}
+
+void take_map(Options& options, const std::string& text) {
+  for (int i = 0; i < kColourMaps; ++i) {
+    if (text == name_of(static_cast<ColourMap>(i))) options.map = static_cast<ColourMap>(i);
+  }
+  require(
+      options.map.has_value(),
+      fmt::format("'{}' is no colour map; there are cividis, viridis, diverging, cyclic", text));
+}
+
+void take_view(Options& options, const std::string& text) {
+  const std::string name = text.substr(0, text.find(':'));
+  require(name == "top" || name == "orbit",
+          fmt::format("'{}' is no view; there are top, orbit and orbit:AZIMUTH,ELEVATION", text));
+  options.orbit = name == "orbit";
+  if (text == name) return;
+  require(options.orbit, "a view from the top has no angles");
+  const auto angles = numbers(text.substr(name.size() + 1), ",", 2, "orbit:AZIMUTH,ELEVATION");
+  require(angles[1] > 0 && angles[1] <= 90, "the elevation lies in (0, 90] degrees");
+  options.azimuth = angles[0] * kDegree;
+  options.elevation = angles[1] * kDegree;
+}
+
+void take_surface(Options& options, const std::string& text) {
+  if (text == "plane") return;
+  require(text.rfind("cylinder:", 0) == 0,
+          fmt::format("'{}' is no surface; there are plane and cylinder:RADIUS, in mm", text));
+  const auto radius = numbers(text.substr(9), ",", 1, "cylinder:RADIUS, in mm");
+  require(radius[0] >= 1 && radius[0] <= 1e5, "the radius lies in [1, 100000] mm");
+  options.surface = {SurfaceKind::cylinder, radius[0]};
+}
+
+/// Frames are counted from 1 for people.
+void take_frames(Options& options, const std::string& text) {
+  const auto frames = numbers(text, ":", 2, "FIRST:LAST, counted from 1");
+  require(frames[0] >= 1 && frames[1] >= frames[0] && frames[1] < 1e15,
+          "frames are counted from 1, and the last does not come before the first");
+  options.first_frame = static_cast<std::uint64_t>(frames[0]) - 1;
+  options.end_frame = static_cast<std::uint64_t>(frames[1]);
+}
+
+void take_range(Options& options, const std::string& text) {
+  const auto ends = numbers(text, ":", 2, "LOW:HIGH");
+  require(ends[0] < ends[1], "the low end of a range lies below the high one");
+  options.range = Range{static_cast<float>(ends[0]), static_cast<float>(ends[1])};
+}
+
+void add_texts(CLI::App& app, Options& options) {
+  const auto add = [&](const char* name, const char* help,
+                       void (*take)(Options&, const std::string&)) {
+    app.add_option_function<std::string>(
+        name, [&options, take](const std::string& text) { take(options, text); }, help);
+  };
+  add("--size", "Size of the picture or the window, pixels [1280x720]", take_size);
+  static const std::string layers = fmt::format("What the heat map shows: {}", quantity_names());
+  add("--layer", layers.c_str(), take_layer);
+  add("--range", "Ends of the colour bar, LOW:HIGH in the unit shown [what fits the source]",
+      take_range);
+  add("--map", "Colours: cividis, viridis, diverging or cyclic [what suits the layer]", take_map);
+  add("--view", "top, orbit or orbit:AZIMUTH,ELEVATION in degrees [top]", take_view);
+  add("--surface", "In 3-D: plane or cylinder:RADIUS in mm [plane]", take_surface);
+  add("--frames", "Render frames FIRST:LAST, counted from 1", take_frames);
+  add("--centre", "Point in the middle of a view from the top, X,Y in mm [0,0]",
+      [](Options& all, const std::string& text) {
+        const auto point = numbers(text, ",", 2, "X,Y, in mm");
+        all.centre_mm = Vec2{point[0], point[1]};
+      });
+}
+
+void check_together(const Options& options, bool has_frame, bool has_frames) {
+  const bool writes = !options.png.empty() || !options.video.empty() || !options.csv.empty();
+  require(!(has_frame && has_frames), "--frame and --frames exclude each other");
+  require(options.headless || !has_frames, "--frames needs --headless");
+  require(options.headless || !writes,
+          "--png, --video and --csv need --headless; in the window there are keys for them");
+  require(!options.headless || writes,
+          "--headless needs something to write: --png, --video or --csv");
+}
+
+}  // namespace
+
+std::optional<int> parse_options(int argc, char** argv, Options& options) {
+  CLI::App app("Shows fields of three-axis force, in a window or as pictures in files.",
+               "pillarfield-viewer");
+  app.set_version_flag("--version", kVersion, "Print the version and exit");
+  app.footer(kFooter);
+  app.add_option("source", options.source, "Scene, recording, Tekscan export or force fields")
+      ->required();
+  add_texts(app, options);
+  std::uint64_t frame = 1;
+  auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1]")
+                        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
+  app.add_option("--zoom", options.zoom, "Enlarges the view [1]")->check(CLI::Range(0.05, 1000.0));
+  app.add_option("--scale", options.scale, "Size of letters and lines [the display's, or 1]")
+      ->check(CLI::Range(0.5, 4.0));
+  app.add_flag_callback(
+      "--light", [&] { options.theme = Theme::light; }, "Dark on white");
+  app.add_flag("!--no-arrows", options.arrows, "No arrows");
+  app.add_flag("--fans", options.fans, "Show what ambiguous shear may be, where pillars are large");
+  app.add_flag("!--no-hatch", options.hatch, "Ambiguous pillars are not hatched");
+  app.add_flag("!--no-legend", options.legend, "Neither axes nor colour bar: the field alone");
+
+  app.add_flag("--headless", options.headless, "No window: write files and end")->group("Files");
+  app.add_option("--png", options.png, "Picture to write; of several frames NAME_001.png and so on")
+      ->group("Files");
+  app.add_option("--video", options.video, "Video to write with ffmpeg, .mp4 or .webm")
+      ->group("Files");
+  app.add_option("--csv", options.csv, "Forces in sight of the first frame, as a table")
+      ->group("Files");
+
+  app.add_option("--device", options.device, "OpenCL device that solves [the best]")
+      ->group("Devices");
+  app.add_option("--gpu", options.gpu, "Vulkan device that draws, a part of its name [the best]")
+      ->group("Devices");
+  app.add_flag("--copy", options.copy_fields,
+               "Copy fields to the Vulkan device even where it could read them in place")
+      ->group("Devices");
+  app.add_flag("--validate", options.validate, "Let Vulkan's validation layer watch every call")
+      ->group("Devices");
+  app.add_flag("--paused", options.paused, "Do not play at first")->group("Window");
+  app.add_flag("--statistics", options.statistics,
+               "Print rates and times as JSON when the window is closed")
+      ->group("Window");
+  try {
+    app.parse(argc, argv);
+    check_together(options, one->count() > 0, options.end_frame != 0);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  if (one->count() > 0) options.first_frame = frame - 1;
+  return std::nullopt;
+}
+
+}  // namespace pillarfield::viewer
