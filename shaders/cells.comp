@@ -15,15 +15,19 @@ void main() {
   const uvec2 last = min(first + block, scene.grid.yx);
 
   vec4 sum = vec4(0.0);
+  uvec2 places = uvec2(0);
   for (uint row = first.y; row < last.y; ++row) {
     for (uint col = first.x; col < last.x; ++col) {
       const uint pillar = row * scene.grid.y + col;
       if (!is_usable(status_of(pillar))) continue;
       sum += vec4(plane_value(scene.force.x, pillar), plane_value(scene.force.y, pillar),
                   plane_value(scene.force.z, pillar), 1.0);
+      places += uvec2(col, row) - first;
     }
   }
-  const vec2 middle = 0.5 * vec2(first + last) - 0.5 * vec2(scene.grid.yx);
+  // The middle of those in contact: at the edge of a contact the arrow stays upon it.
+  const vec2 place =
+      vec2(first) + vec2(places) / max(sum.w, 1.0) + 0.5 - 0.5 * vec2(scene.grid.yx);
   cells[index].force = sum;
-  cells[index].place = vec4(middle.x * scene.sheet.z, -middle.y * scene.sheet.z, 0.0, 0.0);
+  cells[index].place = vec4(place.x * scene.sheet.z, -place.y * scene.sheet.z, 0.0, 0.0);
 }

@@ -102,7 +102,7 @@ struct Colours {
 // What an arrow stands for: the forces under its cell, added.
 struct Cell {
   vec4 force;  // shear_x, shear_y, normal: N; pillars in contact
-  vec4 place;  // x, y of its middle on the sheet: mm; none
+  vec4 place;  // x, y on the sheet of the middle of those in contact: mm; none
 };
 
 #ifdef __cplusplus

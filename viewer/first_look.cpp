@@ -1,32 +1,54 @@
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "pillarfield/error.h"
 #include "viewer/draw/scene.h"
 #include "viewer/options.h"
+#include "viewer/picture/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {
 
 constexpr std::uint64_t kMostSurveyed = 16;
 
-/// The largest value of each quantity in frames spread evenly over a source.
-std::array<float, kQuantities> survey(FieldProducer& producer) {
-  std::array<float, kQuantities> most{};
+// Of the values seen: the colour bar ends where few lie above, so that a spike at the edge of a
+// punch does not darken all the rest; arrows of middling forces are as long as their cells.
+constexpr double kShareInRange = 0.995;
+constexpr double kShareOfArrow = 0.8;
+
+/// Absolute values of a quantity in frames spread evenly over a source, of sound pillars.
+std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
+  std::vector<float> values;
   const std::uint64_t frames = producer.info().frames;
   const std::uint64_t looked_at = std::min(frames, kMostSurveyed);
   for (std::uint64_t i = 0; i < looked_at; ++i) {
     // The middles of equal parts: at the very first frame nothing may touch yet.
     const ShownField field = producer.produce((2 * i + 1) * frames / (2 * looked_at));
-    for (int q = 0; q < kQuantities; ++q) {
-      const auto quantity = static_cast<Quantity>(q);
-      if (!is_available(quantity, producer.info())) continue;
-      float& value = most.at(static_cast<std::size_t>(q));
-      value = std::max(value, largest(quantity, field));
+    for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
+      for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
+        const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
+        if (special_of(quantity, status)) continue;
+        const float value = std::abs(value_of(quantity, field, row, col));
+        if (std::isfinite(value)) values.push_back(value);
+      }
     }
   }
-  return most;
+  return values;
+}
+
+/// The value that `share` of them do not exceed; zero of none.
+float quantile(std::vector<float> values, double share) {
+  if (values.empty()) return 0;
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
+double full_arrow(FieldProducer& producer, Quantity quantity) {
+  const float typical = quantile(survey(producer, quantity), kShareOfArrow);
+  return typical > 0 ? nice_ceiling(typical) : 1;
 }
 
 Range in_own_unit(const Range& shown, Quantity quantity) {
@@ -41,6 +63,10 @@ void require_available(Quantity quantity, const SourceInfo& source) {
 }
 
 }  // namespace
+
+Range range_that_fits(FieldProducer& producer, Quantity quantity) {
+  return fitting_range(quantity, quantile(survey(producer, quantity), kShareInRange));
+}
 
 View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {
   const SkinSize size = skin_size(source);
@@ -61,12 +87,10 @@ View first_view(const Options& options, const SourceInfo& source, const Viewport
 Look first_look(const Options& options, FieldProducer& producer, double scale) {
   const SourceInfo& source = producer.info();
   require_available(options.quantity, source);
-  const auto most = survey(producer);
-  const auto of = [&](Quantity quantity) { return most.at(static_cast<std::size_t>(quantity)); };
   Look look;
   look.quantity = options.quantity;
   look.range = options.range ? in_own_unit(*options.range, options.quantity)
-                             : fitting_range(options.quantity, of(options.quantity));
+                             : range_that_fits(producer, options.quantity);
   look.map = options.map.value_or(default_map(info_of(options.quantity).scale));
   look.theme = options.theme;
   look.surface = options.surface;
@@ -75,8 +99,8 @@ Look first_look(const Options& options, FieldProducer& producer, double scale) {
   look.hatch = options.hatch;
   look.legend = options.legend;
   look.scale = scale;
-  look.full_force_n = fitting_range(Quantity::magnitude, of(Quantity::magnitude)).high;
-  look.full_shear_n = fitting_range(Quantity::shear, of(Quantity::shear)).high;
+  look.full_force_n = full_arrow(producer, Quantity::magnitude);
+  look.full_shear_n = full_arrow(producer, Quantity::shear);
   return look;
 }
 

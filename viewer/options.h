@@ -55,6 +55,9 @@ struct Options {
 /// source has not what is to be shown.
 [[nodiscard]] Look first_look(const Options& options, FieldProducer& producer, double scale);
 
+/// Ends of the colour bar that fit what a few frames, evenly spread, hold of a quantity.
+[[nodiscard]] Range range_that_fits(FieldProducer& producer, Quantity quantity);
+
 /// From where it is seen first, in the plot of a picture's layout.
 [[nodiscard]] View first_view(const Options& options, const SourceInfo& source,
                               const Viewport& plot);

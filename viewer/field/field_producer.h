@@ -52,7 +52,7 @@ class FieldProducer {
 };
 
 struct ProducerOptions {
-  std::string device;  ///< as open_device() takes it
+  std::string device = {};  ///< as open_device() takes it
   Memory memory = Memory::automatic;
   /// Frames of a scene are simulated beforehand, as many as it has and fit.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;

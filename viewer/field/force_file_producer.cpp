@@ -71,7 +71,7 @@ ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
 }
 
 ShownField ForceFileProducer::produce(std::uint64_t index) {
-  if (!reader_) open();
+  if (!reader_) open(file_.path());
   const std::shared_ptr<PlaneBlock> block = blocks_.lend();
   if (block == nullptr) throw_too_many_shown();
   const double time_s = reader_->read(index, forces_);
@@ -84,25 +84,20 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
           .keep_alive = block};
 }
 
-void ForceFileProducer::open() {
-  ForceFileReader reader(file_.path());
+void ForceFileProducer::open(const std::filesystem::path& path) {
+  ForceFileReader reader(path);
   const ForceFileInfo& found = reader.info();
   if (found.rows != info_.skin.pillar_rows() || found.cols != info_.skin.pillar_cols() ||
       found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {
-    throw Error(file_.path().string(), "it became another file of forces", "open it anew");
+    throw Error(path.string(), "it became another file of forces", "open it anew");
   }
   reader_ = std::move(reader);
 }
 
 bool ForceFileProducer::refresh() {
-  if (!file_.has_changed()) return false;
+  if (!file_.may_have_changed()) return false;
   reader_.reset();  // HDF5 shows a file that it has open as it was.
-  try {
-    open();
-  } catch (const Error&) {  // Its writer is about it; there will be another look.
-    file_.look_again();
-    return false;
-  }
+  if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
   const std::uint64_t before = std::exchange(info_.frames, reader_->frames());
   return info_.frames != before;
 }

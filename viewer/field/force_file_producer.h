@@ -22,7 +22,7 @@ class ForceFileProducer final : public FieldProducer {
   bool refresh() override;
 
  private:
-  void open();
+  void open(const std::filesystem::path& path);
 
   GrowingFile file_;
   std::optional<ForceFileReader> reader_;  ///< none where it could not be opened again

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 namespace pillarfield::viewer {
 
@@ -10,20 +11,24 @@ class GrowingFile {
  public:
   explicit GrowingFile(std::filesystem::path path);
 
-  /// Whether it changed since this was last asked, or since it was made. A file that was written as
-  /// NAME.part and is finished goes on under NAME.
-  [[nodiscard]] bool has_changed();
+  /// Whether it may have changed since this was last asked, or since it was made: also where it was
+  /// written so shortly before that its time could not tell. A file that was written as NAME.part
+  /// and is finished goes on under NAME.
+  [[nodiscard]] bool may_have_changed();
 
-  /// It counts as changed when asked next.
-  void look_again() { seen_ = {}; }
+  /// Calls `open` with the path until it throws no Error nor filesystem_error, five times at most
+  /// within a twentieth of a second: its writer may be about it. False where it threw each time;
+  /// the file then counts as changed when asked next.
+  bool reopen(const std::function<void(const std::filesystem::path&)>& open);
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Its name by now.
+  [[nodiscard]] const std::filesystem::path& path();
 
  private:
   struct Look {
     std::uintmax_t bytes = 0;
     std::filesystem::file_time_type written;
-    friend bool operator==(const Look&, const Look&) = default;
+    bool is_settled = false;  ///< a later write would have a later time
   };
   [[nodiscard]] Look look() const;
 

@@ -25,7 +25,7 @@ class RecordedFrames final : public FrameSupply {
   [[nodiscard]] std::uint64_t frames() const override { return frames_; }
 
   [[nodiscard]] SuppliedFrame frame(std::uint64_t index) override {
-    if (source_ == nullptr) open();
+    if (source_ == nullptr) open(file_.path());
     const std::shared_ptr<FrameBuffer> buffer = buffers_.lend();
     if (buffer == nullptr) throw_too_many_shown();
     const double time_s = source_->read(index, *buffer);
@@ -33,25 +33,20 @@ class RecordedFrames final : public FrameSupply {
   }
 
   bool refresh() override {
-    if (!file_.has_changed()) return false;
+    if (!file_.may_have_changed()) return false;
     source_.reset();  // HDF5 shows a file that it has open as it was.
-    try {
-      open();
-    } catch (const Error&) {  // Its writer is about it; there will be another look.
-      file_.look_again();
-      return false;
-    }
+    if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
     const std::uint64_t before = std::exchange(frames_, source_->frames());
     return frames_ != before;
   }
 
  private:
-  void open() {
-    std::unique_ptr<FrameSource> source = open_frames(file_.path());
+  void open(const std::filesystem::path& path) {
+    std::unique_ptr<FrameSource> source = open_frames(path);
     const Skin& skin = source->skin();
     if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {
-      throw Error(file_.path().string(), "it became another recording", "open it anew");
+      throw Error(path.string(), "it became another recording", "open it anew");
     }
     source_ = std::move(source);
   }

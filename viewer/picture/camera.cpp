@@ -72,7 +72,7 @@ DepthRange depths_of(const Camera& camera, const Box& box) {
   if (!camera.perspective) return range;
   // An eye among the arrows: the nearest of them are cut, else depth would have no precision left.
   range.near_mm = std::max(range.near_mm, camera.distance_mm / 100);
-  range.far_mm = std::max(range.far_mm, 2 * range.near_mm);
+  range.far_mm = std::max(range.far_mm, 1.01 * range.near_mm);
   return range;
 }
 

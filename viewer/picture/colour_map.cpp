@@ -17,7 +17,7 @@ constexpr Colour kInconsistent = colour_from(0x870f87);
 constexpr Colour kSaturated = colour_from(0xd21e0f);
 constexpr Colour kFromNeighbours = colour_from(0x2dc3e1);
 constexpr Colour kRegion2 = colour_from(0x4bd2ff);
-constexpr Colour kRegion4 = colour_from(0xa52d0f);
+constexpr Colour kRegion4 = colour_from(0x8769f0);
 
 /// What kinds of colour a pillar of a class has.
 Special special_of(StatusClass status) {

@@ -23,7 +23,7 @@ struct Look {
   /// those of shear.
   double full_force_n = 1;
   double full_shear_n = 1;
-  double arrow_cell = 18;  ///< least width of an arrow's cell, pixels at scale 1
+  double arrow_cell = 14;  ///< least width of an arrow's cell, pixels at scale 1
   double scale = 1;        ///< pixels of the display over those the sizes here are meant for
   bool legend = true;      ///< axes, colour bar, legends and title
   std::string title;

@@ -120,7 +120,7 @@ float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t ro
 
 /// A single-precision number not below `value`; as round as nice_ceiling() makes it.
 float nice_float(float value) {
-  constexpr double kMost = 2e38;
+  constexpr double kMost = 1e38;
   // A value that was stored as 0.1 is a little more in single precision, and fits 0.1 all the same.
   const double exact = std::clamp(double{value}, 1e-37, kMost);
   const auto nice = static_cast<float>(nice_ceiling(exact * (1 - 0x1p-23)));

@@ -13,8 +13,7 @@ constexpr std::size_t kPage = 4096;
 std::size_t whole_pages(std::size_t bytes) { return (bytes + kPage - 1) / kPage * kPage; }
 
 std::shared_ptr<std::byte[]> make_pages(std::size_t bytes) {
-  auto* const pages =
-      static_cast<std::byte*>(::operator new[](bytes, std::align_val_t{kPage}));
+  auto* const pages = static_cast<std::byte*>(::operator new[](bytes, std::align_val_t{kPage}));
   return {pages, [](std::byte* memory) { ::operator delete[](memory, std::align_val_t{kPage}); }};
 }
 
@@ -24,8 +23,8 @@ std::array<float, 4> readings_of(const MadeUpPillar& pillar) {
   const float a = std::sqrt(0.5F);
   const float rising = a * (pillar.shear_x + pillar.shear_y);
   const float falling = a * (pillar.shear_y - pillar.shear_x);
-  return {k * (pillar.normal + rising), k * (pillar.normal + falling),
-          k * (pillar.normal - rising), k * (pillar.normal - falling)};
+  return {k * (pillar.normal + rising), k * (pillar.normal + falling), k * (pillar.normal - rising),
+          k * (pillar.normal - falling)};
 }
 
 }  // namespace
@@ -49,10 +48,14 @@ MadeUpField::MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& p
       const float magnitude = std::hypot(shear, value.normal);
       const float theta = std::atan2(shear, value.normal);
       const float phi = std::atan2(-value.shear_y, -value.shear_x);
-      const std::array planes{value.shear_x, value.shear_y, value.normal, magnitude,
-                              theta,         phi,           0.01F,        0.02F,
-                              0.02F,         theta - 0.3F,  theta + 0.1F, phi - 0.4F,
-                              phi + 0.4F,    magnitude * 0.8F, magnitude * 1.2F};
+      const std::array planes{value.shear_x,   value.shear_y,
+                              value.normal,    magnitude,
+                              theta,           phi,
+                              0.01F,           0.02F,
+                              0.02F,           theta - 0.3F,
+                              theta + 0.1F,    phi - 0.4F,
+                              phi + 0.4F,      magnitude * 0.8F,
+                              magnitude * 1.2F};
       for (std::size_t plane = 0; plane < planes.size(); ++plane) {
         floats(plane)[index] = planes.at(plane);
       }

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cmath>
+
+/// As much of GLSL as surface.glsl needs to be C++.
+namespace glsl {
+
+using uint = unsigned;
+
+struct vec2 {  // NOLINT(readability-identifier-naming): GLSL's name, as those below
+  float x, y;
+};
+
+struct vec3 {  // NOLINT(readability-identifier-naming)
+  float x, y, z;
+  vec3(float first, float second, float third) : x(first), y(second), z(third) {}
+};
+
+struct mat3 {  // NOLINT(readability-identifier-naming)
+  vec3 first, second, third;
+  mat3(vec3 a, vec3 b, vec3 c) : first(a), second(b), third(c) {}
+};
+
+using std::cos;
+using std::sin;
+
+}  // namespace glsl
