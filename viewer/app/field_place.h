@@ -14,7 +14,7 @@ struct FieldPlace {
   Viewport area;  ///< of the picture in the window, pixels
   const SourceInfo* source = nullptr;
 
-  [[nodiscard]] SkinSize skin() const;              ///< mm
+  [[nodiscard]] SkinSize skin() const;                  ///< mm
   [[nodiscard]] Viewport plot(const Look& look) const;  ///< of the skin in the window, pixels
 };
 

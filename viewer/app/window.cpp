@@ -91,9 +91,8 @@ struct Window::Callbacks {
   static void button(GLFWwindow* window, int button, int action, int modifiers) {
     const auto known = button_of(button);
     if (!known) return;
-    of(window).events_.emplace_back(ButtonEvent{*known, action == GLFW_PRESS,
-                                                modifiers_of(modifiers), cursor_of(window),
-                                                glfwGetTime()});
+    of(window).events_.emplace_back(ButtonEvent{
+        *known, action == GLFW_PRESS, modifiers_of(modifiers), cursor_of(window), glfwGetTime()});
   }
   static void wheel(GLFWwindow* window, double /*x*/, double y) {
     of(window).events_.emplace_back(WheelEvent{y, cursor_of(window)});

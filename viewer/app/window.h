@@ -33,10 +33,10 @@ class Window {
   [[nodiscard]] bool closes() const;        ///< somebody wants it closed
   void show();
 
-  void poll();                                ///< collects what happened
-  void wait(std::optional<double> seconds);   ///< the same, once something has happened
-  static void wake();                         ///< ends wait(); from any thread
-  [[nodiscard]] static double now_s();        ///< the clock of ButtonEvent::time_s
+  void poll();                               ///< collects what happened
+  void wait(std::optional<double> seconds);  ///< the same, once something has happened
+  static void wake();                        ///< ends wait(); from any thread
+  [[nodiscard]] static double now_s();       ///< the clock of ButtonEvent::time_s
 
   /// What was collected, and forgets it.
   [[nodiscard]] std::vector<InputEvent> take_events();

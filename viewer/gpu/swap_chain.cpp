@@ -24,7 +24,8 @@ vk::SurfaceFormatKHR choose_format(const Device& device, vk::SurfaceKHR surface)
   throw Error(device.name(), "its windows have no 8-bit UNORM format", kMend);
 }
 
-/// One that shows whole pictures only; mailbox, where there is one, does not wait to hand them over.
+/// One that shows whole pictures only; mailbox, where there is one, does not wait to hand them
+/// over.
 vk::PresentModeKHR choose_mode(const Device& device, vk::SurfaceKHR surface) {
   const auto modes = device.physical().getSurfacePresentModesKHR(surface);
   const bool has_mailbox =
@@ -97,10 +98,9 @@ bool SwapChain::resize(vk::Extent2D wished) {
 void SwapChain::make_images() {
   for (const VkImage image : chain_.getImages()) {
     images_.emplace_back(image);
-    views_.emplace_back(
-        device_->handle(),
-        vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, format_, {},
-                                {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
+    views_.emplace_back(device_->handle(),
+                        vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, format_, {},
+                                                {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
     // One for each image: an image that comes back has been shown, and its semaphore waited for.
     drawn_.emplace_back(device_->handle(), vk::SemaphoreCreateInfo());
   }
