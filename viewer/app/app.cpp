@@ -124,6 +124,7 @@ void Application::listen_to_player() {
 
 void Application::run() {
   window_.show();
+  if (options_.first_frame != 0) session_.player->seek(options_.first_frame);
   if (!options_.paused) session_.player->play();
   while (!window_.closes() && !requests_.quit) {
     wait();

@@ -19,13 +19,14 @@ class Row {
     x_ += gap();
   }
 
-  /// At the end of the row, as much of it as there is room for.
-  void finish(const std::string& words, ImGuiCol colour) {
+  /// At the end of the row; false where there is no room for it.
+  bool finish(const std::string& words, ImGuiCol colour) {
     const float right = ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x;
     const float width = ImGui::CalcTextSize(words.c_str()).x;
-    if (right - width < x_) return;
+    if (right - width < x_) return false;
     x_ = right - width;
     write(words.c_str(), colour);
+    return true;
   }
 
  private:
@@ -56,10 +57,14 @@ void status_row(const Session& session, const std::string& gpu) {
   row.add("latency", fmt::format("{:.1f} ms", drawn.latency_ms_median), "000.0 ms");
   row.add("not shown", fmt::format("{}", solved.not_shown), "00000");
   row.add("memory", drawn.in_place ? "in place" : "copied", "in place");
-  if (!session.notice.empty()) {
-    row.finish(session.notice, ImGuiCol_CheckMark);
-  } else {
-    row.finish(fmt::format("{}  ·  {}", session.player->info().solver, gpu), ImGuiCol_TextDisabled);
+  if (!session.notice.empty() && row.finish(session.notice, ImGuiCol_CheckMark)) return;
+  const std::string& solver = session.player->info().solver;
+  if (!row.finish(fmt::format("{}  ·  {}", solver, gpu), ImGuiCol_TextDisabled)) {
+    row.finish(gpu, ImGuiCol_TextDisabled);
+  }
+  if (ImGui::IsWindowHovered()) {
+    ImGui::SetTooltip("solved: %s\ndrawn: %s\n%s", solver.c_str(), gpu.c_str(),
+                      session.notice.c_str());
   }
 }
 

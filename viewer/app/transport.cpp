@@ -12,12 +12,13 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Text in the middle of the row's height, in a place `width` wide, so that nothing moves with it.
-void text_in(const std::string& text, float width, bool right_aligned) {
+/// Text in the middle of the row's height, in a place `width` wide, so that nothing moves with it;
+/// of the room that is left over, `share_left` is left of it.
+void text_in(const std::string& text, float width, float share_left) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  const float left = right_aligned ? corner.x + width - size.x : corner.x;
+  const float left = corner.x + share_left * (width - size.x);
   ImGui::GetWindowDrawList()->AddText(
       ImVec2(std::round(left), std::round(corner.y + (side - size.y) / 2)),
       ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
@@ -38,7 +39,7 @@ void play_buttons(Player& player, const PlayerState& state) {
 void speed_buttons(Session& session, const PlayerState& state) {
   if (sign_button("slower", sign::less, false, "Slower (−)")) change_speed(session, -1);
   ImGui::SameLine(0, 0);
-  text_in(fmt::format("{:g}×", state.speed), ImGui::CalcTextSize("0.05×").x, true);
+  text_in(fmt::format("{:g}×", state.speed), ImGui::CalcTextSize("0.05×").x, 0.5f);
   ImGui::SameLine(0, 0);
   if (sign_button("faster", sign::more, false, "Faster (+)")) change_speed(session, 1);
 }
@@ -105,7 +106,7 @@ void transport(const Command& command) {
   ImGui::SameLine(0, gap / 2);
   scrub(player, state, std::max(ImGui::GetContentRegionAvail().x - rest, 2 * side));
   ImGui::SameLine(0, gap / 2);
-  text_in(time_text(session, state), time_width, true);
+  text_in(time_text(session, state), time_width, 1);
   ImGui::SameLine(0, gap);
   speed_buttons(session, state);
   ImGui::SameLine(0, gap);

@@ -60,13 +60,6 @@ Vec2 to_pixels(GLFWwindow* window, double x, double y) {
   return {x * pixel_width / width, y * pixel_height / height};
 }
 
-Vec2 cursor_of(GLFWwindow* window) {
-  double x = 0;
-  double y = 0;
-  glfwGetCursorPos(window, &x, &y);
-  return to_pixels(window, x, y);
-}
-
 }  // namespace
 
 /// GLFW's callbacks, which only write down what happened.
@@ -83,7 +76,8 @@ struct Window::Callbacks {
     of(window).events_.emplace_back(TextEvent{character});
   }
   static void motion(GLFWwindow* window, double x, double y) {
-    of(window).events_.emplace_back(MotionEvent{to_pixels(window, x, y)});
+    of(window).cursor_ = to_pixels(window, x, y);
+    of(window).events_.emplace_back(MotionEvent{of(window).cursor_});
   }
   static void enter(GLFWwindow* window, int entered) {
     if (entered == GLFW_FALSE) of(window).events_.emplace_back(LeaveEvent{});
@@ -92,10 +86,10 @@ struct Window::Callbacks {
     const auto known = button_of(button);
     if (!known) return;
     of(window).events_.emplace_back(ButtonEvent{
-        *known, action == GLFW_PRESS, modifiers_of(modifiers), cursor_of(window), glfwGetTime()});
+        *known, action == GLFW_PRESS, modifiers_of(modifiers), of(window).cursor_, glfwGetTime()});
   }
   static void wheel(GLFWwindow* window, double /*x*/, double y) {
-    of(window).events_.emplace_back(WheelEvent{y, cursor_of(window)});
+    of(window).events_.emplace_back(WheelEvent{y, of(window).cursor_});
   }
   static void damage(GLFWwindow* window) { of(window).damaged_ = true; }
   static void resize(GLFWwindow* window, int /*width*/, int /*height*/) { damage(window); }

@@ -50,6 +50,8 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::vector<InputEvent> events_;
+  /// As the last event had it: asked for, GLFW gives where the cursor is now, not where it was.
+  Vec2 cursor_;
   bool damaged_ = true;
 };
 
