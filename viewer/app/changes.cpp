@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "viewer/app/pins.h"
+
 namespace pillarfield::viewer {
 namespace {
 
@@ -115,6 +117,7 @@ void toggle_pin(Session& session, PillarIndex pillar) {
     return;
   }
   pins.push_back({pillar, History()});
+  number_pins(session);
   if (session.field) follow(pins.back(), *session.field);
 }
 

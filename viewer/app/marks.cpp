@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "viewer/app/panel_ink.h"
+#include "viewer/app/pins.h"
 #include "viewer/app/style.h"
 
 namespace pillarfield::viewer {
@@ -42,22 +44,24 @@ class Marker {
     list_.AddPolyline(points.data(), count, colour, ImDrawFlags_Closed, 1.4f * unit_);
   }
 
-  void pin(const PillarIndex& pillar, std::size_t number, bool inspected) const {
-    const auto middle = middle_of(pillar);
+  void pin(const Pin& pin, bool inspected) const {
+    const auto middle = middle_of(pin.pillar);
     if (!middle) return;
     const float radius = 9 * unit_;
     const float reach = radius + 5 * unit_;
     const ImVec2 tip = to_imgui(*middle);
     const ImVec2 head(std::round(tip.x + reach), std::round(tip.y - reach));
-    const ImU32 fill = inspected ? IM_COL32(255, 255, 255, 255) : IM_COL32(222, 226, 231, 255);
+    const ImU32 fill = packed(pin_colour(pin.number, Theme::dark));
     const ImU32 edge = IM_COL32(10, 13, 18, 255);
     list_.AddLine(tip, head, edge, 3 * unit_);
     list_.AddLine(tip, head, fill, 1.4f * unit_);
     list_.AddCircleFilled(tip, 2.5f * unit_, edge);
     list_.AddCircleFilled(tip, 1.5f * unit_, fill);
-    list_.AddCircleFilled(head, radius + unit_, edge);
+    const ImU32 rim = inspected ? IM_COL32(255, 255, 255, 255) : edge;
+    list_.AddCircleFilled(head, radius + 2.5f * unit_, edge);
+    list_.AddCircleFilled(head, radius + 1.5f * unit_, rim);
     list_.AddCircleFilled(head, radius, fill);
-    const std::string words = fmt::format("{}", number);
+    const std::string words = fmt::format("{}", pin.number);
     const ImVec2 size = ImGui::CalcTextSize(words.c_str());
     list_.AddText(ImVec2(std::round(head.x - size.x / 2), std::round(head.y - size.y / 2)), edge,
                   words.c_str());
@@ -109,7 +113,7 @@ void draw_marks(const Session& session, const FieldPlace& place) {
   if (session.region) marker.outline(session.region->rect, palette_of(Theme::dark).accent);
   if (session.hovered) marker.outline(only(*session.hovered), IM_COL32(255, 255, 255, 230));
   for (std::size_t i = 0; i < session.pins.size(); ++i) {
-    marker.pin(session.pins[i].pillar, i + 1, i + 1 == session.pins.size());
+    marker.pin(session.pins[i], i + 1 == session.pins.size());
   }
   marker.unclip();
 }

@@ -15,6 +15,7 @@ namespace pillarfield::viewer {
 struct Pin {
   PillarIndex pillar;
   History history;
+  int number = 0;  ///< 1..kMostPins on the field and in the panels, see number_pins(); 0: none yet
 };
 
 /// A rectangle that was dragged, and what its sum did since.

@@ -151,7 +151,7 @@ void write_bar(const Pen& pen, const Layout& layout) {
   const double factor = info_of(look.quantity).factor;
   const double low = look.range.low * factor;
   const double high = look.range.high * factor;
-  const int most = std::max(static_cast<int>(bar.height / (28 * pen.unit())), 2);
+  const int most = std::max(static_cast<int>(bar.height / (20 * pen.unit())), 3);
   for (const Tick& tick : ticks(low, high, most)) {
     const double y = bar.y + bar.height * (1 - (tick.value - low) / (high - low));
     const double x = bar.x + bar.width;

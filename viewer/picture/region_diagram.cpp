@@ -23,7 +23,7 @@ double border_theta(double phi_from_sensel) {
 std::vector<Vec2> piece_of_border(int sensel, double from, double to, int points) {
   std::vector<Vec2> piece;
   for (int i = 0; i < points; ++i) {
-    const double phi = i == points - 1 ? to : from + (to - from) * i / (points - 1);
+    const double phi = std::lerp(from, to, static_cast<double>(i) / (points - 1));
     piece.push_back({phi, border_theta(phi - place_of(sensel))});
   }
   return piece;

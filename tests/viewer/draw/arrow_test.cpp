@@ -131,7 +131,7 @@ TEST(Arrows, FromAfarAddWhatLiesUnderTheirCell) {
   // 96 x 96 pillars on 400 pixels: cells of several pillars. Shears cancel but for a quarter.
   const auto mean_length = [](float other) {
     const MadeUpField field(96, 96, [other](std::uint32_t row, std::uint32_t col) {
-      if (row < 44 || row >= 52 || col < 44 || col >= 52) return MadeUpPillar{0, 0, 0, 0};
+      if (row < 40 || row >= 48 || col < 40 || col >= 48) return MadeUpPillar{0, 0, 0, 0};
       return MadeUpPillar{(row + col) % 2 == 0 ? 1.0F : other, 0, 0.1F, 15};
     });
     Drawing drawing;
@@ -155,14 +155,14 @@ TEST(Arrows, InSpaceAreTheForceThatActsOnTheSkin) {
                             Case{-0.7F, 0.4F, 0.6F}, Case{0.3F, -0.9F, 0.2F}}) {
     const MadeUpField field = one_pillar(force.shear_x, force.shear_y, force.normal);
     Look look = arrow_look(field);
-    look.full_force_n = 1.5;
+    look.full_force_n = 3;
     const SkinSize size = skin_size(field.source());
     const Viewport plot{0, 0, kSide, kSide};
     for (const Surface& surface : {Surface{}, Surface{SurfaceKind::cylinder, 2}}) {
       look.surface = surface;
       look.view = fit_orbit(size, surface, plot);
-      std::get<OrbitView>(look.view).distance_mm *= 0.25;
-      const double mm = 1.5 / 1.5;  // Cells of one pillar, 1 mm wide, full force 1.5 N.
+      std::get<OrbitView>(look.view).distance_mm *= 0.4;
+      const double mm = 1.5 / 3;  // A newton, in cells of one pillar that are 1 mm wide.
       const auto tip = project(look.view, surface, size, plot, {0, 0, 0});
       const auto tail = project(look.view, surface, size, plot,
                                 {-mm * force.shear_x, -mm * force.shear_y, mm * force.normal});

@@ -48,13 +48,20 @@ MadeUpField::MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& p
       const float magnitude = std::hypot(shear, value.normal);
       const float theta = std::atan2(shear, value.normal);
       const float phi = std::atan2(-value.shear_y, -value.shear_x);
-      const std::array planes{value.shear_x,   value.shear_y,
-                              value.normal,    magnitude,
-                              theta,           phi,
-                              0.01F,           0.02F,
-                              0.02F,           theta - 0.3F,
-                              theta + 0.1F,    phi - 0.4F,
-                              phi + 0.4F,      magnitude * 0.8F,
+      const std::array planes{value.shear_x,
+                              value.shear_y,
+                              value.normal,
+                              magnitude,
+                              theta,
+                              phi,
+                              0.01F * static_cast<float>(1 + index % 29),
+                              0.02F,
+                              0.02F,
+                              theta - 0.3F,
+                              theta + 0.1F,
+                              phi - 0.4F,
+                              phi + 0.4F,
+                              magnitude * 0.8F,
                               magnitude * 1.2F};
       for (std::size_t plane = 0; plane < planes.size(); ++plane) {
         floats(plane)[index] = planes.at(plane);

@@ -204,7 +204,7 @@ void expect_parity(SenselType type, std::size_t stride) {
   // One of them alone, so that the pillars differ.
   readings[3 * stride + 5] = Reading{200};
   ShownField field = made_up.shown();
-  field.raw = {readings.data(), type, 4, static_cast<std::uint32_t>(stride), stride};
+  field.raw = {readings.data(), type, 4, 6, stride};
   for (std::uint32_t r = 0; r < 2; ++r) {
     for (std::uint32_t c = 0; c < 3; ++c) {
       const auto v4 = static_cast<float>(r == 1 && c == 2 ? 200 : reading_at<int>(r, c, 4));
@@ -273,6 +273,7 @@ TEST(FittingRange, IsNotBelowTheLargestAndNotFarAbove) {
 TEST(FittingRange, IsRound) {
   EXPECT_EQ(fitting_range(Quantity::normal, 0.3F).high, 0.5F);
   EXPECT_EQ(fitting_range(Quantity::normal, 0.1F).high, 0.1F);
+  EXPECT_EQ(fitting_range(Quantity::normal, std::nextafter(0.1F, 1.0F)).high, 0.2F);
   EXPECT_EQ(fitting_range(Quantity::normal, 7).high, 10);
   EXPECT_EQ(fitting_range(Quantity::parity, 130).high, 200);
 }

@@ -247,6 +247,21 @@ TEST(OrbitView, FromBelowTheLowerEdgeHasXToTheRightAndHeightUp) {
   EXPECT_LT(projected(situation, {0, 10, 0})->y, 300) << "farther is higher";
 }
 
+TEST(OrbitView, SeesItsFieldOfViewFromTopToBottom) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 100; ++i) {
+    const Viewport viewport{0, 50, random_between(random, 200, 2000), 600};
+    OrbitView view;
+    view.elevation = std::numbers::pi / 2;
+    view.azimuth = 0;
+    view.field_of_view = random_between(random, 0.2, 2);
+    const double top_mm = view.distance_mm * std::tan(view.field_of_view / 2);
+    const Situation situation{view, {}, {100, 100}, viewport};
+    EXPECT_NEAR(projected(situation, {0, top_mm, 0})->y, 50, 1e-9);
+    EXPECT_NEAR(projected(situation, {0, -top_mm, 0})->y, 650, 1e-9);
+  }
+}
+
 TEST(OrbitView, StraightFromAboveIsATopViewInPerspective) {
   const Viewport viewport{0, 0, 800, 600};
   OrbitView orbit;

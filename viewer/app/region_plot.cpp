@@ -1,0 +1,284 @@
+#include "viewer/app/region_plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "viewer/app/status_line.h"
+#include "viewer/app/value_words.h"
+#include "viewer/field/direction.h"
+#include "viewer/picture/region_diagram.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr std::size_t kTrailPoints = 48;
+constexpr int kBorderPoints = 97;
+
+double in_degrees(float radians) { return static_cast<double>(radians) * kDegrees; }
+
+/// The sensel n whose neighbour n % 4 + 1 is the other usable one; 0 outside region 3.
+int first_of_pair(std::uint8_t status) {
+  if (region_of(status) != Region::three) return 0;
+  for (int sensel = 1; sensel <= 4; ++sensel) {
+    const int pair = 1 << (sensel - 1) | 1 << (sensel % 4);
+    if ((status & status::kUsable) == pair) return sensel;
+  }
+  return 0;
+}
+
+/// Equation (2), with a k of one count per newton.
+double model_reading(const PillarValues& values, int sensel) {
+  const double place = std::numbers::pi / 4 * (2 * sensel - 1);
+  return std::max(0.0, static_cast<double>(values.normal) +
+                           static_cast<double>(values.shear_x) * std::cos(place) +
+                           static_cast<double>(values.shear_y) * std::sin(place));
+}
+
+/// Theta of a border at phi, degrees; 90 where it is not there.
+double border_at(const std::vector<std::vector<Vec2>>& pieces, double phi) {
+  const double x = phi / kDegrees;
+  for (const auto& piece : pieces) {
+    if (piece.empty() || x < piece.front().x || x > piece.back().x) continue;
+    const auto after = std::ranges::lower_bound(piece, x, {}, &Vec2::x);
+    if (after == piece.begin()) return after->y * kDegrees;
+    const auto before = after - 1;
+    const double share = (x - before->x) / (after->x - before->x);
+    return (before->y + share * (after->y - before->y)) * kDegrees;
+  }
+  return 90;
+}
+
+using Borders = std::array<std::vector<std::vector<Vec2>>, 4>;
+
+const Borders& borders() {
+  static const Borders kBorders = region_borders(kBorderPoints);
+  return kBorders;
+}
+
+/// Drawing in one plot for one pillar.
+class Drawing {
+ public:
+  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme, Region region)
+      : list_(list), area_(area), ink_(ink), theme_(theme), region_(region) {}
+
+  void tint() const;
+  void draw_borders() const;
+  void draw_numbers() const;
+  void draw_corners() const;
+  void draw_box(const DirectionBox& box, ImU32 colour) const;
+  void draw_line(std::vector<Vec2> line, ImU32 colour, double width) const;
+  void draw_trail(const History& history, ImU32 colour) const;
+  void draw_point(Vec2 direction, ImU32 colour) const;
+
+ private:
+  [[nodiscard]] ImU32 tint_of(Region region) const {
+    const double share = region == region_ ? 0.42 : 0.13;
+    return mixed(ink_.ground, packed(region_colour(region, theme_)), share);
+  }
+  void strip(double left, double right, Span from, Span to, Region region) const;
+  void number(const char* words, Vec2 place, Region region, Align align = Align::middle) const;
+
+  ImDrawList& list_;
+  const PlotArea& area_;
+  const PanelInk& ink_;
+  Theme theme_;
+  Region region_;
+};
+
+/// Between two thetas (degrees) at its left end and two at its right one.
+void Drawing::strip(double left, double right, Span from, Span to, Region region) const {
+  list_.AddQuadFilled(point(area_.at({left, from.from})), point(area_.at({right, to.from})),
+                      point(area_.at({right, to.to})), point(area_.at({left, from.to})),
+                      tint_of(region));
+}
+
+void Drawing::tint() const {
+  // Smoothed edges of neighbouring strips would let the ground shine through.
+  const ImDrawListFlags flags = list_.Flags;
+  list_.Flags &= ~ImDrawListFlags_AntiAliasedFill;
+  constexpr double kStep = 3;
+  for (double phi = -180; phi < 180; phi += kStep) {
+    const RegionLimits left = region_limits(phi);
+    const RegionLimits right = region_limits(phi + kStep);
+    strip(phi, phi + kStep, {0, left.four}, {0, right.four}, Region::one);
+    strip(phi, phi + kStep, {left.four, left.three}, {right.four, right.three}, Region::two);
+    strip(phi, phi + kStep, {left.three, 90}, {right.three, 90}, Region::three);
+  }
+  list_.Flags = flags;
+}
+
+void Drawing::draw_borders() const {
+  for (const auto& pieces : borders()) {
+    for (const auto& piece : pieces) {
+      std::vector<Vec2> line;
+      for (const Vec2& radians : piece) {
+        line.push_back({radians.x * kDegrees, radians.y * kDegrees});
+      }
+      draw_line(line, mixed(ink_.ground, ink_.text, 0.5), 1.2 * ink_.unit);
+    }
+  }
+}
+
+void Drawing::number(const char* words, Vec2 place, Region region, Align align) const {
+  const Vec2 pixel = area_.at(place);
+  draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},
+            region == region_ ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
+}
+
+/// As in the paper: behind the point the sensels that are not usable.
+void Drawing::draw_numbers() const {
+  number("1", {0, 21}, Region::one);
+  number("2.3", {-135, 66}, Region::two);
+  number("2.4", {-45, 66}, Region::two);
+  number("2.1", {45, 66}, Region::two);
+  number("2.2", {135, 66}, Region::two);
+  // Between the curves there is room for it at this height only.
+  number("3.34", {-90, 80}, Region::three);
+  number("3.14", {0, 80}, Region::three);
+  number("3.12", {90, 80}, Region::three);
+}
+
+/// Region 4: four points at the upper edge.
+void Drawing::draw_corners() const {
+  for (const double phi : {-135.0, -45.0, 45.0, 135.0}) {
+    const bool here = region_ == Region::four;
+    list_.AddCircleFilled(point(area_.at({phi, 90})),
+                          static_cast<float>((here ? 4.5 : 3) * ink_.unit),
+                          here ? packed(region_colour(Region::four, theme_)) : ink_.faint, 16);
+  }
+}
+
+void Drawing::draw_line(std::vector<Vec2> line, ImU32 colour, double width) const {
+  std::vector<ImVec2> points;
+  for (const Vec2& direction : line) points.push_back(point(area_.at(direction)));
+  list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
+                    static_cast<float>(width));
+}
+
+void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
+  // Smaller than the point it would not be seen.
+  const ImVec2 least = point({1.5 * ink_.unit, 1.5 * ink_.unit});
+  for (const double turn : {-360.0, 0.0, 360.0}) {
+    ImVec2 low = point(area_.at({box.phi.from + turn, box.theta.to}));
+    ImVec2 high = point(area_.at({box.phi.to + turn, box.theta.from}));
+    if (high.x - low.x < least.x) high.x = low.x + least.x;
+    if (high.y - low.y < least.y) high.y = low.y + least.y;
+    list_.AddRectFilled(low, high, with_alpha(colour, 0.22));
+    list_.AddRect(low, high, with_alpha(colour, 0.9), 0, ImDrawFlags_None,
+                  static_cast<float>(ink_.unit));
+  }
+}
+
+void Drawing::draw_trail(const History& history, ImU32 colour) const {
+  const auto pieces = trail_of(history, kTrailPoints);
+  std::size_t all = 0;
+  for (const auto& piece : pieces) all += piece.size();
+  std::size_t seen = 0;
+  for (const auto& piece : pieces) {
+    for (std::size_t i = 1; i < piece.size(); ++i) {
+      const double age = static_cast<double>(seen + i) / static_cast<double>(all);
+      list_.AddLine(point(area_.at(piece[i - 1])), point(area_.at(piece[i])),
+                    with_alpha(colour, 0.75 * age), static_cast<float>(1.6 * ink_.unit));
+    }
+    seen += piece.size();
+  }
+}
+
+void Drawing::draw_point(Vec2 direction, ImU32 colour) const {
+  const ImVec2 place = point(area_.at({direction.x, std::min(direction.y, 90.0)}));
+  const auto radius = static_cast<float>(4.5 * ink_.unit);
+  list_.AddCircleFilled(place, radius + static_cast<float>(2 * ink_.unit), ink_.ground, 24);
+  list_.AddCircleFilled(place, radius, colour, 24);
+}
+
+const PlotTicks& angle_ticks() {
+  static const PlotTicks kTicks{{{-180, "−180"}, {-90, "−90"}, {0, "0"}, {90, "90"}, {180, "180"}},
+                                {{0, "0"}, {30, "30"}, {60, "60"}, {90, "90"}}};
+  return kTicks;
+}
+
+}  // namespace
+
+std::optional<DirectionBox> direction_box(const PillarValues& values) {
+  if (!values.uncertainty || region_of(values.status) == Region::none) return {};
+  const auto plane = [&values](Uncertainty which) {
+    return in_degrees((*values.uncertainty)[static_cast<std::size_t>(which)]);
+  };
+  DirectionBox box;
+  if ((values.status & status::kAmbiguous) != 0) {
+    box.phi = {plane(Uncertainty::phi_low), plane(Uncertainty::phi_high)};
+    box.theta = {plane(Uncertainty::theta_low), plane(Uncertainty::theta_high)};
+    if (box.phi.to < box.phi.from) box.phi.to += 360;
+  } else {
+    const DirectionDeviation deviation = direction_deviation(values);
+    const double phi = in_degrees(values.phi);
+    const double theta = in_degrees(values.theta);
+    // Without shear every direction in the plane is as good.
+    const double phi_half = std::min(deviation.phi * kDegrees, 180.0);
+    const double theta_half = deviation.theta * kDegrees;
+    box.phi = std::isfinite(phi_half) ? Span{phi - phi_half, phi + phi_half} : Span{-180, 180};
+    box.theta = {std::max(theta - theta_half, 0.0), theta + theta_half};
+  }
+  const bool known = std::isfinite(box.phi.from) && std::isfinite(box.phi.to) &&
+                     std::isfinite(box.theta.from) && std::isfinite(box.theta.to);
+  return known ? std::optional(box) : std::nullopt;
+}
+
+std::vector<Vec2> contour_of(const PillarValues& values) {
+  const int sensel = first_of_pair(values.status);
+  if (sensel == 0) return {};
+  std::vector<Vec2> contour = ambiguity_contour(sensel, model_reading(values, sensel),
+                                                model_reading(values, sensel % 4 + 1), 48);
+  for (Vec2& direction : contour) direction = {direction.x * kDegrees, direction.y * kDegrees};
+  return contour;
+}
+
+std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t points) {
+  std::vector<std::vector<Vec2>> pieces;
+  const auto& all = history.points();
+  const std::size_t first = all.size() - std::min(all.size(), points);
+  for (std::size_t i = first; i < all.size(); ++i) {
+    const Direction direction = direction_of(all[i].shear_x, all[i].shear_y, all[i].normal);
+    if (!(direction.magnitude > 0)) continue;
+    const Vec2 place{in_degrees(direction.phi), in_degrees(direction.theta)};
+    if (pieces.empty() || std::abs(place.x - pieces.back().back().x) > 180) pieces.emplace_back();
+    pieces.back().push_back(place);
+  }
+  return pieces;
+}
+
+RegionLimits region_limits(double phi) {
+  std::array<double, 4> limits{};
+  for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = border_at(borders()[i], phi);
+  std::ranges::sort(limits);
+  return {limits[0], limits[1]};
+}
+
+void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
+                      const History& history, const PanelInk& ink, ImU32 colour, Theme theme) {
+  const PlotArea area{inside_axes(outer, width_of("90"), ink), {-180, 180}, {0, 90}};
+  const Viewport& box = area.box;
+  const Drawing drawing(list, area, ink, theme, region_of(values.status));
+  draw_axes(list, area, angle_ticks(), ink);
+  list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
+  drawing.tint();
+  drawing.draw_borders();
+  drawing.draw_numbers();
+  drawing.draw_trail(history, colour);
+  if (const auto directions = direction_box(values)) drawing.draw_box(*directions, colour);
+  for (const double turn : {-360.0, 0.0, 360.0}) {
+    std::vector<Vec2> contour = contour_of(values);
+    for (Vec2& direction : contour) direction.x += turn;
+    drawing.draw_line(contour, ink.text, 1.8 * ink.unit);
+  }
+  list.PopClipRect();
+  drawing.draw_corners();
+  if (region_of(values.status) != Region::none) {
+    drawing.draw_point({in_degrees(values.phi), in_degrees(values.theta)}, colour);
+  }
+}
+
+}  // namespace pillarfield::viewer

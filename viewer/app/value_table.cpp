@@ -1,0 +1,50 @@
+#include "viewer/app/value_table.h"
+
+#include <algorithm>
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kLabelWidth = 84;
+constexpr double kValueWidth = 64;
+constexpr double kGap = 8;
+constexpr double kRangeWidth = 104;
+
+void faint(const PanelInk& ink, const std::string& text) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ink.faint);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopStyleColor();
+}
+
+void line(const PanelInk& ink, const ShownValue& shown) {
+  const double left = static_cast<double>(ImGui::GetCursorPosX());
+  const double value_end = left + (kLabelWidth + kValueWidth) * ink.unit;
+  const auto go_to = [](double x) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(static_cast<float>(x));
+  };
+  faint(ink, shown.label);
+  const double label_end = left + width_of(shown.label) + 0.5 * kGap * ink.unit;
+  go_to(std::max(value_end - width_of(shown.value), label_end));
+  ImGui::TextUnformatted(shown.value.c_str());
+  go_to(value_end + kGap * ink.unit);
+  const bool bare = shown.range.empty();
+  const bool close = shown.unit == "°";
+  faint(ink, bare ? shown.unit : shown.range + (close ? "" : " ") + shown.unit);
+}
+
+}  // namespace
+
+void value_table(const PanelInk& ink, std::span<const ShownValue> values) {
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, point({0, 2 * ink.unit}));
+  ImGui::BeginGroup();
+  for (const ShownValue& value : values) line(ink, value);
+  ImGui::EndGroup();
+  ImGui::PopStyleVar();
+}
+
+double value_table_width(const PanelInk& ink) {
+  return (kLabelWidth + kValueWidth + kGap + kRangeWidth) * ink.unit;
+}
+
+}  // namespace pillarfield::viewer
