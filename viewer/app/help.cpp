@@ -10,13 +10,12 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr float kKeys = 6.4f;    ///< width of the keys, font sizes
-constexpr float kBlock = 24.0f;  ///< width of a block of keys and words
+constexpr float kKeys = 5.8f;    ///< width of the keys, font sizes
+constexpr float kBlock = 19.5f;  ///< width of a block of keys and words
 
 void line(const char* keys, const char* what) {
-  const float left = ImGui::GetCursorPosX();
   ImGui::TextUnformatted(keys);
-  ImGui::SameLine(left + kKeys * ImGui::GetFontSize());
+  ImGui::SameLine(kKeys * ImGui::GetFontSize());
   ImGui::TextDisabled("%s", what);
 }
 
@@ -64,13 +63,16 @@ void help_overlay(const Viewport& area) {
   if (ImGui::Begin("help", nullptr, kFlags | ImGuiWindowFlags_HorizontalScrollbar)) {
     ImGui::BeginGroup();
     group(ShortcutGroup::play);
-    group(ShortcutGroup::show);
+    group(ShortcutGroup::look);
     ImGui::EndGroup();
     ImGui::SameLine(kBlock * em);
     ImGui::BeginGroup();
-    group(ShortcutGroup::look);
-    group(ShortcutGroup::mark);
+    group(ShortcutGroup::show);
     group(ShortcutGroup::write);
+    group(ShortcutGroup::mark);
+    ImGui::EndGroup();
+    ImGui::SameLine(2 * kBlock * em);
+    ImGui::BeginGroup();
     mouse();
     ImGui::EndGroup();
   }

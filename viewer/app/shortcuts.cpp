@@ -126,7 +126,7 @@ constexpr std::array kShortcuts{
     Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
 
     Shortcut{Group::look, plain(GLFW_KEY_A), "A", "arrows", toggle<&Look::arrows>},
-    Shortcut{Group::look, plain(GLFW_KEY_U), "U", "fans of what is ambiguous", toggle<&Look::fans>},
+    Shortcut{Group::look, plain(GLFW_KEY_U), "U", "fans of the ambiguous", toggle<&Look::fans>},
     Shortcut{Group::look, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars", toggle<&Look::hatch>},
     Shortcut{Group::look, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
     Shortcut{Group::look, plain(GLFW_KEY_R), "R", "the whole skin",
@@ -138,7 +138,7 @@ constexpr std::array kShortcuts{
         Group::look, plain(GLFW_KEY_TAB), "Tab", "panels",
         [](const Command& command) { command.session.show_panels = !command.session.show_panels; }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and region; stop writing",
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins, region",
              escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
@@ -147,7 +147,7 @@ constexpr std::array kShortcuts{
              ask<&Requests::sequence>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_M), "Ctrl+M", "write all frames (video)",
              ask<&Requests::video>},
-    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write the pillars in sight (CSV)",
+    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write what is in sight (CSV)",
              ask<&Requests::table>},
     Shortcut{
         Group::write,
@@ -160,7 +160,7 @@ constexpr std::array kShortcuts{
 
 constexpr std::array kMouseHelp{
     MouseHelp{"hover", "values under the cursor"},
-    MouseHelp{"click", "pin a pillar; click it again to take the pin away"},
+    MouseHelp{"click", "pin a pillar, or take its pin away"},
     MouseHelp{"drag", "mark a region; in 3-D turn the view"},
     MouseHelp{"right drag, Shift+drag", "move the view"},
     MouseHelp{"wheel", "zoom about the cursor"},
