@@ -1,11 +1,354 @@
 #include "viewer/app/app.h"
 
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <utility>
+
 #include "pillarfield/error.h"
+#include "viewer/app/changes.h"
+#include "viewer/app/controls.h"
+#include "viewer/app/draw_clock.h"
+#include "viewer/app/frame_writer.h"
+#include "viewer/app/front.h"
+#include "viewer/app/interface_input.h"
+#include "viewer/app/opening.h"
+#include "viewer/app/presenter.h"
+#include "viewer/app/redraws.h"
+#include "viewer/app/style.h"
+#include "viewer/app/window.h"
 
 namespace pillarfield::viewer {
+namespace {
 
-int run_window(const Options&) {
-  throw Error("pillarfield-viewer", "there is no window yet", "render to a file: --headless");
+vk::Extent2D extent_of(const Viewport& box) {
+  return {static_cast<std::uint32_t>(box.width), static_cast<std::uint32_t>(box.height)};
+}
+
+/// Whether nobody asked for another view than that of the whole skin.
+bool asks_for_whole_skin(const Options& options) {
+  return options.zoom == 1 && !options.centre_mm && !options.azimuth && !options.elevation;
+}
+
+double steady_s() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// The window and everything behind it. Members go in the reverse of the order in which they came.
+class Application {
+ public:
+  explicit Application(const Options& options);
+  void run();
+
+ private:
+  [[nodiscard]] double scale() const {
+    return options_.scale > 0 ? options_.scale : window_.scale();
+  }
+  [[nodiscard]] Command command() { return {session_, place_, requests_}; }
+  void listen_to_player();
+
+  void wait();
+  void take_input();
+  void route(const InputEvent& event);
+  void take_newest_field();
+  void arrange();
+  bool fit_to_window();
+  void draw();
+  void draw_front_frame();
+  void measure(double begin_s, bool new_picture);
+  void watch_notice();
+
+  void serve();
+  void write_picture();
+  void write_table();
+  void begin_frames(FrameWriter::Kind kind);
+  void continue_frames();
+  [[nodiscard]] Pixels pixels() { return read_pixels(device_, presenter_.painter().image()); }
+  void finish();
+  void print_statistics() const;
+
+  const Options& options_;
+  Window window_;
+  std::atomic<double> produced_s_ = 0;  ///< when the newest field came, told by the player's thread
+  Opened opened_;
+  gpu::Instance instance_;
+  vk::raii::SurfaceKHR surface_;
+  gpu::Device device_;
+  Presenter presenter_;
+
+  Session session_;
+  FieldPlace place_;
+  Screen screen_;
+  vk::Extent2D sized_for_;
+  Controls controls_;
+  InterfaceInput interface_input_;
+  Requests requests_;
+  std::unique_ptr<FrameWriter> writer_;
+
+  Redraws redraws_;
+  DrawClock clock_;
+  std::string last_notice_;
+  std::optional<Look> painted_look_;
+  bool field_is_new_ = false;
+  double taken_s_ = 0;  ///< when the one on display had come
+  double last_frame_s_ = 0;
+};
+
+Application::Application(const Options& options)
+    : options_(options),
+      window_(options.source.filename().string() + " – Pillarfield", options.width, options.height),
+      opened_(open_source(options, scale())),
+      instance_(Window::extensions(), options.validate),
+      surface_(window_.make_surface(instance_)),
+      device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
+      presenter_(instance_, device_, *surface_, scale()) {
+  session_.player = opened_.player.get();
+  session_.look = opened_.look;
+  session_.view_is_fitted = asks_for_whole_skin(options);
+  place_.source = &session_.player->info();
+  arrange();
+  const Viewport plot = layout_of(place_.area.width, place_.area.height, session_.look).plot;
+  session_.look.view = first_view(options, *place_.source, plot);
+  listen_to_player();
+}
+
+void Application::listen_to_player() {
+  session_.player->on_new_field([this] {
+    produced_s_ = steady_s();
+    Window::wake();
+  });
+}
+
+void Application::run() {
+  window_.show();
+  if (options_.first_frame != 0) session_.player->seek(options_.first_frame);
+  if (!options_.paused) session_.player->play();
+  while (!window_.closes() && !requests_.quit) {
+    wait();
+    take_input();
+    take_newest_field();
+    if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
+    serve();
+  }
+  finish();
+  if (options_.statistics) print_statistics();
+}
+
+void Application::wait() {
+  const bool minimised = window_.size().width == 0;
+  const auto rest = redraws_.rest(Window::now_s());
+  if (minimised) {
+    window_.wait(std::nullopt);
+  } else if (rest && *rest <= 0) {
+    window_.poll();
+  } else {
+    window_.wait(rest);
+  }
+}
+
+void Application::take_input() {
+  const bool damaged = window_.take_damage();
+  const auto events = window_.take_events();
+  if (damaged || !events.empty()) redraws_.input(Window::now_s());
+  presenter_.front().use();
+  arrange();
+  for (const InputEvent& event : events) route(event);
+}
+
+/// What is typed into a field of the panels is no shortcut; what lies over the field takes the
+/// mouse.
+void Application::route(const InputEvent& event) {
+  const bool types = ImGui::GetIO().WantTextInput;
+  const bool covered =
+      ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  if (const auto* key = std::get_if<KeyEvent>(&event)) {
+    if (types || !key->pressed) interface_input_.take(event);
+    if (!types) controls_.take(event, command());
+    return;
+  }
+  if (std::holds_alternative<TextEvent>(event)) {
+    if (types) interface_input_.take(event);
+    return;
+  }
+  const auto* const button = std::get_if<ButtonEvent>(&event);
+  const bool presses = button != nullptr && button->pressed;
+  if (presses && session_.show_help) {
+    session_.show_help = false;
+    return;
+  }
+  const auto* const wheel = std::get_if<WheelEvent>(&event);
+  const bool in_field = wheel != nullptr && contains(place_.area, wheel->pixel) && !covered;
+  if (!in_field) interface_input_.take(event);
+  if (!covered || (button != nullptr && !presses)) controls_.take(event, command());
+}
+
+void Application::take_newest_field() {
+  const double came_s = produced_s_;
+  auto field = session_.player->take();
+  if (!field) return;
+  take_field(session_, std::move(*field));
+  taken_s_ = came_s;
+  field_is_new_ = true;
+  redraws_.field();
+}
+
+/// Divides the window as it is now.
+void Application::arrange() {
+  const vk::Extent2D size = window_.size();
+  if (size.width == 0 || size.height == 0) return;
+  session_.look.scale = scale();
+  const Viewport before = place_.area;
+  screen_ = divide(size.width, size.height, scale(), session_.show_panels);
+  place_.area = screen_.field;
+  const bool moved = before.width != place_.area.width || before.height != place_.area.height;
+  if (moved && session_.view_is_fitted) reset_view(session_, place_);
+}
+
+bool Application::fit_to_window() {
+  const vk::Extent2D size = window_.size();
+  if (size.width == 0 || size.height == 0) return false;
+  arrange();
+  const vk::Extent2D picture = extent_of(screen_.field);
+  const bool fits = !presenter_.stale() && size == sized_for_ &&
+                    picture == presenter_.painter().image().size() &&
+                    scale() == presenter_.front().scale();
+  if (fits) return true;
+  sized_for_ = size;
+  painted_look_.reset();
+  return presenter_.resize(size, picture, scale());
+}
+
+void Application::draw() {
+  const double begin_s = Window::now_s();
+  if (session_.hovered && !controls_.is_dragging()) controls_.hover(command());
+  draw_front_frame();
+  const bool new_picture = session_.field && (field_is_new_ || painted_look_ != session_.look);
+  std::optional<Presenter::Picture> picture;
+  if (new_picture) picture.emplace(*session_.field, *place_.source, session_.look);
+  if (!presenter_.draw(picture ? &*picture : nullptr)) return;
+  measure(begin_s, new_picture);
+  if (new_picture) painted_look_ = session_.look;
+  field_is_new_ = false;
+  watch_notice();
+  if (writer_ != nullptr && writer_->wants_picture()) continue_frames();
+}
+
+void Application::draw_front_frame() {
+  presenter_.front().use();
+  set_style(session_.look.theme, scale());
+  const double now_s = Window::now_s();
+  interface_input_.begin_frame(now_s - last_frame_s_);
+  last_frame_s_ = now_s;
+  const vk::Extent2D size = presenter_.size();
+  ImGui::GetIO().DisplaySize =
+      ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
+  ImGui::NewFrame();
+  draw_front(command(), screen_, device_.name());
+  ImGui::Render();
+}
+
+void Application::measure(double begin_s, bool new_picture) {
+  const double now_s = Window::now_s();
+  std::optional<double> latency_ms;
+  if (new_picture && field_is_new_) latency_ms = 1e3 * (steady_s() - taken_s_);
+  clock_.add(now_s, 1e3 * (now_s - begin_s), latency_ms);
+  session_.draw = clock_.lately(now_s);
+  const FieldMemory& memory = presenter_.painter().memory();
+  session_.draw.in_place = memory.fields_in_place() > 0 && memory.bytes_copied() == 0;
+  redraws_.drawn(now_s);
+}
+
+void Application::watch_notice() {
+  const double now_s = Window::now_s();
+  if (session_.notice != last_notice_) redraws_.notice(now_s);
+  if (redraws_.notice_is_old(now_s)) {
+    session_.notice.clear();
+    redraws_.forget_notice();
+    redraws_.field();
+  }
+  last_notice_ = session_.notice;
+}
+
+/// What cannot be written is told, and the window goes on.
+void Application::serve() {
+  const Requests asked = std::exchange(requests_, Requests{.quit = requests_.quit});
+  if (!session_.field) return;
+  try {
+    if (asked.picture) write_picture();
+    if (asked.table) write_table();
+    if (asked.sequence) begin_frames(FrameWriter::Kind::pictures);
+    if (asked.video) begin_frames(FrameWriter::Kind::video);
+  } catch (const Error& error) {
+    session_.notice = error.what();
+  }
+  if (asked.stop && writer_ != nullptr) {
+    writer_.reset();
+    session_.notice = "stopped writing";
+  }
+  if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop) {
+    redraws_.input(Window::now_s());
+  }
+}
+
+void Application::write_picture() {
+  if (!painted_look_) return;
+  const auto path = free_path(*place_.source, info_of(session_.look.quantity).name, ".png");
+  write_png(path, pixels());
+  session_.notice = "wrote " + path.string();
+}
+
+void Application::write_table() {
+  const std::string frame = fmt::format("frame_{}", session_.field->index + 1);
+  const auto path = free_path(*place_.source, frame, ".csv");
+  write_csv(path, *session_.field, visible_pillars(place_, session_.look));
+  session_.notice = "wrote " + path.string();
+}
+
+void Application::begin_frames(FrameWriter::Kind kind) {
+  if (writer_ != nullptr) return;
+  const char* const ending = kind == FrameWriter::Kind::video ? ".mp4" : ".png";
+  const auto path = free_path(*place_.source, info_of(session_.look.quantity).name, ending);
+  const vk::Extent2D size = presenter_.painter().image().size();
+  writer_ = std::make_unique<FrameWriter>(session_, kind, path, size.width, size.height);
+}
+
+void Application::continue_frames() {
+  try {
+    if (writer_->add(pixels())) writer_.reset();
+  } catch (const Error& error) {
+    session_.notice = error.what();
+    writer_.reset();
+  }
+  redraws_.field();
+}
+
+/// The picture reads the player's memory in place: it goes before the player does.
+void Application::finish() {
+  session_.player->on_new_field({});
+  presenter_.finish();
+  writer_.reset();
+  presenter_.painter().memory().forget();
+  session_.field.reset();
+}
+
+void Application::print_statistics() const {
+  const PlayerStatistics played = session_.player->statistics();
+  fmt::print(R"({{"frames":{},"draw_ms_median":{:.3f},"latency_ms_median":{:.3f},"produced":{},)"
+             R"("taken":{},"not_shown":{},"in_place":{},"validation_messages":{}}})"
+             "\n",
+             clock_.frames(), clock_.draw_ms_median(), clock_.latency_ms_median(), played.produced,
+             played.taken, played.not_shown, session_.draw.in_place,
+             instance_.validation_messages());
+}
+
+}  // namespace
+
+int run_window(const Options& options) {
+  Application(options).run();
+  return 0;
 }
 
 }  // namespace pillarfield::viewer

@@ -4,7 +4,8 @@
 
 namespace pillarfield::viewer {
 
-/// Shows a source in a window until it is closed; the exit status.
+/// Opens a window on the source and stays until it is closed. Returns the exit status. Throws Error
+/// where there is no display, no device, or the source cannot be opened or read.
 [[nodiscard]] int run_window(const Options& options);
 
 }  // namespace pillarfield::viewer

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,7 +43,13 @@ struct Session {
   DrawStatistics draw;
   bool show_help = false;
   bool show_panels = true;
-  std::string notice;  ///< one line about what was done last: "wrote field.png"
+  /// Ranges of the quantities that were looked at: each keeps its own.
+  std::array<std::optional<Range>, kQuantities> ranges;
+  bool fit_each_field = false;     ///< the range follows the field on display
+  bool view_is_fitted = true;      ///< nobody moved the view: it follows the window's size
+  std::optional<View> other_view;  ///< of top view and 3-D view the one not looked at
+  bool writing = false;            ///< frames are being written to files
+  std::string notice;              ///< one line about what was done last: "wrote field.png"
 
   static constexpr std::size_t kMostPins = 6;
 };

@@ -27,6 +27,7 @@ struct Look {
   double scale = 1;        ///< pixels of the display over those the sizes here are meant for
   bool legend = true;      ///< axes, colour bar, legends and title
   std::string title;
+  friend bool operator==(const Look&, const Look&) = default;
 };
 
 /// Where the parts of a picture of `width` x `height` pixels are.

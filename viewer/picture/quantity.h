@@ -60,6 +60,7 @@ inline constexpr int kStatusClasses = 5;
 struct Range {
   float low = 0;
   float high = 1;
+  friend bool operator==(const Range&, const Range&) = default;
 };
 
 /// The largest finite |value| of a quantity in a field, over pillars that are neither idle, nor

@@ -9,6 +9,7 @@ namespace pillarfield::viewer {
 
 struct Vec2 {
   double x = 0, y = 0;
+  friend bool operator==(const Vec2&, const Vec2&) = default;
 };
 struct Vec3 {
   double x = 0, y = 0, z = 0;
@@ -31,6 +32,7 @@ struct Surface {
   SurfaceKind kind = SurfaceKind::plane;
   double radius_mm = 0;  ///< of the cylinder, whose axis runs along y and whose crest is at x = 0;
                          ///< below kLeastRadiusMm it is a plane
+  friend bool operator==(const Surface&, const Surface&) = default;
 };
 inline constexpr double kLeastRadiusMm = 1e-3;
 struct SurfaceFrame {
@@ -43,6 +45,7 @@ struct SurfaceFrame {
 struct TopView {
   Vec2 centre_mm;  ///< of the sheet, in the middle of the viewport
   double pixels_per_mm = 1;
+  friend bool operator==(const TopView&, const TopView&) = default;
 };
 /// In perspective, around a target on the sheet. Angles are about the frame of the surface there.
 struct OrbitView {
@@ -51,6 +54,7 @@ struct OrbitView {
   double elevation = 0.9;  ///< rad above the sheet, (0, pi/2]
   double distance_mm = 300;
   double field_of_view = 0.6;  ///< rad, vertical
+  friend bool operator==(const OrbitView&, const OrbitView&) = default;
 };
 using View = std::variant<TopView, OrbitView>;
 

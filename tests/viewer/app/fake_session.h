@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "viewer/app/changes.h"
+#include "viewer/app/shortcuts.h"
+
+namespace pillarfield::viewer {
+
+/// Fields of 20 x 30 pillars: every pillar is pressed, the harder the further right it is.
+class FakeProducer final : public FieldProducer {
+ public:
+  static constexpr std::uint32_t kRows = 20;
+  static constexpr std::uint32_t kCols = 30;
+  static constexpr std::uint64_t kFrames = 100;
+
+  FakeProducer() {
+    info_.name = "fake.h5";
+    info_.skin.rows = 2 * kRows;
+    info_.skin.cols = 2 * kCols;
+    info_.frames = kFrames;
+    info_.has_readings = info_.has_angles = info_.has_uncertainty = true;
+  }
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+
+  [[nodiscard]] ShownField produce(std::uint64_t index) override {
+    auto memory = std::make_shared<ForceField>(kRows, kCols);
+    for (std::size_t i = 0; i < memory->pillars(); ++i) {
+      memory->normal[i] = 0.1f * static_cast<float>(i % kCols);
+      memory->shear_x[i] = 0.03f;
+      memory->status[i] = 15;
+    }
+    ShownField field;
+    field.forces = memory->view();
+    field.index = index;
+    field.time_s = 0.01 * static_cast<double>(index);
+    field.keep_alive = memory;
+    return field;
+  }
+
+ private:
+  SourceInfo info_;
+};
+
+/// A session in a window of 1000 x 700 pixels whose picture has 800 x 600.
+struct FakeSession {
+  Player player{std::make_unique<FakeProducer>()};
+  Session session;
+  FieldPlace place{{0, 0, 800, 600}, &player.info()};
+  Requests requests;
+
+  FakeSession() {
+    session.player = &player;
+    take_field(session, FakeProducer().produce(0));
+    reset_view(session, place);
+  }
+  [[nodiscard]] Command command() { return {session, place, requests}; }
+
+  /// The middle of a pillar in the window.
+  [[nodiscard]] Vec2 pixel(std::uint32_t row, std::uint32_t col) const {
+    const Vec2 corner = corner_of(place, row, col);
+    const double half = 0.5 * player.info().skin.pillar_pitch_mm();
+    return pixel_of(place, session.look, {corner.x + half, corner.y - half}).value();
+  }
+};
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,160 @@
+// The table of shortcuts: no key twice, and each does something.
+
+#include "viewer/app/shortcuts.h"
+
+#include <GLFW/glfw3.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "tests/viewer/app/fake_session.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// Everything that a shortcut may change, to be compared.
+auto state_of(const FakeSession& fake) {
+  const Session& session = fake.session;
+  const PlayerState player = fake.player.state();
+  const Requests& requests = fake.requests;
+  return std::tuple(session.look, session.pins.size(), session.region.has_value(),
+                    session.show_help, session.show_panels, player.frame, player.playing,
+                    player.loops, player.follows, player.speed, requests.quit, requests.picture,
+                    requests.sequence, requests.video, requests.table, requests.stop);
+}
+
+/// A session in the middle of things: nothing is where a key would leave it.
+void set_up(FakeSession& fake, Quantity quantity) {
+  show_quantity(fake.session, quantity);
+  set_range(fake.session, {0, 7.5f});
+  fake.player.seek(50);
+  toggle_pin(fake.session, {3, 4});
+  mark_region(fake.session, {1, 2, 3, 4});
+  zoom(fake.session.look.view, fake.place.plot(fake.session.look), {300, 300}, 2);
+}
+
+std::vector<Chord> chords_of(const Shortcut& shortcut) {
+  std::vector<Chord> chords;
+  for (const Chord& chord : shortcut.chords) {
+    if (chord.key != 0) chords.push_back(chord);
+  }
+  return chords;
+}
+
+TEST(Shortcuts, NoChordIsThereTwice) {
+  std::set<std::tuple<int, bool, bool>> seen;
+  for (const Shortcut& shortcut : shortcuts()) {
+    for (const Chord& chord : chords_of(shortcut)) {
+      const auto [key, modifiers] = chord;
+      EXPECT_TRUE(seen.insert({key, modifiers.shift, modifiers.control}).second)
+          << shortcut.keys << ": " << shortcut.what;
+    }
+  }
+}
+
+TEST(Shortcuts, EachHasAKeyAndWordsAndIsToldApart) {
+  std::set<std::string> words;
+  for (const Shortcut& shortcut : shortcuts()) {
+    EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.what;
+    EXPECT_NE(*shortcut.keys, '\0');
+    EXPECT_TRUE(words.insert(shortcut.what).second) << shortcut.what;
+  }
+}
+
+TEST(Shortcuts, EachChordDoesSomethingToASession) {
+  for (const Shortcut& shortcut : shortcuts()) {
+    for (const Chord& chord : chords_of(shortcut)) {
+      bool changed = false;
+      // Of two quantities on display one at least is not the one that a key asks for.
+      for (const Quantity quantity : {Quantity::normal, Quantity::shear}) {
+        FakeSession fake;
+        set_up(fake, quantity);
+        const auto before = state_of(fake);
+        EXPECT_TRUE(dispatch(chord, fake.command()));
+        changed |= state_of(fake) != before;
+      }
+      EXPECT_TRUE(changed) << shortcut.keys << ": " << shortcut.what;
+    }
+  }
+}
+
+TEST(Shortcuts, EveryQuantityHasOne) {
+  std::set<Quantity> shown;
+  for (const Shortcut& shortcut : shortcuts()) {
+    if (shortcut.group != ShortcutGroup::show) continue;
+    FakeSession fake;
+    shortcut.act(fake.command());
+    shown.insert(fake.session.look.quantity);
+  }
+  EXPECT_EQ(shown.size(), static_cast<std::size_t>(kQuantities));
+}
+
+TEST(Shortcuts, OthersDoNothing) {
+  FakeSession fake;
+  const auto before = state_of(fake);
+  EXPECT_FALSE(dispatch({GLFW_KEY_F12, {}}, fake.command()));
+  EXPECT_FALSE(dispatch({GLFW_KEY_Q, {true, true}}, fake.command()));
+  EXPECT_FALSE(dispatch({}, fake.command()));
+  EXPECT_TRUE(state_of(fake) == before);
+}
+
+TEST(Shortcuts, StepsGoOnAndBack) {
+  FakeSession fake;
+  fake.player.set_loop(false);
+  fake.player.seek(50);
+  dispatch({GLFW_KEY_RIGHT, {true, false}}, fake.command());
+  EXPECT_EQ(fake.player.state().frame, 60u);
+  dispatch({GLFW_KEY_LEFT, {}}, fake.command());
+  EXPECT_EQ(fake.player.state().frame, 59u);
+  dispatch({GLFW_KEY_END, {}}, fake.command());
+  EXPECT_EQ(fake.player.state().frame, FakeProducer::kFrames - 1);
+  dispatch({GLFW_KEY_HOME, {}}, fake.command());
+  EXPECT_EQ(fake.player.state().frame, 0u);
+}
+
+TEST(Shortcuts, SpeedGoesInStepsAndComesBack) {
+  FakeSession fake;
+  std::vector<double> speeds;
+  for (int i = 0; i < 3; ++i) {
+    dispatch({GLFW_KEY_EQUAL, {true, false}}, fake.command());
+    speeds.push_back(fake.player.state().speed);
+  }
+  EXPECT_EQ(speeds, (std::vector<double>{2, 5, 10}));
+  for (int i = 0; i < 4; ++i) dispatch({GLFW_KEY_MINUS, {}}, fake.command());
+  EXPECT_EQ(fake.player.state().speed, 0.5);
+}
+
+TEST(Shortcuts, EscapeClosesTheHelpFirstAndStopsWritingBeforeItClears) {
+  FakeSession fake;
+  toggle_pin(fake.session, {3, 4});
+  fake.session.show_help = true;
+  fake.session.writing = true;
+  const Chord escape{GLFW_KEY_ESCAPE, {}};
+  dispatch(escape, fake.command());
+  EXPECT_FALSE(fake.session.show_help);
+  EXPECT_FALSE(fake.requests.stop);
+  dispatch(escape, fake.command());
+  EXPECT_TRUE(fake.requests.stop);
+  EXPECT_EQ(fake.session.pins.size(), 1u);
+  fake.session.writing = false;
+  dispatch(escape, fake.command());
+  EXPECT_TRUE(fake.session.pins.empty());
+}
+
+TEST(Shortcuts, AQuantityKeepsItsRange) {
+  FakeSession fake;
+  show_quantity(fake.session, Quantity::normal);
+  set_range(fake.session, {0.5f, 2.5f});
+  show_quantity(fake.session, Quantity::shear_x);
+  EXPECT_EQ(fake.session.look.range.low, -fake.session.look.range.high);
+  EXPECT_EQ(fake.session.look.map, default_map(Scale::diverging));
+  show_quantity(fake.session, Quantity::normal);
+  EXPECT_EQ(fake.session.look.range, (Range{0.5f, 2.5f}));
+  EXPECT_EQ(fake.session.look.map, default_map(Scale::sequential));
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

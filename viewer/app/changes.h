@@ -1,0 +1,42 @@
+#pragma once
+
+#include "viewer/app/field_place.h"
+#include "viewer/app/session.h"
+
+namespace pillarfield::viewer {
+
+// What keys, mouse and panels do to a session; each says in `notice` what a user could miss.
+
+/// Shows a quantity, in the range it was last looked at, at first what fits the field on display.
+/// One that the source lacks stays unshown.
+void show_quantity(Session& session, Quantity quantity);
+
+/// Fits the range to the field on display.
+void fit_range(Session& session);
+
+/// A range set by hand, in the quantity's own unit. Ends in the wrong order or of a diverging
+/// quantity that are not symmetric are made so about `high`.
+void set_range(Session& session, Range range);
+
+/// Top view or 3-D. Each keeps where it was when the other was looked at.
+void show_orbit(Session& session, const FieldPlace& place, bool orbit);
+[[nodiscard]] bool shows_orbit(const Look& look);
+
+/// The whole skin.
+void reset_view(Session& session, const FieldPlace& place);
+
+/// Another surface; a 3-D view that nobody moved is fitted to it.
+void set_surface(Session& session, const FieldPlace& place, const Surface& surface);
+
+/// Pins a pillar, or takes its pin away.
+void toggle_pin(Session& session, PillarIndex pillar);
+void mark_region(Session& session, const PillarRect& rect);
+void clear_marks(Session& session);
+
+/// Plays so much faster (or slower, -1) in steps of 1, 2, 5, 10.
+void change_speed(Session& session, int steps);
+
+/// A field has come: it is on display, and the histories of pins and region go on.
+void take_field(Session& session, ShownField field);
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,121 @@
+#include "viewer/app/marks.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "viewer/app/panel_ink.h"
+#include "viewer/app/pins.h"
+#include "viewer/app/style.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+ImVec2 to_imgui(Vec2 point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
+
+/// Draws on top of everything that the picture shows, with an edge that any colour lets see.
+class Marker {
+ public:
+  Marker(const Session& session, const FieldPlace& place)
+      : look_(session.look),
+        place_(place),
+        list_(*ImGui::GetBackgroundDrawList()),
+        unit_(static_cast<float>(session.look.scale)) {}
+
+  /// The outline of pillars on the skin, which may be bent: sides have points in between.
+  void outline(const PillarRect& rect, ImU32 colour) const {
+    const Vec2 upper_left = corner_of(place_, rect.row_begin, rect.col_begin);
+    const Vec2 lower_right = corner_of(place_, rect.row_end, rect.col_end);
+    const std::array<Vec2, 5> corners{upper_left,
+                                      {lower_right.x, upper_left.y},
+                                      lower_right,
+                                      {upper_left.x, lower_right.y},
+                                      upper_left};
+    std::vector<ImVec2> points;
+    for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
+      if (!add_side(points, corners.at(side), corners.at(side + 1))) return;
+    }
+    const auto count = static_cast<int>(points.size());
+    list_.AddPolyline(points.data(), count, IM_COL32(0, 0, 0, 200), ImDrawFlags_Closed, 3 * unit_);
+    list_.AddPolyline(points.data(), count, colour, ImDrawFlags_Closed, 1.4f * unit_);
+  }
+
+  void pin(const Pin& pin, bool inspected) const {
+    const auto middle = middle_of(pin.pillar);
+    if (!middle) return;
+    const float radius = 9 * unit_;
+    const float reach = radius + 5 * unit_;
+    const ImVec2 tip = to_imgui(*middle);
+    const ImVec2 head(std::round(tip.x + reach), std::round(tip.y - reach));
+    const ImU32 fill = packed(pin_colour(pin.number, Theme::dark));
+    const ImU32 edge = IM_COL32(10, 13, 18, 255);
+    list_.AddLine(tip, head, edge, 3 * unit_);
+    list_.AddLine(tip, head, fill, 1.4f * unit_);
+    list_.AddCircleFilled(tip, 2.5f * unit_, edge);
+    list_.AddCircleFilled(tip, 1.5f * unit_, fill);
+    const ImU32 rim = inspected ? IM_COL32(255, 255, 255, 255) : edge;
+    list_.AddCircleFilled(head, radius + 2.5f * unit_, edge);
+    list_.AddCircleFilled(head, radius + 1.5f * unit_, rim);
+    list_.AddCircleFilled(head, radius, fill);
+    const std::string words = fmt::format("{}", pin.number);
+    const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+    list_.AddText(ImVec2(std::round(head.x - size.x / 2), std::round(head.y - size.y / 2)), edge,
+                  words.c_str());
+  }
+
+  void clip() const {
+    const Viewport plot = place_.plot(look_);
+    list_.PushClipRect(to_imgui({plot.x, plot.y}),
+                       to_imgui({plot.x + plot.width, plot.y + plot.height}));
+  }
+  void unclip() const { list_.PopClipRect(); }
+
+ private:
+  [[nodiscard]] std::optional<Vec2> middle_of(const PillarIndex& pillar) const {
+    const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
+    const double half = 0.5 * place_.source->skin.pillar_pitch_mm();
+    return pixel_of(place_, look_, {corner.x + half, corner.y - half});
+  }
+
+  bool add_side(std::vector<ImVec2>& points, Vec2 from, Vec2 to) const {
+    const bool straight =
+        std::holds_alternative<TopView>(look_.view) || look_.surface.kind == SurfaceKind::plane;
+    const int pieces = straight ? 1 : 32;
+    for (int i = 0; i < pieces; ++i) {
+      const double share = static_cast<double>(i) / pieces;
+      const auto pixel = pixel_of(
+          place_, look_, {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)});
+      if (!pixel) return false;
+      points.push_back(to_imgui(*pixel));
+    }
+    return true;
+  }
+
+  const Look& look_;
+  const FieldPlace& place_;
+  ImDrawList& list_;
+  float unit_;
+};
+
+PillarRect only(const PillarIndex& pillar) {
+  return {pillar.row, pillar.row + 1, pillar.col, pillar.col + 1};
+}
+
+}  // namespace
+
+void draw_marks(const Session& session, const FieldPlace& place) {
+  const Marker marker(session, place);
+  marker.clip();
+  if (session.region) marker.outline(session.region->rect, palette_of(Theme::dark).accent);
+  if (session.hovered) marker.outline(only(*session.hovered), IM_COL32(255, 255, 255, 230));
+  for (std::size_t i = 0; i < session.pins.size(); ++i) {
+    marker.pin(session.pins[i], i + 1 == session.pins.size());
+  }
+  marker.unclip();
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,55 @@
+#include "viewer/app/opening.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+namespace pillarfield::viewer {
+namespace {
+
+/// Percents of a simulation on the terminal's last line, which is empty again at the end.
+class Progress {
+ public:
+  Progress() : shown_(isatty(STDERR_FILENO) == 1) {}
+  ~Progress() {
+    if (percent_ >= 0) std::fputs("\r                    \r", stderr);
+  }
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void tell(double share) {
+    const int percent = static_cast<int>(std::floor(100 * share));
+    if (!shown_ || percent == percent_) return;
+    percent_ = percent;
+    fmt::print(stderr, "\rsimulating {:3d} %", percent);
+    std::fflush(stderr);
+  }
+
+ private:
+  bool shown_;
+  int percent_ = -1;
+};
+
+}  // namespace
+
+Opened open_source(const Options& options, double scale) {
+  std::unique_ptr<FieldProducer> producer;
+  {
+    Progress progress;
+    ProducerOptions wanted;
+    wanted.device = options.device;
+    producer = open_producer(options.source, wanted, [&](double share) { progress.tell(share); });
+  }
+  for (const std::string& remark : producer->info().remarks) {
+    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", producer->info().name, remark);
+  }
+  Opened opened;
+  opened.look = first_look(options, *producer, scale);
+  opened.player = std::make_unique<Player>(std::move(producer));
+  return opened;
+}
+
+}  // namespace pillarfield::viewer

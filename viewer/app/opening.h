@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include "viewer/app/session.h"
+#include "viewer/options.h"
+
+namespace pillarfield::viewer {
+
+/// A source that is ready to be played, and how it looks first; the view is not set.
+struct Opened {
+  std::unique_ptr<Player> player;
+  Look look;
+};
+
+/// Opens the source of the options; on a terminal, tells how far a scene is simulated. Remarks of
+/// the source go to standard error. Throws Error.
+[[nodiscard]] Opened open_source(const Options& options, double scale);
+
+}  // namespace pillarfield::viewer
