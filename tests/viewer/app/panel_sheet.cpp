@@ -84,30 +84,31 @@ void in_window(const char* name, const Viewport& box, double scale, Panel&& pane
   ImGui::End();
 }
 
-constexpr double kWidth = 1560;
-constexpr double kHeight = 860;
+constexpr double kWidth = 1550;
+constexpr double kHeight = 1000;
 
+/// The column of the window is 340 wide; others may be wider.
 void draw_windows(Session& session, double scale) {
-  in_window("Cursor", {10, 10, 330, 230}, scale, [&] { hover_panel(session); });
-  in_window("Pillar, region 3", {350, 10, 440, 480}, scale, [&] { pillar_panel(session); });
+  in_window("Cursor", {10, 10, 340, 220}, scale, [&] { hover_panel(session); });
+  in_window("Region", {10, 240, 340, 310}, scale, [&] { region_panel(session); });
+  in_window("Region 3", {360, 10, 340, 540}, scale, [&] { pillar_panel(session); });
   inspect_pin(session, 1);
-  in_window("Pillar, region 2", {800, 10, 440, 480}, scale, [&] { pillar_panel(session); });
+  in_window("Region 2", {710, 10, 340, 540}, scale, [&] { pillar_panel(session); });
   inspect_pin(session, 0);
-  in_window("Pillar, narrow", {1250, 10, 300, 600}, scale, [&] { pillar_panel(session); });
-  inspect_pin(session, 0);
-  inspect_pin(session, 0);
-  in_window("Region", {10, 250, 330, 330}, scale, [&] { region_panel(session); });
-  in_window("Region, wide", {800, 500, 440, 230}, scale, [&] { region_panel(session); });
-  in_window("Time", {350, 500, 440, 350}, scale, [&] { time_panel(session); });
-  in_window("Time, wide", {800, 620, 750, 230}, scale, [&] { time_panel(session); });
+  in_window("Region 1, wide", {1060, 10, 480, 540}, scale, [&] { pillar_panel(session); });
+  in_window("Time", {360, 560, 340, 430}, scale, [&] { time_panel(session); });
+  in_window("Time, wide", {710, 560, 830, 320}, scale, [&] { time_panel(session); });
   Session nothing;
   nothing.player = session.player;
-  in_window("Nothing", {10, 590, 330, 260}, scale, [&] {
+  nothing.look = session.look;
+  in_window("Nothing", {10, 560, 340, 160}, scale, [&] {
     hover_panel(nothing);
     pillar_panel(nothing);
     region_panel(nothing);
     time_panel(nothing);
   });
+  session.field->raw = {};
+  in_window("No readings", {10, 730, 340, 260}, scale, [&] { pillar_panel(session); });
 }
 
 class PanelSheet : public testing::Test {
@@ -120,10 +121,10 @@ class PanelSheet : public testing::Test {
     const Interface interface(instance_, device_, *pass, scale);
     interface.use();
     set_style(theme, scale);
-    Session session = make_session(made_, player_);
-    session.look.theme = theme;
-    session.look.scale = scale;
     for (int frame = 0; frame < 2; ++frame) {  // Windows know their contents from the second on.
+      Session session = make_session(made_, player_);
+      session.look.theme = theme;
+      session.look.scale = scale;
       ImGui::GetIO().DisplaySize =
           ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
       ImGui::GetIO().DeltaTime = 0.1f;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -50,7 +51,7 @@ TEST(RoundSpan, HoldsZeroAndAllValuesWithoutWastingRoom) {
     std::vector<double> values;
     for (int k = 0; k < 4; ++k) values.push_back(sign(random) * std::pow(10, exponent(random)));
     const Span span = round_span(values);
-    const auto [low, high] = std::ranges::minmax(values);
+    const auto [low, high] = std::minmax({values[0], values[1], values[2], values[3]});
     const double width = std::max(high, 0.0) - std::min(low, 0.0);
     EXPECT_LE(span.from, std::min(low, 0.0));
     EXPECT_GE(span.to, std::max(high, 0.0));

@@ -58,7 +58,7 @@ std::vector<PillarValues> pillars_in(Region region) {
 
 TEST(ContourOf, GoesThroughThePointAndKeepsTheRatioOfTheReadings) {
   const auto pillars = pillars_in(Region::three);
-  ASSERT_GT(pillars.size(), 20u);
+  ASSERT_GT(pillars.size(), 10u);
   for (const PillarValues& values : pillars) {
     const std::vector<Vec2> contour = contour_of(values);
     ASSERT_FALSE(contour.empty());
@@ -116,7 +116,7 @@ TEST(DirectionBox, IsNotThereWithoutUncertainty) {
 TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutSilence) {
   History history;
   for (int i = 0; i < 40; ++i) {
-    const float angle = 0.2f * static_cast<float>(i);
+    const float angle = 0.1f + 0.2f * static_cast<float>(i);
     const bool silent = i == 10;
     history.add({i * 0.01, static_cast<std::uint64_t>(i), silent ? 0 : std::cos(angle),
                  silent ? 0 : std::sin(angle), silent ? 0.f : 1.f});

@@ -95,8 +95,8 @@ TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {
 }
 
 TEST(IntervalWords, TellTheEndsApart) {
-  EXPECT_EQ(interval_words(0.12, 0.34), "0.120 … 0.340");
-  EXPECT_EQ(interval_words(60, 73.3), "60.0 … 73.3");
+  EXPECT_EQ(interval_words(0.12, 0.34), "0.12 … 0.34");
+  EXPECT_EQ(interval_words(60, 73.3), "60 … 73");
   EXPECT_EQ(interval_words(-5, -5), "−5.000 … −5.000");
   EXPECT_EQ(interval_words(kNoNumber, 1), "");
 }
@@ -109,9 +109,9 @@ TEST(ShownDirection, HasIntervalsWhereItIsAmbiguousAndDeviationsElsewhere) {
   const float pi = std::numbers::pi_v<float>;
   planes = {0.1f, 0.1f, 0.1f, pi / 4, pi / 3, 0.95f * pi, -0.95f * pi, 0.2f, 0.3f};
   const auto shown = shown_direction(values);
-  EXPECT_EQ(shown[0].range, "0.200 … 0.300");
-  EXPECT_EQ(shown[1].range, "45.0 … 60.0");
-  EXPECT_EQ(shown[2].range, "171.0 … 189.0");  // Counter-clockwise, past 180.
+  EXPECT_EQ(shown[0].range, "0.20 … 0.30");
+  EXPECT_EQ(shown[1].range, "45 … 60");
+  EXPECT_EQ(shown[2].range, "171 … 189");  // Counter-clockwise, past 180.
   EXPECT_EQ(shown[2].unit, "°");
 }
 
@@ -132,7 +132,7 @@ TEST(PlaceWords, CountFromTheMiddleOfTheSkin) {
 }
 
 TEST(ReadingsWords, AreInTheOrderOfTheSensels) {
-  EXPECT_EQ(readings_words({12, 34, 0, 250}), "12.0  34.0  0  250  counts");
+  EXPECT_EQ(readings_words({12, 34.5f, 0, 250}), "12  34.5  0  250  counts");
 }
 
 }  // namespace
