@@ -134,6 +134,7 @@ void pillar_panel(Session& session) {
   status_line(ink, values.status, session.look.theme);
   leave_gap(ink, 4);
   draw_readings_and_direction(ink, session, values, colour);
+  leave_gap(ink, 2);
   value_table(ink, shown_components(values));
   leave_gap(ink, 4);
   draw_diagram(ink, session, values, colour);

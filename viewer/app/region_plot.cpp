@@ -149,8 +149,11 @@ void Drawing::draw_numbers() const {
   number("3.34", {-90, 80}, kSensel3 | kSensel4);
   number("3.14", {0, 80}, kSensel1 | kSensel4);
   number("3.12", {90, 80}, kSensel1 | kSensel2);
-  number("3.23", {-178, 80}, kSensel2 | kSensel3, Align::left);
-  number("3.23", {178, 80}, kSensel2 | kSensel3, Align::right);
+  // Half of this one is at either edge, which may be too narrow for its number.
+  const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
+  if (width_of("3.23") + 3 * ink_.unit > half_width) return;
+  number("3.23", {-179, 80}, kSensel2 | kSensel3, Align::left);
+  number("3.23", {179, 80}, kSensel2 | kSensel3, Align::right);
 }
 
 /// Region 4: four points at the upper edge.

@@ -56,7 +56,7 @@ void readouts(const PanelInk& ink, std::span<const ShownValue> values, double wi
     ImGui::TextUnformatted(value.c_str());
     ImGui::SetCursorPosX(static_cast<float>(right - width_of(shown.range)));
     faint(ink, shown.range);
-    leave_gap(ink, 7);
+    leave_gap(ink, 12);
   }
   ImGui::EndGroup();
   ImGui::PopStyleVar();

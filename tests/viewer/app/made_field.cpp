@@ -26,7 +26,7 @@ Force force_at(double row, double col) {
   if (away >= 1) return {};
   const double normal = 0.3 * std::sqrt(1 - away * away);
   const double grip = 0.05 + 1.5 * away * away * away;
-  return {normal * (0.85 * grip - 0.5 * up), normal * (0.35 * grip + 0.5 * right), normal};
+  return {normal * (-0.35 * grip - 0.5 * up), normal * (-0.85 * grip + 0.5 * right), normal};
 }
 
 /// Equation (2), in newtons.
@@ -66,6 +66,21 @@ void set_ends(ForceField& forces, std::size_t at, const Direction& low, const Di
   forces.uncertainty[Uncertainty::magnitude_high][at] = std::max(low.magnitude, high.magnitude);
 }
 
+void set_deviations(ForceField& forces, std::size_t at, double noise_n) {
+  const auto shear = static_cast<float>(noise_n / std::sqrt(2));
+  forces.uncertainty[Uncertainty::shear_x][at] = shear;
+  forces.uncertainty[Uncertainty::shear_y][at] = shear;
+  forces.uncertainty[Uncertainty::normal][at] = static_cast<float>(noise_n / 2);
+}
+
+std::uint8_t status_of(const std::array<double, 4>& read, double threshold_n) {
+  std::uint8_t state = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (read[i] > threshold_n) state = static_cast<std::uint8_t>(state | 1u << i);
+  }
+  return state;
+}
+
 }  // namespace
 
 MadeField::MadeField() : forces(32, 40) {
@@ -73,54 +88,53 @@ MadeField::MadeField() : forces(32, 40) {
   skin.cols = 80;
   skin.threshold_counts = 6;
   skin.full_scale_counts = 255;
-  const std::size_t pillars = forces.pillars();
-  for (auto* plane : {&magnitude, &theta, &phi}) plane->resize(pillars);
-  for (auto& plane : forces.uncertainty) plane.resize(pillars);
+  for (auto* plane : {&magnitude, &theta, &phi}) plane->resize(forces.pillars());
+  for (auto& plane : forces.uncertainty) plane.resize(forces.pillars());
   readings.resize(skin.sensels());
   for (std::uint32_t row = 0; row < forces.rows; ++row) {
-    for (std::uint32_t col = 0; col < forces.cols; ++col) {
-      const std::size_t at = std::size_t{row} * forces.cols + col;
-      Force force = force_at(row, col);
-      auto model = model_of(force);
-      std::uint8_t status = 0;
-      std::size_t pair = 4;
-      for (std::size_t i = 0; i < 4; ++i) {
-        const double counts = std::clamp(std::round(model[i] * skin.counts_per_newton), 0.0, 255.0);
-        const std::size_t sensel_row = std::size_t{2} * row + (i < 2 ? 0 : 1);
-        const std::size_t sensel_col = std::size_t{2} * col + (i == 0 || i == 3 ? 1 : 0);
-        readings[sensel_row * skin.cols + sensel_col] = static_cast<std::uint16_t>(counts);
-        model[i] = counts / skin.counts_per_newton;
-        if (counts > skin.threshold_counts) status = static_cast<std::uint8_t>(status | 1u << i);
-      }
-      for (std::size_t i = 0; i < 4; ++i) {
-        const bool here = status == (1u << i | 1u << (i + 1) % 4);
-        if (here) pair = i;
-      }
-      Direction low = direction_of(force);
-      Direction high = low;
-      if (pair < 4) {
-        status |= status::kAmbiguous;
-        const double most = std::min(model[pair], model[(pair + 1) % 4]) / 2;
-        force = on_segment(model, pair, most / 2);
-        low = direction_of(on_segment(model, pair, 0));
-        high = direction_of(on_segment(model, pair, most));
-      }
-      if (status == 0) force = {};
-      const Direction direction = direction_of(force);
-      forces.shear_x[at] = static_cast<float>(force.x);
-      forces.shear_y[at] = static_cast<float>(force.y);
-      forces.normal[at] = static_cast<float>(force.normal);
-      forces.status[at] = status;
-      magnitude[at] = direction.magnitude;
-      theta[at] = direction.theta;
-      phi[at] = direction.phi;
-      const double deviation = kNoiseCounts / skin.counts_per_newton;
-      forces.uncertainty[Uncertainty::shear_x][at] = static_cast<float>(deviation / std::sqrt(2));
-      forces.uncertainty[Uncertainty::shear_y][at] = static_cast<float>(deviation / std::sqrt(2));
-      forces.uncertainty[Uncertainty::normal][at] = static_cast<float>(deviation / 2);
-      set_ends(forces, at, low, high);
-    }
+    for (std::uint32_t col = 0; col < forces.cols; ++col) set_pillar({row, col});
   }
+}
+
+std::array<double, 4> MadeField::read(PillarIndex pillar, const std::array<double, 4>& model) {
+  std::array<double, 4> read{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double counts = std::clamp(std::round(model[i] * skin.counts_per_newton), 0.0, 255.0);
+    const std::size_t row = std::size_t{2} * pillar.row + (i < 2 ? 0 : 1);
+    const std::size_t col = std::size_t{2} * pillar.col + (i == 0 || i == 3 ? 1 : 0);
+    readings[row * skin.cols + col] = static_cast<std::uint16_t>(counts);
+    read[i] = counts / skin.counts_per_newton;
+  }
+  return read;
+}
+
+void MadeField::set_pillar(PillarIndex pillar) {
+  const std::size_t at = std::size_t{pillar.row} * forces.cols + pillar.col;
+  Force force = force_at(pillar.row, pillar.col);
+  const auto read = this->read(pillar, model_of(force));
+  std::uint8_t state = status_of(read, skin.threshold_counts / skin.counts_per_newton);
+  Direction low = direction_of(force);
+  Direction high = low;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (state != (1u << i | 1u << (i + 1) % 4)) continue;
+    state |= status::kAmbiguous;
+    const double most = std::min(read[i], read[(i + 1) % 4]) / 2;
+    force = on_segment(read, i, most / 2);
+    low = direction_of(on_segment(read, i, 0));
+    high = direction_of(on_segment(read, i, most));
+    break;
+  }
+  if (state == 0) force = {};
+  const Direction direction = direction_of(force);
+  forces.shear_x[at] = static_cast<float>(force.x);
+  forces.shear_y[at] = static_cast<float>(force.y);
+  forces.normal[at] = static_cast<float>(force.normal);
+  forces.status[at] = state;
+  magnitude[at] = direction.magnitude;
+  theta[at] = direction.theta;
+  phi[at] = direction.phi;
+  set_deviations(forces, at, kNoiseCounts / skin.counts_per_newton);
+  set_ends(forces, at, low, high);
 }
 
 ShownField MadeField::shown() const {

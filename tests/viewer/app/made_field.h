@@ -16,6 +16,11 @@ struct MadeField {
   ForceField forces;
   std::vector<float> magnitude, theta, phi;
   std::vector<std::uint16_t> readings;
+
+ private:
+  void set_pillar(PillarIndex pillar);
+  /// Whole counts go into the frame; returned in newtons, as the solver has them.
+  std::array<double, 4> read(PillarIndex pillar, const std::array<double, 4>& model);
 };
 
 /// A history of `points` frames, 100 a second, that ends in a force.
