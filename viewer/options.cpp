@@ -21,7 +21,7 @@ SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solv
 a file of force fields from `pillarfield solve`. Keys and mouse: press ? in the window.
 
 Try:  pillarfield-viewer scenes/demo.toml
-      pillarfield-viewer scenes/spin.toml --headless --frame 5 --png spin.png
+      pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png
       pillarfield-viewer forces.h5 --headless --frames 1:60 --size 1920x1080 --video touch.mp4)";
 
 /// Parses the numbers of "1280x720", "-0.5:0.5" or "10,20"; throws a complaint that shows the form.

@@ -32,7 +32,7 @@ std::vector<ShownValue> lines_of(const Session& session, const PillarValues& val
 void hover_panel(const Session& session) {
   const PanelInk ink = panel_ink(session.look.scale);
   if (!session.field || !session.hovered) {
-    faint_words(ink, "no pillar under the cursor");
+    faint_words(ink, "No pillar under the cursor.");
     return;
   }
   const PillarIndex pillar = *session.hovered;

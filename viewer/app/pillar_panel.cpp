@@ -80,29 +80,24 @@ void draw_readings(const PanelInk& ink, const Session& session, const PillarValu
   draw_reading_bars(*ImGui::GetWindowDrawList(), {room.x, room.y}, bars, full, colour, ink);
 }
 
-void draw_values(const PanelInk& ink, const PillarValues& values) {
-  ImGui::BeginGroup();
-  value_table(ink, shown_direction(values));
-  leave_gap(ink, 6);
-  value_table(ink, shown_components(values));
-  ImGui::EndGroup();
-}
-
-/// The readings, and beside them what follows from them; below where it is too narrow.
-void draw_readings_and_values(const PanelInk& ink, const Session& session,
-                              const PillarValues& values, ImU32 colour) {
+/// The readings, and beside them the direction that follows; below where it is too narrow.
+void draw_readings_and_direction(const PanelInk& ink, const Session& session,
+                                 const PillarValues& values, ImU32 colour) {
+  constexpr double kLeast = 130;
+  constexpr double kMost = 190;
+  double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
   if (session.field->raw.data == nullptr) {
     faint_words(ink, "The source has no readings.");
-    draw_values(ink, values);
-    return;
+  } else {
+    draw_readings(ink, session, values, colour);
+    const double gap = 16 * ink.unit;
+    const double beside = room - kReadingBarsSize.x * ink.unit - gap;
+    if (beside >= kLeast * ink.unit) {
+      ImGui::SameLine(0, static_cast<float>(gap));
+      room = beside;
+    }
   }
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  const double gap = 18 * ink.unit;
-  draw_readings(ink, session, values, colour);
-  if (kReadingBarsSize.x * ink.unit + gap + value_table_width(ink) <= room) {
-    ImGui::SameLine(0, static_cast<float>(gap));
-  }
-  draw_values(ink, values);
+  readouts(ink, shown_direction(values), std::min(room, kMost * ink.unit));
 }
 
 void draw_diagram(const PanelInk& ink, const Session& session, const PillarValues& values,
@@ -138,8 +133,10 @@ void pillar_panel(Session& session) {
   heading(ink, pillar_words(pin.pillar), place_words(session.field->forces, pin.pillar, pitch_mm));
   status_line(ink, values.status, session.look.theme);
   leave_gap(ink, 4);
-  draw_readings_and_values(ink, session, values, colour);
+  draw_readings_and_direction(ink, session, values, colour);
   leave_gap(ink, 2);
+  value_table(ink, shown_components(values));
+  leave_gap(ink, 4);
   draw_diagram(ink, session, values, colour);
 }
 

@@ -91,7 +91,7 @@ std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width) {
 
 PlotTicks ticks_of(const PlotArea& area, const PanelInk& ink) {
   const int most_x = std::max(static_cast<int>(area.box.width / (64 * ink.unit)), 2);
-  const int most_y = std::max(static_cast<int>(area.box.height / (1.5 * ink.line)), 3);
+  const int most_y = std::max(static_cast<int>(area.box.height / (1.2 * ink.line)), 3);
   return {ticks(area.x.from, area.x.to, most_x), ticks(area.y.from, area.y.to, most_y)};
 }
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer/app/value_words.h"
 #include "viewer/picture/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-constexpr Vec2 kCell{60, 80};
+constexpr Vec2 kCell{62, 80};
 constexpr Vec2 kBar{24, 54};
 constexpr Vec2 kBarCorner{18, 4};
 
@@ -45,7 +46,7 @@ void draw_cell(ImDrawList& list, Vec2 corner, std::size_t index, const ReadingBa
   draw_text(list, {number_x, track.y - 2 * ink.unit}, ink.faint, std::to_string(index + 1),
             left ? Align::right : Align::left);
   draw_text(list, {track.x + 0.5 * track.width, track.y + track.height + 3 * ink.unit},
-            bar.usable ? ink.text : ink.faint, three_digits(bar.reading), Align::middle);
+            bar.usable ? ink.text : ink.faint, count_words(bar.reading), Align::middle);
 }
 
 }  // namespace
@@ -85,6 +86,9 @@ void draw_reading_bars(ImDrawList& list, Vec2 corner, const std::array<ReadingBa
     draw_cell(list, {corner.x + x * ink.unit, corner.y + y * ink.unit}, index, bars[index], full,
               colour, ink);
   }
+  draw_text(list,
+            {corner.x + 0.5 * kReadingBarsSize.x * ink.unit, corner.y + 2 * kCell.y * ink.unit},
+            ink.faint, "of " + count_words(full) + " counts", Align::middle);
 }
 
 }  // namespace pillarfield::viewer

@@ -25,7 +25,7 @@ struct ReadingBar {
                               SenselType type);
 
 /// The size of what draw_reading_bars() draws, at scale 1.
-inline constexpr Vec2 kReadingBarsSize{124, 164};
+inline constexpr Vec2 kReadingBarsSize{124, 178};
 
 /// Four bars where the sensels lie under their pillar: 2 upper left, 1 upper right, 3 lower left,
 /// 4 lower right.

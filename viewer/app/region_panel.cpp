@@ -94,7 +94,7 @@ std::string share_words(std::uint64_t count, std::uint64_t all) {
 /// What the colours of the shares mean: as many in a line as fit.
 void draw_legend(const PanelInk& ink, const RegionSums& sums, Theme theme) {
   const auto counts = shown_counts(sums);
-  const double cell = 92 * ink.unit;
+  const double cell = 76 * ink.unit;
   const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
   double used = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -106,15 +106,14 @@ void draw_legend(const PanelInk& ink, const RegionSums& sums, Theme theme) {
     }
     swatch(ink, packed(region_colour(kShown[i], theme)));
     const std::string words =
-        fmt::format("{}: {}", name_of(kShown[i]), share_words(counts[i], sums.in_contact));
+        fmt::format("{}  {}", name_of(kShown[i]), share_words(counts[i], sums.in_contact));
     ImGui::TextUnformatted(words.c_str());
     used += cell;
   }
 }
 
 std::string fault_words(const RegionSums& sums) {
-  return fmt::format("{} of {} pillars in contact; {} ambiguous, {} saturated, {} inconsistent",
-                     sums.in_contact, sums.pillars, sums.ambiguous, sums.saturated,
+  return fmt::format("{} ambiguous, {} saturated, {} inconsistent", sums.ambiguous, sums.saturated,
                      sums.inconsistent);
 }
 
@@ -133,10 +132,11 @@ void region_panel(Session& session) {
   leave_gap(ink, 2);
   draw_tables(ink, sums);
   leave_gap(ink, 4);
-  if (sums.in_contact > 0) {
-    draw_shares(ink, sums, session.look.theme);
-    draw_legend(ink, sums, session.look.theme);
-  }
+  heading(ink, "Regions of usable sensels",
+          fmt::format("{} of {} in contact", sums.in_contact, sums.pillars));
+  if (sums.in_contact == 0) return;
+  draw_shares(ink, sums, session.look.theme);
+  draw_legend(ink, sums, session.look.theme);
   faint_words(ink, fault_words(sums).c_str());
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "viewer/app/status_line.h"
 #include "viewer/app/value_words.h"
@@ -19,11 +20,13 @@ constexpr int kBorderPoints = 97;
 
 double in_degrees(float radians) { return static_cast<double>(radians) * kDegrees; }
 
+int sensel_bit(int sensel) { return 1 << (sensel - 1); }
+
 /// The sensel n whose neighbour n % 4 + 1 is the other usable one; 0 outside region 3.
 int first_of_pair(std::uint8_t status) {
   if (region_of(status) != Region::three) return 0;
   for (int sensel = 1; sensel <= 4; ++sensel) {
-    const int pair = 1 << (sensel - 1) | 1 << (sensel % 4);
+    const int pair = sensel_bit(sensel) | sensel_bit(sensel % 4 + 1);
     if ((status & status::kUsable) == pair) return sensel;
   }
   return 0;
@@ -61,8 +64,8 @@ const Borders& borders() {
 /// Drawing in one plot for one pillar.
 class Drawing {
  public:
-  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme, Region region)
-      : list_(list), area_(area), ink_(ink), theme_(theme), region_(region) {}
+  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme, int usable)
+      : list_(list), area_(area), ink_(ink), theme_(theme), usable_(usable) {}
 
   void tint() const;
   void draw_borders() const;
@@ -74,25 +77,26 @@ class Drawing {
   void draw_point(Vec2 direction, ImU32 colour) const;
 
  private:
-  [[nodiscard]] ImU32 tint_of(Region region) const {
-    const double share = region == region_ ? 0.42 : 0.13;
+  [[nodiscard]] ImU32 tint_of(int usable) const {
+    const Region region = region_of(static_cast<std::uint8_t>(usable));
+    const double share = usable == usable_ ? 0.5 : 0.13;
     return mixed(ink_.ground, packed(region_colour(region, theme_)), share);
   }
-  void strip(double left, double right, Span from, Span to, Region region) const;
-  void number(const char* words, Vec2 place, Region region, Align align = Align::middle) const;
+  void strip(double left, double right, Span from, Span to, int usable) const;
+  void number(const char* words, Vec2 place, int lifted, Align align = Align::middle) const;
 
   ImDrawList& list_;
   const PlotArea& area_;
   const PanelInk& ink_;
   Theme theme_;
-  Region region_;
+  int usable_;  ///< sensels, as in a status byte
 };
 
 /// Between two thetas (degrees) at its left end and two at its right one.
-void Drawing::strip(double left, double right, Span from, Span to, Region region) const {
+void Drawing::strip(double left, double right, Span from, Span to, int usable) const {
   list_.AddQuadFilled(point(area_.at({left, from.from})), point(area_.at({right, to.from})),
                       point(area_.at({right, to.to})), point(area_.at({left, from.to})),
-                      tint_of(region));
+                      tint_of(usable));
 }
 
 void Drawing::tint() const {
@@ -103,9 +107,13 @@ void Drawing::tint() const {
   for (double phi = -180; phi < 180; phi += kStep) {
     const RegionLimits left = region_limits(phi);
     const RegionLimits right = region_limits(phi + kStep);
-    strip(phi, phi + kStep, {0, left.four}, {0, right.four}, Region::one);
-    strip(phi, phi + kStep, {left.four, left.three}, {right.four, right.three}, Region::two);
-    strip(phi, phi + kStep, {left.three, 90}, {right.three, 90}, Region::three);
+    // Borders cross at multiples of the step, where it would be anybody's guess who lifts first.
+    const RegionLimits middle = region_limits(phi + kStep / 2);
+    const int three = status::kUsable & ~sensel_bit(middle.first);
+    const int two = three & ~sensel_bit(middle.second);
+    strip(phi, phi + kStep, {0, left.four}, {0, right.four}, status::kUsable);
+    strip(phi, phi + kStep, {left.four, left.three}, {right.four, right.three}, three);
+    strip(phi, phi + kStep, {left.three, 90}, {right.three, 90}, two);
   }
   list_.Flags = flags;
 }
@@ -122,29 +130,41 @@ void Drawing::draw_borders() const {
   }
 }
 
-void Drawing::number(const char* words, Vec2 place, Region region, Align align) const {
+void Drawing::number(const char* words, Vec2 place, int lifted, Align align) const {
   const Vec2 pixel = area_.at(place);
+  const bool here = (status::kUsable & ~lifted) == usable_;
   draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},
-            region == region_ ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
+            here ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
 }
 
 /// As in the paper: behind the point the sensels that are not usable.
 void Drawing::draw_numbers() const {
-  number("1", {0, 21}, Region::one);
-  number("2.3", {-135, 66}, Region::two);
-  number("2.4", {-45, 66}, Region::two);
-  number("2.1", {45, 66}, Region::two);
-  number("2.2", {135, 66}, Region::two);
-  // Between the curves there is room for it at this height only.
-  number("3.34", {-90, 80}, Region::three);
-  number("3.14", {0, 80}, Region::three);
-  number("3.12", {90, 80}, Region::three);
+  using namespace status;
+  number("1", {0, 21}, 0);
+  number("2.3", {-135, 66}, kSensel3);
+  number("2.4", {-45, 66}, kSensel4);
+  number("2.1", {45, 66}, kSensel1);
+  number("2.2", {135, 66}, kSensel2);
+  // Between the borders this is where there is room.
+  number("3.34", {-90, 80}, kSensel3 | kSensel4);
+  number("3.14", {0, 80}, kSensel1 | kSensel4);
+  number("3.12", {90, 80}, kSensel1 | kSensel2);
+  // Half of this one is at either edge, which may be too narrow for its number.
+  const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
+  if (width_of("3.23") + 3 * ink_.unit > half_width) return;
+  number("3.23", {-179, 80}, kSensel2 | kSensel3, Align::left);
+  number("3.23", {179, 80}, kSensel2 | kSensel3, Align::right);
 }
 
 /// Region 4: four points at the upper edge.
 void Drawing::draw_corners() const {
-  for (const double phi : {-135.0, -45.0, 45.0, 135.0}) {
-    const bool here = region_ == Region::four;
+  // The force comes from the side opposite to the one sensel that it presses.
+  const std::array<std::pair<double, int>, 4> corners{{{-135, status::kSensel1},
+                                                       {-45, status::kSensel2},
+                                                       {45, status::kSensel3},
+                                                       {135, status::kSensel4}}};
+  for (const auto& [phi, usable] : corners) {
+    const bool here = usable_ == usable;
     list_.AddCircleFilled(point(area_.at({phi, 90})),
                           static_cast<float>((here ? 4.5 : 3) * ink_.unit),
                           here ? packed(region_colour(Region::four, theme_)) : ink_.faint, 16);
@@ -251,17 +271,20 @@ std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t poin
 }
 
 RegionLimits region_limits(double phi) {
-  std::array<double, 4> limits{};
-  for (std::size_t i = 0; i < limits.size(); ++i) limits[i] = border_at(borders()[i], phi);
+  using Limit = std::pair<double, int>;
+  std::array<Limit, 4> limits;
+  for (std::size_t i = 0; i < limits.size(); ++i) {
+    limits[i] = {border_at(borders()[i], phi), static_cast<int>(i) + 1};
+  }
   std::ranges::sort(limits);
-  return {limits[0], limits[1]};
+  return {limits[0].first, limits[1].first, limits[0].second, limits[1].second};
 }
 
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
                       const History& history, const PanelInk& ink, ImU32 colour, Theme theme) {
   const PlotArea area{inside_axes(outer, width_of("90"), ink), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
-  const Drawing drawing(list, area, ink, theme, region_of(values.status));
+  const Drawing drawing(list, area, ink, theme, values.status & status::kUsable);
   draw_axes(list, area, angle_ticks(), ink);
   list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
   drawing.tint();

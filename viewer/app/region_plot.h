@@ -28,10 +28,11 @@ struct DirectionBox {
 /// from one edge of the diagram to the other. Points without a force are left out.
 [[nodiscard]] std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t points);
 
-/// The borders of the regions above phi (degrees): theta (degrees) below which four sensels are
-/// usable, and three.
+/// The borders of the regions above phi (degrees): theta (degrees) up to which four sensels are
+/// usable, and three; and the sensels (1..4) that lift there.
 struct RegionLimits {
   double four = 90, three = 90;
+  int first = 0, second = 0;
 };
 [[nodiscard]] RegionLimits region_limits(double phi);
 

@@ -50,13 +50,13 @@ Chart chart_of_pins(const char* title, const Session& session, Component compone
 std::vector<Chart> charts_of(const Session& session, const PanelInk& ink) {
   std::vector<Chart> charts;
   if (!session.pins.empty()) {
-    charts.push_back(chart_of_pins("normal of pinned pillars, N", session, normal_of));
-    charts.push_back(chart_of_pins("|shear| of pinned pillars, N", session, shear_of));
+    charts.push_back(chart_of_pins("Normal of the pins, N", session, normal_of));
+    charts.push_back(chart_of_pins("|Shear| of the pins, N", session, shear_of));
   }
   if (session.region) {
     const History& history = session.region->history;
-    charts.push_back({"normal of the region, N", {{curve_of(history, normal_of), ink.text}}});
-    charts.push_back({"|shear| of the region, N", {{curve_of(history, shear_of), ink.text}}});
+    charts.push_back({"Normal of the region, N", {{curve_of(history, normal_of), ink.text}}});
+    charts.push_back({"|Shear| of the region, N", {{curve_of(history, shear_of), ink.text}}});
   }
   return charts;
 }
@@ -84,22 +84,39 @@ Span force_span(const Chart& chart) {
   return round_span(values);
 }
 
-/// Labels of all charts take the same room, so that their axes stand below each other.
-double label_width() { return width_of("0.0000"); }
+constexpr double kChartHeight = 116;
 
-void draw_chart(const Chart& chart, const Viewport& outer, const Span& time, double now_s,
+/// The widest label at the y axis of any chart: their axes stand below each other.
+double label_width(const std::vector<Chart>& charts, const PanelInk& ink) {
+  double widest = 0;
+  for (const Chart& chart : charts) {
+    const PlotArea area{{0, 0, 1, kChartHeight * ink.unit - 3 * ink.line}, {}, force_span(chart)};
+    for (const Tick& tick : ticks_of(area, ink).y) widest = std::max(widest, width_of(tick.label));
+  }
+  return widest;
+}
+
+/// What all charts of a panel have in common.
+struct ChartFrame {
+  Span time;
+  double now_s;
+  double label_width;
+};
+
+void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelInk& ink) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const double title = ink.line + 2 * ink.unit;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
-  const PlotArea area{inside_axes(below, label_width(), ink), time, force_span(chart)};
-  draw_text(list, {area.box.x, outer.y}, ink.text, chart.title);
-  draw_text(list, {area.box.x + area.box.width, outer.y}, ink.faint, "time, s", Align::right);
-  draw_axes(list, area, ticks_of(area, ink), ink);
+  const PlotArea area{inside_axes(below, frame.label_width, ink), frame.time, force_span(chart)};
+  draw_text(list, {outer.x, outer.y}, ink.text, chart.title);
+  PlotTicks ticks = ticks_of(area, ink);
+  if (!ticks.x.empty()) ticks.x.back().label += " s";
+  draw_axes(list, area, ticks, ink);
   for (const Curve& curve : chart.curves) {
     draw_curve(list, area, curve.points, curve.colour, 1.6 * ink.unit);
   }
-  draw_head(list, area, now_s, ink);
+  draw_head(list, area, frame.now_s, ink);
 }
 
 void draw_legend(const Session& session, const PanelInk& ink) {
@@ -109,7 +126,7 @@ void draw_legend(const Session& session, const PanelInk& ink) {
   const double right = static_cast<double>(ImGui::GetWindowContentRegionMax().x);
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const std::string words =
-        fmt::format("{}  {}, {}", pins[i]->number, pins[i]->pillar.row, pins[i]->pillar.col);
+        fmt::format("{}  ({}, {})", pins[i]->number, pins[i]->pillar.row, pins[i]->pillar.col);
     if (i > 0) {
       ImGui::SameLine(0, static_cast<float>(16 * ink.unit));
       const double end =
@@ -122,8 +139,7 @@ void draw_legend(const Session& session, const PanelInk& ink) {
 }
 
 /// Charts in rows, as many beside each other as the width takes.
-void draw_charts(const std::vector<Chart>& charts, const Span& time, double now_s,
-                 const PanelInk& ink) {
+void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame, const PanelInk& ink) {
   const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
   const double gap = 14 * ink.unit;
   const auto fitting = static_cast<std::size_t>(std::max(room / (300 * ink.unit), 1.0));
@@ -132,7 +148,7 @@ void draw_charts(const std::vector<Chart>& charts, const Span& time, double now_
   const double width = (room - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
-    draw_chart(charts[i], take_room(width, 128 * ink.unit), time, now_s, ink);
+    draw_chart(charts[i], take_room(width, kChartHeight * ink.unit), frame, ink);
   }
 }
 
@@ -148,7 +164,7 @@ void time_panel(Session& session) {
   }
   const double now_s = session.field->time_s;
   draw_legend(session, ink);
-  draw_charts(charts, time_span(charts, now_s), now_s, ink);
+  draw_charts(charts, {time_span(charts, now_s), now_s, label_width(charts, ink)}, ink);
 }
 
 }  // namespace pillarfield::viewer

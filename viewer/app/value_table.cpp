@@ -5,10 +5,10 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kLabelWidth = 84;
-constexpr double kValueWidth = 64;
+constexpr double kLabelWidth = 74;
+constexpr double kValueWidth = 56;
 constexpr double kGap = 8;
-constexpr double kRangeWidth = 104;
+constexpr double kRangeWidth = 100;
 
 void faint(const PanelInk& ink, const std::string& text) {
   ImGui::PushStyleColor(ImGuiCol_Text, ink.faint);
@@ -39,6 +39,25 @@ void value_table(const PanelInk& ink, std::span<const ShownValue> values) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, point({0, 2 * ink.unit}));
   ImGui::BeginGroup();
   for (const ShownValue& value : values) line(ink, value);
+  ImGui::EndGroup();
+  ImGui::PopStyleVar();
+}
+
+void readouts(const PanelInk& ink, std::span<const ShownValue> values, double width) {
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, point({0, ink.unit}));
+  ImGui::BeginGroup();
+  const double right = static_cast<double>(ImGui::GetCursorPosX()) + width;
+  for (const ShownValue& shown : values) {
+    const bool close = shown.unit == "°";
+    const std::string value = shown.value + (close ? "" : " ") + shown.unit;
+    faint(ink, shown.label);
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(static_cast<float>(right - width_of(value)));
+    ImGui::TextUnformatted(value.c_str());
+    ImGui::SetCursorPosX(static_cast<float>(right - width_of(shown.range)));
+    faint(ink, shown.range);
+    leave_gap(ink, 12);
+  }
   ImGui::EndGroup();
   ImGui::PopStyleVar();
 }

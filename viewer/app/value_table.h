@@ -11,6 +11,10 @@ namespace pillarfield::viewer {
 /// they do in every table of the panels, whatever the values.
 void value_table(const PanelInk& ink, std::span<const ShownValue> values);
 
+/// The same in two lines each, `width` wide: label and value with its unit, and below the deviation
+/// or interval, flush right.
+void readouts(const PanelInk& ink, std::span<const ShownValue> values, double width);
+
 /// The width that a table takes, pixels.
 [[nodiscard]] double value_table_width(const PanelInk& ink);
 

@@ -45,8 +45,7 @@ ShownValue with_deviation(const char* label, double value, double deviation, con
 
 /// An angle or a magnitude that may be anything between two ends.
 ShownValue with_interval(const char* label, double value, Span ends, const char* unit) {
-  return {label, value_words(value, (ends.to - ends.from) / 10), interval_words(ends.from, ends.to),
-          unit};
+  return {label, value_words(value, ends.to - ends.from), interval_words(ends.from, ends.to), unit};
 }
 
 /// Phi runs from low to high; where it passes pi, the far end is told beyond 180 degrees.
@@ -85,9 +84,14 @@ std::string place_words(const ForceFieldView& forces, PillarIndex pillar, double
   return fmt::format("x {}, y {} mm", fixed(x, 2), fixed(y, 2));
 }
 
+std::string count_words(double counts) {
+  if (!std::isfinite(counts) || counts != std::round(counts)) return three_digits(counts);
+  return fixed(counts, 0);
+}
+
 std::string readings_words(const std::array<float, 4>& readings) {
   std::string words;
-  for (const float reading : readings) words += three_digits(static_cast<double>(reading)) + "  ";
+  for (const float reading : readings) words += count_words(static_cast<double>(reading)) + "  ";
   return words + "counts";
 }
 
@@ -124,7 +128,7 @@ std::string deviation_words(double deviation) {
 std::string interval_words(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return {};
   const double width = high - low;
-  const int decimals = width > 0 ? decimals_of(width, 3) : 3;
+  const int decimals = width > 0 ? decimals_of(width, 2) : 3;
   return fixed(low, decimals) + " … " + fixed(high, decimals);
 }
 

@@ -22,7 +22,10 @@ struct DirectionDeviation {
 [[nodiscard]] std::string place_words(const ForceFieldView& forces, PillarIndex pillar,
                                       double pillar_pitch_mm);
 
-/// "12  34  0  7 counts": the four readings in the order of the sensels.
+/// "12", and "12.3" of what is no whole number.
+[[nodiscard]] std::string count_words(double counts);
+
+/// "12  34  0  7  counts": the four readings in the order of the sensels.
 [[nodiscard]] std::string readings_words(const std::array<float, 4>& readings);
 
 /// "region 3, ambiguous", "no contact", "region 1, saturated": what a status byte says.
@@ -35,7 +38,7 @@ struct DirectionDeviation {
 /// "± 0.0056": two digits. Empty where it is no number.
 [[nodiscard]] std::string deviation_words(double deviation);
 
-/// "0.12 … 0.34": ends with the decimals that tell them apart, three of their width's digits.
+/// "0.12 … 0.34": ends with as many decimals as two digits of what is between them have.
 [[nodiscard]] std::string interval_words(double low, double high);
 
 /// A quantity of a pillar as it is displayed.

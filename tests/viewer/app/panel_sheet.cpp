@@ -1,0 +1,176 @@
+// Draws all panels without a window, in both themes and at two scales, and keeps the pictures.
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <set>
+
+#include "tests/viewer/app/made_field.h"
+#include "viewer/app/export.h"
+#include "viewer/app/panel_ink.h"
+#include "viewer/app/panels.h"
+#include "viewer/app/pins.h"
+#include "viewer/draw/interface.h"
+#include "viewer/draw/target.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+class OneField final : public FieldProducer {
+ public:
+  explicit OneField(const MadeField& made) : made_(made), info_(made.source()) {}
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] ShownField produce(std::uint64_t /*index*/) override { return made_.shown(); }
+
+ private:
+  const MadeField& made_;
+  SourceInfo info_;
+};
+
+/// The pillar most pressed of those in a region.
+PillarIndex a_pillar(const MadeField& made, Region region, float left_of = 40) {
+  PillarIndex found;
+  float most = -1;
+  for (std::size_t at = 0; at < made.forces.pillars(); ++at) {
+    const auto col = static_cast<std::uint32_t>(at % made.forces.cols);
+    if (region_of(made.forces.status[at]) != region || static_cast<float>(col) >= left_of) continue;
+    if (made.magnitude[at] <= most) continue;
+    most = made.magnitude[at];
+    found = {static_cast<std::uint32_t>(at / made.forces.cols), col};
+  }
+  return found;
+}
+
+Session make_session(const MadeField& made, Player& player) {
+  Session session;
+  session.player = &player;
+  session.field = made.shown();
+  session.hovered = a_pillar(made, Region::two);
+  for (const PillarIndex pillar :
+       {a_pillar(made, Region::one), a_pillar(made, Region::two), a_pillar(made, Region::three)}) {
+    session.pins.push_back({pillar, made_history(values_at(*session.field, pillar), 400)});
+  }
+  session.region = MarkedRegion{{4, 25, 8, 36}, History()};
+  const RegionSums sums = sums_over(*session.field, session.region->rect, 1.265);
+  PillarValues total;
+  total.shear_x = static_cast<float>(sums.shear_x);
+  total.shear_y = static_cast<float>(sums.shear_y);
+  total.normal = static_cast<float>(sums.normal);
+  session.region->history = made_history(total, 400);
+  return session;
+}
+
+void set_style(Theme theme, double scale) {
+  ImGui::GetStyle() = ImGuiStyle();
+  if (theme == Theme::dark) {
+    ImGui::StyleColorsDark();
+  } else {
+    ImGui::StyleColorsLight();
+  }
+  ImGuiStyle& style = ImGui::GetStyle();
+  style.WindowPadding = ImVec2(14, 10);
+  style.ItemSpacing = ImVec2(8, 6);
+  style.Colors[ImGuiCol_WindowBg].w = 1;
+  style.ScaleAllSizes(static_cast<float>(scale));
+}
+
+/// A window of its own for a panel; places and sizes at scale 1.
+template <class Panel>
+void in_window(const char* name, const Viewport& box, double scale, Panel&& panel) {
+  const auto sized = [scale](double x, double y) { return point({x * scale, y * scale}); };
+  ImGui::SetNextWindowPos(sized(box.x, box.y));
+  ImGui::SetNextWindowSize(sized(box.width, box.height));
+  ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
+  panel();
+  ImGui::End();
+}
+
+constexpr double kWidth = 1550;
+constexpr double kHeight = 1000;
+
+/// The column of the window is 340 wide; others may be wider.
+void draw_windows(Session& session, double scale) {
+  in_window("Cursor", {10, 10, 340, 220}, scale, [&] { hover_panel(session); });
+  in_window("Region", {10, 240, 340, 310}, scale, [&] { region_panel(session); });
+  in_window("Region 3", {360, 10, 340, 540}, scale, [&] { pillar_panel(session); });
+  inspect_pin(session, 1);
+  in_window("Region 2", {710, 10, 340, 540}, scale, [&] { pillar_panel(session); });
+  inspect_pin(session, 0);
+  in_window("Region 1, wide", {1060, 10, 480, 540}, scale, [&] { pillar_panel(session); });
+  in_window("Time", {360, 560, 340, 430}, scale, [&] { time_panel(session); });
+  in_window("Time, wide", {710, 560, 830, 320}, scale, [&] { time_panel(session); });
+  Session nothing;
+  nothing.player = session.player;
+  nothing.look = session.look;
+  in_window("Nothing", {10, 560, 340, 160}, scale, [&] {
+    hover_panel(nothing);
+    pillar_panel(nothing);
+    region_panel(nothing);
+    time_panel(nothing);
+  });
+  session.field->raw = {};
+  in_window("No readings", {10, 730, 340, 260}, scale, [&] { pillar_panel(session); });
+}
+
+class PanelSheet : public testing::Test {
+ protected:
+  Pixels draw(Theme theme, double scale) {
+    const vk::Extent2D size(static_cast<std::uint32_t>(kWidth * scale),
+                            static_cast<std::uint32_t>(kHeight * scale));
+    const vk::raii::RenderPass pass = Target::make_render_pass(device_);
+    const Target target(device_, *pass, size);
+    const Interface interface(instance_, device_, *pass, scale);
+    interface.use();
+    set_style(theme, scale);
+    for (int frame = 0; frame < 2; ++frame) {  // Windows know their contents from the second on.
+      Session session = make_session(made_, player_);
+      session.look.theme = theme;
+      session.look.scale = scale;
+      ImGui::GetIO().DisplaySize =
+          ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
+      ImGui::GetIO().DeltaTime = 0.1f;
+      ImGui::NewFrame();
+      draw_windows(session, scale);
+      ImGui::Render();
+    }
+    const std::array<vk::ClearValue, 2> clear{
+        vk::ClearColorValue(std::array{0.3f, 0.32f, 0.35f, 1.0f}),
+        vk::ClearDepthStencilValue(1, 0)};
+    device_.run([&](const vk::raii::CommandBuffer& commands) {
+      commands.beginRenderPass(
+          vk::RenderPassBeginInfo(*pass, target.framebuffer(), {{0, 0}, size}, clear),
+          vk::SubpassContents::eInline);
+      interface.draw(commands);
+      commands.endRenderPass();
+    });
+    return read_pixels(device_, target.image());
+  }
+
+  gpu::Instance instance_{{}, true};
+  gpu::Device device_{instance_, {}};
+  MadeField made_;
+  Player player_{std::make_unique<OneField>(made_)};
+};
+
+std::size_t colours_in(const Pixels& pixels) {
+  std::set<std::array<std::uint8_t, 3>> colours;
+  for (std::size_t i = 0; i < pixels.rgba.size(); i += 4) {
+    colours.insert({pixels.rgba[i], pixels.rgba[i + 1], pixels.rgba[i + 2]});
+  }
+  return colours.size();
+}
+
+TEST_F(PanelSheet, DrawsAllPanelsInBothThemesAndAtTwoScalesWithoutAValidationMessage) {
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    for (const double scale : {1.0, 2.0}) {
+      const Pixels pixels = draw(theme, scale);
+      EXPECT_GT(colours_in(pixels), 100u);
+      const std::string name = std::string("panels_") + (theme == Theme::dark ? "dark" : "light") +
+                               (scale > 1 ? "_2" : "_1") + ".png";
+      write_png(name, pixels);
+    }
+  }
+  EXPECT_EQ(instance_.validation_messages(), 0);
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

@@ -1,0 +1,114 @@
+// The pins that can be chosen and removed in the panel of the inspected pillar, by mouse.
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include "tests/viewer/app/made_field.h"
+#include "viewer/app/panel_ink.h"
+#include "viewer/app/panels.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+class NoFields final : public FieldProducer {
+ public:
+  explicit NoFields(const MadeField& made) : made_(made), info_(made.source()) {}
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+  [[nodiscard]] ShownField produce(std::uint64_t /*index*/) override { return made_.shown(); }
+
+ private:
+  const MadeField& made_;
+  SourceInfo info_;
+};
+
+/// An interface that nobody sees.
+class PillarPanel : public testing::Test {
+ protected:
+  PillarPanel() : context_(ImGui::CreateContext()) {
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.DisplaySize = ImVec2(400, 800);
+    unsigned char* pixels = nullptr;
+    io.Fonts->GetTexDataAsAlpha8(&pixels, nullptr, nullptr);
+    session_.player = &player_;
+    session_.field = made_.shown();
+    for (std::uint32_t i = 0; i < 3; ++i) session_.pins.push_back({{10 + i, 20}, History()});
+  }
+  ~PillarPanel() override { ImGui::DestroyContext(context_); }
+
+  void frame() {
+    ImGui::GetIO().DeltaTime = 0.02f;
+    ImGui::NewFrame();
+    ImGui::SetNextWindowPos(ImVec2(0, 0));
+    ImGui::SetNextWindowSize(ImVec2(kWidth, 700));
+    ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
+    pillar_panel(session_);
+    side_ = ImGui::GetTextLineHeight() + 6;
+    ImGui::End();
+    ImGui::Render();
+  }
+
+  void click(float x) {
+    ImGuiIO& io = ImGui::GetIO();
+    frame();
+    io.MousePos = ImVec2(x, ImGui::GetStyle().WindowPadding.y + side_ / 2);
+    frame();
+    for (const bool down : {true, false}) {
+      io.MouseDown[0] = down;
+      frame();
+    }
+    io.MousePos = ImVec2(-1, -1);
+    frame();
+  }
+  void click_chip(int number) {
+    frame();
+    click(ImGui::GetStyle().WindowPadding.x + static_cast<float>(number - 1) * (side_ + 6) +
+          side_ / 2);
+  }
+  void click_remove() {
+    frame();
+    click(kWidth - ImGui::GetStyle().WindowPadding.x - side_ / 2);
+  }
+  [[nodiscard]] std::vector<int> numbers() const {
+    std::vector<int> found;
+    for (const Pin& pin : session_.pins) found.push_back(pin.number);
+    return found;
+  }
+
+  static constexpr float kWidth = 340;
+  ImGuiContext* context_;
+  float side_ = 0;
+  MadeField made_;
+  Player player_{std::make_unique<NoFields>(made_)};
+  Session session_;
+};
+
+TEST_F(PillarPanel, AClickOnANumberInspectsItsPin) {
+  frame();
+  EXPECT_EQ(numbers(), (std::vector<int>{1, 2, 3}));
+  click_chip(1);
+  EXPECT_EQ(numbers(), (std::vector<int>{2, 3, 1}));
+  click_chip(3);  // Chips stay where they are.
+  EXPECT_EQ(numbers(), (std::vector<int>{2, 1, 3}));
+}
+
+TEST_F(PillarPanel, TheCrossRemovesTheInspectedPinUntilNoneIsLeft) {
+  click_chip(2);
+  click_remove();
+  EXPECT_EQ(numbers(), (std::vector<int>{1, 3}));
+  click_remove();
+  EXPECT_EQ(numbers(), (std::vector<int>{1}));
+  click_remove();
+  frame();
+  EXPECT_TRUE(session_.pins.empty());
+}
+
+TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
+  session_.pins.push_back({{1000, 1000}, History()});
+  frame();
+  session_.field.reset();
+  frame();
+  EXPECT_EQ(session_.pins.size(), 4u);
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

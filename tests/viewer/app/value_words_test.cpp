@@ -1,0 +1,139 @@
+// Values in words: numbers with what is known of them, directions, states.
+#include "viewer/app/value_words.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "viewer/app/plot.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+PillarValues pillar(double x, double y, double normal, double sx, double sy, double sn) {
+  PillarValues values;
+  values.shear_x = static_cast<float>(x);
+  values.shear_y = static_cast<float>(y);
+  values.normal = static_cast<float>(normal);
+  values.magnitude = static_cast<float>(std::hypot(x, y, normal));
+  values.theta = static_cast<float>(std::atan2(std::hypot(x, y), normal));
+  values.phi = static_cast<float>(std::atan2(-y, -x));
+  values.status = status::kUsable;
+  values.uncertainty.emplace();
+  (*values.uncertainty)[0] = static_cast<float>(sx);
+  (*values.uncertainty)[1] = static_cast<float>(sy);
+  (*values.uncertainty)[2] = static_cast<float>(sn);
+  return values;
+}
+
+double spread(const std::vector<double>& values) {
+  double sum = 0, squares = 0;
+  for (const double value : values) {
+    sum += value;
+    squares += value * value;
+  }
+  const double count = static_cast<double>(values.size());
+  return std::sqrt(squares / count - sum * sum / count / count);
+}
+
+TEST(DirectionDeviation, IsTheSpreadOfForcesThatScatter) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> scatter;
+  for (const auto& [x, y, n] : {std::array{0.1, 0.05, 0.3}, {-0.2, 0.1, 0.05}, {0.01, -0.3, 0.1}}) {
+    const double sx = 0.0004, sy = 0.0009, sn = 0.0006;
+    std::vector<double> magnitudes, thetas, phis;
+    const double phi = std::atan2(-y, -x);
+    for (int i = 0; i < 20000; ++i) {
+      const double a = x + sx * scatter(random);
+      const double b = y + sy * scatter(random);
+      const double c = n + sn * scatter(random);
+      magnitudes.push_back(std::hypot(a, b, c));
+      thetas.push_back(std::atan2(std::hypot(a, b), c));
+      phis.push_back(std::remainder(std::atan2(-b, -a) - phi, 2 * std::numbers::pi));
+    }
+    const DirectionDeviation deviation = direction_deviation(pillar(x, y, n, sx, sy, sn));
+    EXPECT_NEAR(deviation.magnitude / spread(magnitudes), 1, 0.03);
+    EXPECT_NEAR(deviation.theta / spread(thetas), 1, 0.03);
+    EXPECT_NEAR(deviation.phi / spread(phis), 1, 0.03);
+  }
+}
+
+TEST(DirectionDeviation, IsNoNumberWhereTheDirectionIsNone) {
+  EXPECT_TRUE(std::isnan(direction_deviation(pillar(0, 0, 1, 0.1, 0.1, 0.1)).phi));
+  EXPECT_TRUE(std::isnan(direction_deviation(pillar(0, 0, 0, 0.1, 0.1, 0.1)).magnitude));
+  PillarValues unknown = pillar(1, 1, 1, 0, 0, 0);
+  unknown.uncertainty.reset();
+  EXPECT_TRUE(std::isnan(direction_deviation(unknown).theta));
+}
+
+TEST(StatusWords, NameRegionAndFault) {
+  using namespace status;
+  EXPECT_EQ(status_words(0), "no contact");
+  EXPECT_EQ(status_words(kUsable), "region 1");
+  EXPECT_EQ(status_words(kSensel1 | kSensel2 | kAmbiguous), "region 3, ambiguous");
+  EXPECT_EQ(status_words(kSensel1 | kSensel2 | kAmbiguous | kFromNeighbours),
+            "region 3, resolved by neighbours");
+  EXPECT_EQ(status_words(kUsable | kSaturated), "region 1, saturated");
+  EXPECT_EQ(status_words(kSensel1 | kSensel3 | kInconsistent), "opposite sensels, inconsistent");
+  EXPECT_EQ(status_words(kSaturated), "no usable sensel, saturated");
+}
+
+TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {
+  EXPECT_EQ(value_words(0.123456, 0.0056), "0.1235");
+  EXPECT_EQ(deviation_words(0.0056), "± 0.0056");
+  EXPECT_EQ(value_words(-123.456, 2.3), "−123.5");
+  EXPECT_EQ(value_words(-0.00001, 0.01), "0.000");
+  EXPECT_EQ(value_words(123.456, 230), "123");
+  EXPECT_EQ(value_words(0.123456, kNoNumber), "0.123");
+  EXPECT_EQ(deviation_words(kNoNumber), "");
+  EXPECT_EQ(deviation_words(0), "");
+}
+
+TEST(IntervalWords, TellTheEndsApart) {
+  EXPECT_EQ(interval_words(0.12, 0.34), "0.12 … 0.34");
+  EXPECT_EQ(interval_words(60, 73.3), "60 … 73");
+  EXPECT_EQ(interval_words(-5, -5), "−5.000 … −5.000");
+  EXPECT_EQ(interval_words(kNoNumber, 1), "");
+}
+
+TEST(ShownDirection, HasIntervalsWhereItIsAmbiguousAndDeviationsElsewhere) {
+  PillarValues values = pillar(0.1, 0.05, 0.3, 0.004, 0.004, 0.003);
+  EXPECT_TRUE(shown_direction(values)[1].range.starts_with("± "));
+  values.status = status::kSensel1 | status::kSensel2 | status::kAmbiguous;
+  auto& planes = *values.uncertainty;
+  const float pi = std::numbers::pi_v<float>;
+  planes = {0.1f, 0.1f, 0.1f, pi / 4, pi / 3, 0.95f * pi, -0.95f * pi, 0.2f, 0.3f};
+  const auto shown = shown_direction(values);
+  EXPECT_EQ(shown[0].range, "0.20 … 0.30");
+  EXPECT_EQ(shown[1].range, "45 … 60");
+  EXPECT_EQ(shown[2].range, "171 … 189");  // Counter-clockwise, past 180.
+  EXPECT_EQ(shown[2].unit, "°");
+}
+
+TEST(ShownComponents, AreNormalAndShear) {
+  const auto shown = shown_components(pillar(-0.1, 0.05, 0.3, 0.0041, 0.0052, 0.0033));
+  EXPECT_EQ(shown[0].value, "0.3000");
+  EXPECT_EQ(shown[1].value, "−0.1000");
+  EXPECT_EQ(shown[2].range, "± 0.0052");
+}
+
+TEST(PlaceWords, CountFromTheMiddleOfTheSkin) {
+  ForceFieldView forces;
+  forces.rows = 4;
+  forces.cols = 6;
+  EXPECT_EQ(place_words(forces, {0, 0}, 2), "x −5.00, y 3.00 mm");
+  EXPECT_EQ(place_words(forces, {3, 5}, 2), "x 5.00, y −3.00 mm");
+  EXPECT_EQ(pillar_words({3, 5}), "row 3, column 5");
+}
+
+TEST(ReadingsWords, AreInTheOrderOfTheSensels) {
+  EXPECT_EQ(readings_words({12, 34.5f, 0, 250}), "12  34.5  0  250  counts");
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

@@ -1,0 +1,164 @@
+// Videos, by ffmpeg where it is installed, and by stand-ins for what can go wrong with it.
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+
+#include "pillarfield/error.h"
+#include "viewer/app/export.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+Pixels grey(std::uint32_t width, std::uint32_t height, std::uint8_t level) {
+  return {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, level)};
+}
+
+std::string message_of(const std::function<void()>& act) {
+  try {
+    act();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class Video : public testing::Test {
+ protected:
+  Video()
+      : path_(std::getenv("PATH")),
+        folder_(fs::path(testing::TempDir()) /
+                testing::UnitTest::GetInstance()->current_test_info()->name()) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_ / "bin");
+  }
+  ~Video() override {
+    setenv("PATH", path_.c_str(), 1);
+    fs::remove_all(folder_);
+  }
+
+  /// From now on `ffmpeg` is this shell script; `$out` is the file that it is to write.
+  void stand_in(const std::string& script) {
+    const fs::path name = folder_ / "bin" / "ffmpeg";
+    std::ofstream(name) << "#!/bin/sh\nfor out; do :; done; out=${out#file:}\n" << script << "\n";
+    fs::permissions(name, fs::perms::owner_all);
+    setenv("PATH", (folder_ / "bin").string().append(":").append(path_).c_str(), 1);
+  }
+  void no_ffmpeg() { setenv("PATH", (folder_ / "bin").c_str(), 1); }
+
+  [[nodiscard]] bool is_alone(const std::string& name) const {
+    std::size_t others = 0;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      if (entry.path().filename() != "bin" && entry.path().filename() != name) ++others;
+    }
+    return others == 0;
+  }
+
+  std::string path_;
+  fs::path folder_;
+};
+
+TEST_F(Video, FfmpegGetsAllPicturesInOrder) {
+  stand_in("cat > \"$out\"");
+  VideoWriter video(folder_ / "a.mp4", 5, 3, 25);
+  for (std::uint8_t level = 0; level < 40; ++level) video.add(grey(5, 3, level));
+  EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
+  video.finish();
+  ASSERT_EQ(fs::file_size(folder_ / "a.mp4"), 40u * 5 * 3 * 4);
+  std::ifstream bytes(folder_ / "a.mp4", std::ios::binary);
+  for (int level = 0; level < 40; ++level) {
+    for (int i = 0; i < 5 * 3 * 4; ++i) ASSERT_EQ(bytes.get(), level);
+  }
+  EXPECT_TRUE(is_alone("a.mp4"));
+}
+
+TEST_F(Video, MoreBytesThanAnyBufferHoldsArrive) {
+  stand_in("sleep 0.2; cat > \"$out\"");
+  VideoWriter video(folder_ / "a.mp4", 1000, 800, 25);
+  for (int i = 0; i < 3; ++i) video.add(grey(1000, 800, 9));
+  video.finish();
+  EXPECT_EQ(fs::file_size(folder_ / "a.mp4"), 3u * 4 * 1000 * 800);
+}
+
+TEST_F(Video, WithoutFfmpegTheErrorNamesThePackage) {
+  no_ffmpeg();
+  const std::string message =
+      message_of([&] { const VideoWriter video(folder_ / "a.mp4", 4, 4, 25); });
+  EXPECT_NE(message.find("ffmpeg: is not installed"), std::string::npos) << message;
+  EXPECT_NE(message.find("Debian package ffmpeg"), std::string::npos) << message;
+  EXPECT_TRUE(is_alone(""));
+}
+
+TEST_F(Video, WhatFfmpegComplainsOfIsInTheError) {
+  stand_in("cat > /dev/null; echo first complaint >&2; echo second >&2; exit 3");
+  VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
+  video.add(grey(4, 4, 1));
+  const std::string message = message_of([&] { video.finish(); });
+  EXPECT_NE(message.find("a.mp4: ffmpeg failed: first complaint; second"), std::string::npos)
+      << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+TEST_F(Video, AnFfmpegThatLeavesEarlyIsAnErrorAndNoSignal) {
+  stand_in("echo no space left >&2; exit 1");
+  std::signal(SIGPIPE, SIG_DFL);
+  VideoWriter video(folder_ / "a.mp4", 1000, 1000, 25);
+  const std::string message = message_of([&] {
+    for (int i = 0; i < 20; ++i) video.add(grey(1000, 1000, 1));
+  });
+  EXPECT_NE(message.find("no space left"), std::string::npos) << message;
+  EXPECT_NE(message_of([&] { video.add(grey(1000, 1000, 1)); }).find("is finished"),
+            std::string::npos);
+}
+
+TEST_F(Video, AnUnfinishedVideoLeavesNothing) {
+  stand_in("cat > \"$out\"; sleep 60");
+  {
+    VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
+    video.add(grey(4, 4, 1));
+  }
+  EXPECT_TRUE(is_alone(""));
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // No child is left, not even a dead one.
+  EXPECT_EQ(errno, ECHILD);
+}
+
+TEST_F(Video, WrongEndingsSizesAndRatesAreErrors) {
+  stand_in("cat > \"$out\"");
+  const auto message = [&](const char* name, std::uint32_t width, double rate) {
+    return message_of([&] { const VideoWriter video(folder_ / name, width, 4, rate); });
+  };
+  EXPECT_NE(message("a.avi", 4, 25).find("use .mp4, .mkv, .mov or .webm"), std::string::npos);
+  EXPECT_NE(message("a.mp4", 0, 25).find("pixels"), std::string::npos);
+  EXPECT_NE(message("a.mp4", 4, 0).find("0 pictures a second"), std::string::npos);
+  VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
+  EXPECT_NE(message_of([&] { video.add(grey(4, 5, 1)); }).find("4 x 5"), std::string::npos);
+  EXPECT_NE(message_of([&] { video.finish(); }).find("needs pictures"), std::string::npos);
+}
+
+TEST_F(Video, FfmpegWritesVideosOfOddSizes) {
+  if (std::system("ffmpeg -version > /dev/null 2>&1") != 0) {
+    GTEST_SKIP() << "ffmpeg is not installed (Debian package ffmpeg)";
+  }
+  for (const char* name : {"a.mp4", "a.mkv", "a.mov", "a.webm"}) {
+    VideoWriter video(folder_ / name, 65, 33, 30);
+    for (std::uint8_t level = 0; level < 12; ++level) video.add(grey(65, 33, level));
+    video.finish();
+    EXPECT_GT(fs::file_size(folder_ / name), 500u);
+    const std::string look = "ffmpeg -loglevel error -i " + (folder_ / name).string() +
+                             " -f rawvideo -pix_fmt gray " + (folder_ / "raw").string();
+    ASSERT_EQ(std::system(look.c_str()), 0);
+    EXPECT_EQ(fs::file_size(folder_ / "raw"), 12u * 66 * 34);
+    fs::remove(folder_ / "raw");
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer
