@@ -64,8 +64,14 @@ const Borders& borders() {
 /// Drawing in one plot for one pillar.
 class Drawing {
  public:
-  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme, int usable)
-      : list_(list), area_(area), ink_(ink), theme_(theme), usable_(usable) {}
+  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme,
+          const PillarValues& values)
+      : list_(list),
+        area_(area),
+        ink_(ink),
+        theme_(theme),
+        usable_(values.status & status::kUsable),
+        point_{in_degrees(values.phi), std::min(in_degrees(values.theta), 90.0)} {}
 
   void tint() const;
   void draw_borders() const;
@@ -74,7 +80,7 @@ class Drawing {
   void draw_box(const DirectionBox& box, ImU32 colour) const;
   void draw_line(std::vector<Vec2> line, ImU32 colour, double width) const;
   void draw_trail(const History& history, ImU32 colour) const;
-  void draw_point(Vec2 direction, ImU32 colour) const;
+  void draw_point(ImU32 colour) const;
 
  private:
   [[nodiscard]] ImU32 tint_of(int usable) const {
@@ -90,6 +96,7 @@ class Drawing {
   const PanelInk& ink_;
   Theme theme_;
   int usable_;  ///< sensels, as in a status byte
+  Vec2 point_;  ///< phi and theta, degrees
 };
 
 /// Between two thetas (degrees) at its left end and two at its right one.
@@ -133,6 +140,8 @@ void Drawing::draw_borders() const {
 void Drawing::number(const char* words, Vec2 place, int lifted, Align align) const {
   const Vec2 pixel = area_.at(place);
   const bool here = (status::kUsable & ~lifted) == usable_;
+  const Vec2 taken = area_.at(point_);
+  if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * ink_.line) return;
   draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},
             here ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
 }
@@ -207,8 +216,8 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
   }
 }
 
-void Drawing::draw_point(Vec2 direction, ImU32 colour) const {
-  const ImVec2 place = point(area_.at({direction.x, std::min(direction.y, 90.0)}));
+void Drawing::draw_point(ImU32 colour) const {
+  const ImVec2 place = point(area_.at(point_));
   const auto radius = static_cast<float>(4.5 * ink_.unit);
   list_.AddCircleFilled(place, radius + static_cast<float>(2 * ink_.unit), ink_.ground, 24);
   list_.AddCircleFilled(place, radius, colour, 24);
@@ -270,6 +279,17 @@ std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t poin
   return pieces;
 }
 
+std::string section_name(std::uint8_t status) {
+  const Region region = region_of(status);
+  if (region == Region::none || region == Region::opposite) return {};
+  std::string name = name_of(region);
+  if (region != Region::one) name += ".";
+  for (int sensel = 1; sensel <= 4; ++sensel) {
+    if ((status & sensel_bit(sensel)) == 0) name += std::to_string(sensel);
+  }
+  return name;
+}
+
 RegionLimits region_limits(double phi) {
   using Limit = std::pair<double, int>;
   std::array<Limit, 4> limits;
@@ -284,7 +304,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
                       const History& history, const PanelInk& ink, ImU32 colour, Theme theme) {
   const PlotArea area{inside_axes(outer, width_of("90"), ink), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
-  const Drawing drawing(list, area, ink, theme, values.status & status::kUsable);
+  const Drawing drawing(list, area, ink, theme, values);
   draw_axes(list, area, angle_ticks(), ink);
   list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
   drawing.tint();
@@ -299,9 +319,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
   }
   list.PopClipRect();
   drawing.draw_corners();
-  if (region_of(values.status) != Region::none) {
-    drawing.draw_point({in_degrees(values.phi), in_degrees(values.theta)}, colour);
-  }
+  if (region_of(values.status) != Region::none) drawing.draw_point(colour);
 }
 
 }  // namespace pillarfield::viewer
