@@ -57,8 +57,8 @@ double border_at(const std::vector<std::vector<Vec2>>& pieces, double phi) {
 using Borders = std::array<std::vector<std::vector<Vec2>>, 4>;
 
 const Borders& borders() {
-  static const Borders kBorders = region_borders(kBorderPoints);
-  return kBorders;
+  static const Borders known = region_borders(kBorderPoints);
+  return known;
 }
 
 /// Drawing in one plot for one pillar.
@@ -78,7 +78,7 @@ class Drawing {
   void draw_numbers() const;
   void draw_corners() const;
   void draw_box(const DirectionBox& box, ImU32 colour) const;
-  void draw_line(std::vector<Vec2> line, ImU32 colour, double width) const;
+  void draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const;
   void draw_trail(const History& history, ImU32 colour) const;
   void draw_point(ImU32 colour) const;
 
@@ -111,7 +111,9 @@ void Drawing::tint() const {
   const ImDrawListFlags flags = list_.Flags;
   list_.Flags &= ~ImDrawListFlags_AntiAliasedFill;
   constexpr double kStep = 3;
-  for (double phi = -180; phi < 180; phi += kStep) {
+  constexpr int kStrips = 120;
+  for (int i = 0; i < kStrips; ++i) {
+    const double phi = -180 + kStep * i;
     const RegionLimits left = region_limits(phi);
     const RegionLimits right = region_limits(phi + kStep);
     // Borders cross at multiples of the step, where it would be anybody's guess who lifts first.
@@ -129,6 +131,7 @@ void Drawing::draw_borders() const {
   for (const auto& pieces : borders()) {
     for (const auto& piece : pieces) {
       std::vector<Vec2> line;
+      line.reserve(piece.size());
       for (const Vec2& radians : piece) {
         line.push_back({radians.x * kDegrees, radians.y * kDegrees});
       }
@@ -148,21 +151,20 @@ void Drawing::number(const char* words, Vec2 place, int lifted, Align align) con
 
 /// As in the paper: behind the point the sensels that are not usable.
 void Drawing::draw_numbers() const {
-  using namespace status;
   number("1", {0, 21}, 0);
-  number("2.3", {-135, 66}, kSensel3);
-  number("2.4", {-45, 66}, kSensel4);
-  number("2.1", {45, 66}, kSensel1);
-  number("2.2", {135, 66}, kSensel2);
+  number("2.3", {-135, 66}, status::kSensel3);
+  number("2.4", {-45, 66}, status::kSensel4);
+  number("2.1", {45, 66}, status::kSensel1);
+  number("2.2", {135, 66}, status::kSensel2);
   // Between the borders this is where there is room.
-  number("3.34", {-90, 80}, kSensel3 | kSensel4);
-  number("3.14", {0, 80}, kSensel1 | kSensel4);
-  number("3.12", {90, 80}, kSensel1 | kSensel2);
+  number("3.34", {-90, 80}, status::kSensel3 | status::kSensel4);
+  number("3.14", {0, 80}, status::kSensel1 | status::kSensel4);
+  number("3.12", {90, 80}, status::kSensel1 | status::kSensel2);
   // Half of this one is at either edge, which may be too narrow for its number.
   const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
   if (width_of("3.23") + 3 * ink_.unit > half_width) return;
-  number("3.23", {-179, 80}, kSensel2 | kSensel3, Align::left);
-  number("3.23", {179, 80}, kSensel2 | kSensel3, Align::right);
+  number("3.23", {-179, 80}, status::kSensel2 | status::kSensel3, Align::left);
+  number("3.23", {179, 80}, status::kSensel2 | status::kSensel3, Align::right);
 }
 
 /// Region 4: four points at the upper edge.
@@ -180,8 +182,9 @@ void Drawing::draw_corners() const {
   }
 }
 
-void Drawing::draw_line(std::vector<Vec2> line, ImU32 colour, double width) const {
+void Drawing::draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const {
   std::vector<ImVec2> points;
+  points.reserve(line.size());
   for (const Vec2& direction : line) points.push_back(point(area_.at(direction)));
   list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
                     static_cast<float>(width));
