@@ -1,7 +1,6 @@
 #include "viewer/app/child_process.h"
 
 #include <fcntl.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -9,12 +8,10 @@
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 #include "pillarfield/error.h"
-
-// What the program inherits.
-extern char** environ;
 
 namespace pillarfield::viewer {
 namespace {
@@ -50,6 +47,7 @@ int wait_for(pid_t process) {
 int spawn(const std::vector<std::string>& words, int input, int errors, pid_t& process) {
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
+  arguments.reserve(copies.size() + 1);
   for (std::string& word : copies) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const FileActions actions(input, errors);

@@ -23,18 +23,18 @@ struct Encoding {
 
 /// H.264 at a quality that keeps thin lines and small text; players want an index at the beginning.
 const std::array<Encoding, 4>& encodings() {
-  static const Words kH264{"-c:v", "libx264", "-preset",   "medium",
-                           "-crf", "16",      "-movflags", "+faststart"};
-  static const Words kMatroska{"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
-  static const Words kVp9{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"};
-  static const std::array<Encoding, 4> kEncodings{
-      {{".mp4", kH264}, {".mov", kH264}, {".mkv", kMatroska}, {".webm", kVp9}}};
-  return kEncodings;
+  static const Words h264{"-c:v", "libx264", "-preset",   "medium",
+                          "-crf", "16",      "-movflags", "+faststart"};
+  static const Words matroska{"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
+  static const Words vp9{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"};
+  static const std::array<Encoding, 4> all{
+      {{".mp4", h264}, {".mov", h264}, {".mkv", matroska}, {".webm", vp9}}};
+  return all;
 }
 
 const Words& encoding_of(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
-  const auto found = std::ranges::find(encodings(), ending, &Encoding::ending);
+  const auto* const found = std::ranges::find(encodings(), ending, &Encoding::ending);
   if (found != encodings().end()) return found->words;
   throw Error(path.string(), "no video has this ending", "use .mp4, .mkv, .mov or .webm");
 }

@@ -102,7 +102,8 @@ void draw_readings_and_direction(const PanelInk& ink, const Session& session,
 
 void draw_diagram(const PanelInk& ink, const Session& session, const PillarValues& values,
                   ImU32 colour) {
-  heading(ink, "θ over φ, in degrees", "regions of usable sensels");
+  const std::string section = section_name(values.status);
+  heading(ink, "θ over φ, in degrees", section.empty() ? "" : "region " + section);
   const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
   const double height = std::clamp(0.5 * room, 120 * ink.unit, 230 * ink.unit);
   const Viewport outer = take_room(0, height);

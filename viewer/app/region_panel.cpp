@@ -6,6 +6,7 @@
 
 #include "viewer/app/panels.h"
 #include "viewer/app/plot.h"
+#include "viewer/app/region_sums.h"
 #include "viewer/app/status_line.h"
 #include "viewer/app/value_table.h"
 
@@ -127,7 +128,7 @@ void region_panel(Session& session) {
   }
   const PillarRect& rect = session.region->rect;
   const double pitch_mm = session.player->info().skin.pillar_pitch_mm();
-  const RegionSums sums = sums_over(*session.field, rect, pitch_mm);
+  const RegionSums& sums = region_sums(session);
   heading(ink, rect_words(rect), size_words(rect, pitch_mm));
   leave_gap(ink, 2);
   draw_tables(ink, sums);

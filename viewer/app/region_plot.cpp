@@ -57,24 +57,30 @@ double border_at(const std::vector<std::vector<Vec2>>& pieces, double phi) {
 using Borders = std::array<std::vector<std::vector<Vec2>>, 4>;
 
 const Borders& borders() {
-  static const Borders kBorders = region_borders(kBorderPoints);
-  return kBorders;
+  static const Borders known = region_borders(kBorderPoints);
+  return known;
 }
 
 /// Drawing in one plot for one pillar.
 class Drawing {
  public:
-  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme, int usable)
-      : list_(list), area_(area), ink_(ink), theme_(theme), usable_(usable) {}
+  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme,
+          const PillarValues& values)
+      : list_(list),
+        area_(area),
+        ink_(ink),
+        theme_(theme),
+        usable_(values.status & status::kUsable),
+        point_{in_degrees(values.phi), std::min(in_degrees(values.theta), 90.0)} {}
 
   void tint() const;
   void draw_borders() const;
   void draw_numbers() const;
   void draw_corners() const;
   void draw_box(const DirectionBox& box, ImU32 colour) const;
-  void draw_line(std::vector<Vec2> line, ImU32 colour, double width) const;
+  void draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const;
   void draw_trail(const History& history, ImU32 colour) const;
-  void draw_point(Vec2 direction, ImU32 colour) const;
+  void draw_point(ImU32 colour) const;
 
  private:
   [[nodiscard]] ImU32 tint_of(int usable) const {
@@ -90,6 +96,7 @@ class Drawing {
   const PanelInk& ink_;
   Theme theme_;
   int usable_;  ///< sensels, as in a status byte
+  Vec2 point_;  ///< phi and theta, degrees
 };
 
 /// Between two thetas (degrees) at its left end and two at its right one.
@@ -104,7 +111,9 @@ void Drawing::tint() const {
   const ImDrawListFlags flags = list_.Flags;
   list_.Flags &= ~ImDrawListFlags_AntiAliasedFill;
   constexpr double kStep = 3;
-  for (double phi = -180; phi < 180; phi += kStep) {
+  constexpr int kStrips = 120;
+  for (int i = 0; i < kStrips; ++i) {
+    const double phi = -180 + kStep * i;
     const RegionLimits left = region_limits(phi);
     const RegionLimits right = region_limits(phi + kStep);
     // Borders cross at multiples of the step, where it would be anybody's guess who lifts first.
@@ -122,6 +131,7 @@ void Drawing::draw_borders() const {
   for (const auto& pieces : borders()) {
     for (const auto& piece : pieces) {
       std::vector<Vec2> line;
+      line.reserve(piece.size());
       for (const Vec2& radians : piece) {
         line.push_back({radians.x * kDegrees, radians.y * kDegrees});
       }
@@ -133,27 +143,28 @@ void Drawing::draw_borders() const {
 void Drawing::number(const char* words, Vec2 place, int lifted, Align align) const {
   const Vec2 pixel = area_.at(place);
   const bool here = (status::kUsable & ~lifted) == usable_;
+  const Vec2 taken = area_.at(point_);
+  if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * ink_.line) return;
   draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},
             here ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
 }
 
 /// As in the paper: behind the point the sensels that are not usable.
 void Drawing::draw_numbers() const {
-  using namespace status;
   number("1", {0, 21}, 0);
-  number("2.3", {-135, 66}, kSensel3);
-  number("2.4", {-45, 66}, kSensel4);
-  number("2.1", {45, 66}, kSensel1);
-  number("2.2", {135, 66}, kSensel2);
+  number("2.3", {-135, 66}, status::kSensel3);
+  number("2.4", {-45, 66}, status::kSensel4);
+  number("2.1", {45, 66}, status::kSensel1);
+  number("2.2", {135, 66}, status::kSensel2);
   // Between the borders this is where there is room.
-  number("3.34", {-90, 80}, kSensel3 | kSensel4);
-  number("3.14", {0, 80}, kSensel1 | kSensel4);
-  number("3.12", {90, 80}, kSensel1 | kSensel2);
+  number("3.34", {-90, 80}, status::kSensel3 | status::kSensel4);
+  number("3.14", {0, 80}, status::kSensel1 | status::kSensel4);
+  number("3.12", {90, 80}, status::kSensel1 | status::kSensel2);
   // Half of this one is at either edge, which may be too narrow for its number.
   const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
   if (width_of("3.23") + 3 * ink_.unit > half_width) return;
-  number("3.23", {-179, 80}, kSensel2 | kSensel3, Align::left);
-  number("3.23", {179, 80}, kSensel2 | kSensel3, Align::right);
+  number("3.23", {-179, 80}, status::kSensel2 | status::kSensel3, Align::left);
+  number("3.23", {179, 80}, status::kSensel2 | status::kSensel3, Align::right);
 }
 
 /// Region 4: four points at the upper edge.
@@ -171,8 +182,9 @@ void Drawing::draw_corners() const {
   }
 }
 
-void Drawing::draw_line(std::vector<Vec2> line, ImU32 colour, double width) const {
+void Drawing::draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const {
   std::vector<ImVec2> points;
+  points.reserve(line.size());
   for (const Vec2& direction : line) points.push_back(point(area_.at(direction)));
   list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
                     static_cast<float>(width));
@@ -207,8 +219,8 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
   }
 }
 
-void Drawing::draw_point(Vec2 direction, ImU32 colour) const {
-  const ImVec2 place = point(area_.at({direction.x, std::min(direction.y, 90.0)}));
+void Drawing::draw_point(ImU32 colour) const {
+  const ImVec2 place = point(area_.at(point_));
   const auto radius = static_cast<float>(4.5 * ink_.unit);
   list_.AddCircleFilled(place, radius + static_cast<float>(2 * ink_.unit), ink_.ground, 24);
   list_.AddCircleFilled(place, radius, colour, 24);
@@ -270,6 +282,17 @@ std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t poin
   return pieces;
 }
 
+std::string section_name(std::uint8_t status) {
+  const Region region = region_of(status);
+  if (region == Region::none || region == Region::opposite) return {};
+  std::string name = name_of(region);
+  if (region != Region::one) name += ".";
+  for (int sensel = 1; sensel <= 4; ++sensel) {
+    if ((status & sensel_bit(sensel)) == 0) name += std::to_string(sensel);
+  }
+  return name;
+}
+
 RegionLimits region_limits(double phi) {
   using Limit = std::pair<double, int>;
   std::array<Limit, 4> limits;
@@ -284,7 +307,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
                       const History& history, const PanelInk& ink, ImU32 colour, Theme theme) {
   const PlotArea area{inside_axes(outer, width_of("90"), ink), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
-  const Drawing drawing(list, area, ink, theme, values.status & status::kUsable);
+  const Drawing drawing(list, area, ink, theme, values);
   draw_axes(list, area, angle_ticks(), ink);
   list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
   drawing.tint();
@@ -299,9 +322,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
   }
   list.PopClipRect();
   drawing.draw_corners();
-  if (region_of(values.status) != Region::none) {
-    drawing.draw_point({in_degrees(values.phi), in_degrees(values.theta)}, colour);
-  }
+  if (region_of(values.status) != Region::none) drawing.draw_point(colour);
 }
 
 }  // namespace pillarfield::viewer

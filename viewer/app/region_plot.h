@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "viewer/app/panel_ink.h"
@@ -35,6 +36,10 @@ struct RegionLimits {
   int first = 0, second = 0;
 };
 [[nodiscard]] RegionLimits region_limits(double phi);
+
+/// "3.12": the section of the diagram that the usable sensels tell, as the paper numbers them, by
+/// region and the sensels that are not usable. Empty for idle pillars and opposite sensels.
+[[nodiscard]] std::string section_name(std::uint8_t status);
 
 /// The paper's Figure 3 with a pillar in it.
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,

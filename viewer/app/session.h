@@ -18,10 +18,18 @@ struct Pin {
   int number = 0;  ///< 1..kMostPins on the field and in the panels, see number_pins(); 0: none yet
 };
 
+/// What a rectangle added up to in one frame.
+struct KeptSums {
+  std::uint64_t frame;
+  PillarRect rect;
+  RegionSums sums;
+};
+
 /// A rectangle that was dragged, and what its sum did since.
 struct MarkedRegion {
   PillarRect rect;
   History history;
+  std::optional<KeptSums> kept = {};  ///< see region_sums()
 };
 
 /// What was measured of drawing, lately (the last second or so).

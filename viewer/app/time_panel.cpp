@@ -99,8 +99,8 @@ double label_width(const std::vector<Chart>& charts, const PanelInk& ink) {
 /// What all charts of a panel have in common.
 struct ChartFrame {
   Span time;
-  double now_s;
-  double label_width;
+  double now_s = 0;
+  double label_width = 0;
 };
 
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,

@@ -58,9 +58,9 @@ Span phi_span(const PillarValues& values) {
 }  // namespace
 
 DirectionDeviation direction_deviation(const PillarValues& values) {
-  const double x = static_cast<double>(values.shear_x);
-  const double y = static_cast<double>(values.shear_y);
-  const double n = static_cast<double>(values.normal);
+  const auto x = static_cast<double>(values.shear_x);
+  const auto y = static_cast<double>(values.shear_y);
+  const auto n = static_cast<double>(values.normal);
   const double sx = plane(values, Uncertainty::shear_x);
   const double sy = plane(values, Uncertainty::shear_y);
   const double sn = plane(values, Uncertainty::normal);
@@ -133,7 +133,7 @@ std::string interval_words(double low, double high) {
 }
 
 std::array<ShownValue, 3> shown_direction(const PillarValues& values) {
-  const double magnitude = static_cast<double>(values.magnitude);
+  const auto magnitude = static_cast<double>(values.magnitude);
   const double theta = static_cast<double>(values.theta) * kDegrees;
   const double phi = static_cast<double>(values.phi) * kDegrees;
   if (is_ambiguous(values) && values.uncertainty) {

@@ -5,6 +5,7 @@
 #include "tests/viewer/app/made_field.h"
 #include "viewer/app/panel_ink.h"
 #include "viewer/app/panels.h"
+#include "viewer/app/region_sums.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -108,6 +109,22 @@ TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
   session_.field.reset();
   frame();
   EXPECT_EQ(session_.pins.size(), 4u);
+}
+
+TEST_F(PillarPanel, SumsOfTheRegionFollowRectangleAndFrame) {
+  session_.region = MarkedRegion{{4, 20, 8, 30}, History()};
+  const double pitch_mm = made_.skin.pillar_pitch_mm();
+  const double first = region_sums(session_).normal;
+  EXPECT_EQ(first, sums_over(*session_.field, {4, 20, 8, 30}, pitch_mm).normal);
+  session_.region->rect.row_end = 14;
+  const double second = region_sums(session_).normal;
+  EXPECT_EQ(second, sums_over(*session_.field, {4, 14, 8, 30}, pitch_mm).normal);
+  EXPECT_LT(second, first);
+
+  for (float& normal : made_.forces.normal) normal *= 2;
+  EXPECT_EQ(region_sums(session_).normal, second);  // The same frame is not added up again.
+  ++session_.field->index;
+  EXPECT_NEAR(region_sums(session_).normal, 2 * second, 1e-6);
 }
 
 }  // namespace

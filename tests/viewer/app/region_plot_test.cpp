@@ -136,6 +136,16 @@ TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutSilence) {
   EXPECT_TRUE(trail_of(History(), 10).empty());
 }
 
+TEST(SectionName, IsThePapers) {
+  using namespace status;
+  EXPECT_EQ(section_name(kUsable | kSaturated), "1");
+  EXPECT_EQ(section_name(kUsable & ~kSensel3), "2.3");
+  EXPECT_EQ(section_name(kSensel3 | kSensel4 | kAmbiguous), "3.12");
+  EXPECT_EQ(section_name(kSensel4), "4.123");
+  EXPECT_EQ(section_name(kSensel1 | kSensel3), "");
+  EXPECT_EQ(section_name(0), "");
+}
+
 TEST(ReadingBars, ComeFromTheSenselsThatTheModelNumbers) {
   const MadeField made;
   const SourceInfo source = made.source();
