@@ -253,7 +253,8 @@ void Application::draw_front_frame() {
 void Application::measure(double begin_s, bool new_picture) {
   const double now_s = Window::now_s();
   std::optional<double> latency_ms;
-  if (new_picture && field_is_new_) latency_ms = 1e3 * (steady_s() - taken_s_);
+  // When the very first field came nobody listened yet.
+  if (new_picture && field_is_new_ && taken_s_ > 0) latency_ms = 1e3 * (steady_s() - taken_s_);
   clock_.add(now_s, 1e3 * (now_s - begin_s), latency_ms);
   session_.draw = clock_.lately(now_s);
   const FieldMemory& memory = presenter_.painter().memory();
