@@ -162,11 +162,14 @@ void Application::take_input() {
 /// mouse.
 void Application::route(const InputEvent& event) {
   const bool types = ImGui::GetIO().WantTextInput;
-  const bool covered =
-      ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  const bool covered = InterfaceInput::has_open_list();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
     if (types || !key->pressed) interface_input_.take(event);
-    if (!types) controls_.take(event, command());
+    if (covered && key->pressed) {
+      InterfaceInput::close_lists();
+    } else if (!types) {
+      controls_.take(event, command());
+    }
     return;
   }
   if (std::holds_alternative<TextEvent>(event)) {
@@ -310,8 +313,9 @@ void Application::write_table() {
 
 void Application::begin_frames(FrameWriter::Kind kind) {
   if (writer_ != nullptr) return;
-  const char* const ending = kind == FrameWriter::Kind::video ? ".mp4" : ".png";
-  const auto path = free_path(*place_.source, info_of(session_.look.quantity).name, ending);
+  const std::string quantity = info_of(session_.look.quantity).name;
+  const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
+                                                     : free_sequence_path(*place_.source, quantity);
   const vk::Extent2D size = presenter_.painter().image().size();
   writer_ = std::make_unique<FrameWriter>(session_, kind, path, size.width, size.height);
 }
