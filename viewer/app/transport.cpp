@@ -100,15 +100,25 @@ void transport(const Command& command) {
   const std::string widest = fmt::format("0000.000 s   {0} / {0}", state.frames);
   const float time_width = ImGui::CalcTextSize(widest.c_str()).x;
   const float speed_width = 2 * side + ImGui::CalcTextSize("0.05×").x;
-  const float rest = time_width + speed_width + 3 * side + 4 + 3 * gap;
+  // A narrow window has no room for everything: where the head is comes last to go.
+  const float least = 8 * side + 4 + 3 * gap;
+  const float room = ImGui::GetContentRegionAvail().x;
+  const bool has_time = room > least + time_width;
+  const bool has_speed = room > least + time_width + speed_width;
+  const float rest = (has_time ? time_width + gap / 2 : 0) + (has_speed ? speed_width + gap : 0) +
+                     3 * side + 4 + gap + gap / 2;
 
   play_buttons(player, state);
   ImGui::SameLine(0, gap / 2);
   scrub(player, state, std::max(ImGui::GetContentRegionAvail().x - rest, 2 * side));
-  ImGui::SameLine(0, gap / 2);
-  text_in(time_text(session, state), time_width, 1);
-  ImGui::SameLine(0, gap);
-  speed_buttons(session, state);
+  if (has_time) {
+    ImGui::SameLine(0, gap / 2);
+    text_in(time_text(session, state), time_width, 1);
+  }
+  if (has_speed) {
+    ImGui::SameLine(0, gap);
+    speed_buttons(session, state);
+  }
   ImGui::SameLine(0, gap);
   mode_buttons(session, state);
 }
