@@ -230,7 +230,9 @@ void Application::draw() {
   draw_front_frame();
   const bool new_picture = session_.field && (field_is_new_ || painted_look_ != session_.look);
   std::optional<Presenter::Picture> picture;
-  if (new_picture) picture.emplace(*session_.field, *place_.source, session_.look);
+  if (new_picture) {
+    picture.emplace(Presenter::Picture{*session_.field, *place_.source, session_.look});
+  }
   if (!presenter_.draw(picture ? &*picture : nullptr)) return;
   measure(begin_s, new_picture);
   if (new_picture) painted_look_ = session_.look;
