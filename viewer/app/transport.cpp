@@ -58,7 +58,7 @@ void mode_buttons(Session& session, const PlayerState& state) {
 }
 
 /// Where the head is, as a line to pull it along.
-void scrub(Player& player, const PlayerState& state, float width) {
+void scrub(Player& player, const PlayerState& state, std::uint64_t shown, float width) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("scrub", ImVec2(width, side));
@@ -74,7 +74,9 @@ void scrub(Player& player, const PlayerState& state, float width) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = std::round(corner.y + side / 2);
   const float thick = std::max(std::round(0.1f * ImGui::GetFontSize()), 1.0f);
-  const float x = begin + length * static_cast<float>(state.frame) / last;
+  // Pulled, the knob is where the hand is; else it tells what is on display.
+  const std::uint64_t at = ImGui::IsItemActive() ? player.state().frame : shown;
+  const float x = begin + length * static_cast<float>(at) / last;
   list.AddRectFilled(ImVec2(begin, y - thick), ImVec2(begin + length, y + thick),
                      ImGui::GetColorU32(ImGuiCol_FrameBgActive), thick);
   list.AddRectFilled(ImVec2(begin, y - thick), ImVec2(x, y + thick),
@@ -84,9 +86,9 @@ void scrub(Player& player, const PlayerState& state, float width) {
                        ImGui::GetColorU32(ImGuiCol_SliderGrab));
 }
 
-std::string time_text(const Session& session, const PlayerState& state) {
+std::string time_text(const Session& session, const PlayerState& state, std::uint64_t shown) {
   const double time = session.field ? session.field->time_s : 0;
-  return fmt::format("{:.3f} s   {} / {}", time, state.frame + 1, state.frames);
+  return fmt::format("{:.3f} s   {} / {}", time, shown + 1, state.frames);
 }
 
 }  // namespace
@@ -95,6 +97,7 @@ void transport(const Command& command) {
   Session& session = command.session;
   Player& player = *session.player;
   const PlayerState state = player.state();
+  const std::uint64_t shown = session.field ? session.field->index : state.frame;
   const float side = std::round(ImGui::GetFontSize() * 2);
   const float gap = ImGui::GetFontSize();
   const std::string widest = fmt::format("0000.000 s   {0} / {0}", state.frames);
@@ -110,10 +113,10 @@ void transport(const Command& command) {
 
   play_buttons(player, state);
   ImGui::SameLine(0, gap / 2);
-  scrub(player, state, std::max(ImGui::GetContentRegionAvail().x - rest, 2 * side));
+  scrub(player, state, shown, std::max(ImGui::GetContentRegionAvail().x - rest, 2 * side));
   if (has_time) {
     ImGui::SameLine(0, gap / 2);
-    text_in(time_text(session, state), time_width, 1);
+    text_in(time_text(session, state, shown), time_width, 1);
   }
   if (has_speed) {
     ImGui::SameLine(0, gap);
