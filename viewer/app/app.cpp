@@ -162,11 +162,14 @@ void Application::take_input() {
 /// mouse.
 void Application::route(const InputEvent& event) {
   const bool types = ImGui::GetIO().WantTextInput;
-  const bool covered =
-      ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  const bool covered = InterfaceInput::has_open_list();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
     if (types || !key->pressed) interface_input_.take(event);
-    if (!types) controls_.take(event, command());
+    if (covered && key->pressed) {
+      InterfaceInput::close_lists();
+    } else if (!types) {
+      controls_.take(event, command());
+    }
     return;
   }
   if (std::holds_alternative<TextEvent>(event)) {
@@ -227,7 +230,9 @@ void Application::draw() {
   draw_front_frame();
   const bool new_picture = session_.field && (field_is_new_ || painted_look_ != session_.look);
   std::optional<Presenter::Picture> picture;
-  if (new_picture) picture.emplace(*session_.field, *place_.source, session_.look);
+  if (new_picture) {
+    picture.emplace(Presenter::Picture{*session_.field, *place_.source, session_.look});
+  }
   if (!presenter_.draw(picture ? &*picture : nullptr)) return;
   measure(begin_s, new_picture);
   if (new_picture) painted_look_ = session_.look;
@@ -253,7 +258,8 @@ void Application::draw_front_frame() {
 void Application::measure(double begin_s, bool new_picture) {
   const double now_s = Window::now_s();
   std::optional<double> latency_ms;
-  if (new_picture && field_is_new_) latency_ms = 1e3 * (steady_s() - taken_s_);
+  // When the very first field came nobody listened yet.
+  if (new_picture && field_is_new_ && taken_s_ > 0) latency_ms = 1e3 * (steady_s() - taken_s_);
   clock_.add(now_s, 1e3 * (now_s - begin_s), latency_ms);
   session_.draw = clock_.lately(now_s);
   const FieldMemory& memory = presenter_.painter().memory();
@@ -309,8 +315,9 @@ void Application::write_table() {
 
 void Application::begin_frames(FrameWriter::Kind kind) {
   if (writer_ != nullptr) return;
-  const char* const ending = kind == FrameWriter::Kind::video ? ".mp4" : ".png";
-  const auto path = free_path(*place_.source, info_of(session_.look.quantity).name, ending);
+  const std::string quantity = info_of(session_.look.quantity).name;
+  const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
+                                                     : free_sequence_path(*place_.source, quantity);
   const vk::Extent2D size = presenter_.painter().image().size();
   writer_ = std::make_unique<FrameWriter>(session_, kind, path, size.width, size.height);
 }

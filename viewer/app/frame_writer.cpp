@@ -5,6 +5,22 @@
 #include <utility>
 
 namespace pillarfield::viewer {
+namespace {
+
+/// The first of NAME_DETAIL, NAME_DETAIL_2, ... whose file `looked_for` is not there.
+template <class LookedFor>
+std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
+                                 const char* ending, const LookedFor& looked_for) {
+  std::string stem = std::filesystem::path(source.name).stem().string();
+  if (!detail.empty()) stem += "_" + detail;
+  std::filesystem::path path = stem + ending;
+  for (int number = 2; std::filesystem::exists(looked_for(path)); ++number) {
+    path = fmt::format("{}_{}{}", stem, number, ending);
+  }
+  return path;
+}
+
+}  // namespace
 
 FrameWriter::FrameWriter(Session& session, Kind kind, std::filesystem::path path,
                          std::uint32_t width, std::uint32_t height)
@@ -43,13 +59,12 @@ bool FrameWriter::add(const Pixels& pixels) {
 
 std::filesystem::path free_path(const SourceInfo& source, const std::string& detail,
                                 const char* ending) {
-  std::string stem = std::filesystem::path(source.name).stem().string();
-  if (!detail.empty()) stem += "_" + detail;
-  std::filesystem::path path = stem + ending;
-  for (int number = 2; std::filesystem::exists(path); ++number) {
-    path = fmt::format("{}_{}{}", stem, number, ending);
-  }
-  return path;
+  return first_free(source, detail, ending, [](const auto& path) { return path; });
+}
+
+std::filesystem::path free_sequence_path(const SourceInfo& source, const std::string& detail) {
+  return first_free(source, detail, ".png",
+                    [&](const auto& path) { return numbered(path, 0, source.frames); });
 }
 
 }  // namespace pillarfield::viewer

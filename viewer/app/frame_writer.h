@@ -40,4 +40,8 @@ class FrameWriter {
 [[nodiscard]] std::filesystem::path free_path(const SourceInfo& source, const std::string& detail,
                                               const char* ending);
 
+/// The same of a sequence of PNG, whose first frame is not there yet.
+[[nodiscard]] std::filesystem::path free_sequence_path(const SourceInfo& source,
+                                                       const std::string& detail);
+
 }  // namespace pillarfield::viewer

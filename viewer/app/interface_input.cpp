@@ -2,6 +2,7 @@
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <utility>
@@ -57,6 +58,15 @@ void InterfaceInput::take(const InputEvent& event) {
   } else if (const auto* wheel = std::get_if<WheelEvent>(&event)) {
     io.MouseWheel += static_cast<float>(wheel->steps);
   }
+}
+
+bool InterfaceInput::has_open_list() {
+  return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+// ImGui closes them by keys only where keys move its focus, which here are shortcuts.
+void InterfaceInput::close_lists() {
+  if (has_open_list()) ImGui::ClosePopupToLevel(0, true);
 }
 
 void InterfaceInput::begin_frame(double seconds_since_last) {

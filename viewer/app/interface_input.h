@@ -13,6 +13,10 @@ class InterfaceInput {
  public:
   void take(const InputEvent& event);
 
+  /// Whether a list of choices lies open over the window, and closes it.
+  [[nodiscard]] static bool has_open_list();
+  static void close_lists();
+
   /// Before each frame of ImGui, with its context current.
   void begin_frame(double seconds_since_last);
 

@@ -138,8 +138,7 @@ constexpr std::array kShortcuts{
         Group::look, plain(GLFW_KEY_TAB), "Tab", "panels",
         [](const Command& command) { command.session.show_panels = !command.session.show_panels; }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins, region",
-             escape},
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins, region", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
              ask<&Requests::picture>},

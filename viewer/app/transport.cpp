@@ -58,7 +58,7 @@ void mode_buttons(Session& session, const PlayerState& state) {
 }
 
 /// Where the head is, as a line to pull it along.
-void scrub(Player& player, const PlayerState& state, float width) {
+void scrub(Player& player, const PlayerState& state, std::uint64_t shown, float width) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::InvisibleButton("scrub", ImVec2(width, side));
@@ -74,7 +74,9 @@ void scrub(Player& player, const PlayerState& state, float width) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = std::round(corner.y + side / 2);
   const float thick = std::max(std::round(0.1f * ImGui::GetFontSize()), 1.0f);
-  const float x = begin + length * static_cast<float>(state.frame) / last;
+  // Pulled, the knob is where the hand is; else it tells what is on display.
+  const std::uint64_t at = ImGui::IsItemActive() ? player.state().frame : shown;
+  const float x = begin + length * static_cast<float>(at) / last;
   list.AddRectFilled(ImVec2(begin, y - thick), ImVec2(begin + length, y + thick),
                      ImGui::GetColorU32(ImGuiCol_FrameBgActive), thick);
   list.AddRectFilled(ImVec2(begin, y - thick), ImVec2(x, y + thick),
@@ -84,9 +86,9 @@ void scrub(Player& player, const PlayerState& state, float width) {
                        ImGui::GetColorU32(ImGuiCol_SliderGrab));
 }
 
-std::string time_text(const Session& session, const PlayerState& state) {
+std::string time_text(const Session& session, const PlayerState& state, std::uint64_t shown) {
   const double time = session.field ? session.field->time_s : 0;
-  return fmt::format("{:.3f} s   {} / {}", time, state.frame + 1, state.frames);
+  return fmt::format("{:.3f} s   {} / {}", time, shown + 1, state.frames);
 }
 
 }  // namespace
@@ -95,20 +97,31 @@ void transport(const Command& command) {
   Session& session = command.session;
   Player& player = *session.player;
   const PlayerState state = player.state();
+  const std::uint64_t shown = session.field ? session.field->index : state.frame;
   const float side = std::round(ImGui::GetFontSize() * 2);
   const float gap = ImGui::GetFontSize();
   const std::string widest = fmt::format("0000.000 s   {0} / {0}", state.frames);
   const float time_width = ImGui::CalcTextSize(widest.c_str()).x;
   const float speed_width = 2 * side + ImGui::CalcTextSize("0.05×").x;
-  const float rest = time_width + speed_width + 3 * side + 4 + 3 * gap;
+  // A narrow window has no room for everything: where the head is comes last to go.
+  const float least = 8 * side + 4 + 3 * gap;
+  const float room = ImGui::GetContentRegionAvail().x;
+  const bool has_time = room > least + time_width;
+  const bool has_speed = room > least + time_width + speed_width;
+  const float rest = (has_time ? time_width + gap / 2 : 0) + (has_speed ? speed_width + gap : 0) +
+                     3 * side + 4 + gap + gap / 2;
 
   play_buttons(player, state);
   ImGui::SameLine(0, gap / 2);
-  scrub(player, state, std::max(ImGui::GetContentRegionAvail().x - rest, 2 * side));
-  ImGui::SameLine(0, gap / 2);
-  text_in(time_text(session, state), time_width, 1);
-  ImGui::SameLine(0, gap);
-  speed_buttons(session, state);
+  scrub(player, state, shown, std::max(ImGui::GetContentRegionAvail().x - rest, 2 * side));
+  if (has_time) {
+    ImGui::SameLine(0, gap / 2);
+    text_in(time_text(session, state, shown), time_width, 1);
+  }
+  if (has_speed) {
+    ImGui::SameLine(0, gap);
+    speed_buttons(session, state);
+  }
   ImGui::SameLine(0, gap);
   mode_buttons(session, state);
 }
