@@ -1,7 +1,10 @@
 # How tests are made, and what they run with.
 
-# PoCL keeps compiled kernels in the build tree, not in the user's home.
-set(PILLARFIELD_TEST_ENVIRONMENT "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/pocl_cache")
+# PoCL keeps compiled kernels in the build tree, not in the user's home; graphics drivers look for a
+# folder of the user's session.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/session)
+set(PILLARFIELD_TEST_ENVIRONMENT "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/pocl_cache"
+  "XDG_RUNTIME_DIR=${PROJECT_BINARY_DIR}/session")
 set(PILLARFIELD_TEST_PREFIX "")
 if(PILLARFIELD_SANITIZE)
   list(APPEND PILLARFIELD_TEST_ENVIRONMENT

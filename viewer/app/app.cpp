@@ -344,10 +344,12 @@ void Application::finish() {
 void Application::print_statistics() const {
   const PlayerStatistics played = session_.player->statistics();
   fmt::print(R"({{"frames":{},"draw_ms_median":{:.3f},"latency_ms_median":{:.3f},"produced":{},)"
-             R"("taken":{},"not_shown":{},"in_place":{},"validation_messages":{}}})"
+             R"("taken":{},"not_shown":{},"in_place":{},"field":[{},{},{},{}],)"
+             R"("validation_messages":{}}})"
              "\n",
              clock_.frames(), clock_.draw_ms_median(), clock_.latency_ms_median(), played.produced,
-             played.taken, played.not_shown, session_.draw.in_place,
+             played.taken, played.not_shown, session_.draw.in_place, screen_.field.x,
+             screen_.field.y, screen_.field.width, screen_.field.height,
              instance_.validation_messages());
 }
 
