@@ -75,8 +75,7 @@ View first_view(const Options& options, const SourceInfo& source, const Viewport
     view.azimuth = options.azimuth.value_or(view.azimuth);
     view.elevation = options.elevation.value_or(view.elevation);
     view.target_mm = options.centre_mm.value_or(view.target_mm);
-    // Closer than fit for arrows of any length: the skin is what one looks at.
-    view.distance_mm *= 0.8 / options.zoom;
+    view.distance_mm /= options.zoom;
     return view;
   }
   TopView view = fit_top(size, plot);

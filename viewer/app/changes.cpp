@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "viewer/app/pins.h"
+#include "viewer/app/region_sums.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -34,12 +35,10 @@ void follow(Pin& pin, const ShownField& field) {
   pin.history.add(point_of(field, values.shear_x, values.shear_y, values.normal));
 }
 
-void follow(MarkedRegion& region, const ShownField& field, double pitch_mm) {
-  const RegionSums sums = sums_over(field, region.rect, pitch_mm);
-  region.history.add(point_of(field, sums.shear_x, sums.shear_y, sums.normal));
+void follow_region(Session& session) {
+  const RegionSums& sums = region_sums(session);
+  session.region->history.add(point_of(*session.field, sums.shear_x, sums.shear_y, sums.normal));
 }
-
-double pitch_of(const Session& session) { return session.player->info().skin.pillar_pitch_mm(); }
 
 }  // namespace
 
@@ -123,7 +122,7 @@ void toggle_pin(Session& session, PillarIndex pillar) {
 
 void mark_region(Session& session, const PillarRect& rect) {
   session.region = MarkedRegion{rect, History()};
-  if (session.field) follow(*session.region, *session.field, pitch_of(session));
+  if (session.field) follow_region(session);
 }
 
 void clear_marks(Session& session) {
@@ -149,7 +148,7 @@ void change_speed(Session& session, int steps) {
 void take_field(Session& session, ShownField field) {
   session.field = std::move(field);
   for (Pin& pin : session.pins) follow(pin, *session.field);
-  if (session.region) follow(*session.region, *session.field, pitch_of(session));
+  if (session.region) follow_region(session);
   if (session.fit_each_field) fit_range(session);
 }
 
