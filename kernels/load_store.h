@@ -177,8 +177,8 @@ PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES
     high.even = left.hi;                                                                     \
     high.odd = right.hi;                                                                     \
     if (are_all(lanes)) {                                                                    \
-      PF_VSTORE(low, 0, row);                                                                \
-      PF_VSTORE(high, 1, row);                                                               \
+      PF_STORE_WHOLE(type, low, row);                                                        \
+      PF_STORE_WHOLE(type, high, row + PF_LANES);                                            \
     } else {                                                                                 \
       type values[2 * PF_LANES];                                                             \
       PF_VSTORE(low, 0, values);                                                             \
@@ -268,7 +268,7 @@ PF_INLINE Bits load_status(global const uchar* row, int col, uint cols) {
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else
   if (col >= 0 && (uint)col + PF_LANES <= cols) {
-    return PF_JOIN(as_char, PF_LANES)(PF_VLOAD(0, row + col));
+    return PF_JOIN(as_char, PF_LANES)(PF_LOAD_WHOLE(uchar, row + col));
   }
   uchar padded[PF_LANES];
   for (uint i = 0; i < PF_LANES; ++i) {
