@@ -121,24 +121,6 @@ PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
 PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
-/* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
-PF_INLINE bool any_bits(Bits bits) {
-#if PF_LANES == 1
-  return bits != 0;
-#elif PF_LANES == 2
-  return as_short(bits) != 0;
-#elif PF_LANES == 4
-  return as_int(bits) != 0;
-#elif PF_LANES == 8
-  return as_long(bits) != 0;
-#else
-  const long2 halves = as_long2(bits);
-  return (halves.x | halves.y) != 0;
-#endif
-}
-
-PF_INLINE bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
-
 /* Brings the values of PF_LANES pillars in one row of sensels towards the caches. What may lie past
  * the end of a plane is not touched by it; other drivers than PoCL may not know the word. */
 #if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)

@@ -78,6 +78,24 @@ typedef Real Counts;
 static inline Counts halved(Counts counts) { return 0.5f * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 #endif
+/* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
+static inline bool any_bits(Bits bits) {
+#if PF_LANES == 1
+  return bits != 0;
+#elif PF_LANES == 2
+  return as_short(bits) != 0;
+#elif PF_LANES == 4
+  return as_int(bits) != 0;
+#elif PF_LANES == 8
+  return as_long(bits) != 0;
+#else
+  const long2 halves = as_long2(bits);
+  return (halves.x | halves.y) != 0;
+#endif
+}
+
+static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
+
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
@@ -109,10 +127,12 @@ static inline Counts halved(Counts counts) { return PF_REAL(0.5) * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
+static inline bool any_lane(Mask mask) { return mask; }
 
 using std::asin;
 using std::atan;
 using std::atan2;
+using std::copysign;
 using std::cos;
 using std::fabs;
 using std::floor;

@@ -85,49 +85,47 @@ typedef struct {
   Lanes lanes;
 } Block;
 
-/* From corrected sensels to the results. */
-PF_INLINE void solve_pillars(Pillar pillar, Block block, Input input, Output output) {
-  const size_t index = block.index;
-  const Lanes lanes = block.lanes;
-  const Diagonals diagonals = pillar_diagonals(pillar);
-  const ParitySum sum = parity_sum(diagonals);
-  const Force force = estimate(pillar, diagonals, sum);
-  store_plane(force.shear_x, output.shear_x + index, lanes);
-  store_plane(force.shear_y, output.shear_y + index, lanes);
-  store_plane(force.normal, output.normal + index, lanes);
-  store_status(status_of(pillar, diagonals, sum), output.status + index, lanes);
+/* What is solved of the pillars of a block. */
+typedef struct {
+  Force force;
+  Bits status;
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
-  const Direction direction = direction_of(force);
-#endif
-#ifdef PF_ANGLES
-  store_plane(direction.magnitude, output.magnitude + index, lanes);
-  store_plane(direction.theta, output.theta + index, lanes);
-  store_plane(direction.phi, output.phi + index, lanes);
+  Direction direction;
 #endif
 #ifdef PF_UNCERTAINTY
-  const size_t stride = input.planes.stride;
-  const RealPair noise_top = read_noise(block.raw, input.planes, block.offset);
-  const RealPair noise_bottom =
-      read_noise(block.raw + input.row_stride, input.planes, block.offset + stride);
-  const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
-  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
-  const Force deviations = force_deviations(pillar, diagonals, noises, scale);
-  /* The whole interval costs more than all before it, and where every lane is settled it is a
-   * point. */
-  DirectionInterval interval = point_interval(direction);
-  if (any_lane(!is_settled(pillar, sum))) {
-    interval = direction_interval(pillar, diagonals, sum, direction, scale);
-  }
-  store_plane(deviations.shear_x, output.deviation_x + index, lanes);
-  store_plane(deviations.shear_y, output.deviation_y + index, lanes);
-  store_plane(deviations.normal, output.deviation_normal + index, lanes);
-  store_plane(interval.theta_low, output.theta_low + index, lanes);
-  store_plane(interval.theta_high, output.theta_high + index, lanes);
-  store_plane(interval.phi_low, output.phi_low + index, lanes);
-  store_plane(interval.phi_high, output.phi_high + index, lanes);
-  store_plane(interval.magnitude_low, output.magnitude_low + index, lanes);
-  store_plane(interval.magnitude_high, output.magnitude_high + index, lanes);
+  Force deviations;
+  DirectionInterval interval;
 #endif
+} Solution;
+
+#ifdef PF_UNCERTAINTY
+PF_INLINE Noise noise_of(Block block, Input input) {
+  const Planes planes = input.planes;
+  const RealPair top = read_noise(block.raw, planes, block.offset);
+  const RealPair bottom =
+      read_noise(block.raw + input.row_stride, planes, block.offset + planes.stride);
+  const Noise noise = {top.right, top.left, bottom.left, bottom.right};
+  return noise;
+}
+#endif
+
+/* From corrected sensels to the results. */
+PF_INLINE Solution solve_pillars(Pillar pillar, Block block, Input input) {
+  const Diagonals diagonals = pillar_diagonals(pillar);
+  const ParitySum sum = parity_sum(diagonals);
+  Solution solution;
+  solution.force = estimate(pillar, diagonals, sum);
+  solution.status = status_of(pillar, diagonals, sum);
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  solution.direction = direction_of(solution.force);
+#endif
+#ifdef PF_UNCERTAINTY
+  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+  solution.deviations = force_deviations(pillar, diagonals, noise_of(block, input), scale);
+  solution.interval =
+      direction_interval(pillar, diagonals, sum, solution.direction, scale);
+#endif
+  return solution;
 }
 
 /* The sensel, of which is known in every lane that it is neither missing nor saturated. */
@@ -142,7 +140,7 @@ PF_INLINE Mask is_unsound(Sensel sensel) { return sensel.missing || sensel.satur
 
 /* Most blocks have no missing and no saturated sensel. For them the compiler gets the same text
  * with those masks false, and leaves half of it out. */
-PF_INLINE void solve_block(Block block, Input input, Output output) {
+PF_INLINE Solution solve_block(Block block, Input input) {
   const Planes planes = input.planes;
   const SenselPair top = read_sensels(block.raw, planes, block.offset);
   const SenselPair bottom =
@@ -154,11 +152,44 @@ PF_INLINE void solve_block(Block block, Input input, Output output) {
   if (!any_lane(unsound)) {
     const Pillar sound = {sound_sensel(pillar.s1), sound_sensel(pillar.s2), sound_sensel(pillar.s3),
                           sound_sensel(pillar.s4)};
-    solve_pillars(sound, block, input, output);
-    return;
+    return solve_pillars(sound, block, input);
   }
 #endif
-  solve_pillars(pillar, block, input, output);
+  return solve_pillars(pillar, block, input);
+}
+
+/* Writes the results of `lanes` from pillar `index` on. */
+PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
+  store_plane(solution.force.shear_x, output.shear_x + index, lanes);
+  store_plane(solution.force.shear_y, output.shear_y + index, lanes);
+  store_plane(solution.force.normal, output.normal + index, lanes);
+  store_status(solution.status, output.status + index, lanes);
+#ifdef PF_ANGLES
+  store_plane(solution.direction.magnitude, output.magnitude + index, lanes);
+  store_plane(solution.direction.theta, output.theta + index, lanes);
+  store_plane(solution.direction.phi, output.phi + index, lanes);
+#endif
+#ifdef PF_UNCERTAINTY
+  store_plane(solution.deviations.shear_x, output.deviation_x + index, lanes);
+  store_plane(solution.deviations.shear_y, output.deviation_y + index, lanes);
+  store_plane(solution.deviations.normal, output.deviation_normal + index, lanes);
+  store_plane(solution.interval.theta_low, output.theta_low + index, lanes);
+  store_plane(solution.interval.theta_high, output.theta_high + index, lanes);
+  store_plane(solution.interval.phi_low, output.phi_low + index, lanes);
+  store_plane(solution.interval.phi_high, output.phi_high + index, lanes);
+  store_plane(solution.interval.magnitude_low, output.magnitude_low + index, lanes);
+  store_plane(solution.interval.magnitude_high, output.magnitude_high + index, lanes);
+#endif
+}
+
+/* The same; asked once for all planes whether the block is whole, which nearly all are. */
+PF_INLINE void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
+  const Lanes whole = {0, PF_LANES};
+  if (are_all(lanes)) {
+    store_lanes(solution, output, index, whole);
+  } else {
+    store_lanes(solution, output, index, lanes);
+  }
 }
 
 /* Whether a block's results are those of silence already; if not, notes what they are now to be. */
@@ -210,7 +241,7 @@ PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols)
     const Lanes lanes = {0, PF_LANES};
 #endif
     const Block block = {raw, offset, first_index + col, lanes};
-    solve_block(block, input, output);
+    store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
 }
 
