@@ -30,15 +30,18 @@ static inline ParityWeights parity_weights(Diagonals diagonals) {
   const Real one = PF_REAL(1.0);
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
-  const Mask a_stands = a.p_stands || a.q_stands;
-  const Mask b_stands = b.p_stands || b.q_stands;
+  const Mask determined = a.full || b.full;
   const Mask by_b = a.open || ((a.p + a.q >= b.p + b.q) && !b.open);
-  const Real share = (a_stands && b_stands) ? PF_REAL(0.66666666666666666667) : one;
-  const Real open_a = (a.open && b.open) ? share : (by_b ? zero : one_half);
-  const Real open_b = (a.open && b.open) ? share : (by_b ? one_half : zero);
+  const Mask has_a = a.full || !(determined || by_b);
+  /* What one diagonal has, the other has not, but where both measure or both are open. */
+  const Real whole = determined ? one : one_half;
+  const Real share = (a.full && b.full) ? one_half : (has_a ? whole : zero);
+  const Mask both_open = a.open && b.open && !determined;
+  const Mask both_stand = (a.p_stands || a.q_stands) && (b.p_stands || b.q_stands);
+  const Real open_share = both_stand ? PF_REAL(0.66666666666666666667) : one;
   ParityWeights weights;
-  weights.rising = a.full ? (b.full ? one_half : one) : (b.full ? zero : open_a);
-  weights.falling = b.full ? (a.full ? one_half : one) : (a.full ? zero : open_b);
+  weights.rising = both_open ? open_share : share;
+  weights.falling = both_open ? open_share : whole - share;
   return weights;
 }
 
@@ -46,12 +49,10 @@ static inline ParityWeights parity_weights(Diagonals diagonals) {
 static inline DifferenceWeights difference_weights(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
-  const Real two = PF_REAL(2.0);
-  const Mask both = d.p_stands && d.q_stands;
   DifferenceWeights weights;
-  weights.p = both ? one : (d.p_stands ? two : zero);
-  weights.q = both ? -one : (d.q_stands ? -two : zero);
-  weights.sum = both ? zero : (d.p_stands ? -one : (d.q_stands ? one : zero));
+  weights.sum = (d.q_stands ? one : zero) - (d.p_stands ? one : zero);
+  weights.p = d.p_stands ? one - weights.sum : zero;
+  weights.q = d.q_stands ? -one - weights.sum : zero;
   return weights;
 }
 
