@@ -6,8 +6,10 @@
  */
 #ifdef POCL_DEVICE_ADDRESS_BITS
 #define PF_INLINE static inline __attribute__((always_inline))
+#define PF_OUTLINE static __attribute__((noinline))
 #else
 #define PF_INLINE static inline
+#define PF_OUTLINE static
 #endif
 
 /* The values of `PF_LANES` pillars in one row of sensels. */

@@ -192,17 +192,47 @@ PF_INLINE void store_solution(Solution solution, Output output, size_t index, La
   }
 }
 
-/* Whether a block's results are those of silence already; if not, notes what they are now to be. */
-PF_INLINE bool may_skip(Input input, global uchar* silent_block, global const PF_SENSEL* raw,
-                        size_t offset) {
-#ifdef PF_SKIP_SILENT
-  const bool was_silent = *silent_block;
-  const bool silent = is_silent(raw, input.row_stride, input.wake + offset, input.planes.stride);
-  if (silent != was_silent) *silent_block = silent;
-  return silent && was_silent;
-#else
-  return false;
+/* A row of pillars, and the blocks into which it is divided. Blocks begin where a result is on a
+ * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
+ * moved into the row, and solve again what their neighbours solve as well. Written again it is the
+ * same; only past the caches each line must be written once. */
+typedef struct {
+  global const PF_SENSEL* raw;  /* the first sensel */
+  global const PF_SENSEL* wake; /* and its level */
+  size_t row_stride;
+  size_t wake_stride;
+  global uchar* silent; /* the mark of the first block */
+  uint skew;            /* pillars by which the first block would begin before the row */
+  uint last_col;        /* where the last block begins */
+  uint blocks;
+} Row;
+
+PF_INLINE uint col_of_block(Row row, uint at) {
+  return min(max(at * PF_LANES, row.skew) - row.skew, row.last_col);
+}
+
+/* The first block from `at` on, of this work-item's, whose results are not those of silence
+ * already; notes what they are now to be. On its own, so that the many silent blocks of a skin are
+ * passed with all in registers. */
+PF_OUTLINE uint next_awake(Row row, uint at) {
+  const uint step = (uint)get_global_size(0);
+  for (; at < row.blocks; at += step) {
+    const uint col = col_of_block(row, at);
+    global const PF_SENSEL* const raw = row.raw + 2 * col;
+    PF_PREFETCH(raw + 2 * row.row_stride);
+    PF_PREFETCH(raw + 3 * row.row_stride);
+#ifdef PF_WAKE_PLANE
+    PF_PREFETCH(row.wake + 2 * col + 2 * row.wake_stride); PF_PREFETCH(row.wake + 2 * col + 3 * row.wake_stride);
 #endif
+#ifdef PF_SKIP_SILENT
+    const bool was_silent = row.silent[at];
+    const bool silent = is_silent(raw, row.row_stride, row.wake + 2 * col, row.wake_stride);
+    if (silent && was_silent) continue;
+    if (silent != was_silent) row.silent[at] = silent;
+#endif
+    return at;
+  }
+  return at;
 }
 
 /* The lanes of the block at `col` that no other block of its row writes. `place` is where it would
@@ -214,33 +244,31 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
   return lanes;
 }
 
-/* Solves the blocks of a pillar row that are this work-item's. Blocks begin where a result is on a
- * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
- * moved into the row, and solve again what their neighbours solve as well. Written again it is the
- * same; only past the caches each line must be written once. */
-PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols) {
-  const size_t first_index = (size_t)row * pillar_cols;
+/* Solves the blocks of a pillar row that are this work-item's. */
+PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
+  const size_t first_index = (size_t)at_row * pillar_cols;
+  const size_t first_offset = 2 * at_row * input.planes.stride;
   const uint skew = (uint)(first_index % PF_LANES);
-  const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
-  const uint last_col = pillar_cols - PF_LANES;
-  const size_t stride = input.row_stride;
-  const size_t first_offset = 2 * row * input.planes.stride;
-  global const PF_SENSEL* const first_raw = input.raw + 2 * row * stride;
-  global uchar* const silent_blocks = output.silent + (size_t)row * blocks_of_row(pillar_cols);
-  for (uint at = (uint)get_global_id(0); at < blocks; at += (uint)get_global_size(0)) {
-    const uint col = min(max(at * PF_LANES, skew) - skew, last_col);
-    global const PF_SENSEL* const raw = first_raw + 2 * col;
+  const Row row = {input.raw + 2 * at_row * input.row_stride,
+                   input.wake + first_offset,
+                   input.row_stride,
+                   input.planes.stride,
+                   output.silent + (size_t)at_row * blocks_of_row(pillar_cols),
+                   skew,
+                   pillar_cols - PF_LANES,
+                   (skew + pillar_cols + PF_LANES - 1) / PF_LANES};
+  const uint step = (uint)get_global_size(0);
+  for (uint at = next_awake(row, (uint)get_global_id(0)); at < row.blocks;
+       at = next_awake(row, at + step)) {
+    const uint col = col_of_block(row, at);
     const size_t offset = first_offset + 2 * col;
-    PF_PREFETCH(raw + 2 * stride);
-    PF_PREFETCH(raw + 3 * stride);
-    if (may_skip(input, silent_blocks + at, raw, offset)) continue;
     prefetch_planes(input.planes, offset + 2 * input.planes.stride);
 #ifdef PF_STREAM
     const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
-    const Block block = {raw, offset, first_index + col, lanes};
+    const Block block = {row.raw + 2 * col, offset, first_index + col, lanes};
     store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
 }
