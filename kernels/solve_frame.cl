@@ -122,8 +122,7 @@ PF_INLINE Solution solve_pillars(Pillar pillar, Block block, Input input) {
 #ifdef PF_UNCERTAINTY
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
   solution.deviations = force_deviations(pillar, diagonals, noise_of(block, input), scale);
-  solution.interval =
-      direction_interval(pillar, diagonals, sum, solution.direction, scale);
+  solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale);
 #endif
   return solution;
 }
@@ -222,7 +221,8 @@ PF_OUTLINE uint next_awake(Row row, uint at) {
     PF_PREFETCH(raw + 2 * row.row_stride);
     PF_PREFETCH(raw + 3 * row.row_stride);
 #ifdef PF_WAKE_PLANE
-    PF_PREFETCH(row.wake + 2 * col + 2 * row.wake_stride); PF_PREFETCH(row.wake + 2 * col + 3 * row.wake_stride);
+    PF_PREFETCH(row.wake + 2 * col + 2 * row.wake_stride);
+    PF_PREFETCH(row.wake + 2 * col + 3 * row.wake_stride);
 #endif
 #ifdef PF_SKIP_SILENT
     const bool was_silent = row.silent[at];

@@ -1,16 +1,10 @@
-#include <new>
-
+#include "device/large_pages.h"
 #include "device/slot_memory.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr std::size_t kPageSize = 4096;
-constexpr std::align_val_t kPage{kPageSize};
-
-struct FreePages {
-  void operator()(std::byte* pages) const { ::operator delete[](pages, kPage); }
-};
 
 /// All planes of a result in one block, each on its own page: handing it to the device and back is
 /// one command each way, and commands are what a small frame's time goes into.
@@ -22,7 +16,7 @@ class SharedMemory final : public SlotMemory {
       regions_.at(plane) = {bytes_, plan.skin.pillars() * value_size(plan, plane)};
       bytes_ += (regions_.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
     }
-    pages_.reset(static_cast<std::byte*>(::operator new[](bytes_, kPage)));
+    pages_ = allocate_large_pages(bytes_);
     all_ = cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_.get());
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
       if (regions_.at(plane).size == 0) continue;
@@ -62,7 +56,7 @@ class SharedMemory final : public SlotMemory {
   cl::Context context_;
   std::size_t bytes_ = 0;
   std::array<cl_buffer_region, kAllPlanes> regions_{};
-  std::unique_ptr<std::byte[], FreePages> pages_;
+  LargePages pages_;
   cl::Buffer all_;
   std::array<cl::Buffer, kAllPlanes> buffers_;
   bool mapped_ = false;

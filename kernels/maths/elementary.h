@@ -21,18 +21,18 @@ static inline Scaling scaling_for(Real largest) {
   return scaling;
 }
 
-/* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) of numbers that are scaled already. */
-static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
-static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
-
-#if !defined(__cplusplus) || PF_PRECISION == 32
-
 /* Whether squares of numbers up to `largest` leave the range in any lane, so that they must be
  * scaled. Zeros need not be. */
 static inline bool needs_scaling(Real largest) {
   const Mask is_small = (largest < PF_REAL(0x1p-40)) && (largest > PF_REAL(0.0));
   return any_lane(is_small || (largest > PF_REAL(0x1p60)));
 }
+
+/* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) of numbers that are scaled already. */
+static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
+static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
+
+#if !defined(__cplusplus) || PF_PRECISION == 32
 
 /* sqrt(x^2 + y^2), without overflow and underflow on the way; 1.25 ULP. */
 static inline Real length_2(Real x, Real y) {
@@ -91,8 +91,7 @@ static inline Real acute_angle_of(Real y, Real x) {
 static inline Real upper_angle_of(Real y, Real x) {
   const QuadrantAngle angle = quadrant_angle(y, fabs(x));
   const Mask is_left = x < PF_REAL(0.0);
-  const Real nearest =
-      is_left ? PF_REAL(3.14159265358979323846) - angle.nearest : angle.nearest;
+  const Real nearest = is_left ? PF_REAL(3.14159265358979323846) - angle.nearest : angle.nearest;
   return (angle.is_steep != is_left) ? nearest - angle.part : nearest + angle.part;
 }
 

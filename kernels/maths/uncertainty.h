@@ -258,17 +258,14 @@ static inline PhiInterval phi_interval(Evidence e, Real a_flat, Real b_flat, Rea
   const Mask loose = e.a_loose || e.b_loose;
   const Real a_from = e.a_loose ? -most_difference(e.a.q, e.low) : a_flat;
   const Real b_from = e.b_loose ? -most_difference(e.b.q, e.low) : b_flat;
-  const Real a_to =
-      e.a_loose ? most_difference(e.a.p, e.low) : (loose ? a_flat : a_steep);
-  const Real b_to =
-      e.b_loose ? most_difference(e.b.p, e.low) : (loose ? b_flat : b_steep);
+  const Real a_to = e.a_loose ? most_difference(e.a.p, e.low) : (loose ? a_flat : a_steep);
+  const Real b_to = e.b_loose ? most_difference(e.b.p, e.low) : (loose ? b_flat : b_steep);
   return phi_between(a_from, b_from, a_to, b_to);
 }
 
 /* The parity sum of the shortest force (U6). */
 static inline Real shortest_sum(Evidence e, DifferenceLine a, DifferenceLine b) {
-  const Real share =
-      (a.sloped && b.sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
+  const Real share = (a.sloped && b.sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
   const Real free = share * (a.standing + b.standing);
   return free < e.low ? e.low : least_of(free, e.high);
 }
@@ -295,8 +292,7 @@ static inline DirectionInterval open_interval(Evidence e, Direction estimate) {
                                        signed_as(a, a_steep), signed_as(b, b_steep));
   DirectionInterval interval;
   interval.theta_low = from_zero ? tilt : estimate.theta;
-  interval.theta_high =
-      from_zero ? (flat > zero ? PF_REAL(1.57079632679489661923) : zero) : tilt;
+  interval.theta_high = from_zero ? (flat > zero ? PF_REAL(1.57079632679489661923) : zero) : tilt;
   interval.phi_low = phi.low;
   interval.phi_high = phi.high;
   interval.magnitude_low = e.newtons * sqrt(shortest);
@@ -317,7 +313,8 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const DirectionInterval point = point_interval(estimate);
   if (!any_lane(!settled)) return point;
   const Evidence e = evidence_of(pillar, diagonals, sum, scale.normal);
-  const Mask silent = e.a_loose && e.b_loose && (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
+  const Mask silent =
+      e.a_loose && e.b_loose && (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
   const DirectionInterval unless_open = either_interval(settled, point, silent_interval(e));
   if (!any_lane(!(settled || silent))) return unless_open;
   return either_interval(settled || silent, unless_open, open_interval(e, estimate));
