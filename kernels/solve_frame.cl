@@ -210,27 +210,38 @@ PF_INLINE uint col_of_block(Row row, uint at) {
   return min(max(at * PF_LANES, row.skew) - row.skew, row.last_col);
 }
 
-/* The first block from `at` on, of this work-item's, whose results are not those of silence
- * already; notes what they are now to be. On its own, so that the many silent blocks of a skin are
- * passed with all in registers. */
+/* Prefetches the readings of the pillar row below, and their levels; `sensel` counts from the first
+ * of the row. */
+PF_INLINE void prefetch_readings(Row row, size_t sensel) {
+  PF_PREFETCH(row.raw + sensel + 2 * row.row_stride);
+  PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
+#ifdef PF_WAKE_PLANE
+  PF_PREFETCH(row.wake + sensel + 2 * row.wake_stride);
+  PF_PREFETCH(row.wake + sensel + 3 * row.wake_stride);
+#endif
+}
+
+/* Whether a block's results are those of silence already; if not, notes what they are now to be. */
+PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
+#ifdef PF_SKIP_SILENT
+  const bool was_silent = row.silent[at];
+  const bool silent =
+      is_silent(row.raw + sensel, row.row_stride, row.wake + sensel, row.wake_stride);
+  if (silent != was_silent) row.silent[at] = silent;
+  return silent && was_silent;
+#else
+  return false;
+#endif
+}
+
+/* The first block from `at` on, of this work-item's, that is to be solved. A function of its own,
+ * so that the many silent blocks of a skin are passed with all in registers. */
 PF_OUTLINE uint next_awake(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
   for (; at < row.blocks; at += step) {
-    const uint col = col_of_block(row, at);
-    global const PF_SENSEL* const raw = row.raw + 2 * col;
-    PF_PREFETCH(raw + 2 * row.row_stride);
-    PF_PREFETCH(raw + 3 * row.row_stride);
-#ifdef PF_WAKE_PLANE
-    PF_PREFETCH(row.wake + 2 * col + 2 * row.wake_stride);
-    PF_PREFETCH(row.wake + 2 * col + 3 * row.wake_stride);
-#endif
-#ifdef PF_SKIP_SILENT
-    const bool was_silent = row.silent[at];
-    const bool silent = is_silent(raw, row.row_stride, row.wake + 2 * col, row.wake_stride);
-    if (silent && was_silent) continue;
-    if (silent != was_silent) row.silent[at] = silent;
-#endif
-    return at;
+    const size_t sensel = 2 * col_of_block(row, at);
+    prefetch_readings(row, sensel);
+    if (!may_skip(row, at, sensel)) break;
   }
   return at;
 }
