@@ -6,10 +6,8 @@
  */
 #ifdef POCL_DEVICE_ADDRESS_BITS
 #define PF_INLINE static inline __attribute__((always_inline))
-#define PF_OUTLINE static __attribute__((noinline))
 #else
 #define PF_INLINE static inline
-#define PF_OUTLINE static
 #endif
 
 /* The values of `PF_LANES` pillars in one row of sensels. */
@@ -123,15 +121,20 @@ PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
 PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
-/* Brings the values of PF_LANES pillars in one row of sensels towards the caches. What may lie past
- * the end of a plane is not touched by it; other drivers than PoCL may not know the word. */
+/* Brings the values of PF_LANES pillars in one row of sensels towards the caches: PF_PREFETCH into
+ * the nearest, for what is about to be solved; PF_PREFETCH_FAR into the second, of which more may
+ * be under way at once, for what is about to be passed. What may lie past the end of a plane is not
+ * touched by it; other drivers than PoCL may not know the word. */
 #if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
-#define PF_PREFETCH(row)                                                       \
+#define PF_PREFETCH_TO(row, locality)                                          \
   for (size_t byte_ = 0; byte_ < 2 * PF_LANES * sizeof(*(row)); byte_ += 64) { \
-    __builtin_prefetch((const void*)((size_t)(row) + byte_));                  \
+    __builtin_prefetch((const void*)((size_t)(row) + byte_), 0, locality);     \
   }
+#define PF_PREFETCH(row) PF_PREFETCH_TO(row, 3)
+#define PF_PREFETCH_FAR(row) PF_PREFETCH_TO(row, 2)
 #else
 #define PF_PREFETCH(row)
+#define PF_PREFETCH_FAR(row)
 #endif
 
 /* The lanes of a block that are written. */

@@ -211,13 +211,18 @@ PF_INLINE uint col_of_block(Row row, uint at) {
 }
 
 /* Prefetches the readings of the pillar row below, and their levels; `sensel` counts from the first
- * of the row. */
-PF_INLINE void prefetch_readings(Row row, size_t sensel) {
-  PF_PREFETCH(row.raw + sensel + 2 * row.row_stride);
-  PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
+ * of the row. What is silent here is silent there, mostly. */
+PF_INLINE void prefetch_readings(Row row, size_t sensel, bool silent) {
+  if (silent) {
+    PF_PREFETCH_FAR(row.raw + sensel + 2 * row.row_stride);
+    PF_PREFETCH_FAR(row.raw + sensel + 3 * row.row_stride);
+  } else {
+    PF_PREFETCH(row.raw + sensel + 2 * row.row_stride);
+    PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
+  }
 #ifdef PF_WAKE_PLANE
-  PF_PREFETCH(row.wake + sensel + 2 * row.wake_stride);
-  PF_PREFETCH(row.wake + sensel + 3 * row.wake_stride);
+  PF_PREFETCH_FAR(row.wake + sensel + 2 * row.wake_stride);
+  PF_PREFETCH_FAR(row.wake + sensel + 3 * row.wake_stride);
 #endif
 }
 
@@ -225,24 +230,21 @@ PF_INLINE void prefetch_readings(Row row, size_t sensel) {
 PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
 #ifdef PF_SKIP_SILENT
   const bool was_silent = row.silent[at];
+  prefetch_readings(row, sensel, was_silent);
   const bool silent =
       is_silent(row.raw + sensel, row.row_stride, row.wake + sensel, row.wake_stride);
   if (silent != was_silent) row.silent[at] = silent;
   return silent && was_silent;
 #else
+  prefetch_readings(row, sensel, false);
   return false;
 #endif
 }
 
-/* The first block from `at` on, of this work-item's, that is to be solved. A function of its own,
- * so that the many silent blocks of a skin are passed with all in registers. */
-PF_OUTLINE uint next_awake(Row row, uint at) {
+/* The first block from `at` on, of this work-item's, that is to be solved. */
+PF_INLINE uint next_awake(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
-  for (; at < row.blocks; at += step) {
-    const size_t sensel = 2 * col_of_block(row, at);
-    prefetch_readings(row, sensel);
-    if (!may_skip(row, at, sensel)) break;
-  }
+  while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
   return at;
 }
 
