@@ -17,6 +17,7 @@
  *   real_of(c)    c as Real
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
+ *   any_lane(m)   whether m is true in any lane
  *   word_of(r)    the bits of r
  *   real_of_word(w)  what w are the bits of
  *
@@ -31,10 +32,10 @@
  * What may stand in kernels/maths is what means the same in all of them: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts; choices
  * written c ? x : y with both sides of lane type; structs passed by value; of Counts in programs of
- * whole numbers + - and comparisons alone;
- * + - * /, comparisons, fabs, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction:
- * the device and a host built with -ffp-contract=off then agree bit for bit in all but the last
- * six.
+ * whole numbers + - and comparisons alone; if (any_lane(mask)) where what it leaves out changes no
+ * bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow.
+ * No contraction: the device and a host built with -ffp-contract=off then agree bit for bit in all
+ * but the last six.
  */
 #ifndef __cplusplus /* OpenCL C */
 
