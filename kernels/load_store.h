@@ -121,33 +121,20 @@ PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
 PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
-/* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
-PF_INLINE bool any_bits(Bits bits) {
-#if PF_LANES == 1
-  return bits != 0;
-#elif PF_LANES == 2
-  return as_short(bits) != 0;
-#elif PF_LANES == 4
-  return as_int(bits) != 0;
-#elif PF_LANES == 8
-  return as_long(bits) != 0;
-#else
-  const long2 halves = as_long2(bits);
-  return (halves.x | halves.y) != 0;
-#endif
-}
-
-PF_INLINE bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
-
-/* Brings the values of PF_LANES pillars in one row of sensels towards the caches. What may lie past
- * the end of a plane is not touched by it; other drivers than PoCL may not know the word. */
+/* Brings the values of PF_LANES pillars in one row of sensels towards the caches: PF_PREFETCH into
+ * the nearest, for what is about to be solved; PF_PREFETCH_FAR into the second, of which more may
+ * be under way at once, for what is about to be passed. What may lie past the end of a plane is not
+ * touched by it; other drivers than PoCL may not know the word. */
 #if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
-#define PF_PREFETCH(row)                                                       \
+#define PF_PREFETCH_TO(row, locality)                                          \
   for (size_t byte_ = 0; byte_ < 2 * PF_LANES * sizeof(*(row)); byte_ += 64) { \
-    __builtin_prefetch((const void*)((size_t)(row) + byte_));                  \
+    __builtin_prefetch((const void*)((size_t)(row) + byte_), 0, locality);     \
   }
+#define PF_PREFETCH(row) PF_PREFETCH_TO(row, 3)
+#define PF_PREFETCH_FAR(row) PF_PREFETCH_TO(row, 2)
 #else
 #define PF_PREFETCH(row)
+#define PF_PREFETCH_FAR(row)
 #endif
 
 /* The lanes of a block that are written. */
@@ -177,8 +164,8 @@ PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES
     high.even = left.hi;                                                                     \
     high.odd = right.hi;                                                                     \
     if (are_all(lanes)) {                                                                    \
-      PF_VSTORE(low, 0, row);                                                                \
-      PF_VSTORE(high, 1, row);                                                               \
+      PF_STORE_WHOLE(type, low, row);                                                        \
+      PF_STORE_WHOLE(type, high, row + PF_LANES);                                            \
     } else {                                                                                 \
       type values[2 * PF_LANES];                                                             \
       PF_VSTORE(low, 0, values);                                                             \
@@ -268,7 +255,7 @@ PF_INLINE Bits load_status(global const uchar* row, int col, uint cols) {
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else
   if (col >= 0 && (uint)col + PF_LANES <= cols) {
-    return PF_JOIN(as_char, PF_LANES)(PF_VLOAD(0, row + col));
+    return PF_JOIN(as_char, PF_LANES)(PF_LOAD_WHOLE(uchar, row + col));
   }
   uchar padded[PF_LANES];
   for (uint i = 0; i < PF_LANES; ++i) {

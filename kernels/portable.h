@@ -17,6 +17,7 @@
  *   real_of(c)    c as Real
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
+ *   any_lane(m)   whether m is true in any lane
  *   word_of(r)    the bits of r
  *   real_of_word(w)  what w are the bits of
  *
@@ -31,10 +32,10 @@
  * What may stand in kernels/maths is what means the same in all of them: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts; choices
  * written c ? x : y with both sides of lane type; structs passed by value; of Counts in programs of
- * whole numbers + - and comparisons alone;
- * + - * /, comparisons, fabs, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow. No contraction:
- * the device and a host built with -ffp-contract=off then agree bit for bit in all but the last
- * six.
+ * whole numbers + - and comparisons alone; if (any_lane(mask)) where what it leaves out changes no
+ * bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow.
+ * No contraction: the device and a host built with -ffp-contract=off then agree bit for bit in all
+ * but the last six.
  */
 #ifndef __cplusplus /* OpenCL C */
 
@@ -78,6 +79,24 @@ typedef Real Counts;
 static inline Counts halved(Counts counts) { return 0.5f * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 #endif
+/* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
+static inline bool any_bits(Bits bits) {
+#if PF_LANES == 1
+  return bits != 0;
+#elif PF_LANES == 2
+  return as_short(bits) != 0;
+#elif PF_LANES == 4
+  return as_int(bits) != 0;
+#elif PF_LANES == 8
+  return as_long(bits) != 0;
+#else
+  const long2 halves = as_long2(bits);
+  return (halves.x | halves.y) != 0;
+#endif
+}
+
+static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
+
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
@@ -109,10 +128,12 @@ static inline Counts halved(Counts counts) { return PF_REAL(0.5) * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
+static inline bool any_lane(Mask mask) { return mask; }
 
 using std::asin;
 using std::atan;
 using std::atan2;
+using std::copysign;
 using std::cos;
 using std::fabs;
 using std::floor;

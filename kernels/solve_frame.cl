@@ -85,49 +85,46 @@ typedef struct {
   Lanes lanes;
 } Block;
 
-/* From corrected sensels to the results. */
-PF_INLINE void solve_pillars(Pillar pillar, Block block, Input input, Output output) {
-  const size_t index = block.index;
-  const Lanes lanes = block.lanes;
-  const Diagonals diagonals = pillar_diagonals(pillar);
-  const ParitySum sum = parity_sum(diagonals);
-  const Force force = estimate(pillar, diagonals, sum);
-  store_plane(force.shear_x, output.shear_x + index, lanes);
-  store_plane(force.shear_y, output.shear_y + index, lanes);
-  store_plane(force.normal, output.normal + index, lanes);
-  store_status(status_of(pillar, diagonals, sum), output.status + index, lanes);
+/* What is solved of the pillars of a block. */
+typedef struct {
+  Force force;
+  Bits status;
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
-  const Direction direction = direction_of(force);
-#endif
-#ifdef PF_ANGLES
-  store_plane(direction.magnitude, output.magnitude + index, lanes);
-  store_plane(direction.theta, output.theta + index, lanes);
-  store_plane(direction.phi, output.phi + index, lanes);
+  Direction direction;
 #endif
 #ifdef PF_UNCERTAINTY
-  const size_t stride = input.planes.stride;
-  const RealPair noise_top = read_noise(block.raw, input.planes, block.offset);
-  const RealPair noise_bottom =
-      read_noise(block.raw + input.row_stride, input.planes, block.offset + stride);
-  const Noise noises = {noise_top.right, noise_top.left, noise_bottom.left, noise_bottom.right};
-  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
-  const Force deviations = force_deviations(pillar, diagonals, noises, scale);
-  /* The whole interval costs more than all before it, and where every lane is settled it is a
-   * point. */
-  DirectionInterval interval = point_interval(direction);
-  if (any_lane(!is_settled(pillar, sum))) {
-    interval = direction_interval(pillar, diagonals, sum, direction, scale);
-  }
-  store_plane(deviations.shear_x, output.deviation_x + index, lanes);
-  store_plane(deviations.shear_y, output.deviation_y + index, lanes);
-  store_plane(deviations.normal, output.deviation_normal + index, lanes);
-  store_plane(interval.theta_low, output.theta_low + index, lanes);
-  store_plane(interval.theta_high, output.theta_high + index, lanes);
-  store_plane(interval.phi_low, output.phi_low + index, lanes);
-  store_plane(interval.phi_high, output.phi_high + index, lanes);
-  store_plane(interval.magnitude_low, output.magnitude_low + index, lanes);
-  store_plane(interval.magnitude_high, output.magnitude_high + index, lanes);
+  Force deviations;
+  DirectionInterval interval;
 #endif
+} Solution;
+
+#ifdef PF_UNCERTAINTY
+PF_INLINE Noise noise_of(Block block, Input input) {
+  const Planes planes = input.planes;
+  const RealPair top = read_noise(block.raw, planes, block.offset);
+  const RealPair bottom =
+      read_noise(block.raw + input.row_stride, planes, block.offset + planes.stride);
+  const Noise noise = {top.right, top.left, bottom.left, bottom.right};
+  return noise;
+}
+#endif
+
+/* From corrected sensels to the results. */
+PF_INLINE Solution solve_pillars(Pillar pillar, Block block, Input input) {
+  const Diagonals diagonals = pillar_diagonals(pillar);
+  const ParitySum sum = parity_sum(diagonals);
+  Solution solution;
+  solution.force = estimate(pillar, diagonals, sum);
+  solution.status = status_of(pillar, diagonals, sum);
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  solution.direction = direction_of(solution.force);
+#endif
+#ifdef PF_UNCERTAINTY
+  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
+  solution.deviations = force_deviations(pillar, diagonals, noise_of(block, input), scale);
+  solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale);
+#endif
+  return solution;
 }
 
 /* The sensel, of which is known in every lane that it is neither missing nor saturated. */
@@ -142,7 +139,7 @@ PF_INLINE Mask is_unsound(Sensel sensel) { return sensel.missing || sensel.satur
 
 /* Most blocks have no missing and no saturated sensel. For them the compiler gets the same text
  * with those masks false, and leaves half of it out. */
-PF_INLINE void solve_block(Block block, Input input, Output output) {
+PF_INLINE Solution solve_block(Block block, Input input) {
   const Planes planes = input.planes;
   const SenselPair top = read_sensels(block.raw, planes, block.offset);
   const SenselPair bottom =
@@ -154,24 +151,101 @@ PF_INLINE void solve_block(Block block, Input input, Output output) {
   if (!any_lane(unsound)) {
     const Pillar sound = {sound_sensel(pillar.s1), sound_sensel(pillar.s2), sound_sensel(pillar.s3),
                           sound_sensel(pillar.s4)};
-    solve_pillars(sound, block, input, output);
-    return;
+    return solve_pillars(sound, block, input);
   }
 #endif
-  solve_pillars(pillar, block, input, output);
+  return solve_pillars(pillar, block, input);
+}
+
+/* Writes the results of `lanes` from pillar `index` on. */
+PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
+  store_plane(solution.force.shear_x, output.shear_x + index, lanes);
+  store_plane(solution.force.shear_y, output.shear_y + index, lanes);
+  store_plane(solution.force.normal, output.normal + index, lanes);
+  store_status(solution.status, output.status + index, lanes);
+#ifdef PF_ANGLES
+  store_plane(solution.direction.magnitude, output.magnitude + index, lanes);
+  store_plane(solution.direction.theta, output.theta + index, lanes);
+  store_plane(solution.direction.phi, output.phi + index, lanes);
+#endif
+#ifdef PF_UNCERTAINTY
+  store_plane(solution.deviations.shear_x, output.deviation_x + index, lanes);
+  store_plane(solution.deviations.shear_y, output.deviation_y + index, lanes);
+  store_plane(solution.deviations.normal, output.deviation_normal + index, lanes);
+  store_plane(solution.interval.theta_low, output.theta_low + index, lanes);
+  store_plane(solution.interval.theta_high, output.theta_high + index, lanes);
+  store_plane(solution.interval.phi_low, output.phi_low + index, lanes);
+  store_plane(solution.interval.phi_high, output.phi_high + index, lanes);
+  store_plane(solution.interval.magnitude_low, output.magnitude_low + index, lanes);
+  store_plane(solution.interval.magnitude_high, output.magnitude_high + index, lanes);
+#endif
+}
+
+/* The same; asked once for all planes whether the block is whole, which nearly all are. */
+PF_INLINE void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
+  const Lanes whole = {0, PF_LANES};
+  if (are_all(lanes)) {
+    store_lanes(solution, output, index, whole);
+  } else {
+    store_lanes(solution, output, index, lanes);
+  }
+}
+
+/* A row of pillars, and the blocks into which it is divided. Blocks begin where a result is on a
+ * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
+ * moved into the row, and solve again what their neighbours solve as well. Written again it is the
+ * same; only past the caches each line must be written once. */
+typedef struct {
+  global const PF_SENSEL* raw;  /* the first sensel */
+  global const PF_SENSEL* wake; /* and its level */
+  size_t row_stride;
+  size_t wake_stride;
+  global uchar* silent; /* the mark of the first block */
+  uint skew;            /* pillars by which the first block would begin before the row */
+  uint last_col;        /* where the last block begins */
+  uint blocks;
+} Row;
+
+PF_INLINE uint col_of_block(Row row, uint at) {
+  return min(max(at * PF_LANES, row.skew) - row.skew, row.last_col);
+}
+
+/* Prefetches the readings of the pillar row below, and their levels; `sensel` counts from the first
+ * of the row. What is silent here is silent there, mostly. */
+PF_INLINE void prefetch_readings(Row row, size_t sensel, bool silent) {
+  if (silent) {
+    PF_PREFETCH_FAR(row.raw + sensel + 2 * row.row_stride);
+    PF_PREFETCH_FAR(row.raw + sensel + 3 * row.row_stride);
+  } else {
+    PF_PREFETCH(row.raw + sensel + 2 * row.row_stride);
+    PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
+  }
+#ifdef PF_WAKE_PLANE
+  PF_PREFETCH_FAR(row.wake + sensel + 2 * row.wake_stride);
+  PF_PREFETCH_FAR(row.wake + sensel + 3 * row.wake_stride);
+#endif
 }
 
 /* Whether a block's results are those of silence already; if not, notes what they are now to be. */
-PF_INLINE bool may_skip(Input input, global uchar* silent_block, global const PF_SENSEL* raw,
-                        size_t offset) {
+PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
 #ifdef PF_SKIP_SILENT
-  const bool was_silent = *silent_block;
-  const bool silent = is_silent(raw, input.row_stride, input.wake + offset, input.planes.stride);
-  if (silent != was_silent) *silent_block = silent;
+  const bool was_silent = row.silent[at];
+  prefetch_readings(row, sensel, was_silent);
+  const bool silent =
+      is_silent(row.raw + sensel, row.row_stride, row.wake + sensel, row.wake_stride);
+  if (silent != was_silent) row.silent[at] = silent;
   return silent && was_silent;
 #else
+  prefetch_readings(row, sensel, false);
   return false;
 #endif
+}
+
+/* The first block from `at` on, of this work-item's, that is to be solved. */
+PF_INLINE uint next_awake(Row row, uint at) {
+  const uint step = (uint)get_global_size(0);
+  while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
+  return at;
 }
 
 /* The lanes of the block at `col` that no other block of its row writes. `place` is where it would
@@ -183,34 +257,32 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
   return lanes;
 }
 
-/* Solves the blocks of a pillar row that are this work-item's. Blocks begin where a result is on a
- * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
- * moved into the row, and solve again what their neighbours solve as well. Written again it is the
- * same; only past the caches each line must be written once. */
-PF_INLINE void solve_row(Input input, Output output, uint row, uint pillar_cols) {
-  const size_t first_index = (size_t)row * pillar_cols;
+/* Solves the blocks of a pillar row that are this work-item's. */
+PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
+  const size_t first_index = (size_t)at_row * pillar_cols;
+  const size_t first_offset = 2 * at_row * input.planes.stride;
   const uint skew = (uint)(first_index % PF_LANES);
-  const uint blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
-  const uint last_col = pillar_cols - PF_LANES;
-  const size_t stride = input.row_stride;
-  const size_t first_offset = 2 * row * input.planes.stride;
-  global const PF_SENSEL* const first_raw = input.raw + 2 * row * stride;
-  global uchar* const silent_blocks = output.silent + (size_t)row * blocks_of_row(pillar_cols);
-  for (uint at = (uint)get_global_id(0); at < blocks; at += (uint)get_global_size(0)) {
-    const uint col = min(max(at * PF_LANES, skew) - skew, last_col);
-    global const PF_SENSEL* const raw = first_raw + 2 * col;
+  const Row row = {input.raw + 2 * at_row * input.row_stride,
+                   input.wake + first_offset,
+                   input.row_stride,
+                   input.planes.stride,
+                   output.silent + (size_t)at_row * blocks_of_row(pillar_cols),
+                   skew,
+                   pillar_cols - PF_LANES,
+                   (skew + pillar_cols + PF_LANES - 1) / PF_LANES};
+  const uint step = (uint)get_global_size(0);
+  for (uint at = next_awake(row, (uint)get_global_id(0)); at < row.blocks;
+       at = next_awake(row, at + step)) {
+    const uint col = col_of_block(row, at);
     const size_t offset = first_offset + 2 * col;
-    PF_PREFETCH(raw + 2 * stride);
-    PF_PREFETCH(raw + 3 * stride);
-    if (may_skip(input, silent_blocks + at, raw, offset)) continue;
     prefetch_planes(input.planes, offset + 2 * input.planes.stride);
 #ifdef PF_STREAM
     const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
-    const Block block = {raw, offset, first_index + col, lanes};
-    solve_block(block, input, output);
+    const Block block = {row.raw + 2 * col, offset, first_index + col, lanes};
+    store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
 }
 

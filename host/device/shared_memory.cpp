@@ -1,15 +1,8 @@
-#include <new>
-
+#include "device/large_pages.h"
 #include "device/slot_memory.h"
 
 namespace pillarfield {
 namespace {
-
-constexpr std::align_val_t kPage{kPageSize};
-
-struct FreePages {
-  void operator()(std::byte* pages) const { ::operator delete[](pages, kPage); }
-};
 
 /// All planes of a result in one block, each on its own page: handing it to the device and back is
 /// one command each way, and commands are what a small frame's time goes into.
@@ -18,7 +11,7 @@ class SharedMemory final : public SlotMemory {
   SharedMemory(const cl::Context& context, const SolverPlan& plan)
       : context_(context),
         layout_(plan),
-        pages_(static_cast<std::byte*>(::operator new[](layout_.bytes, kPage))),
+        pages_(allocate_large_pages(layout_.bytes)),
         all_(context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, layout_.bytes, pages_.get()) {
     for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
       if (layout_.planes.at(plane).size == 0) continue;
@@ -60,7 +53,7 @@ class SharedMemory final : public SlotMemory {
  private:
   cl::Context context_;
   ResultLayout layout_;
-  std::unique_ptr<std::byte[], FreePages> pages_;
+  LargePages pages_;
   cl::Buffer all_;
   std::array<cl::Buffer, kAllPlanes> buffers_;
   bool mapped_ = false;

@@ -1,6 +1,7 @@
 #include "device/slot.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "core/wake_levels.h"
 
@@ -15,23 +16,41 @@ cl::Buffer plane_buffer(const cl::Context& context, const std::vector<Value>& pl
   return {context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, plane.size() * sizeof(Value), values};
 }
 
+bool shares_memory(const cl::Context& context) {
+  const auto devices = context.getInfo<CL_CONTEXT_DEVICES>();
+  return devices.front().getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+}
+
+/// The same for a plane that every frame goes through: in large pages, which `memory` keeps, where
+/// the device shares the host's memory.
+template <class Value>
+cl::Buffer large_plane_buffer(const cl::Context& context, const std::vector<Value>& plane,
+                              std::vector<LargePages>& memory) {
+  if (plane.empty() || !shares_memory(context)) return plane_buffer(context, plane);
+  const std::size_t bytes = plane.size() * sizeof(Value);
+  memory.push_back(allocate_large_pages(bytes));
+  std::memcpy(memory.back().get(), plane.data(), bytes);
+  return {context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, memory.back().get()};
+}
+
 /// Levels as readings of the plan's type.
 template <class Reading>
 std::vector<Reading> as_readings(const std::vector<float>& levels) {
   return {levels.begin(), levels.end()};
 }
 
-cl::Buffer wake_buffer(const cl::Context& context, const SolverPlan& plan) {
+cl::Buffer wake_buffer(const cl::Context& context, const SolverPlan& plan,
+                       std::vector<LargePages>& memory) {
   const std::vector<float> levels = wake_levels(plan);
   switch (plan.sensel_type) {
     case SenselType::u8:
-      return plane_buffer(context, as_readings<std::uint8_t>(levels));
+      return large_plane_buffer(context, as_readings<std::uint8_t>(levels), memory);
     case SenselType::u16:
-      return plane_buffer(context, as_readings<std::uint16_t>(levels));
+      return large_plane_buffer(context, as_readings<std::uint16_t>(levels), memory);
     case SenselType::f32:
       break;
   }
-  return plane_buffer(context, levels);
+  return large_plane_buffer(context, levels, memory);
 }
 
 /// Marks of blocks, none of them silent.
@@ -69,15 +88,15 @@ constexpr cl_uint kFirstRowArgument = 11;
 
 CalibrationBuffers::CalibrationBuffers(const cl::Context& context, const SolverPlan& plan,
                                        const SpeedPaths& paths)
-    : tare(plane_buffer(context, plan.calibration.tare)),
-      gain(plane_buffer(context, plan.calibration.gain)),
-      dead_zone(plane_buffer(context, plan.calibration.dead_zone)),
-      mask(plane_buffer(context, plan.calibration.mask)),
-      noise(plane_buffer(context, plan.calibration.noise)) {
+    : tare(large_plane_buffer(context, plan.calibration.tare, memory)),
+      gain(large_plane_buffer(context, plan.calibration.gain, memory)),
+      dead_zone(large_plane_buffer(context, plan.calibration.dead_zone, memory)),
+      mask(large_plane_buffer(context, plan.calibration.mask, memory)),
+      noise(large_plane_buffer(context, plan.calibration.noise, memory)) {
   if (plan.baseline_rate && plan.calibration.tare.empty()) {
-    tare = plane_buffer(context, std::vector<float>(plan.skin.sensels()));
+    tare = large_plane_buffer(context, std::vector<float>(plan.skin.sensels()), memory);
   }
-  if (paths.skip_silent && has_wake_plane(plan)) wake = wake_buffer(context, plan);
+  if (paths.skip_silent && has_wake_plane(plan)) wake = wake_buffer(context, plan, memory);
 }
 
 Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 
 #include "device/device_state.h"
+#include "device/large_pages.h"
 #include "device/slot_memory.h"
 
 namespace pillarfield {
@@ -12,6 +14,7 @@ namespace pillarfield {
 struct CalibrationBuffers {
   CalibrationBuffers(const cl::Context& context, const SolverPlan& plan, const SpeedPaths& paths);
 
+  std::vector<LargePages> memory;  ///< of the planes, where the device uses the host's
   cl::Buffer tare;
   cl::Buffer gain;
   cl::Buffer dead_zone;

@@ -12,7 +12,7 @@ static inline Direction direction_of(Force force) {
   const Real shear = length_2(force.shear_x, force.shear_y);
   Direction direction;
   direction.magnitude = length_3(force.shear_x, force.shear_y, force.normal);
-  direction.theta = angle_of(shear, force.normal);
+  direction.theta = upper_angle_of(shear, force.normal);
   /* Subtracted, not negated: a component +0 must not become -0, on the far side of the cut. */
   direction.phi = angle_of(zero - force.shear_y, zero - force.shear_x);
   return direction;

@@ -21,6 +21,13 @@ static inline Scaling scaling_for(Real largest) {
   return scaling;
 }
 
+/* Whether squares of numbers up to `largest` leave the range in any lane, so that they must be
+ * scaled. Zeros need not be. */
+static inline bool needs_scaling(Real largest) {
+  const Mask is_small = (largest < PF_REAL(0x1p-40)) && (largest > PF_REAL(0.0));
+  return any_lane(is_small || (largest > PF_REAL(0x1p60)));
+}
+
 /* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) of numbers that are scaled already. */
 static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
 static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
@@ -29,30 +36,37 @@ static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + 
 
 /* sqrt(x^2 + y^2), without overflow and underflow on the way; 1.25 ULP. */
 static inline Real length_2(Real x, Real y) {
-  const Scaling scaling = scaling_for(larger_of(fabs(x), fabs(y)));
+  const Real largest = larger_of(fabs(x), fabs(y));
+  if (!needs_scaling(largest)) return plain_length_2(x, y);
+  const Scaling scaling = scaling_for(largest);
   return plain_length_2(x * scaling.down, y * scaling.down) * scaling.up;
 }
 
 /* sqrt(x^2 + y^2 + z^2), as before; 1.5 ULP. */
 static inline Real length_3(Real x, Real y, Real z) {
-  const Scaling scaling = scaling_for(larger_of(larger_of(fabs(x), fabs(y)), fabs(z)));
+  const Real largest = larger_of(larger_of(fabs(x), fabs(y)), fabs(z));
+  if (!needs_scaling(largest)) return plain_length_3(x, y, z);
+  const Scaling scaling = scaling_for(largest);
   return plain_length_3(x * scaling.down, y * scaling.down, z * scaling.down) * scaling.up;
 }
 
-/* The angle of the point (x, y) from the x axis, (-pi, pi]; zero at the origin; 3 ULP. */
-static inline Real angle_of(Real y, Real x) {
+/* A point of the first quadrant as the nearest of its axes and their bisector, and the angle from
+ * there, within pi / 8. */
+typedef struct {
+  Real nearest; /* rad from the x axis */
+  Real part;    /* rad, towards the y axis, or away from it where `is_steep` */
+  Mask is_steep;
+} QuadrantAngle;
+
+static inline QuadrantAngle quadrant_angle(Real y, Real x) {
   const Real zero = PF_REAL(0.0);
-  const Real pi = PF_REAL(3.14159265358979323846);
   const Real quarter_turn = PF_REAL(1.57079632679489661923);
   const Real eighth_turn = PF_REAL(0.78539816339744830962);
   const Real tan_pi_8 = PF_REAL(0.41421356237309504880);
-  const Real width = fabs(x);
-  const Real height = fabs(y);
-  const Mask is_steep = height > width;
-  const Real least = is_steep ? width : height;
-  const Real most = is_steep ? height : width;
-
-  /* The angle from the axis or the bisector that is nearest, within pi / 8. */
+  QuadrantAngle angle;
+  angle.is_steep = y > x;
+  const Real least = angle.is_steep ? x : y;
+  const Real most = angle.is_steep ? y : x;
   const Mask by_bisector = least > tan_pi_8 * most;
   const Real numerator = by_bisector ? least - most : least;
   const Real denominator = by_bisector ? least + most : most;
@@ -62,20 +76,34 @@ static inline Real angle_of(Real y, Real x) {
       PF_REAL(-0.3333294987678528) +
       square * (PF_REAL(0.19977709650993347) +
                 square * (PF_REAL(-0.13877679407596588) + square * PF_REAL(0.08053722977638245)));
-  const Real part = tangent + tangent * (square * series);
-
-  /* That axis or bisector, and on which side of it the point is. */
-  const Real in_quadrant = by_bisector ? eighth_turn : (is_steep ? quarter_turn : zero);
-  const Mask is_left = x < zero;
-  const Real nearest = is_left ? pi - in_quadrant : in_quadrant;
-  const Real angle = (is_steep != is_left) ? nearest - part : nearest + part;
-  return y < zero ? -angle : angle;
+  angle.part = tangent + tangent * (square * series);
+  angle.nearest = by_bisector ? eighth_turn : (angle.is_steep ? quarter_turn : zero);
+  return angle;
 }
+
+/* The angle of the point (x, y) from the x axis, where neither is negative: [0, pi / 2]; 3 ULP. */
+static inline Real acute_angle_of(Real y, Real x) {
+  const QuadrantAngle angle = quadrant_angle(y, x);
+  return angle.is_steep ? angle.nearest - angle.part : angle.nearest + angle.part;
+}
+
+/* The same where y is not negative: [0, pi]. */
+static inline Real upper_angle_of(Real y, Real x) {
+  const QuadrantAngle angle = quadrant_angle(y, fabs(x));
+  const Mask is_left = x < PF_REAL(0.0);
+  const Real nearest = is_left ? PF_REAL(3.14159265358979323846) - angle.nearest : angle.nearest;
+  return (angle.is_steep != is_left) ? nearest - angle.part : nearest + angle.part;
+}
+
+/* The same of any point: [-pi, pi]; zero at the origin. As of atan2 its sign is that of y. */
+static inline Real angle_of(Real y, Real x) { return copysign(upper_angle_of(fabs(y), x), y); }
 
 #else
 
 static inline Real length_2(Real x, Real y) { return hypot(x, y); }
 static inline Real length_3(Real x, Real y, Real z) { return hypot(hypot(x, y), z); }
+static inline Real acute_angle_of(Real y, Real x) { return atan2(y, x); }
+static inline Real upper_angle_of(Real y, Real x) { return atan2(y, x); }
 static inline Real angle_of(Real y, Real x) { return atan2(y, x); }
 
 #endif

@@ -30,15 +30,18 @@ static inline ParityWeights parity_weights(Diagonals diagonals) {
   const Real one = PF_REAL(1.0);
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
-  const Mask a_stands = a.p_stands || a.q_stands;
-  const Mask b_stands = b.p_stands || b.q_stands;
+  const Mask determined = a.full || b.full;
   const Mask by_b = a.open || ((a.p + a.q >= b.p + b.q) && !b.open);
-  const Real share = (a_stands && b_stands) ? PF_REAL(0.66666666666666666667) : one;
-  const Real open_a = (a.open && b.open) ? share : (by_b ? zero : one_half);
-  const Real open_b = (a.open && b.open) ? share : (by_b ? one_half : zero);
+  const Mask has_a = a.full || !(determined || by_b);
+  /* What one diagonal has, the other has not, but where both measure or both are open. */
+  const Real whole = determined ? one : one_half;
+  const Real share = (a.full && b.full) ? one_half : (has_a ? whole : zero);
+  const Mask both_open = a.open && b.open && !determined;
+  const Mask both_stand = (a.p_stands || a.q_stands) && (b.p_stands || b.q_stands);
+  const Real open_share = both_stand ? PF_REAL(0.66666666666666666667) : one;
   ParityWeights weights;
-  weights.rising = a.full ? (b.full ? one_half : one) : (b.full ? zero : open_a);
-  weights.falling = b.full ? (a.full ? one_half : one) : (a.full ? zero : open_b);
+  weights.rising = both_open ? open_share : share;
+  weights.falling = both_open ? open_share : whole - share;
   return weights;
 }
 
@@ -46,12 +49,10 @@ static inline ParityWeights parity_weights(Diagonals diagonals) {
 static inline DifferenceWeights difference_weights(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
-  const Real two = PF_REAL(2.0);
-  const Mask both = d.p_stands && d.q_stands;
   DifferenceWeights weights;
-  weights.p = both ? one : (d.p_stands ? two : zero);
-  weights.q = both ? -one : (d.q_stands ? -two : zero);
-  weights.sum = both ? zero : (d.p_stands ? -one : (d.q_stands ? one : zero));
+  weights.sum = (d.q_stands ? one : zero) - (d.p_stands ? one : zero);
+  weights.p = d.p_stands ? one - weights.sum : zero;
+  weights.q = d.q_stands ? -one - weights.sum : zero;
   return weights;
 }
 
@@ -103,46 +104,13 @@ typedef struct {
   Real magnitude_high;
 } DirectionInterval;
 
-/* What V_p - V_q may be at a given parity sum. Two lifted sensels share it as their silence lets
- * them (U5), with zero where the estimate is. */
-typedef struct {
-  Real low;
-  Real high;
-} DifferenceInterval;
-
-static inline DifferenceInterval difference_interval(Diagonal d, Mask loose, Real sum) {
-  const Real zero = PF_REAL(0.0);
-  const Real difference = diagonal_difference(d, sum);
-  const Real low = sum - (d.q + d.q);
-  const Real high = (d.p + d.p) - sum;
-  DifferenceInterval interval;
-  interval.low = loose ? (low < zero ? low : zero) : difference;
-  interval.high = loose ? (high > zero ? high : zero) : difference;
-  return interval;
-}
-
-static inline Real larger_side(DifferenceInterval interval) {
-  return -interval.low > interval.high ? -interval.low : interval.high;
-}
-
-/* phi of the shear whose differences are these (M2, M5); zero without shear. */
-static inline Real phi_of(Real rising, Real falling) {
-  return angle_of(PF_REAL(0.0) - (rising + falling), falling - rising);
-}
-
-static inline Diagonal scaled(Diagonal d, Real factor) {
-  d.p = d.p * factor;
-  d.q = d.q * factor;
-  return d;
-}
+/* Whether both sensels are lifted, so that they share what parity leaves as they like. */
+static inline Mask is_loose(Sensel p, Sensel q) { return is_lifted(p) && is_lifted(q); }
 
 /* Whether both ends are the estimate: the parity sum is a point, and no two lifted sensels share
- * it.
- */
+ * it. */
 static inline Mask is_settled(Pillar pillar, ParitySum sum) {
-  const Mask a_loose = is_lifted(pillar.s1) && is_lifted(pillar.s3);
-  const Mask b_loose = is_lifted(pillar.s2) && is_lifted(pillar.s4);
-  return !(sum.ambiguous || a_loose || b_loose);
+  return !(sum.ambiguous || is_loose(pillar.s1, pillar.s3) || is_loose(pillar.s2, pillar.s4));
 }
 
 /* The interval about a settled estimate. */
@@ -157,77 +125,197 @@ static inline DirectionInterval point_interval(Direction estimate) {
   return interval;
 }
 
-/* The ends of theta, phi and magnitude over all forces that explain the readings of a pillar
- * without missing and saturated sensels (U4 to U8). Both ends are the estimate where the force is
- * determined. `sum` is that of `parity_sum`, `estimate` the direction of `direct_force`. */
-static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
-                                                   ParitySum sum, Direction estimate,
-                                                   ForceScale scale) {
+static inline DirectionInterval either_interval(Mask condition, DirectionInterval a,
+                                                DirectionInterval b) {
+  DirectionInterval interval;
+  interval.theta_low = condition ? a.theta_low : b.theta_low;
+  interval.theta_high = condition ? a.theta_high : b.theta_high;
+  interval.phi_low = condition ? a.phi_low : b.phi_low;
+  interval.phi_high = condition ? a.phi_high : b.phi_high;
+  interval.magnitude_low = condition ? a.magnitude_low : b.magnitude_low;
+  interval.magnitude_high = condition ? a.magnitude_high : b.magnitude_high;
+  return interval;
+}
+
+/* What is known of a pillar, in counts, scaled so that no product overflows or vanishes. */
+typedef struct {
+  Diagonal a; /* rising */
+  Diagonal b; /* falling */
+  Mask a_loose;
+  Mask b_loose;
+  Real low;     /* ends of the parity sum */
+  Real high;    /* that of silence bounds it (U4) */
+  Real largest; /* reading */
+  Real newtons; /* per count */
+} Evidence;
+
+static inline Evidence evidence_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                   Real newtons) {
+  Evidence e;
+  e.a = diagonals.rising;
+  e.b = diagonals.falling;
+  e.a_loose = is_loose(pillar.s1, pillar.s3);
+  e.b_loose = is_loose(pillar.s2, pillar.s4);
+  e.low = sum.low;
+  e.high = (e.a_loose && e.b_loose) ? least_of(e.a.p + e.a.q, e.b.p + e.b.q) : sum.high;
+  e.largest = larger_of(larger_of(e.a.p, e.a.q), larger_of(e.b.p, e.b.q));
+  e.newtons = newtons;
+  if (needs_scaling(e.largest)) {
+    const Scaling scaling = scaling_for(e.largest);
+    e.a.p = e.a.p * scaling.down;
+    e.a.q = e.a.q * scaling.down;
+    e.b.p = e.b.p * scaling.down;
+    e.b.q = e.b.q * scaling.down;
+    e.low = e.low * scaling.down;
+    e.high = e.high * scaling.down;
+    e.newtons = e.newtons * scaling.up;
+  }
+  return e;
+}
+
+/* V_p - V_q of a diagonal at a given parity sum (D3). */
+typedef struct {
+  Mask sloped;   /* one sensel stands, and the difference is twice its reading, less the sum */
+  Mask turned;   /* it is q, and the difference has the other sign */
+  Real standing; /* its reading; zero where not one stands */
+  Real level;    /* the difference where it is not sloped */
+} DifferenceLine;
+
+static inline DifferenceLine difference_line(Diagonal d) {
   const Real zero = PF_REAL(0.0);
-  const Real pi = PF_REAL(3.14159265358979323846);
-  const Real quarter_turn = PF_REAL(1.57079632679489661923);
-  const Mask a_loose = is_lifted(pillar.s1) && is_lifted(pillar.s3);
-  const Mask b_loose = is_lifted(pillar.s2) && is_lifted(pillar.s4);
-  const Mask silent = a_loose && b_loose;
+  DifferenceLine line;
+  line.sloped = d.p_stands != d.q_stands;
+  line.turned = d.q_stands && !d.p_stands;
+  line.standing = line.sloped ? (d.p_stands ? d.p : d.q) : zero;
+  line.level = (d.p_stands && d.q_stands) ? d.p - d.q : zero;
+  return line;
+}
 
-  /* Counts, scaled so that no product overflows or vanishes. */
-  const Scaling scaling =
-      scaling_for(larger_of(larger_of(diagonals.rising.p, diagonals.rising.q),
-                            larger_of(diagonals.falling.p, diagonals.falling.q)));
-  const Diagonal a = scaled(diagonals.rising, scaling.down);
-  const Diagonal b = scaled(diagonals.falling, scaling.down);
-  const Real low = sum.low * scaling.down;
-  const Real most = silent ? least_of(a.p + a.q, b.p + b.q) : sum.high * scaling.down;
+/* The difference at a parity sum, without the sign of a turned line. */
+static inline Real size_at(DifferenceLine line, Real sum) {
+  return line.sloped ? line.standing - (sum - line.standing) : line.level;
+}
 
-  /* At the least parity sum the force is longest, flattest and, if it may turn, freest. */
-  const DifferenceInterval a_flat = difference_interval(a, a_loose, low);
-  const DifferenceInterval b_flat = difference_interval(b, b_loose, low);
-  const Real a_side = larger_side(a_flat);
-  const Real b_side = larger_side(b_flat);
-  const Real a_steep = diagonal_difference(a, most);
-  const Real b_steep = diagonal_difference(b, most);
+static inline Real signed_as(DifferenceLine line, Real size) { return line.turned ? -size : size; }
 
-  /* Where the force is shortest (U6). */
-  const Mask a_sloped = a.p_stands != a.q_stands;
-  const Mask b_sloped = b.p_stands != b.q_stands;
-  const Real a_reading = a_sloped ? (a.p_stands ? a.p : a.q) : zero;
-  const Real b_reading = b_sloped ? (b.p_stands ? b.p : b.q) : zero;
-  const Real share = (a_sloped && b_sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
-  const Real free = share * (a_reading + b_reading);
-  const Real least = free < low ? low : (free > most ? most : free);
-  const Real a_short = diagonal_difference(a, least);
-  const Real b_short = diagonal_difference(b, least);
+/* The difference that two lifted sensels may have at most, either way (U5): zero, where the
+ * estimate is, lies between. */
+static inline Real most_difference(Real reading, Real sum) {
+  return larger_of((reading + reading) - sum, PF_REAL(0.0));
+}
+
+static inline Real squares(Real x, Real y) { return x * x + y * y; }
+
+/* The square of the shear of the longest force, in counts: at the least parity sum it is longest,
+ * flattest and, if it may turn, freest. */
+static inline Real longest_shear(Evidence e, Real a_size, Real b_size) {
+  const Real a = e.a_loose ? most_difference(larger_of(e.a.p, e.a.q), e.low) : a_size;
+  const Real b = e.b_loose ? most_difference(larger_of(e.b.p, e.b.q), e.low) : b_size;
+  return squares(a, b);
+}
+
+/* The interval of a silent pillar about which nothing is known but how much it may hide (U8), or
+ * that hides nothing. */
+static inline DirectionInterval silent_interval(Evidence e) {
+  const Real zero = PF_REAL(0.0);
+  const Mask hides = e.high > zero;
+  const Real pi = hides ? PF_REAL(3.14159265358979323846) : zero;
+  DirectionInterval interval;
+  interval.theta_low = zero;
+  interval.theta_high = hides ? PF_REAL(1.57079632679489661923) : zero;
+  interval.phi_low = zero - pi;
+  interval.phi_high = pi;
+  interval.magnitude_low = zero;
+  interval.magnitude_high = e.newtons * sqrt(longest_shear(e, zero, zero));
+  return interval;
+}
+
+/* phi of the shear whose differences are these (M2, M5); zero without shear. */
+static inline Real phi_of(Real rising, Real falling) {
+  return angle_of(PF_REAL(0.0) - (rising + falling), falling - rising);
+}
+
+/* An interval in the plane, counter-clockwise. */
+typedef struct {
+  Real low;
+  Real high;
+} PhiInterval;
+
+/* Between two corners, of which the other way round is longer (U7). */
+static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to) {
+  const Mask clockwise = a_from * b_to < b_from * a_to;
+  const Real from = phi_of(a_from, b_from);
+  const Real to = phi_of(a_to, b_to);
+  PhiInterval phi;
+  phi.low = clockwise ? to : from;
+  phi.high = clockwise ? from : to;
+  return phi;
+}
+
+/* Between the ends of a line of forces, or of what two lifted sensels leave at the least sum. */
+static inline PhiInterval phi_interval(Evidence e, Real a_flat, Real b_flat, Real a_steep,
+                                       Real b_steep) {
+  const Mask loose = e.a_loose || e.b_loose;
+  const Real a_from = e.a_loose ? -most_difference(e.a.q, e.low) : a_flat;
+  const Real b_from = e.b_loose ? -most_difference(e.b.q, e.low) : b_flat;
+  const Real a_to = e.a_loose ? most_difference(e.a.p, e.low) : (loose ? a_flat : a_steep);
+  const Real b_to = e.b_loose ? most_difference(e.b.p, e.low) : (loose ? b_flat : b_steep);
+  return phi_between(a_from, b_from, a_to, b_to);
+}
+
+/* The parity sum of the shortest force (U6). */
+static inline Real shortest_sum(Evidence e, DifferenceLine a, DifferenceLine b) {
+  const Real share = (a.sloped && b.sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
+  const Real free = share * (a.standing + b.standing);
+  return free < e.low ? e.low : least_of(free, e.high);
+}
+
+/* The interval of any pillar whose force is not settled. */
+static inline DirectionInterval open_interval(Evidence e, Direction estimate) {
+  const Real zero = PF_REAL(0.0);
+  const DifferenceLine a = difference_line(e.a);
+  const DifferenceLine b = difference_line(e.b);
+  const Real a_flat = size_at(a, e.low);
+  const Real b_flat = size_at(b, e.low);
+  const Real a_steep = size_at(a, e.high);
+  const Real b_steep = size_at(b, e.high);
+  const Real least = shortest_sum(e, a, b);
+  const Real flat = longest_shear(e, a_flat, b_flat);
+  const Real shortest = squares(size_at(a, least), size_at(b, least)) + least * least;
 
   /* Either the parity sum begins at zero, where the force lies in the plane; or it is known, and
    * the estimate is the steepest force. */
-  const Mask from_zero = !(low > zero);
-  const Real slope = plain_length_2(from_zero ? a_steep : a_side, from_zero ? b_steep : b_side);
-  const Real tilt = angle_of(slope, from_zero ? most : low);
-  const Real in_plane = (a_side > zero || b_side > zero) ? quarter_turn : zero;
-
-  /* Two corners between which the shear turns, and which way. */
-  const Mask loose = a_loose || b_loose;
-  const Real a_from = a_loose ? a_flat.low : a_flat.high;
-  const Real b_from = b_loose ? b_flat.low : b_flat.high;
-  const Real a_to = loose ? a_flat.high : a_steep;
-  const Real b_to = loose ? b_flat.high : b_steep;
-  const Mask clockwise = a_from * b_to < b_from * a_to;
-  const Real phi_from = phi_of(a_from, b_from);
-  const Real phi_to = phi_of(a_to, b_to);
-  const Mask any_phi = silent && (most > zero);
-  const Real phi_low = any_phi ? -pi : (clockwise ? phi_to : phi_from);
-  const Real phi_high = any_phi ? pi : (clockwise ? phi_from : phi_to);
-
-  const Real newtons = scale.normal * scaling.up;
-  const Real magnitude_low = newtons * plain_length_3(a_short, b_short, least);
-  const Real magnitude_high = newtons * plain_length_3(a_side, b_side, low);
-  const Mask settled = is_settled(pillar, sum);
+  const Mask from_zero = !(e.low > zero);
+  const Real slope = sqrt(from_zero ? squares(a_steep, b_steep) : flat);
+  const Real tilt = acute_angle_of(slope, e.high);
+  const PhiInterval phi = phi_interval(e, signed_as(a, a_flat), signed_as(b, b_flat),
+                                       signed_as(a, a_steep), signed_as(b, b_steep));
   DirectionInterval interval;
-  interval.theta_low = (settled || !from_zero) ? estimate.theta : tilt;
-  interval.theta_high = settled ? estimate.theta : (from_zero ? in_plane : tilt);
-  interval.phi_low = settled ? estimate.phi : phi_low;
-  interval.phi_high = settled ? estimate.phi : phi_high;
-  interval.magnitude_low = settled ? estimate.magnitude : magnitude_low;
-  interval.magnitude_high = settled ? estimate.magnitude : magnitude_high;
+  interval.theta_low = from_zero ? tilt : estimate.theta;
+  interval.theta_high = from_zero ? (flat > zero ? PF_REAL(1.57079632679489661923) : zero) : tilt;
+  interval.phi_low = phi.low;
+  interval.phi_high = phi.high;
+  interval.magnitude_low = e.newtons * sqrt(shortest);
+  interval.magnitude_high = e.newtons * sqrt(flat + e.low * e.low);
   return interval;
+}
+
+/* The ends of theta, phi and magnitude over all forces that explain the readings of a pillar
+ * without missing and saturated sensels (U4 to U8). Both ends are the estimate where the force is
+ * determined. `sum` is that of `parity_sum`, `estimate` the direction of `direct_force`.
+ *
+ * The general interval costs more than all that is computed otherwise, hence the shorter ways to
+ * the same bits where no lane needs it. */
+static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
+                                                   ParitySum sum, Direction estimate,
+                                                   ForceScale scale) {
+  const Mask settled = is_settled(pillar, sum);
+  const DirectionInterval point = point_interval(estimate);
+  if (!any_lane(!settled)) return point;
+  const Evidence e = evidence_of(pillar, diagonals, sum, scale.normal);
+  const Mask silent =
+      e.a_loose && e.b_loose && (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
+  const DirectionInterval unless_open = either_interval(settled, point, silent_interval(e));
+  if (!any_lane(!(settled || silent))) return unless_open;
+  return either_interval(settled || silent, unless_open, open_interval(e, estimate));
 }
