@@ -29,15 +29,18 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
   return sum / count;  // 0/0, not a number, where nothing is in contact.
 }
 
-vec4 mapped(float value) {
-  int entry = int(floor((value - scene.range.x) / scene.range.y * 256.0));
-  entry = kScale == kCyclic ? entry & 255 : clamp(entry, 0, 255);
-  return colour_of_word(colours.entries[entry >> 2][entry & 3]);
+// The entry of a value in the table of colours.
+uint entry_of(float value) {
+  if (isnan(value)) return kFirstSpecial + kIdle;
+  const int entry = int(floor((value - scene.range.x) / scene.range.y * 256.0));
+  return uint(kScale == kCyclic ? entry & 255 : clamp(entry, 0, 255));
 }
 
 bool on_hatch() {
-  const uint period = scene.shown.y;
-  return (uint(gl_FragCoord.x) + uint(gl_FragCoord.y)) % period < (period + 3u) / 4u;
+  // Without a remainder of integers, which processors take for one pixel at a time.
+  const float period = float(scene.shown.y);
+  const float along = floor(gl_FragCoord.x) + floor(gl_FragCoord.y);
+  return along - period * floor((along + 0.5) / period) < floor((period + 3.0) / 4.0);
 }
 
 void main() {
@@ -49,12 +52,9 @@ void main() {
       : value_of(pillar, status);
 
   const uint special = special_of(status);
-  if (special != kMapped) {
-    colour = special_colour(special);
-    return;
-  }
-  colour = isnan(value) ? special_colour(kIdle) : mapped(value);
-  if (is_ambiguous(status) && scene.shown.x != 0u && on_hatch()) {
+  const uint entry = special != kMapped ? kFirstSpecial + special : entry_of(value);
+  colour = colour_of_word(colours.entries[entry].x);
+  if (special == kMapped && is_ambiguous(status) && scene.shown.x != 0u && on_hatch()) {
     colour = mix(colour, special_colour(kAmbiguous), 0.6);
   }
 }

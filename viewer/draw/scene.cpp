@@ -132,15 +132,11 @@ HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source, const L
 
 shader::Colours colours_of(const Look& look) {
   shader::Colours colours;
-  const auto set = [](shader::uvec4& four, std::size_t place, uint value) {
-    (place == 0 ? four.x : place == 1 ? four.y : place == 2 ? four.z : four.w) = value;
-  };
   const auto table = table_of(look.map);
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    set(colours.entries.at(i / 4), i % 4, pack(table[i]));
-  }
+  for (std::size_t i = 0; i < table.size(); ++i) colours.entries.at(i).x = pack(table[i]);
   for (std::size_t i = 0; i < kSpecials; ++i) {
-    set(colours.specials.at(i / 4), i % 4, pack(colour_of(static_cast<Special>(i), look.theme)));
+    colours.entries.at(shader::kFirstSpecial + i).x =
+        pack(colour_of(static_cast<Special>(i), look.theme));
   }
   return colours;
 }
