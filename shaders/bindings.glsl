@@ -12,7 +12,7 @@ layout(std430, binding = kReadingsBinding) readonly buffer ReadingsBlock { uint 
 vec4 colour_of_word(uint word) { return unpackUnorm4x8(word); }
 
 vec4 special_colour(uint special) {
-  return colour_of_word(colours.specials[special >> 2u][special & 3u]);
+  return colour_of_word(colours.entries[kFirstSpecial + special].x);
 }
 
 bool has_plane(uint plane) { return plane != kNoPlane; }

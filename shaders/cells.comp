@@ -6,6 +6,15 @@
 layout(local_size_x = 64) in;
 layout(std430, binding = kCellsBinding) writeonly buffer CellsBlock { Cell cells[]; };
 
+// Which sensels are usable of the pillars from `four`, a multiple of 4, on: a byte each, zero of
+// those that lie before `begin` or not before `end`.
+uint usable_of_four(uint four, uint begin, uint end) {
+  uint usable = field[scene.force.w + (four >> 2u)] & 0x0f0f0f0fu;
+  if (four < begin) usable &= ~0u << (8u * (begin - four));
+  if (four + 4u > end) usable &= ~0u >> (8u * (four + 4u - end));
+  return usable;
+}
+
 void main() {
   const uint index = gl_GlobalInvocationID.x;
   const uvec2 size = scene.cells.wz;  // columns, rows
@@ -17,12 +26,18 @@ void main() {
   vec4 sum = vec4(0.0);
   uvec2 places = uvec2(0);
   for (uint row = first.y; row < last.y; ++row) {
-    for (uint col = first.x; col < last.x; ++col) {
-      const uint pillar = row * scene.grid.y + col;
-      if (!is_usable(status_of(pillar))) continue;
-      sum += vec4(plane_value(scene.force.x, pillar), plane_value(scene.force.y, pillar),
-                  plane_value(scene.force.z, pillar), 1.0);
-      places += uvec2(col, row) - first;
+    const uint row_begin = row * scene.grid.y;
+    const uint begin = row_begin + first.x;
+    const uint end = row_begin + last.x;
+    for (uint four = begin & ~3u; four < end; four += 4u) {
+      for (uint bits = usable_of_four(four, begin, end); bits != 0u;) {
+        const uint byte = uint(findLSB(bits)) & ~7u;
+        bits &= ~(255u << byte);
+        const uint pillar = four + (byte >> 3u);
+        sum += vec4(plane_value(scene.force.x, pillar), plane_value(scene.force.y, pillar),
+                    plane_value(scene.force.z, pillar), 1.0);
+        places += uvec2(pillar - begin, row - first.y);
+      }
     }
   }
   // The middle of those in contact: at the edge of a contact the arrow stays upon it.

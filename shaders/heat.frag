@@ -10,9 +10,10 @@ const float kMostSamples = 6.0;
 
 // The value shown by a pixel that covers `pillars` (columns, rows) around `centre`: the mean over
 // those in contact, so that a touch smaller than a pixel keeps its colour. A pixel that stays
-// within a pillar shows that one alone.
+// within a pillar shows that one alone. `flags`: what the statuses of all of them have.
 float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
-  const vec2 samples = min(ceil(pillars), vec2(kMostSamples));
+  const bool one_pillar = max(pillars.x, pillars.y) < 1.5;
+  const vec2 samples = one_pillar ? vec2(1.0) : min(ceil(pillars), vec2(kMostSamples));
   float sum = 0.0;
   float count = 0.0;
   for (float j = 0.5; j < samples.y; j += 1.0) {
@@ -28,34 +29,32 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
   return sum / count;  // 0/0, not a number, where nothing is in contact.
 }
 
-vec4 mapped(float value) {
-  int entry = int(floor((value - scene.range.x) / scene.range.y * 256.0));
-  entry = scene.shown.y == kCyclic ? entry & 255 : clamp(entry, 0, 255);
-  return colour_of_word(colours.entries[entry >> 2][entry & 3]);
+// The entry of a value in the table of colours.
+uint entry_of(float value) {
+  if (isnan(value)) return kFirstSpecial + kIdle;
+  const int entry = int(floor((value - scene.range.x) / scene.range.y * 256.0));
+  return uint(kScale == kCyclic ? entry & 255 : clamp(entry, 0, 255));
 }
 
 bool on_hatch() {
-  const uint period = scene.shown.w;
-  return (uint(gl_FragCoord.x) + uint(gl_FragCoord.y)) % period < (period + 3u) / 4u;
+  // Without a remainder of integers, which processors take for one pixel at a time.
+  const float period = float(scene.shown.y);
+  const float along = floor(gl_FragCoord.x) + floor(gl_FragCoord.y);
+  return along - period * floor((along + 0.5) / period) < floor((period + 3.0) / 4.0);
 }
 
 void main() {
   const vec2 place = pillar_place(sheet_mm);
-  const vec2 footprint = max(abs(dFdx(place)), abs(dFdy(place)));
-  const bool one_pillar = scene.shown.y >= kCyclic || max(footprint.x, footprint.y) < 1.5;
   const uint pillar = pillar_at(place);
   uint status = status_of(pillar);
-  float value = 0.0;
-  if (!one_pillar) value = mean_value(place, footprint, status);
+  const float value = kMeans
+      ? mean_value(place, max(abs(dFdx(place)), abs(dFdy(place))), status)
+      : value_of(pillar, status);
 
   const uint special = special_of(status);
-  if (special != kMapped) {
-    colour = special_colour(special);
-    return;
-  }
-  if (one_pillar) value = value_of(pillar, status);
-  colour = isnan(value) ? special_colour(kIdle) : mapped(value);
-  if (is_ambiguous(status) && scene.shown.z != 0u && on_hatch()) {
+  const uint entry = special != kMapped ? kFirstSpecial + special : entry_of(value);
+  colour = colour_of_word(colours.entries[entry].x);
+  if (special == kMapped && is_ambiguous(status) && scene.shown.x != 0u && on_hatch()) {
     colour = mix(colour, special_colour(kAmbiguous), 0.6);
   }
 }

@@ -31,6 +31,13 @@ PF_CONSTANT uint kFieldBinding = 2u;
 PF_CONSTANT uint kReadingsBinding = 3u;
 PF_CONSTANT uint kCellsBinding = 4u;
 
+// What the heat map's shader is specialised by: a processor that draws works off every branch for
+// every pixel, taken or not.
+PF_CONSTANT uint kQuantityConstant = 0u;  // kNormal, ...
+PF_CONSTANT uint kScaleConstant = 1u;     // kSequential, ...
+PF_CONSTANT uint kReadingsConstant = 2u;  // kReadings8, ...
+PF_CONSTANT uint kMeansConstant = 3u;     // whether a pixel may show the mean of several pillars
+
 // What the heat map shows; the order of Quantity in viewer/picture/quantity.h.
 PF_CONSTANT uint kNormal = 0u;
 PF_CONSTANT uint kShear = 1u;
@@ -66,7 +73,7 @@ PF_CONSTANT uint kSound = 10u;
 // A plane that a field does not have.
 PF_CONSTANT uint kNoPlane = 0xffffffffu;
 
-// Types of readings.
+// Types of readings; the order of SenselType.
 PF_CONSTANT uint kReadings8 = 0u;
 PF_CONSTANT uint kReadings16 = 1u;
 PF_CONSTANT uint kReadingsFloat = 2u;
@@ -82,8 +89,8 @@ struct Scene {
   uvec4 deviation;  // planes: standard deviations of shear_x, shear_y, normal; none
   uvec4 span;       // planes: magnitude_low, magnitude_high, phi_low, phi_high
   uvec4 incline;    // planes: theta_low, theta_high; none, none
-  uvec4 readings;   // type, readings from one row to the next, 1 where there are any, surface kind
-  uvec4 shown;      // quantity, scale, 1 where ambiguous pillars are hatched, hatch period: pixels
+  uvec4 readings;   // none, readings from one row to the next, 1 where there are any, surface kind
+  uvec4 shown;      // 1 where ambiguous pillars are hatched, hatch period: pixels; none, none
   vec4 range;       // low end, its width; smallest force worth an arrow: N per pillar; none
   vec4 viewport;    // left, top, width, height: pixels
   uvec4 cells;      // first row and column of pillars, rows and columns of cells
@@ -93,10 +100,12 @@ struct Scene {
   uvec4 ink;        // colours of an arrow's fill, its outline, a fan; none
 };
 
-// A table of 256 colours and those of Special; each is red + green·2^8 + blue·2^16 + alpha·2^24.
+// A table of 256 colours, and from kFirstSpecial on those of Special, so that a pixel looks up
+// once; each is red + green·2^8 + blue·2^16 + alpha·2^24 in the first member, which is found faster
+// than one of four.
+PF_CONSTANT uint kFirstSpecial = 256u;
 struct Colours {
-  PF_ARRAY(uvec4, entries, 64);
-  PF_ARRAY(uvec4, specials, 4);
+  PF_ARRAY(uvec4, entries, 272);
 };
 
 // What an arrow stands for: the forces under its cell, added.
@@ -109,7 +118,7 @@ struct Cell {
 #undef PF_CONSTANT
 #undef PF_ARRAY
 static_assert(sizeof(Scene) == 64 + 15 * 16);
-static_assert(sizeof(Colours) == 68 * 16);
+static_assert(sizeof(Colours) == 272 * 16);
 static_assert(sizeof(Cell) == 32);
 
 }  // namespace pillarfield::viewer::shader

@@ -5,6 +5,11 @@
 
 #include "bindings.glsl"
 
+layout(constant_id = kQuantityConstant) const uint kQuantity = kNormal;
+layout(constant_id = kScaleConstant) const uint kScale = kSequential;
+layout(constant_id = kReadingsConstant) const uint kReadings = kReadings8;
+layout(constant_id = kMeansConstant) const bool kMeans = true;
+
 // Where a point of the sheet lies in the grid: columns from the left, rows from the top.
 vec2 pillar_place(vec2 sheet) {
   return vec2(sheet.x, -sheet.y) / scene.sheet.z + 0.5 * vec2(scene.grid.yx);
@@ -17,10 +22,10 @@ uint pillar_at(vec2 place) {
 
 float reading(uint row, uint col) {
   const uint index = row * scene.readings.y + col;
-  if (scene.readings.x == kReadings8) {
+  if (kReadings == kReadings8) {
     return float(readings[index >> 2u] >> (8u * (index & 3u)) & 255u);
   }
-  if (scene.readings.x == kReadings16) {
+  if (kReadings == kReadings16) {
     return float(readings[index >> 1u] >> (16u * (index & 1u)) & 65535u);
   }
   return uintBitsToFloat(readings[index]);
@@ -47,14 +52,18 @@ float uncertainty_of(uint pillar, uint status) {
   return half_span > deviation ? half_span : deviation;
 }
 
-float value_of(uint pillar, uint status) {
+float shear_of(uint pillar) {
   const float x = plane_value(scene.force.x, pillar);
   const float y = plane_value(scene.force.y, pillar);
-  switch (scene.shown.x) {
+  return sqrt(x * x + y * y);
+}
+
+float value_of(uint pillar, uint status) {
+  switch (kQuantity) {
     case kNormal: return plane_value(scene.force.z, pillar);
-    case kShear: return sqrt(x * x + y * y);
-    case kShearX: return x;
-    case kShearY: return y;
+    case kShear: return shear_of(pillar);
+    case kShearX: return plane_value(scene.force.x, pillar);
+    case kShearY: return plane_value(scene.force.y, pillar);
     case kMagnitude: return plane_value(scene.angles.x, pillar);
     case kTheta: return plane_value(scene.angles.y, pillar);
     case kPhi: return plane_value(scene.angles.z, pillar);
@@ -74,11 +83,11 @@ uint region_colour(uint usable) {
 
 uint special_of(uint status) {
   const uint usable = status & 15u;
-  if (scene.shown.x == kRegion && usable != 0u) return region_colour(usable);
+  if (kQuantity == kRegion && usable != 0u) return region_colour(usable);
   if (is_inconsistent(status)) return kInconsistent;
   if (is_saturated(status)) return kSaturated;
   if (usable == 0u) return kIdle;
-  if (scene.shown.x != kStatus) return scene.shown.x == kRegion ? kIdle : kMapped;
+  if (kQuantity != kStatus) return kQuantity == kRegion ? kIdle : kMapped;
   if (is_from_neighbours(status)) return kFromNeighbours;
   return is_ambiguous(status) ? kAmbiguous : kSound;
 }

@@ -9,19 +9,19 @@ import unittest
 PROGRAM = os.environ["PILLARFIELD_BENCH"]
 
 
-def run(*arguments, expect=0):
+def run(*arguments, expect=0, **environment):
     """Runs the program; its exit status must be `expect`."""
     result = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=200,
-                            check=False)
+                            check=False, env={**os.environ, **environment})
     assert result.returncode == expect, (
         f"{arguments} ended with {result.returncode}, not {expect}\n{result.stdout}{result.stderr}")
     return result
 
 
-def rows(pattern):
+def rows(pattern, **environment):
     """What a short run reports of the rows that match, by name; and the context."""
     report = json.loads(run(f"--benchmark_filter={pattern}", "--benchmark_format=json",
-                            "--seconds=0.001").stdout)
+                            "--seconds=0.001", **environment).stdout)
     return {row["name"]: row for row in report["benchmarks"]}, report["context"]
 
 
@@ -68,6 +68,25 @@ class Rows(unittest.TestCase):
             self.assertIn("python3-numpy", row["error_message"])
         else:
             self.assertGreater(row["speedup"], 0)
+
+    def test_a_picture_is_drawn(self):
+        found, _ = rows("^render/6241/top/(all|all_copied)$")
+        self.assertEqual(len(found), 2)
+        for row in found.values():
+            # Where it is left out, the row says what is missing.
+            if row.get("error_occurred"):
+                self.assertRegex(row["error_message"], "^skipped: .+")
+                continue
+            self.assertAlmostEqual(row["ms"] * 1e6 / (1280 * 720), row["ns_per_pixel"],
+                                   delta=1e-3 * row["ns_per_pixel"])
+            self.assertGreater(row["processor_ms"], 0)
+            self.assertGreater(row["of_clear_and_read"], 0)
+
+    def test_pictures_without_vulkan_are_left_out(self):
+        row = rows("^render/read_back$", VK_ICD_FILENAMES="/nothing.json",
+                   VK_DRIVER_FILES="/nothing.json")[0]["render/read_back"]
+        self.assertTrue(row["error_occurred"])
+        self.assertRegex(row["error_message"], "^skipped: Vulkan: ")
 
     def test_context_names_the_machine(self):
         _, context = rows("^ceiling/empty_launch$")

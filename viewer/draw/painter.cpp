@@ -97,7 +97,8 @@ void Painter::record(const vk::raii::CommandBuffer& commands, const ShownField& 
   set_viewport(commands, layout.plot);
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_.layout(), 0, set,
                               nullptr);
-  commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.heat());
+  commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
+                        pipelines_.heat(heat_kind_of(field, source, look, layout.plot)));
   commands.draw(6 * scene.grid.z * scene.grid.w, 1, 0, 0);
   if (look.fans && scene.block.x == 1 && scene.span.x != shader::kNoPlane && cells != 0) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.fans());

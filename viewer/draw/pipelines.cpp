@@ -1,6 +1,7 @@
 #include "viewer/draw/pipelines.h"
 
 #include <array>
+#include <cstddef>
 
 #include "shaders/arrow_frag.h"
 #include "shaders/arrow_vert.h"
@@ -61,10 +62,11 @@ enum class Depth { written, tested };
 
 vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout layout,
                                  vk::RenderPass render_pass, const vk::raii::ShaderModule& vertex,
-                                 const vk::raii::ShaderModule& fragment, Depth depth) {
+                                 const vk::raii::ShaderModule& fragment, Depth depth,
+                                 const vk::SpecializationInfo* constants = nullptr) {
   const std::array stages{
       vk::PipelineShaderStageCreateInfo({}, Stage::eVertex, *vertex, "main"),
-      vk::PipelineShaderStageCreateInfo({}, Stage::eFragment, *fragment, "main")};
+      vk::PipelineShaderStageCreateInfo({}, Stage::eFragment, *fragment, "main", constants)};
   const vk::PipelineVertexInputStateCreateInfo no_vertices;
   const vk::PipelineInputAssemblyStateCreateInfo triangles({},
                                                            vk::PrimitiveTopology::eTriangleList);
@@ -92,7 +94,12 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout l
 }  // namespace
 
 Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
-    : device_(&device), set_layout_(make_set_layout(device)), pool_(make_pool(device)) {
+    : device_(&device),
+      render_pass_(render_pass),
+      set_layout_(make_set_layout(device)),
+      pool_(make_pool(device)),
+      heat_vertex_(make_module(device, heat_vert)),
+      heat_fragment_(make_module(device, heat_frag)) {
   layout_ =
       vk::raii::PipelineLayout(device.handle(), vk::PipelineLayoutCreateInfo({}, *set_layout_));
   vk::raii::DescriptorSets sets(device.handle(),
@@ -103,12 +110,26 @@ Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
   const vk::PipelineShaderStageCreateInfo stage({}, Stage::eCompute, *cells, "main");
   cells_ = vk::raii::Pipeline(device.handle(), nullptr,
                               vk::ComputePipelineCreateInfo({}, stage, *layout_));
-  heat_ = make_pipeline(device, *layout_, render_pass, make_module(device, heat_vert),
-                        make_module(device, heat_frag), Depth::written);
   arrows_ = make_pipeline(device, *layout_, render_pass, make_module(device, arrow_vert),
                           make_module(device, arrow_frag), Depth::tested);
   fans_ = make_pipeline(device, *layout_, render_pass, make_module(device, fan_vert),
                         make_module(device, fan_frag), Depth::tested);
+}
+
+vk::Pipeline Pipelines::heat(const HeatKind& kind) {
+  const auto known = heat_.find(kind);
+  if (known != heat_.end()) return *known->second;
+  constexpr std::size_t kWord = sizeof(std::uint32_t);
+  const std::array<vk::SpecializationMapEntry, 4> entries{{
+      {shader::kQuantityConstant, offsetof(HeatKind, quantity), kWord},
+      {shader::kScaleConstant, offsetof(HeatKind, scale), kWord},
+      {shader::kReadingsConstant, offsetof(HeatKind, readings), kWord},
+      {shader::kMeansConstant, offsetof(HeatKind, means), kWord},
+  }};
+  const vk::SpecializationInfo constants(entries.size(), entries.data(), sizeof kind, &kind);
+  auto made = make_pipeline(*device_, *layout_, render_pass_, heat_vertex_, heat_fragment_,
+                            Depth::written, &constants);
+  return *heat_.emplace(kind, std::move(made)).first->second;
 }
 
 void Pipelines::bind(const Bindings& bindings) {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <span>
+#include <compare>
+#include <map>
 
 #include "viewer/gpu/buffer.h"
 
@@ -15,6 +16,16 @@ struct Bindings {
   vk::Buffer cells;
 };
 
+/// What the heat map's shader is compiled for: the constants of shaders/shared.h.
+struct HeatKind {
+  std::uint32_t quantity;
+  std::uint32_t scale;
+  std::uint32_t readings;
+  vk::Bool32 means;
+
+  friend auto operator<=>(const HeatKind&, const HeatKind&) = default;
+};
+
 /// All pipelines of a picture and the one layout and descriptor set that they share.
 class Pipelines {
  public:
@@ -26,18 +37,22 @@ class Pipelines {
   [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
   [[nodiscard]] vk::DescriptorSet set() const { return *set_; }
   [[nodiscard]] vk::Pipeline cells() const { return *cells_; }
-  [[nodiscard]] vk::Pipeline heat() const { return *heat_; }
+  /// Made when it is first asked for, and kept.
+  [[nodiscard]] vk::Pipeline heat(const HeatKind& kind);
   [[nodiscard]] vk::Pipeline arrows() const { return *arrows_; }
   [[nodiscard]] vk::Pipeline fans() const { return *fans_; }
 
  private:
   const gpu::Device* device_;
+  vk::RenderPass render_pass_;
   vk::raii::DescriptorSetLayout set_layout_ = nullptr;
   vk::raii::PipelineLayout layout_ = nullptr;
   vk::raii::DescriptorPool pool_ = nullptr;
   vk::raii::DescriptorSet set_ = nullptr;
   vk::raii::Pipeline cells_ = nullptr;
-  vk::raii::Pipeline heat_ = nullptr;
+  vk::raii::ShaderModule heat_vertex_;
+  vk::raii::ShaderModule heat_fragment_;
+  std::map<HeatKind, vk::raii::Pipeline> heat_;
   vk::raii::Pipeline arrows_ = nullptr;
   vk::raii::Pipeline fans_ = nullptr;
 };

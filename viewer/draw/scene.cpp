@@ -10,6 +10,10 @@ using shader::uint;
 
 constexpr float kSmallestForceShare = 0.01f;  ///< of the full force: below it no arrow
 
+/// Pixels along a pillar beyond which the heat map's shader takes no mean, with some air: there it
+/// is 1 / 1.5.
+constexpr double kPixelsOfOne = 0.7;
+
 uint pack(const Colour& colour, unsigned alpha = 255) {
   return static_cast<uint>(colour.red) | static_cast<uint>(colour.green) << 8u |
          static_cast<uint>(colour.blue) << 16u | alpha << 24u;
@@ -97,11 +101,10 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const 
   scene.span = {plane(Uncertainty::magnitude_low), plane(Uncertainty::magnitude_high),
                 plane(Uncertainty::phi_low), plane(Uncertainty::phi_high)};
   scene.incline = {plane(Uncertainty::theta_low), plane(Uncertainty::theta_high), 0, 0};
-  scene.readings = {static_cast<uint>(field.raw.type), static_cast<uint>(field.raw.row_stride),
-                    field.raw.data != nullptr ? 1u : 0u, static_cast<uint>(surface.kind)};
+  scene.readings = {0, static_cast<uint>(field.raw.row_stride), field.raw.data != nullptr ? 1u : 0u,
+                    static_cast<uint>(surface.kind)};
   const double hatch = std::max(std::round(5 * look.scale), 4.0);
-  scene.shown = {static_cast<uint>(look.quantity), static_cast<uint>(info_of(look.quantity).scale),
-                 look.hatch ? 1u : 0u, static_cast<uint>(hatch)};
+  scene.shown = {look.hatch ? 1u : 0u, static_cast<uint>(hatch), 0, 0};
   scene.range = {look.range.low, look.range.high - look.range.low,
                  kSmallestForceShare * narrow(full_arrow_n(look)), 0};
   scene.viewport = {narrow(plot.x), narrow(plot.y), narrow(plot.width), narrow(plot.height)};
@@ -115,17 +118,25 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const 
   return scene;
 }
 
+HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source, const Look& look,
+                      const Viewport& plot) {
+  const Scale scale = info_of(look.quantity).scale;
+  // Directions and classes have no mean, and seen from above all pixels cover as many pillars.
+  const double pixels = source.skin.pillar_pitch_mm() * pixels_per_mm(look.view, plot);
+  const bool near = std::holds_alternative<TopView>(look.view) && pixels > kPixelsOfOne;
+  const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
+  return {static_cast<uint>(look.quantity), static_cast<uint>(scale),
+          look.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,
+          has_mean && !near ? VK_TRUE : VK_FALSE};
+}
+
 shader::Colours colours_of(const Look& look) {
   shader::Colours colours;
-  const auto set = [](shader::uvec4& four, std::size_t place, uint value) {
-    (place == 0 ? four.x : place == 1 ? four.y : place == 2 ? four.z : four.w) = value;
-  };
   const auto table = table_of(look.map);
-  for (std::size_t i = 0; i < table.size(); ++i) {
-    set(colours.entries.at(i / 4), i % 4, pack(table[i]));
-  }
+  for (std::size_t i = 0; i < table.size(); ++i) colours.entries.at(i).x = pack(table[i]);
   for (std::size_t i = 0; i < kSpecials; ++i) {
-    set(colours.specials.at(i / 4), i % 4, pack(colour_of(static_cast<Special>(i), look.theme)));
+    colours.entries.at(shader::kFirstSpecial + i).x =
+        pack(colour_of(static_cast<Special>(i), look.theme));
   }
   return colours;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "shaders/shared.h"
+#include "viewer/draw/pipelines.h"
 #include "viewer/field/field_producer.h"
 #include "viewer/picture/look.h"
 
@@ -9,6 +10,9 @@ namespace pillarfield::viewer {
 /// What the shaders are told of one picture.
 [[nodiscard]] shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
                                      const Look& look, const Viewport& plot);
+/// What the heat map's shader is compiled for.
+[[nodiscard]] HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
+                                    const Look& look, const Viewport& plot);
 [[nodiscard]] shader::Colours colours_of(const Look& look);
 
 /// Size of the skin's sheet, mm.

@@ -1,6 +1,7 @@
 // Arrows of known forces, measured in pixels.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -144,6 +145,23 @@ TEST(Arrows, FromAfarAddWhatLiesUnderTheirCell) {
   const double cell = 8 * 400 * 0.92 / 96;
   EXPECT_NEAR(mean_length(1.0F), 1.5 * cell, 2.5);
   EXPECT_NEAR(mean_length(-0.5F), 1.5 * cell / 4, 2.5);
+}
+
+TEST(Arrows, AddNothingOfTheNextCell) {
+  // Cells of 3 x 3 pillars, which the words of four statuses are not aligned with. Beside the
+  // middle one lie two whose shears cancel: they have no arrow, but strong forces next to it.
+  const MadeUpField field(30, 30, [](std::uint32_t row, std::uint32_t col) {
+    if (row < 9 || row >= 12 || col < 6 || col >= 15) return MadeUpPillar{0, 0, 0, 0};
+    const std::array<float, 9> shears{-1, 0, 1, 0.5F, 0.5F, 0.5F, 1, 0, -1};
+    return MadeUpPillar{shears.at(col - 6), 0, 0.1F, 15};
+  });
+  Drawing drawing;
+  Look look = arrow_look(field);
+  look.scale = 1;
+  look.arrow_cell = 30;
+  EXPECT_EQ(arrow_block_of(look, {0, 0, kSide, kSide}, 1.0), 3U);
+  const double cell = 3 * 400 * 0.92 / 30;
+  EXPECT_NEAR(shape_of(drawing.draw(field, look, kSide, kSide)).length, 1.5 * cell / 2, 2.5);
 }
 
 TEST(Arrows, InSpaceAreTheForceThatActsOnTheSkin) {

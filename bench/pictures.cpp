@@ -1,0 +1,130 @@
+#include "bench/pictures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+#include "bench/frames.h"
+#include "bench/plain_names.h"
+#include "bench/variants.h"
+#include "pillarfield/error.h"
+#include "viewer/field/frame_supply.h"
+#include "viewer/field/solved_producer.h"
+#include "viewer/options.h"
+
+namespace pillarfield::bench {
+namespace {
+
+constexpr double kContact = 0.1;
+constexpr std::uint64_t kFields = 4;  ///< more than the caches hold, of a square metre
+
+/// Frames of readings, copied from those of other rows.
+class Supply final : public viewer::FrameSupply {
+ public:
+  Supply(const SolverPlan& plan, std::uint64_t count) {
+    const Frames frames(plan.skin, plan.sensel_type, {Touch::mixed, kContact});
+    for (std::uint64_t i = 0; i < count; ++i) {
+      auto copy = std::make_shared<FrameBuffer>(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+      std::memcpy(copy->bytes().data(), frames[i].data, copy->bytes().size());
+      frames_.push_back({std::move(copy), 0});
+    }
+  }
+  [[nodiscard]] std::uint64_t frames() const override { return frames_.size(); }
+  [[nodiscard]] viewer::SuppliedFrame frame(std::uint64_t index) override {
+    return frames_.at(index);
+  }
+
+ private:
+  std::vector<viewer::SuppliedFrame> frames_;
+};
+
+std::unique_ptr<viewer::FieldProducer> make_producer(const Device& solver, std::uint32_t side) {
+  const SolverPlan plan = viewer::shown_plan(bare_plan(side));
+  viewer::SourceInfo info;
+  info.name = "frames of the benchmark";
+  info.kind = "recording";
+  info.skin = plan.skin;
+  info.has_readings = true;
+  info.has_angles = true;
+  return std::make_unique<viewer::SolvedProducer>(
+      info, std::make_unique<Supply>(plan, kFields),
+      Processor(solver, plan, {.frames_in_flight = viewer::FieldProducer::kMostShown}));
+}
+
+viewer::Look look_at(viewer::FieldProducer& producer, const Pictures::Kind& kind) {
+  viewer::Options options;
+  options.orbit = kind.orbit;
+  options.arrows = kind.arrows;
+  options.legend = kind.overlay;
+  viewer::Look look = viewer::first_look(options, producer, 1);
+  const viewer::Layout layout = viewer::layout_of(Pictures::kWidth, Pictures::kHeight, look);
+  look.view = viewer::first_view(options, producer.info(), layout.plot);
+  return look;
+}
+
+/// What keeps a row from being measured is no failure of it.
+template <class Open>
+auto or_skip(const Open& open) {
+  try {
+    return open();
+  } catch (const Error& error) {
+    throw Error("", fmt::format("{}{}", kSkipped, error.what()));
+  }
+}
+
+viewer::gpu::Device open_graphics(const viewer::gpu::Instance& instance, bool in_place) {
+  viewer::gpu::Device device(instance, {"", {}, in_place});
+  if (in_place && !device.imports_memory()) {
+    throw Error(device.name(), "it cannot read fields in place");
+  }
+  return device;
+}
+
+constexpr vk::Extent2D kSize{Pictures::kWidth, Pictures::kHeight};
+
+}  // namespace
+
+Pictures::Pictures(const Device& solver, const Kind& kind)
+    : instance_(or_skip([] { return viewer::gpu::Instance({}, false); })),
+      device_(or_skip([&] { return open_graphics(instance_, kind.in_place); })),
+      producer_(make_producer(solver, kind.pillars_a_side)),
+      look_(look_at(*producer_, kind)),
+      painter_(instance_, device_, kSize, 1),
+      nothing_(viewer::Target::make_render_pass(device_)),
+      target_(device_, *nothing_, kSize) {
+  for (std::uint64_t i = 0; i < kFields; ++i) fields_.push_back(producer_->produce(i));
+}
+
+void Pictures::draw(int pictures) {
+  for (int i = 0; i < pictures; ++i) {
+    const viewer::ShownField& field = fields_.at(drawn_++ % fields_.size());
+    device_.run([&](const vk::raii::CommandBuffer& commands) {
+      painter_.record(commands, field, producer_->info(), look_);
+    });
+  }
+}
+
+void Pictures::clear_and_read(int pictures) {
+  const std::array<vk::ClearValue, 2> clear{vk::ClearColorValue(std::array{0.1F, 0.2F, 0.3F, 1.0F}),
+                                            vk::ClearDepthStencilValue(1, 0)};
+  for (int i = 0; i < pictures; ++i) {
+    device_.run([&](const vk::raii::CommandBuffer& commands) {
+      commands.beginRenderPass({*nothing_, target_.framebuffer(), {{0, 0}, kSize}, clear},
+                               vk::SubpassContents::eInline);
+      commands.endRenderPass();
+    });
+    static_cast<void>(viewer::read_pixels(device_, target_.image()));
+  }
+}
+
+void Pictures::read(int pictures) {
+  if (drawn_ == 0) draw(1);
+  for (int i = 0; i < pictures; ++i) {
+    static_cast<void>(viewer::read_pixels(device_, painter_.image()));
+  }
+}
+
+}  // namespace pillarfield::bench
