@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <ostream>
 #include <string>
 
 #include "tests/viewer/draw/drawing.h"
@@ -26,6 +27,9 @@ struct GoldenPicture {
   std::uint64_t frame;
   Options options;
 };
+
+/// What GoogleTest says of a parameter.
+void PrintTo(const GoldenPicture& picture, std::ostream* stream) { *stream << picture.name; }
 
 Options look_at(Quantity quantity) {
   Options options;
