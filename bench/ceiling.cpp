@@ -22,14 +22,6 @@ std::vector<cl::Buffer> frame_buffers(const Device& device, const Frames& frames
   return buffers;
 }
 
-template <class Value>
-cl::Buffer numbered(const cl::Context& context, std::size_t count) {
-  std::vector<Value> values(std::max<std::size_t>(count, 1));
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<Value>(i % 251 + 1);
-  return {context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, values.size() * sizeof(Value),
-          values.data()};
-}
-
 }  // namespace
 
 CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frames& frames,
@@ -38,10 +30,11 @@ CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frame
       device_(device.state().device),
       skin_(plan.skin),
       streams_(streams_of(plan)),
-      frames_(frame_buffers(device, frames)) {
+      frames_(frame_buffers(device, frames)),
+      shared_(device.info().shares_memory) {
   const auto planes = static_cast<std::size_t>(streams_.calibration_planes);
-  calibration_ = numbered<float>(context_, planes * plane_pitch(skin_.sensels()));
-  mask_ = numbered<std::uint8_t>(context_, streams_.mask ? skin_.sensels() : 0);
+  calibration_ = numbered<float>(planes * plane_pitch(skin_.sensels()));
+  mask_ = numbered<std::uint8_t>(streams_.mask ? skin_.sensels() : 0);
   const int lanes = device.info().lanes;
   if (lanes > 1) {
     global_ = cl::NDRange(1, skin_.pillar_rows());
@@ -55,25 +48,48 @@ CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frame
   for (int i = 0; i < frames_in_flight; ++i) slots_.push_back(make_slot(program));
 }
 
+CopyKernel::Planes CopyKernel::make_planes(std::size_t bytes) const {
+  Planes planes;
+  if (shared_) {
+    planes.pages = allocate_large_pages(bytes);
+    planes.buffer =
+        cl::Buffer(context_, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, planes.pages.get());
+  } else {
+    planes.buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
+  }
+  return planes;
+}
+
+/// So many values, none of them zero.
+template <class Value>
+CopyKernel::Planes CopyKernel::numbered(std::size_t count) const {
+  std::vector<Value> values(std::max<std::size_t>(count, 1));
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<Value>(i % 251 + 1);
+  Planes planes = make_planes(values.size() * sizeof(Value));
+  const cl::CommandQueue queue(context_, device_);
+  queue.enqueueWriteBuffer(planes.buffer, CL_TRUE, 0, values.size() * sizeof(Value), values.data());
+  return planes;
+}
+
 CopyKernel::Slot CopyKernel::make_slot(const cl::Program& program) const {
   const std::uint64_t pitch = plane_pitch(skin_.pillars());
   const auto planes = static_cast<std::size_t>(streams_.result_planes);
   Slot slot;
   slot.queue = cl::CommandQueue(context_, device_);
   slot.kernel = cl::Kernel(program, "copy_streams");
-  slot.results = cl::Buffer(context_, CL_MEM_READ_WRITE, planes * pitch * streams_.result_size);
-  slot.status = cl::Buffer(context_, CL_MEM_READ_WRITE, pitch);
+  slot.results = make_planes(planes * pitch * streams_.result_size);
+  slot.status = make_planes(pitch);
   cl_uint argument = kRawArgument + 1;
   slot.kernel.setArg(argument++, cl_ulong{skin_.cols});
   slot.kernel.setArg(argument++, cl_uint{skin_.pillar_cols()});
-  slot.kernel.setArg(argument++, calibration_);
+  slot.kernel.setArg(argument++, calibration_.buffer);
   slot.kernel.setArg(argument++, cl_ulong{plane_pitch(skin_.sensels())});
-  slot.kernel.setArg(argument++, mask_);
+  slot.kernel.setArg(argument++, mask_.buffer);
   slot.kernel.setArg(argument++, cl_ulong{skin_.cols});
-  slot.kernel.setArg(argument++, slot.results);
+  slot.kernel.setArg(argument++, slot.results.buffer);
   slot.kernel.setArg(argument++, cl_ulong{pitch});
-  slot.kernel.setArg(argument++, slot.status);
-  slot.kernel.setArg(argument++, calibration_);  // A tare that follows is the first plane.
+  slot.kernel.setArg(argument++, slot.status.buffer);
+  slot.kernel.setArg(argument++, calibration_.buffer);  // A tare that follows is the first plane.
   return slot;
 }
 
@@ -99,11 +115,11 @@ std::vector<std::byte> CopyKernel::results() const {
   const std::size_t plane_bytes = skin_.pillars() * streams_.result_size;
   std::vector<std::byte> bytes(planes * plane_bytes + skin_.pillars());
   for (std::size_t plane = 0; plane < planes; ++plane) {
-    slot.queue.enqueueReadBuffer(slot.results, CL_TRUE,
+    slot.queue.enqueueReadBuffer(slot.results.buffer, CL_TRUE,
                                  plane * plane_pitch(skin_.pillars()) * streams_.result_size,
                                  plane_bytes, bytes.data() + plane * plane_bytes);
   }
-  slot.queue.enqueueReadBuffer(slot.status, CL_TRUE, 0, skin_.pillars(),
+  slot.queue.enqueueReadBuffer(slot.status.buffer, CL_TRUE, 0, skin_.pillars(),
                                bytes.data() + planes * plane_bytes);
   return bytes;
 }

@@ -5,6 +5,7 @@
 #include "bench/copy_source.h"
 #include "bench/frames.h"
 #include "device/device_state.h"
+#include "device/large_pages.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield::bench {
@@ -28,16 +29,24 @@ class CopyKernel {
 
   /// What the kernel reads.
   [[nodiscard]] const cl::Buffer& frame(std::size_t index) const { return frames_.at(index); }
-  [[nodiscard]] const cl::Buffer& calibration() const { return calibration_; }
-  [[nodiscard]] const cl::Buffer& mask() const { return mask_; }
+  [[nodiscard]] const cl::Buffer& calibration() const { return calibration_.buffer; }
+  [[nodiscard]] const cl::Buffer& mask() const { return mask_.buffer; }
 
  private:
+  /// Memory in pages as the solver has them, which outlives the buffer on it.
+  struct Planes {
+    LargePages pages;  ///< null where the device does not share the host's memory
+    cl::Buffer buffer;
+  };
   struct Slot {
     cl::CommandQueue queue;
     cl::Kernel kernel;
-    cl::Buffer results;
-    cl::Buffer status;
+    Planes results;
+    Planes status;
   };
+  [[nodiscard]] Planes make_planes(std::size_t bytes) const;
+  template <class Value>
+  [[nodiscard]] Planes numbered(std::size_t count) const;
   [[nodiscard]] Slot make_slot(const cl::Program& program) const;
   void start(Slot& slot);
 
@@ -46,8 +55,9 @@ class CopyKernel {
   Skin skin_;
   Streams streams_;
   std::vector<cl::Buffer> frames_;
-  cl::Buffer calibration_;
-  cl::Buffer mask_;
+  bool shared_;
+  Planes calibration_;
+  Planes mask_;
   cl::NDRange global_;
   cl::NDRange local_;
   std::vector<Slot> slots_;

@@ -14,9 +14,9 @@ namespace {
 constexpr std::uint64_t kMostSurveyed = 16;
 
 // Of the values seen: the colour bar ends where few lie above, so that a spike at the edge of a
-// punch does not darken all the rest; arrows of middling forces are as long as their cells.
+// punch does not darken all the rest; few arrows are longer than a cell and a half.
 constexpr double kShareInRange = 0.995;
-constexpr double kShareOfArrow = 0.8;
+constexpr double kShareOfArrow = 0.95;
 
 /// Absolute values of a quantity in frames spread evenly over a source, of sound pillars.
 std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
