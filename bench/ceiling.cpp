@@ -1,6 +1,7 @@
 #include "bench/ceiling.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pillarfield::bench {
 namespace {
@@ -31,10 +32,10 @@ CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frame
       skin_(plan.skin),
       streams_(streams_of(plan)),
       frames_(frame_buffers(device, frames)),
-      shared_(device.info().shares_memory) {
-  const auto planes = static_cast<std::size_t>(streams_.calibration_planes);
-  calibration_ = numbered<float>(planes * plane_pitch(skin_.sensels()));
-  mask_ = numbered<std::uint8_t>(streams_.mask ? skin_.sensels() : 0);
+      shared_(device.info().shares_memory),
+      calibration_(numbered<float>(static_cast<std::size_t>(streams_.calibration_planes) *
+                                   plane_pitch(skin_.sensels()))),
+      mask_(numbered<std::uint8_t>(streams_.mask ? skin_.sensels() : 0)) {
   const int lanes = device.info().lanes;
   if (lanes > 1) {
     global_ = cl::NDRange(1, skin_.pillar_rows());
@@ -49,15 +50,10 @@ CopyKernel::CopyKernel(const Device& device, const SolverPlan& plan, const Frame
 }
 
 CopyKernel::Planes CopyKernel::make_planes(std::size_t bytes) const {
-  Planes planes;
-  if (shared_) {
-    planes.pages = allocate_large_pages(bytes);
-    planes.buffer =
-        cl::Buffer(context_, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, planes.pages.get());
-  } else {
-    planes.buffer = cl::Buffer(context_, CL_MEM_READ_WRITE, bytes);
-  }
-  return planes;
+  if (!shared_) return {nullptr, cl::Buffer(context_, CL_MEM_READ_WRITE, bytes)};
+  LargePages pages = allocate_large_pages(bytes);
+  cl::Buffer buffer(context_, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, pages.get());
+  return {std::move(pages), std::move(buffer)};
 }
 
 /// So many values, none of them zero.
@@ -74,11 +70,8 @@ CopyKernel::Planes CopyKernel::numbered(std::size_t count) const {
 CopyKernel::Slot CopyKernel::make_slot(const cl::Program& program) const {
   const std::uint64_t pitch = plane_pitch(skin_.pillars());
   const auto planes = static_cast<std::size_t>(streams_.result_planes);
-  Slot slot;
-  slot.queue = cl::CommandQueue(context_, device_);
-  slot.kernel = cl::Kernel(program, "copy_streams");
-  slot.results = make_planes(planes * pitch * streams_.result_size);
-  slot.status = make_planes(pitch);
+  Slot slot{cl::CommandQueue(context_, device_), cl::Kernel(program, "copy_streams"),
+            make_planes(planes * pitch * streams_.result_size), make_planes(pitch)};
   cl_uint argument = kRawArgument + 1;
   slot.kernel.setArg(argument++, cl_ulong{skin_.cols});
   slot.kernel.setArg(argument++, cl_uint{skin_.pillar_cols()});

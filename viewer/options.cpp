@@ -170,10 +170,14 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       ->check(CLI::Range(0.5, 4.0));
   app.add_flag_callback(
       "--light", [&] { options.theme = Theme::light; }, "Dark on white");
-  app.add_flag("!--no-arrows", options.arrows, "No arrows");
+  app.add_flag_callback(
+      "--no-arrows", [&] { options.arrows = false; }, "No arrows");
   app.add_flag("--fans", options.fans, "Show what ambiguous shear may be, where pillars are large");
-  app.add_flag("!--no-hatch", options.hatch, "Ambiguous pillars are not hatched");
-  app.add_flag("!--no-legend", options.legend, "Neither axes nor colour bar: the field alone");
+  app.add_flag_callback(
+      "--no-hatch", [&] { options.hatch = false; }, "Ambiguous pillars are not hatched");
+  app.add_flag_callback(
+      "--no-legend", [&] { options.legend = false; },
+      "Neither axes nor colour bar: the field alone");
 
   app.add_flag("--headless", options.headless, "No window: write files and end")->group("Files");
   app.add_option("--png", options.png, "Picture to write; of several frames NAME_001.png and so on")

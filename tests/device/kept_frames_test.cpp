@@ -64,7 +64,7 @@ class KeptFrames : public testing::TestWithParam<Memory> {
     }
   }
 
-  [[nodiscard]] Processor processor(const SolverPlan& plan, int slots) const {
+  [[nodiscard]] static Processor processor(const SolverPlan& plan, int slots) {
     return {test_device(), plan, {.memory = GetParam(), .frames_in_flight = slots}};
   }
 };
@@ -157,6 +157,7 @@ TEST_P(KeptFrames, ExhaustionIsOneClearLineAndCanBeMended) {
   const std::vector<RandomFrame> frames = frames_of(plan, 2);
   ring.submit(frames[0].view());
   const ForceFieldView forces = ring.receive();
+  ASSERT_FALSE(forces.normal.empty());
   std::optional<Processor::Kept> kept = ring.keep();
   ring.submit(frames[1].view());
   try {
@@ -221,6 +222,7 @@ TEST_P(KeptFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
   Processor ring = processor(plan, 4);
   const std::vector<RandomFrame> frames = frames_of(plan, 4);
   std::vector<ForceField> expected;
+  expected.reserve(frames.size());
   for (const RandomFrame& frame : frames) expected.push_back(solve_on_host(plan, frame.view()));
   struct Shown {
     Processor::Kept kept;

@@ -25,8 +25,8 @@ class DrawClock {
 
  private:
   struct Frame {
-    double now_s;
-    float draw_ms;
+    double now_s = 0;
+    float draw_ms = 0;
     std::optional<float> latency_ms;
   };
   std::deque<Frame> recent_;

@@ -38,11 +38,11 @@ inline constexpr int kShortcutGroups = 5;
 [[nodiscard]] const char* title_of(ShortcutGroup group);
 
 struct Shortcut {
-  ShortcutGroup group;
-  std::array<Chord, 3> chords;
-  const char* keys;  ///< for a reader: "Ctrl+P"
-  const char* what;  ///< for a reader: "write a picture of every frame"
-  void (*act)(const Command& command);
+  ShortcutGroup group = ShortcutGroup::play;
+  std::array<Chord, 3> chords{};
+  const char* keys = "";  ///< for a reader: "Ctrl+P"
+  const char* what = "";  ///< for a reader: "write a picture of every frame"
+  void (*act)(const Command& command) = nullptr;
 };
 
 /// All of them, in the order of the help.
@@ -50,8 +50,8 @@ struct Shortcut {
 
 /// What the mouse does in the field, for the help: "drag", "mark a region, or turn the 3-D view".
 struct MouseHelp {
-  const char* hand;
-  const char* what;
+  const char* hand = "";
+  const char* what = "";
 };
 [[nodiscard]] std::span<const MouseHelp> mouse_help();
 

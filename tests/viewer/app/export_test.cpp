@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 class Export : public testing::Test {
- protected:
+ public:
   Export()
       : folder_(fs::path(testing::TempDir()) /
                 testing::UnitTest::GetInstance()->current_test_info()->name()) {

@@ -23,7 +23,7 @@ class NoFields final : public FieldProducer {
 
 /// An interface that nobody sees.
 class PillarPanel : public testing::Test {
- protected:
+ public:
   PillarPanel() : context_(ImGui::CreateContext()) {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;

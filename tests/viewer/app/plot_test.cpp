@@ -48,8 +48,8 @@ TEST(RoundSpan, HoldsZeroAndAllValuesWithoutWastingRoom) {
   std::uniform_real_distribution<double> exponent(-6, 6);
   std::normal_distribution<double> sign(0.5, 1);
   for (int i = 0; i < 500; ++i) {
-    std::vector<double> values;
-    for (int k = 0; k < 4; ++k) values.push_back(sign(random) * std::pow(10, exponent(random)));
+    std::vector<double> values(4);
+    for (double& value : values) value = sign(random) * std::pow(10, exponent(random));
     const Span span = round_span(values);
     const auto [low, high] = std::minmax({values[0], values[1], values[2], values[3]});
     const double width = std::max(high, 0.0) - std::min(low, 0.0);
@@ -86,7 +86,10 @@ TEST(Thinned, KeepsTheExtremesOfEachColumnAndNoMoreThanFourPoints) {
   const std::vector<Vec2> points = thinned(curve, area);
   ASSERT_LE(points.size(), 4u * 101);
   for (int column = 0; column <= 100; ++column) {
-    double lowest = 1e9, highest = -1e9, thin_lowest = 1e9, thin_highest = -1e9;
+    double lowest = 1e9;
+    double highest = -1e9;
+    double thin_lowest = 1e9;
+    double thin_highest = -1e9;
     for (const Vec2& value : curve) {
       const Vec2 pixel = area.at(value);
       if (std::floor(pixel.x) != column) continue;
@@ -128,8 +131,8 @@ TEST(Thinned, PassesOverWhatIsNoNumber) {
 TEST(SharesOf, FillTheWidthInProportionAndHideNobody) {
   std::mt19937 random(2);
   for (int i = 0; i < 300; ++i) {
-    std::vector<std::uint64_t> counts;
-    for (int k = 0; k < 5; ++k) counts.push_back(random() % 4 == 0 ? 0 : random() % 1000000);
+    std::vector<std::uint64_t> counts(5);
+    for (std::uint64_t& count : counts) count = random() % 4 == 0 ? 0 : random() % 1000000;
     const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     const std::vector<int> widths = shares_of(counts, 200);
     EXPECT_EQ(std::accumulate(widths.begin(), widths.end(), 0), total == 0 ? 0 : 200);

@@ -31,9 +31,11 @@ int usable(double phi, double theta) {
 }
 
 TEST(RegionLimits, TellHowManySenselsTheModelHasUsable) {
-  for (double phi = -179.5; phi < 180; phi += 1) {
+  for (int column = 0; column < 360; ++column) {
+    const double phi = column - 179.5;
     const RegionLimits limits = region_limits(phi);
-    for (double theta = 0.5; theta < 90; theta += 1) {
+    for (int row = 0; row < 90; ++row) {
+      const double theta = row + 0.5;
       // The polyline of the borders is within a tenth of a degree.
       if (std::abs(theta - limits.four) < 0.1 || std::abs(theta - limits.three) < 0.1) continue;
       const int expected = theta < limits.four ? 4 : theta < limits.three ? 3 : 2;
@@ -137,12 +139,11 @@ TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutSilence) {
 }
 
 TEST(SectionName, IsThePapers) {
-  using namespace status;
-  EXPECT_EQ(section_name(kUsable | kSaturated), "1");
-  EXPECT_EQ(section_name(kUsable & ~kSensel3), "2.3");
-  EXPECT_EQ(section_name(kSensel3 | kSensel4 | kAmbiguous), "3.12");
-  EXPECT_EQ(section_name(kSensel4), "4.123");
-  EXPECT_EQ(section_name(kSensel1 | kSensel3), "");
+  EXPECT_EQ(section_name(status::kUsable | status::kSaturated), "1");
+  EXPECT_EQ(section_name(status::kUsable & ~status::kSensel3), "2.3");
+  EXPECT_EQ(section_name(status::kSensel3 | status::kSensel4 | status::kAmbiguous), "3.12");
+  EXPECT_EQ(section_name(status::kSensel4), "4.123");
+  EXPECT_EQ(section_name(status::kSensel1 | status::kSensel3), "");
   EXPECT_EQ(section_name(0), "");
 }
 

@@ -32,12 +32,13 @@ PillarValues pillar(double x, double y, double normal, double sx, double sy, dou
 }
 
 double spread(const std::vector<double>& values) {
-  double sum = 0, squares = 0;
+  double sum = 0;
+  double squares = 0;
   for (const double value : values) {
     sum += value;
     squares += value * value;
   }
-  const double count = static_cast<double>(values.size());
+  const auto count = static_cast<double>(values.size());
   return std::sqrt(squares / count - sum * sum / count / count);
 }
 
@@ -45,8 +46,12 @@ TEST(DirectionDeviation, IsTheSpreadOfForcesThatScatter) {
   std::mt19937 random(1);
   std::normal_distribution<double> scatter;
   for (const auto& [x, y, n] : {std::array{0.1, 0.05, 0.3}, {-0.2, 0.1, 0.05}, {0.01, -0.3, 0.1}}) {
-    const double sx = 0.0004, sy = 0.0009, sn = 0.0006;
-    std::vector<double> magnitudes, thetas, phis;
+    const double sx = 0.0004;
+    const double sy = 0.0009;
+    const double sn = 0.0006;
+    std::vector<double> magnitudes;
+    std::vector<double> thetas;
+    std::vector<double> phis;
     const double phi = std::atan2(-y, -x);
     for (int i = 0; i < 20000; ++i) {
       const double a = x + sx * scatter(random);
@@ -72,15 +77,17 @@ TEST(DirectionDeviation, IsNoNumberWhereTheDirectionIsNone) {
 }
 
 TEST(StatusWords, NameRegionAndFault) {
-  using namespace status;
   EXPECT_EQ(status_words(0), "no contact");
-  EXPECT_EQ(status_words(kUsable), "region 1");
-  EXPECT_EQ(status_words(kSensel1 | kSensel2 | kAmbiguous), "region 3, ambiguous");
-  EXPECT_EQ(status_words(kSensel1 | kSensel2 | kAmbiguous | kFromNeighbours),
+  EXPECT_EQ(status_words(status::kUsable), "region 1");
+  EXPECT_EQ(status_words(status::kSensel1 | status::kSensel2 | status::kAmbiguous),
+            "region 3, ambiguous");
+  EXPECT_EQ(status_words(status::kSensel1 | status::kSensel2 | status::kAmbiguous |
+                         status::kFromNeighbours),
             "region 3, resolved by neighbours");
-  EXPECT_EQ(status_words(kUsable | kSaturated), "region 1, saturated");
-  EXPECT_EQ(status_words(kSensel1 | kSensel3 | kInconsistent), "opposite sensels, inconsistent");
-  EXPECT_EQ(status_words(kSaturated), "no usable sensel, saturated");
+  EXPECT_EQ(status_words(status::kUsable | status::kSaturated), "region 1, saturated");
+  EXPECT_EQ(status_words(status::kSensel1 | status::kSensel3 | status::kInconsistent),
+            "opposite sensels, inconsistent");
+  EXPECT_EQ(status_words(status::kSaturated), "no usable sensel, saturated");
 }
 
 TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {

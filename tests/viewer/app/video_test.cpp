@@ -31,10 +31,16 @@ std::string message_of(const std::function<void()>& act) {
   return "no error";
 }
 
+/// Where programs are looked for.
+std::string own_path() {
+  const char* const path = std::getenv("PATH");
+  return path == nullptr ? "" : path;
+}
+
 class Video : public testing::Test {
- protected:
+ public:
   Video()
-      : path_(std::getenv("PATH")),
+      : path_(own_path()),
         folder_(fs::path(testing::TempDir()) /
                 testing::UnitTest::GetInstance()->current_test_info()->name()) {
     fs::remove_all(folder_);
