@@ -98,9 +98,9 @@ void run_headless(const Options& options) {
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     const Pixels pixels = renderer.render(producer->produce(frame), source, look);
     if (!options.png.empty()) {
-      write_png(
-          span.end - span.begin == 1 ? options.png : numbered(options.png, frame, source.frames),
-          pixels);
+      write_png(span.end - span.begin == 1 ? options.png
+                                           : numbered(options.png, frame + 1, source.frames),
+                pixels);
     }
     if (video != nullptr) video->add(pixels);
   }

@@ -10,7 +10,7 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr double kShake = 4;  ///< pixels at scale 1 that a click may move
-constexpr double kDoubleClick_s = 0.35;
+constexpr double kDoubleClickSeconds = 0.35;
 constexpr double kZoomOfStep = 1.2;
 
 double distance(Vec2 a, Vec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -107,7 +107,7 @@ void Controls::release(const ButtonEvent& event, const Command& command) {
 }
 
 void Controls::click(const ButtonEvent& event, const Command& command) {
-  const bool again = last_click_ && event.time_s - last_click_->time_s < kDoubleClick_s &&
+  const bool again = last_click_ && event.time_s - last_click_->time_s < kDoubleClickSeconds &&
                      distance(last_click_->pixel, event.pixel) <= shake_of(command);
   // The second click undoes what the first did to the pin.
   if (const auto pillar = pillar_at(command.place, command.session.look, event.pixel)) {
@@ -119,7 +119,7 @@ void Controls::click(const ButtonEvent& event, const Command& command) {
   last_click_.reset();
 }
 
-void Controls::turn_wheel(const WheelEvent& event, const Command& command) const {
+void Controls::turn_wheel(const WheelEvent& event, const Command& command) {
   if (!contains(command.place.area, event.pixel)) return;
   zoom(command.session.look.view, plot_of(command), in_picture(command, event.pixel),
        std::pow(kZoomOfStep, event.steps));

@@ -43,7 +43,7 @@ class Controls {
   void press(const ButtonEvent& event, const Command& command);
   void release(const ButtonEvent& event, const Command& command);
   void move(Vec2 pixel, const Command& command);
-  void turn_wheel(const WheelEvent& event, const Command& command) const;
+  static void turn_wheel(const WheelEvent& event, const Command& command);
   void click(const ButtonEvent& event, const Command& command);
 
   std::optional<Drag> drag_;

@@ -5,7 +5,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kRecent_s = 1;
+constexpr double kRecentSeconds = 1;
 
 double median(std::vector<float> values) {
   if (values.empty()) return 0;
@@ -24,19 +24,19 @@ void DrawClock::add(double now_s, double draw_ms, std::optional<double> latency_
     latency_ms_.push_back(*frame.latency_ms);
   }
   recent_.push_back(frame);
-  while (recent_.front().now_s < now_s - kRecent_s) recent_.pop_front();
+  while (recent_.front().now_s < now_s - kRecentSeconds) recent_.pop_front();
 }
 
 DrawStatistics DrawClock::lately(double now_s) const {
   std::vector<float> draws;
   std::vector<float> latencies;
   for (const Frame& frame : recent_) {
-    if (frame.now_s < now_s - kRecent_s) continue;
+    if (frame.now_s < now_s - kRecentSeconds) continue;
     draws.push_back(frame.draw_ms);
     if (frame.latency_ms) latencies.push_back(*frame.latency_ms);
   }
   DrawStatistics statistics;
-  statistics.frames_hz = static_cast<double>(draws.size()) / kRecent_s;
+  statistics.frames_hz = static_cast<double>(draws.size()) / kRecentSeconds;
   statistics.draw_ms_median = median(draws);
   statistics.latency_ms_median = median(latencies);
   return statistics;

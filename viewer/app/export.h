@@ -13,7 +13,8 @@ namespace pillarfield::viewer {
 /// Writes a PNG, without its alpha. Throws Error where that fails; nothing half-written stays.
 void write_png(const std::filesystem::path& path, const Pixels& pixels);
 
-/// "field.png" and 12 of 100 becomes "field_012.png": names of a sequence sort by frame.
+/// "field.png" and frame 12 of 100, counted from 1 as people see it, becomes "field_012.png": names
+/// of a sequence sort by frame.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& path, std::uint64_t frame,
                                              std::uint64_t frames);
 

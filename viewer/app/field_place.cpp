@@ -27,8 +27,10 @@ PillarRect sampled(const FieldPlace& place, const Look& look) {
   const Viewport plot = place.plot(look);
   std::optional<PillarRect> found;
   for (int i = 0; i < kSteps * kSteps; ++i) {
-    const Vec2 pixel{plot.x + plot.width * (i % kSteps + 0.5) / kSteps,
-                     plot.y + plot.height * (i / kSteps + 0.5) / kSteps};
+    const int col = i % kSteps;
+    const int row = i / kSteps;
+    const Vec2 pixel{plot.x + plot.width * (col + 0.5) / kSteps,
+                     plot.y + plot.height * (row + 0.5) / kSteps};
     const auto pillar = pillar_at(place, look, pixel);
     if (!pillar) continue;
     if (!found) found = {pillar->row, pillar->row + 1, pillar->col, pillar->col + 1};

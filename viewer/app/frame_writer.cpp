@@ -44,7 +44,7 @@ bool FrameWriter::add(const Pixels& pixels) {
   if (video_ != nullptr) {
     video_->add(pixels);
   } else {
-    write_png(numbered(path_, next_, frames_), pixels);
+    write_png(numbered(path_, next_ + 1, frames_), pixels);
   }
   ++next_;
   if (next_ < frames_) {
@@ -64,7 +64,7 @@ std::filesystem::path free_path(const SourceInfo& source, const std::string& det
 
 std::filesystem::path free_sequence_path(const SourceInfo& source, const std::string& detail) {
   return first_free(source, detail, ".png",
-                    [&](const auto& path) { return numbered(path, 0, source.frames); });
+                    [&](const auto& path) { return numbered(path, 1, source.frames); });
 }
 
 }  // namespace pillarfield::viewer

@@ -14,8 +14,8 @@ void add_mapped(std::vector<ShownValue>& lines, const Session& session) {
   const Quantity quantity = session.look.quantity;
   if (quantity != Quantity::uncertainty && quantity != Quantity::parity) return;
   const QuantityInfo& info = info_of(quantity);
-  const double value = static_cast<double>(
-      value_of(quantity, *session.field, session.hovered->row, session.hovered->col));
+  const double value =
+      value_of(quantity, *session.field, session.hovered->row, session.hovered->col);
   lines.push_back({info.title, three_digits(value * info.factor), {}, info.unit});
 }
 

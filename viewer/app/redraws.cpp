@@ -5,21 +5,21 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr int kFramesOfInput = 3;   ///< what ImGui takes until everything has reacted
-constexpr double kSettles_s = 1.1;  ///< rates are those of the last second
-constexpr double kNotice_s = 6;
+constexpr int kFramesOfInput = 3;        ///< what ImGui takes until everything has reacted
+constexpr double kSettlesSeconds = 1.1;  ///< rates are those of the last second
+constexpr double kNoticeSeconds = 6;
 
 }  // namespace
 
 void Redraws::input(double now_s) {
   frames_ = kFramesOfInput;
   settling_ = true;
-  settled_s_ = now_s + kSettles_s;
+  settled_s_ = now_s + kSettlesSeconds;
 }
 
 void Redraws::field() { frames_ = std::max(frames_, 1); }
 
-void Redraws::notice(double now_s) { notice_ends_s_ = now_s + kNotice_s; }
+void Redraws::notice(double now_s) { notice_ends_s_ = now_s + kNoticeSeconds; }
 
 bool Redraws::due(double now_s) const {
   return frames_ > 0 || (settling_ && now_s >= settled_s_) || notice_is_old(now_s);
@@ -38,7 +38,7 @@ void Redraws::drawn(double now_s) {
   const bool by_time = frames_ == 0;
   frames_ = std::max(frames_ - 1, 0);
   settling_ = !by_time || now_s < settled_s_;
-  if (!by_time) settled_s_ = now_s + kSettles_s;
+  if (!by_time) settled_s_ = now_s + kSettlesSeconds;
 }
 
 bool Redraws::notice_is_old(double now_s) const {

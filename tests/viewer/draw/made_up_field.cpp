@@ -27,11 +27,40 @@ std::array<float, 4> readings_of(const MadeUpPillar& pillar) {
           k * (pillar.normal - falling)};
 }
 
+constexpr std::size_t kFloatPlanes = 6 + kUncertaintyPlanes;
+
+/// What the float planes of a field have for a pillar, in their order.
+std::array<float, kFloatPlanes> planes_of(const MadeUpPillar& pillar, std::size_t index) {
+  const float shear = std::hypot(pillar.shear_x, pillar.shear_y);
+  const float magnitude = std::hypot(shear, pillar.normal);
+  const float theta = std::atan2(shear, pillar.normal);
+  const float phi = std::atan2(-pillar.shear_y, -pillar.shear_x);
+  const float deviation = 0.01F * static_cast<float>(1 + index % 29);
+  return {pillar.shear_x,  pillar.shear_y,
+          pillar.normal,   magnitude,
+          theta,           phi,
+          deviation,       0.02F,
+          0.02F,           theta - 0.3F,
+          theta + 0.1F,    phi - 0.4F,
+          phi + 0.4F,      magnitude * 0.8F,
+          magnitude * 1.2F};
+}
+
+void set_readings(FrameBuffer& raw, std::size_t row, std::size_t col, const MadeUpPillar& pillar) {
+  const auto readings = readings_of(pillar);
+  const auto at = [&](std::size_t r, std::size_t c) -> float& {
+    return raw.readings<float>()[(2 * row + r) * raw.view().cols + 2 * col + c];
+  };
+  at(0, 1) = readings[0];
+  at(0, 0) = readings[1];
+  at(1, 0) = readings[2];
+  at(1, 1) = readings[3];
+}
+
 }  // namespace
 
 MadeUpField::MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& pillar) {
   const std::size_t pillars = std::size_t{rows} * cols;
-  constexpr std::size_t kFloatPlanes = 6 + kUncertaintyPlanes;
   const std::size_t plane_bytes = whole_pages(pillars * sizeof(float));
   const std::size_t bytes = kFloatPlanes * plane_bytes + whole_pages(pillars);
   const auto pages = make_pages(bytes);
@@ -40,42 +69,17 @@ MadeUpField::MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& p
   };
   auto* const status = reinterpret_cast<std::uint8_t*>(pages.get() + kFloatPlanes * plane_bytes);
   auto raw = std::make_shared<FrameBuffer>(SenselType::f32, 2 * rows, 2 * cols);
-  for (std::uint32_t row = 0; row < rows; ++row) {
-    for (std::uint32_t col = 0; col < cols; ++col) {
-      const MadeUpPillar value = pillar(row, col);
-      const std::size_t index = std::size_t{row} * cols + col;
-      const float shear = std::hypot(value.shear_x, value.shear_y);
-      const float magnitude = std::hypot(shear, value.normal);
-      const float theta = std::atan2(shear, value.normal);
-      const float phi = std::atan2(-value.shear_y, -value.shear_x);
-      const std::array planes{value.shear_x,
-                              value.shear_y,
-                              value.normal,
-                              magnitude,
-                              theta,
-                              phi,
-                              0.01F * static_cast<float>(1 + index % 29),
-                              0.02F,
-                              0.02F,
-                              theta - 0.3F,
-                              theta + 0.1F,
-                              phi - 0.4F,
-                              phi + 0.4F,
-                              magnitude * 0.8F,
-                              magnitude * 1.2F};
-      for (std::size_t plane = 0; plane < planes.size(); ++plane) {
-        floats(plane)[index] = planes.at(plane);
-      }
-      status[index] = value.status;
-      const auto readings = readings_of(value);
-      const auto at = [&](std::uint32_t r, std::uint32_t c) -> float& {
-        return raw->readings<float>()[std::size_t{2 * row + r} * 2 * cols + 2 * col + c];
-      };
-      at(0, 1) = readings[0];
-      at(0, 0) = readings[1];
-      at(1, 0) = readings[2];
-      at(1, 1) = readings[3];
+  for (std::size_t index = 0; index < pillars; ++index) {
+    const std::size_t row = index / cols;
+    const std::size_t col = index % cols;
+    const MadeUpPillar value =
+        pillar(static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(col));
+    const auto planes = planes_of(value, index);
+    for (std::size_t plane = 0; plane < planes.size(); ++plane) {
+      floats(plane)[index] = planes.at(plane);
     }
+    status[index] = value.status;
+    set_readings(*raw, row, col, value);
   }
 
   ForceFieldView& forces = shown_.forces;

@@ -10,8 +10,7 @@ namespace pillarfield::viewer {
 /// A pillar as somebody thought it up.
 struct MadeUpPillar {
   float shear_x = 0, shear_y = 0, normal = 0;  ///< N
-  std::uint8_t status = status_of_usable;
-  static constexpr std::uint8_t status_of_usable = 15;
+  std::uint8_t status = 15;                    ///< all four sensels usable
 };
 
 /// A field on pages of its own, with angles, uncertainty and readings, from a function of row and

@@ -225,6 +225,48 @@ class MouseTest(WindowTest):
         self.assert_quiet(window)
 
 
+class WidgetTest(WindowTest):
+    """Panels and play head, at their places in a window of 1280 x 720 pixels."""
+
+    def test_panels_and_play_head(self):
+        window = self.open(SCENES / "demo.toml", "--paused", "--frame", 2)
+        before = self.shoot("widget_opened")
+        steps = [
+            ("scrub", lambda: window.drag((130, 671), (340, 671))),
+            ("step_on", lambda: window.click(83, 671)),
+            ("step_back", lambda: window.click(30, 671)),
+            ("faster", lambda: window.click(803, 671)),
+            ("loop", lambda: window.click(845, 671)),
+            ("quantities", lambda: window.click(1145, 61)),
+            ("chosen", lambda: window.click(1145, 140)),
+            ("arrows", lambda: window.click(1036, 174)),
+            ("space", lambda: window.click(1205, 202)),
+            ("cylinder", lambda: window.click(1205, 230)),
+            ("fitted", lambda: window.click(1083, 118)),
+        ]
+        for (name, act) in steps:
+            act()
+            time.sleep(0.3)
+            after = self.shoot("widget_" + name)
+            self.assertFalse(numpy.array_equal(before, after), name)
+            before = after
+        self.assert_quiet(window)
+
+    def test_pin_and_region_over_time(self):
+        window = self.open(SCENES / "demo.toml", "--paused")
+        self.screen.still_pixels()
+        window.click(245, 150)
+        time.sleep(0.6)
+        window.drag((380, 260), (520, 400))
+        for _ in range(3):
+            window.key("shift+Right")
+            self.screen.still_pixels()
+        self.screen.xdotool("mousemove", "--window", window.id, 1100, 500)
+        self.screen.xdotool("click", "--repeat", 20, "--delay", 20, 5)
+        self.shoot("over_time")
+        self.assert_quiet(window)
+
+
 class WholeWindowTest(WindowTest):
     def test_sizes(self):
         window = self.open(SCENES / "demo.toml")
