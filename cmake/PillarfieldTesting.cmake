@@ -42,17 +42,29 @@ endif()
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${environment_file})
 endfunction()
 
-# pillarfield_device_test(...): the same, but the whole program is one test of the project: opening an
-# OpenCL device and compiling kernels takes longer than a test of them.
+# pillarfield_labels(<variable> <name> [LONG]): the floor that a test's name begins with, and `long`,
+# which `./dev test` leaves out and `./dev test --all` does not. LONG holds with sanitizers, which make
+# many times slower what they do not watch either: kernels.
+function(pillarfield_labels variable name)
+  string(REGEX REPLACE "_.*" "" labels ${name})
+  if("LONG" IN_LIST ARGN AND PILLARFIELD_SANITIZE)
+    list(APPEND labels long)
+  endif()
+  set(${variable} "${labels}" PARENT_SCOPE)
+endfunction()
+
+# pillarfield_device_test(<name> [LONG] ...): the same, but the whole program is one test of the
+# project: opening an OpenCL device and compiling kernels takes longer than a test of them.
 function(pillarfield_device_test name)
+  pillarfield_labels(labels ${name} ${ARGN})
+  list(REMOVE_ITEM ARGN LONG)
   pillarfield_test_program(${name} ${ARGN})
-  string(REGEX REPLACE "_.*" "" label ${name})
   add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${name} --gtest_brief=1)
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS ${label} TIMEOUT 600
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}" TIMEOUT 600
     ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
 endfunction()
 
-# pillarfield_oclgrind_test(<name> <program> <filter>): one more test, which runs those tests of a
+# pillarfield_oclgrind_test(<name> <program> <filter> [LONG]): one more test, which runs those tests of a
 # program that match the GoogleTest filter on Oclgrind's simulated device. It fails when they do, and
 # when a kernel accesses memory out of bounds or two work-items race; it is skipped where Oclgrind is
 # not installed. Oclgrind and AddressSanitizer exclude each other.
@@ -63,11 +75,15 @@ function(pillarfield_oclgrind_test name program filter)
   add_test(NAME oclgrind.${name}
     COMMAND ${PROJECT_SOURCE_DIR}/tests/oclgrind/run_under_oclgrind
       ${CMAKE_CURRENT_BINARY_DIR}/${name}.log $<TARGET_FILE:${program}> ${filter})
-  set_tests_properties(oclgrind.${name} PROPERTIES LABELS oclgrind TIMEOUT 240 SKIP_RETURN_CODE 77
+  set(labels oclgrind)
+  if("LONG" IN_LIST ARGN)
+    list(APPEND labels long)
+  endif()
+  set_tests_properties(oclgrind.${name} PROPERTIES LABELS "${labels}" TIMEOUT 480 SKIP_RETURN_CODE 77
     ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
 endfunction()
 
-# pillarfield_python_test(<floor>_<subject> SCRIPT <file> ARGUMENTS <words...>): a Python script that
+# pillarfield_python_test(<floor>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...>): a Python script that
 # passes by exiting with 0. It needs h5py and NumPy, which may be there for the system's Python only,
 # and that need not be the first on the path. Without them the test is skipped.
 find_program(PILLARFIELD_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
@@ -83,15 +99,15 @@ foreach(python IN ITEMS ${PILLARFIELD_SYSTEM_PYTHON} ${PILLARFIELD_PATH_PYTHON})
 endforeach()
 
 function(pillarfield_python_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "SCRIPT" "ARGUMENTS")
-  string(REGEX REPLACE "_.*" "" label ${name})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG" "SCRIPT" "ARGUMENTS")
+  pillarfield_labels(labels ${name} ${ARGN})
   if(PILLARFIELD_PYTHON)
     set(command ${PILLARFIELD_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SCRIPT} ${arg_ARGUMENTS})
   else()
     set(command ${CMAKE_COMMAND} -E echo "skipped: no Python with h5py and numpy was found")
   endif()
   add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${command})
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS ${label} TIMEOUT 240
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}" TIMEOUT 240
     SKIP_REGULAR_EXPRESSION "^skipped:"
     ENVIRONMENT "PILLARFIELD=$<TARGET_FILE:pillarfield>;PILLARFIELD_SOURCE=${PROJECT_SOURCE_DIR};PYTHONDONTWRITEBYTECODE=1;${PILLARFIELD_TEST_ENVIRONMENT}")
 endfunction()
