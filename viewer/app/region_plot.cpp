@@ -227,9 +227,9 @@ void Drawing::draw_point(ImU32 colour) const {
 }
 
 const PlotTicks& angle_ticks() {
-  static const PlotTicks kTicks{{{-180, "−180"}, {-90, "−90"}, {0, "0"}, {90, "90"}, {180, "180"}},
-                                {{0, "0"}, {30, "30"}, {60, "60"}, {90, "90"}}};
-  return kTicks;
+  static const PlotTicks ticks{{{-180, "−180"}, {-90, "−90"}, {0, "0"}, {90, "90"}, {180, "180"}},
+                               {{0, "0"}, {30, "30"}, {60, "60"}, {90, "90"}}};
+  return ticks;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ void faint(const PanelInk& ink, const std::string& text) {
 }
 
 void line(const PanelInk& ink, const ShownValue& shown) {
-  const double left = static_cast<double>(ImGui::GetCursorPosX());
+  const double left = ImGui::GetCursorPosX();
   const double value_end = left + (kLabelWidth + kValueWidth) * ink.unit;
   const auto go_to = [](double x) {
     ImGui::SameLine();

@@ -164,8 +164,11 @@ bool Window::closes() const { return glfwWindowShouldClose(window_) != 0; }
 
 void Window::show() { glfwShowWindow(window_); }
 
+// GLFW's events are those of all windows, and there is one.
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static)
 void Window::poll() { glfwPollEvents(); }
 
+// NOLINTNEXTLINE(readability-convert-member-functions-to-static): as above
 void Window::wait(std::optional<double> seconds) {
   if (seconds) {
     glfwWaitEventsTimeout(*seconds);
