@@ -203,7 +203,8 @@ class LegendList {
     const ImU32 colour = packed(pen_.special(kind));
     if (hatched) {
       pen_.list.PushClipRect(ImVec2(left, top), corner, true);
-      for (float offset = 0; offset < 2 * side; offset += 5 * pen_.unit()) {
+      for (int line = 0; line < 5; ++line) {
+        const float offset = static_cast<float>(5 * line) * pen_.unit();
         pen_.list.AddLine(ImVec2(left + offset, top), ImVec2(left + offset - side, top + side),
                           colour, 1.5f * pen_.unit());
       }

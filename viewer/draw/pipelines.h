@@ -23,6 +23,7 @@ struct HeatKind {
   std::uint32_t readings;
   vk::Bool32 means;
 
+  // NOLINTNEXTLINE(modernize-use-nullptr): of comparisons that the compiler writes
   friend auto operator<=>(const HeatKind&, const HeatKind&) = default;
 };
 

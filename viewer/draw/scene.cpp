@@ -31,7 +31,10 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const Look& look, const V
                              uint block) {
   const uint rows = source.skin.pillar_rows();
   const uint cols = source.skin.pillar_cols();
-  uint row_begin = 0, row_end = rows, col_begin = 0, col_end = cols;
+  uint row_begin = 0;
+  uint row_end = rows;
+  uint col_begin = 0;
+  uint col_end = cols;
   if (const auto* top = std::get_if<TopView>(&look.view)) {
     const double pitch = source.skin.pillar_pitch_mm();
     // One cell more at each side: an arrow may be longer than its cell.
