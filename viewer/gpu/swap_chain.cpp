@@ -8,7 +8,7 @@ namespace pillarfield::viewer::gpu {
 namespace {
 
 constexpr const char* kMend = "choose another device with --gpu, or render to a file: --headless";
-constexpr std::uint64_t kPatience_ns = 1'000'000'000;
+constexpr std::uint64_t kPatienceNanoseconds = 1'000'000'000;
 
 vk::SurfaceFormatKHR choose_format(const Device& device, vk::SurfaceKHR surface) {
   const auto formats = device.physical().getSurfaceFormatsKHR(surface);
@@ -65,11 +65,10 @@ vk::CompositeAlphaFlagBitsKHR alpha_of(const vk::SurfaceCapabilitiesKHR& can) {
 }  // namespace
 
 SwapChain::SwapChain(const Device& device, vk::SurfaceKHR surface)
-    : device_(&device), surface_(surface) {
+    : device_(&device), surface_(surface), mode_(choose_mode(device, surface)) {
   const vk::SurfaceFormatKHR format = choose_format(device, surface);
   format_ = format.format;
   colour_space_ = format.colorSpace;
-  mode_ = choose_mode(device, surface);
   require_copies(device, surface);
 }
 
@@ -108,7 +107,7 @@ void SwapChain::make_images() {
 
 std::optional<std::uint32_t> SwapChain::acquire(vk::Semaphore ready) {
   try {
-    const auto [result, index] = chain_.acquireNextImage(kPatience_ns, ready);
+    const auto [result, index] = chain_.acquireNextImage(kPatienceNanoseconds, ready);
     if (result == vk::Result::eTimeout || result == vk::Result::eNotReady) return std::nullopt;
     if (result == vk::Result::eSuboptimalKHR) stale_ = true;
     return index;
