@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 
 #include "pillarfield/error.h"
 #include "viewer/app/export.h"
+#include "viewer/app/field_place.h"
 #include "viewer/draw/painter.h"
 #include "viewer/draw/scene.h"
 
@@ -41,24 +41,6 @@ class Renderer {
   Painter painter_;
 };
 
-/// The pillars that a picture shows, seen from the top; all in 3-D.
-PillarRect in_sight(const SourceInfo& source, const Look& look, const Viewport& plot) {
-  PillarRect rect{0, source.skin.pillar_rows(), 0, source.skin.pillar_cols()};
-  const auto* const view = std::get_if<TopView>(&look.view);
-  if (view == nullptr) return rect;
-  const double pitch = source.skin.pillar_pitch_mm();
-  const auto place = [&](double middle_mm, double pixels, std::uint32_t count) {
-    const double index = (middle_mm + pixels / view->pixels_per_mm) / pitch + 0.5 * count;
-    return static_cast<std::uint32_t>(std::clamp(index, 0.0, static_cast<double>(count)));
-  };
-  rect.col_begin = place(view->centre_mm.x, -0.5 * plot.width, rect.col_end);
-  rect.col_end = std::max(rect.col_begin, place(view->centre_mm.x, 0.5 * plot.width, rect.col_end));
-  rect.row_begin = place(-view->centre_mm.y, -0.5 * plot.height, rect.row_end);
-  rect.row_end =
-      std::max(rect.row_begin, place(-view->centre_mm.y, 0.5 * plot.height, rect.row_end));
-  return rect;
-}
-
 struct Span {
   std::uint64_t begin;
   std::uint64_t end;
@@ -86,7 +68,10 @@ void run_headless(const Options& options) {
   look.view = first_view(options, source, plot);
 
   if (!options.csv.empty()) {
-    write_csv(options.csv, producer->produce(span.begin), in_sight(source, look, plot));
+    const Viewport picture{0, 0, static_cast<double>(options.width),
+                           static_cast<double>(options.height)};
+    write_csv(options.csv, producer->produce(span.begin),
+              visible_pillars({picture, &source}, look));
   }
   if (options.png.empty() && options.video.empty()) return;
   Renderer renderer(options);

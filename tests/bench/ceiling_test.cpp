@@ -12,22 +12,10 @@
 #include <vector>
 
 #include "bench/variants.h"
+#include "tests/device/test_device.h"
 
 namespace pillarfield::bench {
 namespace {
-
-/// Closed before the process ends: drivers must not be called while their own statics go.
-class DeviceForTests : public testing::Environment {
- public:
-  void SetUp() override { device = open_device(); }
-  void TearDown() override { device.reset(); }
-  static inline std::optional<Device> device;
-};
-
-const testing::Environment* const kEnvironment =
-    testing::AddGlobalTestEnvironment(new DeviceForTests);
-
-const Device& test_device() { return DeviceForTests::device.value(); }
 
 /// A copy kernel whose inputs can be changed bit by bit.
 class Copy {

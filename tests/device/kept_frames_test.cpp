@@ -15,22 +15,10 @@
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
+#include "tests/device/test_device.h"
 
 namespace pillarfield {
 namespace {
-
-/// One device for all tests of this program; it is closed before the process ends.
-class DeviceForTests : public testing::Environment {
- public:
-  void SetUp() override { device = open_device(); }
-  void TearDown() override { device.reset(); }
-  static inline std::optional<Device> device;
-};
-
-const testing::Environment* const kEnvironment =
-    testing::AddGlobalTestEnvironment(new DeviceForTests);
-
-const Device& test_device() { return DeviceForTests::device.value(); }
 
 template <class Value>
 bool same_bytes(std::span<const Value> left, std::span<const Value> right) {

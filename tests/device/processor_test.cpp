@@ -15,25 +15,12 @@
 #include "core/host_solve.h"
 #include "pillarfield/error.h"
 #include "random_plan.h"
+#include "tests/device/test_device.h"
 
 namespace pillarfield {
 namespace {
 
-/// One device for all tests of this program, so that programs are compiled once. It is closed
-/// before the process ends: drivers must not be called while their own statics go.
-class DeviceForTests : public testing::Environment {
- public:
-  void SetUp() override { device = open_device(); }
-  void TearDown() override { device.reset(); }
-  static inline std::optional<Device> device;
-};
-
-const testing::Environment* const kEnvironment =
-    testing::AddGlobalTestEnvironment(new DeviceForTests);
-
 constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
-
-const Device& test_device() { return DeviceForTests::device.value(); }
 
 void expect_same_bits(std::span<const float> actual, std::span<const float> expected,
                       const char* plane) {

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "pillarfield/processor.h"
+
+namespace pillarfield {
+
+/// One device for all tests of a program, so that kernels are compiled once. It is closed before
+/// the process ends: drivers must not be called while their own statics go.
+class DeviceForTests : public testing::Environment {
+ public:
+  void SetUp() override { device = open_device(); }
+  void TearDown() override { device.reset(); }
+  static inline std::optional<Device> device;
+};
+
+inline const testing::Environment* const kDeviceForTests =
+    testing::AddGlobalTestEnvironment(new DeviceForTests);
+
+inline const Device& test_device() { return DeviceForTests::device.value(); }
+
+}  // namespace pillarfield
