@@ -47,7 +47,15 @@ void set_solver(SolverPlan& plan, const Scene& scene) {
 }
 
 const char* name_of(Estimator estimator) {
-  return estimator == Estimator::paper ? "paper" : "direct";
+  switch (estimator) {
+    case Estimator::direct:
+      return "direct";
+    case Estimator::paper:
+      return "paper";
+    case Estimator::field:
+      break;
+  }
+  return "field";
 }
 
 void check(const SolverPlan& plan, std::string_view where) {

@@ -14,9 +14,22 @@ enum class Estimator : std::uint8_t {
   direct,  ///< linear, on the Cramér–Rao bound in regions 1 and 2
            ///< (docs/derivations/direct_solve.md)
   paper,   ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
+  field,   ///< direct, then ambiguous pillars with their contact's help (docs/derivations/field.md)
 };
 
-/// "direct" or "paper".
+/// What `Estimator::field` may go by where readings leave a force open. Each piece of evidence is
+/// used where the contact itself bears it out; what the scene vouches for is used as it stands.
+struct FieldEvidence {
+  bool shape = true;  ///< the pressure is smooth and vanishes at the contact's edge
+  bool slip = true;   ///< friction is learnt where resolved pillars show that they slip
+  /// No pillar's shear exceeds this many times its normal force, (0, 100]; unset: not known.
+  std::optional<double> friction;
+  bool slips = false;         ///< every pillar slips at that friction, which must be set
+  bool frames_close = false;  ///< forces change little from one frame to the next
+  int sweeps = 16;            ///< of the relaxation of the pressure, 0 to 1000: speed against error
+};
+
+/// "direct", "paper" or "field".
 [[nodiscard]] const char* name_of(Estimator estimator);
 
 /// What is computed, and from which sensor. Each member that is set or not empty adds its
@@ -32,6 +45,7 @@ struct SolverPlan {
   /// where the calibration has no noise plane of its own. Unset without one: noise is not known.
   std::optional<double> noise_counts;
   Estimator estimator = Estimator::direct;
+  FieldEvidence field;  ///< for `Estimator::field`
   /// Share of its distance from the reading that the tare of an untouched sensel takes over after
   /// each frame, (0, 1]; unset: the tare stays. Untouched is a sensel whose pillar and the eight
   /// around it have no usable and no saturated sensel in that frame.
@@ -41,7 +55,7 @@ struct SolverPlan {
   /// share of the cost.
   int baseline_interval = 1;
   bool angles = false;       ///< also magnitude, theta and phi
-  bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, and `direct`
+  bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, not for `paper`
   /// The planes of a result, status apart, are of half precision (half.h) and come from
   /// Processor::receive_half(): fewer bytes to move, 11 instead of 17 a pillar where 8-bit readings
   /// become forces. Forces of up to 65504 N, angles within 0.001 rad.

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace pillarfield {
+
+/// Loaded pillars of one row, side by side.
+struct ContactRun {
+  std::uint32_t row = 0;
+  std::uint32_t first = 0;    ///< column
+  std::uint32_t end = 0;      ///< one past the last column
+  std::uint32_t contact = 0;  ///< which contact they belong to
+};
+
+/// The contacts of a frame: connected components of its loaded pillars, which are those with a
+/// usable sensel. Pillars that touch at a side or at a corner are connected.
+///
+/// Contacts are numbered from 0 in the order in which their first pillars come row by row, so the
+/// numbers depend on the frame alone. Memory is kept from frame to frame.
+class ContactMap {
+ public:
+  /// Finds the contacts of a frame's status bytes [rows, cols]. Linear in its pillars. Throws Error
+  /// where the span has another size.
+  void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols);
+
+  [[nodiscard]] std::uint32_t contacts() const {
+    return static_cast<std::uint32_t>(starts_.empty() ? 0 : starts_.size() - 1);
+  }
+  /// All runs, contact by contact; those of a contact row by row from the left.
+  [[nodiscard]] std::span<const ContactRun> runs() const { return runs_; }
+  [[nodiscard]] std::span<const ContactRun> runs(std::uint32_t contact) const {
+    return std::span(runs_).subspan(starts_[contact], starts_[contact + 1] - starts_[contact]);
+  }
+
+ private:
+  std::vector<ContactRun> runs_;
+  std::vector<std::size_t> starts_;  ///< first run of each contact, and one past the last
+  std::vector<ContactRun> found_;    ///< row by row, before they are sorted
+  std::vector<std::uint32_t> parents_;
+};
+
+}  // namespace pillarfield
