@@ -36,10 +36,14 @@ class ContactMap {
   }
 
  private:
+  void number_contacts();
+  void sort_runs();
+
   std::vector<ContactRun> runs_;
-  std::vector<std::size_t> starts_;  ///< first run of each contact, and one past the last
-  std::vector<ContactRun> found_;    ///< row by row, before they are sorted
-  std::vector<std::uint32_t> parents_;
+  std::vector<std::size_t> starts_;     ///< first run of each contact, and one past the last
+  std::vector<ContactRun> found_;       ///< row by row, before they are sorted
+  std::vector<std::uint32_t> parents_;  ///< a run before each in its contact, or itself
+  std::vector<std::size_t> next_;       ///< of each contact, where its next run goes
 };
 
 }  // namespace pillarfield

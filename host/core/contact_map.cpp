@@ -1,0 +1,155 @@
+#include "pillarfield/contact_map.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <numeric>
+
+#include "pillarfield/error.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "words are taken apart from their low end");
+
+constexpr std::size_t kWord = sizeof(std::uint64_t);
+constexpr std::uint64_t kEachByte = 0x0101010101010101u;
+
+std::uint64_t word_at(const std::uint8_t* bytes) {
+  std::uint64_t word = 0;
+  std::memcpy(&word, bytes, kWord);
+  return word;
+}
+
+/// Bit n says whether pillar n of eight is loaded.
+unsigned loaded_of(std::uint64_t word) {
+  // A usable bit carries into bit 4 of its byte; the product gathers these eight in the top byte.
+  const std::uint64_t usable = word & (kEachByte * status::kUsable);
+  const std::uint64_t carried = ((usable + kEachByte * status::kUsable) >> 4) & kEachByte;
+  return static_cast<unsigned>((carried * 0x0102040810204080u) >> 56);
+}
+
+/// Eight pillars from column `col`, those past the row's end not loaded.
+unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
+  if (col + kWord <= row.size()) return loaded_of(word_at(row.data() + col));
+  std::uint64_t word = 0;
+  std::memcpy(&word, row.data() + col, row.size() - col);
+  return loaded_of(word);
+}
+
+/// The first column at or after `col`, a multiple of a word from it, where not all is silent.
+std::size_t skip_silence(std::span<const std::uint8_t> row, std::size_t col) {
+  constexpr std::size_t kStride = 4 * kWord;
+  for (; col + kStride <= row.size(); col += kStride) {
+    const std::uint8_t* const bytes = row.data() + col;
+    const std::uint64_t any = word_at(bytes) | word_at(bytes + kWord) | word_at(bytes + 2 * kWord) |
+                              word_at(bytes + 3 * kWord);
+    if (any != 0) break;
+  }
+  return col;
+}
+
+/// Appends the runs of one row.
+void append_runs(std::span<const std::uint8_t> row, std::uint32_t row_index,
+                 std::vector<ContactRun>& runs) {
+  bool inside = false;
+  for (std::size_t col = 0; col < row.size(); col += kWord) {
+    if (!inside) col = skip_silence(row, col);
+    if (col >= row.size()) break;
+    const unsigned loaded = loaded_at(row, col);
+    // A bit where a pillar differs from the one before it.
+    unsigned changes = (loaded ^ (loaded << 1 | (inside ? 1u : 0u))) & 0xffu;
+    for (; changes != 0; changes &= changes - 1) {
+      const auto at =
+          static_cast<std::uint32_t>(col) + static_cast<std::uint32_t>(std::countr_zero(changes));
+      if (inside) {
+        runs.back().end = at;
+      } else {
+        runs.push_back({row_index, at, 0, 0});
+      }
+      inside = !inside;
+    }
+  }
+  if (inside) runs.back().end = static_cast<std::uint32_t>(row.size());
+}
+
+/// The first run of the set that `run` is in. Halves the way there for those who ask later.
+std::uint32_t first_of(std::vector<std::uint32_t>& parents, std::uint32_t run) {
+  while (parents[run] != run) {
+    parents[run] = parents[parents[run]];
+    run = parents[run];
+  }
+  return run;
+}
+
+/// Joins two sets. Every parent comes before its children, so the first run stands for its set.
+void join(std::vector<std::uint32_t>& parents, std::uint32_t a, std::uint32_t b) {
+  a = first_of(parents, a);
+  b = first_of(parents, b);
+  parents[std::max(a, b)] = std::min(a, b);
+}
+
+/// Joins the runs of one row, [begin, end), with those of the row above it, [above, begin), that
+/// they touch at a side or a corner.
+void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t begin,
+               std::size_t end, std::vector<std::uint32_t>& parents) {
+  for (std::size_t run = begin; run < end; ++run) {
+    while (above < begin && runs[above].end < runs[run].first) ++above;
+    for (std::size_t other = above; other < begin && runs[other].first <= runs[run].end; ++other) {
+      join(parents, static_cast<std::uint32_t>(other), static_cast<std::uint32_t>(run));
+    }
+  }
+}
+
+}  // namespace
+
+void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows,
+                      std::uint32_t cols) {
+  if (status.size() != std::size_t{rows} * cols) {
+    throw Error("ContactMap::find",
+                fmt::format("{} status bytes for {} x {} pillars", status.size(), rows, cols),
+                "give one for each pillar");
+  }
+  found_.clear();
+  parents_.clear();
+  std::size_t above = 0;  // where the runs of the row above begin
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    const std::size_t begin = found_.size();
+    append_runs(status.subspan(std::size_t{row} * cols, cols), row, found_);
+    for (std::size_t run = begin; run < found_.size(); ++run) {
+      parents_.push_back(static_cast<std::uint32_t>(run));
+    }
+    join_rows(found_, above, begin, found_.size(), parents_);
+    above = begin;
+  }
+  number_contacts();
+  sort_runs();
+}
+
+/// First runs come in the order of the contacts' numbers, and before the others of their contact.
+void ContactMap::number_contacts() {
+  starts_.assign(1, 0);
+  for (std::size_t run = 0; run < found_.size(); ++run) {
+    if (parents_[run] == run) {
+      found_[run].contact = static_cast<std::uint32_t>(starts_.size() - 1);
+      starts_.push_back(0);
+    } else {
+      found_[run].contact = found_[parents_[run]].contact;
+    }
+  }
+}
+
+/// A counting sort, which keeps the order of runs within a contact.
+void ContactMap::sort_runs() {
+  for (const ContactRun& run : found_) ++starts_[run.contact + 1];
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  next_.assign(starts_.begin(), starts_.end());
+  runs_.resize(found_.size());
+  for (const ContactRun& run : found_) runs_[next_[run.contact]++] = run;
+}
+
+}  // namespace pillarfield
