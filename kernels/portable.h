@@ -26,6 +26,14 @@
  * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, and of
  * maths only pillar_model.h, sensel.h, direct_solve.h and half.h are of use.
  *
+ * kernels/field, which is of contacts and not of lanes, is written with these, and with float,
+ * double, uint and uchar, on which both languages agree:
+ *
+ *   PF_GLOBAL       what a pointer to memory of the frame is declared with
+ *   await_others()  waits until all work-items of a contact came here and sees what they wrote
+ *   add_count(p, n) *p += n, whatever the other work-items do
+ *   bits_of_float(x), float_of_bits(b)
+ *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
  *
@@ -97,6 +105,12 @@ static inline bool any_bits(Bits bits) {
 
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
+#define PF_GLOBAL global
+static inline void await_others(void) { barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE); }
+static inline void add_count(volatile global uint* count, uint more) { atomic_add(count, more); }
+static inline uint bits_of_float(float value) { return as_uint(value); }
+static inline float float_of_bits(uint bits) { return as_float(bits); }
+
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
@@ -108,6 +122,14 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 #undef PF_COUNTS
 #undef PF_BITS
 #undef PF_WORD
+#undef PF_GLOBAL
+#define PF_GLOBAL
+using uint = std::uint32_t;
+using uchar = std::uint8_t;
+static inline void await_others() {}
+static inline void add_count(uint* count, uint more) { *count += more; }
+static inline uint bits_of_float(float value) { return std::bit_cast<uint>(value); }
+static inline float float_of_bits(uint bits) { return std::bit_cast<float>(bits); }
 #if PF_PRECISION == 64
 using Real = double;
 #define PF_REAL(x) (x)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/field_estimate.h"
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
 #include "core/sensel_reader.h"
@@ -118,6 +119,7 @@ ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
   }
+  if (plan.estimator == Estimator::field) HostFieldEstimator(plan).resolve(field);
   return field;
 }
 

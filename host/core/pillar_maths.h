@@ -21,7 +21,20 @@ namespace pillarfield::single_precision {
 #include "kernels/maths/half.h"
 // and the rest
 #include "kernels/maths/paper_solve.h"
+#include "kernels/maths/segment.h"
 #include "kernels/maths/uncertainty.h"
+// contacts, of single precision alone; with casts as C has them
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wold-style-cast"
+#include "kernels/field/tile.h"
+// as above
+#include "kernels/field/trend.h"
+// what needs the trend
+#include "kernels/field/plateau.h"
+#include "kernels/field/residual.h"
+// and all of it
+#include "kernels/field/resolve.h"
+#pragma GCC diagnostic pop
 #undef PF_PRECISION
 }  // namespace pillarfield::single_precision
 

@@ -142,6 +142,11 @@ std::vector<Definition> silence_definitions(const SolverPlan& plan) {
   return all;
 }
 
+/// Whether a file is of the field estimator, which is a program of its own.
+bool is_of_field(std::string_view file) {
+  return file.starts_with("field/") || file == "maths/segment.h";
+}
+
 /// Whether a program of whole numbers has a use for a file: the others are of fractions.
 bool serves_whole_numbers(std::string_view file) {
   return file != "maths/elementary.h" && file != "maths/paper_solve.h" &&
@@ -174,7 +179,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));
   for (const KernelFile& file : kernel_files()) {
-    if (whole && !serves_whole_numbers(file.name)) continue;
+    if (is_of_field(file.name) || (whole && !serves_whole_numbers(file.name))) continue;
     source += fmt::format("#line 1 \"{}\"\n", file.name);
     source += file.text;
   }

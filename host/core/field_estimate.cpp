@@ -1,0 +1,54 @@
+#include "core/field_estimate.h"
+
+namespace pillarfield {
+namespace {
+
+namespace maths = single_precision;
+
+constexpr std::size_t kFloatPlanes = 7;
+
+/// Runs as the mathematics reads them.
+std::vector<maths::Run> plain_runs(std::span<const ContactRun> runs) {
+  std::vector<maths::Run> plain;
+  plain.reserve(runs.size());
+  for (const ContactRun& run : runs) plain.push_back({run.row, run.first, run.end, run.contact});
+  return plain;
+}
+
+}  // namespace
+
+HostFieldEstimator::HostFieldEstimator(const SolverPlan& plan) : work_(plan) {}
+
+single_precision::Scratch HostFieldEstimator::scratch(std::size_t tile) {
+  const std::size_t cells = work_.cells();
+  float* const planes = planes_.data();
+  const maths::Cells all = {kinds_.data(),      planes,
+                            planes + cells,     planes + 2 * cells,
+                            planes + 3 * cells, planes + 4 * cells,
+                            planes + 5 * cells, planes + 6 * cells};
+  return {all, lines_.data(), shared_.data() + tile * PF_SHARED_SUMS,
+          counts_.data() + tile * PF_RATIO_COUNTS};
+}
+
+void HostFieldEstimator::resolve(ForceField& field) {
+  work_.find(field.status);
+  const std::size_t tiles = work_.tiles().size();
+  kinds_.resize(work_.cells());
+  planes_.resize(kFloatPlanes * work_.cells());
+  lines_.resize(PF_LINE_SUMS * work_.lines());
+  shared_.resize(PF_SHARED_SUMS * tiles);
+  counts_.resize(PF_RATIO_COUNTS * tiles);
+  verdicts_.resize(tiles);
+  const maths::Field planes = {field.shear_x.data(), field.shear_y.data(), field.normal.data(),
+                               field.status.data(),  field.rows,           field.cols};
+  const std::vector<maths::Run> runs = plain_runs(work_.map().runs());
+  for (std::size_t tile = 0; tile < tiles; ++tile) {
+    verdicts_[tile] = maths::resolve_contact(work_.tiles()[tile], scratch(tile), planes,
+                                             runs.data(), work_.settings(), {0, 1});
+  }
+  for (const std::uint32_t index : work_.alone()) {
+    maths::resolve_alone(planes, index, work_.settings());
+  }
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "core/field_work.h"
+#include "pillarfield/force_field.h"
+
+namespace pillarfield {
+
+/// The field estimator as a plain C++ loop over the same mathematics as the device's: the same bits
+/// (docs/derivations/field.md).
+class HostFieldEstimator {
+ public:
+  explicit HostFieldEstimator(const SolverPlan& plan);
+
+  /// Resolves what the direct solve of the plan left open in a frame.
+  void resolve(ForceField& field);
+
+  [[nodiscard]] const FieldWork& work() const { return work_; }
+  /// One for each tile of the last frame's work.
+  [[nodiscard]] const std::vector<single_precision::Verdict>& verdicts() const { return verdicts_; }
+
+ private:
+  single_precision::Scratch scratch(std::size_t tile);
+
+  FieldWork work_;
+  std::vector<std::uint8_t> kinds_;
+  std::vector<float> planes_;
+  std::vector<double> lines_;
+  std::vector<double> shared_;
+  std::vector<std::uint32_t> counts_;
+  std::vector<single_precision::Verdict> verdicts_;
+};
+
+}  // namespace pillarfield

@@ -1,0 +1,101 @@
+#include "core/field_work.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pillarfield {
+namespace {
+
+namespace maths = single_precision;
+
+/// A box may be so many times as large as its pillars are many: else thin contacts that enclose
+/// each other would take memory beyond all bounds. Small ones may be as they like.
+constexpr std::size_t kMostCellsPerPillar = 16;
+constexpr std::size_t kSmallBox = 1024;
+
+maths::FieldSettings settings_of(const SolverPlan& plan) {
+  const double newtons = 1 / plan.skin.counts_per_newton;
+  const double noise =
+      plan.noise_counts || !plan.calibration.noise.empty() ? reading_noise(plan) : 0;
+  maths::FieldSettings settings{};
+  settings.noise = static_cast<float>(noise * newtons);
+  settings.quiet =
+      static_cast<float>(std::max(2 * plan.skin.threshold_counts, 8 * noise) * newtons);
+  settings.friction = static_cast<float>(plan.field.friction.value_or(0));
+  settings.slips = plan.field.slips ? 1 : 0;
+  settings.shape = plan.field.shape ? 1 : 0;
+  settings.slip = plan.field.slip ? 1 : 0;
+  settings.sweeps = static_cast<std::uint32_t>(plan.field.sweeps);
+  return settings;
+}
+
+/// What a contact is made of.
+struct Summary {
+  std::uint32_t pillars = 0;
+  std::uint32_t open = 0;
+  std::uint32_t resolved = 0;
+  std::uint32_t first_col = ~std::uint32_t{0};
+  std::uint32_t end_col = 0;
+};
+
+Summary summarise(std::span<const ContactRun> runs, std::span<const std::uint8_t> status,
+                  std::uint32_t cols) {
+  Summary summary;
+  for (const ContactRun& run : runs) {
+    for (std::uint32_t col = run.first; col < run.end; ++col) {
+      const std::uint8_t byte = status[std::size_t{run.row} * cols + col];
+      summary.open += maths::is_open(byte) ? 1 : 0;
+      summary.resolved += maths::is_determined(byte) ? 1 : 0;
+    }
+    summary.pillars += run.end - run.first;
+    summary.first_col = std::min(summary.first_col, run.first);
+    summary.end_col = std::max(summary.end_col, run.end);
+  }
+  return summary;
+}
+
+}  // namespace
+
+FieldWork::FieldWork(const SolverPlan& plan)
+    : rows_(plan.skin.pillar_rows()),
+      cols_(plan.skin.pillar_cols()),
+      settings_(settings_of(plan)) {}
+
+void FieldWork::find(std::span<const std::uint8_t> status) {
+  map_.find(status, rows_, cols_);
+  tiles_.clear();
+  alone_.clear();
+  cells_ = 0;
+  lines_ = 0;
+  for (std::uint32_t contact = 0; contact < map_.contacts(); ++contact) {
+    add_contact(contact, status);
+  }
+}
+
+void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t> status) {
+  const std::span<const ContactRun> runs = map_.runs(contact);
+  const Summary summary = summarise(runs, status, cols_);
+  if (summary.open == 0) return;
+  const std::uint32_t rows = runs.back().row - runs.front().row + 1;
+  const std::uint32_t cols = summary.end_col - summary.first_col;
+  const std::size_t cells = (std::size_t{rows} + 2) * (cols + 2);
+  const bool compact = cells <= std::max(kSmallBox, kMostCellsPerPillar * summary.pillars);
+  const bool asks = settings_.slips == 0 && (settings_.shape != 0 || settings_.slip != 0);
+  if (asks && compact && summary.resolved >= PF_LEAST_RESOLVED) {
+    tiles_.push_back({runs.front().row, summary.first_col, rows, cols,
+                      static_cast<std::uint32_t>(cells_), static_cast<std::uint32_t>(lines_),
+                      static_cast<std::uint32_t>(runs.data() - map_.runs().data()),
+                      static_cast<std::uint32_t>(runs.size())});
+    cells_ += cells;
+    lines_ += rows;
+    return;
+  }
+  for (const ContactRun& run : runs) {
+    const std::size_t first = std::size_t{run.row} * cols_;
+    for (std::size_t index = first + run.first; index < first + run.end; ++index) {
+      if (maths::is_open(status[index])) alone_.push_back(static_cast<std::uint32_t>(index));
+    }
+  }
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/pillar_maths.h"
+#include "pillarfield/contact_map.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield {
+
+/// What the field estimator has to do in one frame: which contacts are worth a look, where in the
+/// scratch memory each has its place, and which pillars stay alone. Memory is kept from frame to
+/// frame.
+class FieldWork {
+ public:
+  explicit FieldWork(const SolverPlan& plan);
+
+  /// Looks at the status bytes [rows, cols] that the direct solve left.
+  void find(std::span<const std::uint8_t> status);
+
+  [[nodiscard]] const single_precision::FieldSettings& settings() const { return settings_; }
+  [[nodiscard]] const ContactMap& map() const { return map_; }
+  /// Contacts that have both open and resolved pillars.
+  [[nodiscard]] const std::vector<single_precision::Tile>& tiles() const { return tiles_; }
+  /// Indices of the open pillars of all others.
+  [[nodiscard]] const std::vector<std::uint32_t>& alone() const { return alone_; }
+  [[nodiscard]] std::size_t cells() const { return cells_; }  ///< scratch cells of all tiles
+  [[nodiscard]] std::size_t lines() const { return lines_; }  ///< records of lines of all tiles
+
+ private:
+  void add_contact(std::uint32_t contact, std::span<const std::uint8_t> status);
+
+  std::uint32_t rows_;
+  std::uint32_t cols_;
+  single_precision::FieldSettings settings_;
+  ContactMap map_;
+  std::vector<single_precision::Tile> tiles_;
+  std::vector<std::uint32_t> alone_;
+  std::size_t cells_ = 0;
+  std::size_t lines_ = 0;
+};
+
+}  // namespace pillarfield

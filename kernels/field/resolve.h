@@ -1,0 +1,453 @@
+/* A contact's ambiguous pillars, resolved together: each way of telling their normal forces is
+ * tried, the contact's own evidence chooses one, or none (docs/derivations/field.md). All
+ * work-items of a contact call resolve_contact; what they find does not depend on their number. */
+
+/* What the plan and its scene say. */
+typedef struct {
+  float noise;    /* standard deviation of a reading, N; zero where it is not known */
+  float quiet;    /* normal force below which a ratio is mostly noise, N */
+  float friction; /* bound of shear over normal force; zero where there is none */
+  uint slips;     /* every pillar slips at that friction */
+  uint shape;     /* the pressure's shape may be used */
+  uint slip;      /* friction may be learnt */
+  uint sweeps;
+} FieldSettings;
+
+/* How a contact was resolved. */
+#define PF_BY_NOTHING 0u  /* its ambiguous pillars keep the middle */
+#define PF_BY_BOUND 1u    /* the middle of what a friction bound leaves */
+#define PF_BY_FRICTION 2u /* they slip, at the friction given */
+#define PF_BY_SLIP 3u     /* they slip, at the friction that resolved pillars show */
+#define PF_BY_SHAPE 4u    /* by the pressure's shape, and the friction that it implies */
+
+/* What was found of a contact; for the host, and for the last stage. */
+typedef struct {
+  uint way;
+  float friction; /* of what slips; zero where none was found */
+  float score;    /* of the shape */
+  float misfit;   /* of the trend where it hands over, relative */
+} Verdict;
+
+#define PF_SHARED_SUMS 20 /* doubles that the work-items of a contact share */
+#define PF_AT_INVERSE_SQUARE 15
+#define PF_AT_PEAK 16
+#define PF_AT_OPEN_PEAK 17
+#define PF_AT_RESOLVED 18 /* pillars */
+#define PF_AT_LOADED 19
+
+/* Scratch memory of one contact. */
+typedef struct {
+  Cells cells;
+  PF_GLOBAL double* lines;  /* of all tiles */
+  PF_GLOBAL double* shared; /* PF_SHARED_SUMS of this one */
+  PF_GLOBAL uint* counts;   /* PF_RATIO_COUNTS of this one */
+} Scratch;
+
+/* Evidence must be this good (docs/derivations/field.md, section 6; the values are tuned on scenes
+ * of docs/field.md that do not judge). */
+#define PF_LEAST_RESOLVED 12.0 /* pillars */
+#define PF_LEAST_RESOLVED_SHARE 0.06
+#define PF_LEAST_SCORE 0.03
+#define PF_LARGEST_FRICTION 4.0 /* that is believed without being told */
+
+static inline float clamped(float value, float low, float high) {
+  return value < low ? low : (high < value ? high : value);
+}
+
+/* --- What stands where ------------------------------------------------------------------------ */
+
+static inline void summarise_lines(Tile tile, Cells cells, PF_GLOBAL double* lines, Share share) {
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    float peak = 0.0f;
+    float open_peak = 0.0f;
+    double resolved = 0.0;
+    double loaded = 0.0;
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      const uchar kind = cells.kind[cell];
+      if (kind < PF_CELL_LOADED) continue;
+      const float top = cells.top[cell];
+      loaded += 1.0;
+      if (kind == PF_CELL_RESOLVED) resolved += 1.0;
+      if (peak < top) peak = top;
+      if (kind == PF_CELL_AMBIGUOUS && open_peak < top) open_peak = top;
+    }
+    PF_GLOBAL double* const sums = lines + (tile.first_line + row) * PF_LINE_SUMS;
+    sums[0] = (double)peak;
+    sums[1] = (double)open_peak;
+    sums[2] = resolved;
+    sums[3] = loaded;
+  }
+}
+
+/* For one work-item. */
+static inline void share_summary(Tile tile, Scratch scratch) {
+  double peak = 0.0;
+  double open_peak = 0.0;
+  double resolved = 0.0;
+  double loaded = 0.0;
+  for (uint row = 0; row < tile.rows; ++row) {
+    PF_GLOBAL const double* const sums = scratch.lines + (tile.first_line + row) * PF_LINE_SUMS;
+    if (peak < sums[0]) peak = sums[0];
+    if (open_peak < sums[1]) open_peak = sums[1];
+    resolved += sums[2];
+    loaded += sums[3];
+  }
+  scratch.shared[PF_AT_PEAK] = peak;
+  scratch.shared[PF_AT_OPEN_PEAK] = open_peak;
+  scratch.shared[PF_AT_RESOLVED] = resolved;
+  scratch.shared[PF_AT_LOADED] = loaded;
+}
+
+/* --- Slip that resolved pillars show ---------------------------------------------------------- */
+
+/* Shear over normal force of a pillar, and the largest ratio at which, sheared that way, it would
+ * still be resolved (F10). */
+typedef struct {
+  float ratio;
+  float ceiling;
+} Slope;
+
+static inline Slope slope_of(Force force) {
+  const float shear = length_2(force.shear_x, force.shear_y);
+  const float rising = fabs(force.shear_x + force.shear_y);
+  const float falling = fabs(force.shear_x - force.shear_y);
+  const float least = 0.70710678118654752440f * (rising < falling ? rising : falling);
+  Slope slope;
+  slope.ratio = shear / force.normal;
+  slope.ceiling = least > 0.0f ? shear / least : 1e30f;
+  return slope;
+}
+
+/* Counts the ratios of resolved pillars that would have been resolved at a tenth more, or at a
+ * tenth more than `plateau`, which is zero in the first round. */
+static inline void count_slopes(Tile tile, Scratch scratch, Field field, float quiet, float plateau,
+                                Share share) {
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      if (scratch.cells.kind[cell_at(tile, row, col)] != PF_CELL_RESOLVED) continue;
+      const Force force = force_of_field(field, (tile.row + row) * field.cols + tile.col + col);
+      if (!(force.normal > quiet)) continue;
+      const Slope slope = slope_of(force);
+      if (!(slope.ratio * force.normal > quiet)) continue;
+      const float beyond = plateau > 0.0f ? plateau : slope.ratio;
+      if (!(slope.ceiling > 1.1f * beyond)) continue;
+      add_count(scratch.counts + bin_of_ratio(slope.ratio), 1);
+    }
+  }
+}
+
+static inline Plateau slopes_plateau(Tile tile, Scratch scratch, Field field, float quiet,
+                                     float from, Share share) {
+  clear_counts(scratch.counts, share);
+  await_others();
+  count_slopes(tile, scratch, field, quiet, from, share);
+  await_others();
+  const Plateau plateau = find_plateau(scratch.counts, 1.0618f);
+  await_others();
+  return plateau;
+}
+
+/* The part of the open pillars, by the square of what they may bear, that could not slip at a
+ * friction: their least ratio is above it. */
+static inline void count_contradictions(Tile tile, Scratch scratch, float noise, float friction,
+                                        float peak, Share share) {
+  const Cells cells = scratch.cells;
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
+      const float high = cells.top[cell];
+      const float part = high / peak;
+      const bool contradicts =
+          normal_at_ratio(segment_of_cell(cells, cell), friction) > 1.02f * high + noise;
+      add_count(scratch.counts + (contradicts ? 1 : 0), (uint)(part * part * 4095.0f));
+    }
+  }
+}
+
+/* The friction that resolved pillars show, and that open ones do not contradict; zero if none. */
+static inline float shown_friction(Tile tile, Scratch scratch, Field field, FieldSettings settings,
+                                   Share share) {
+  const Plateau first = slopes_plateau(tile, scratch, field, settings.quiet, 0.0f, share);
+  if (!(first.share > 0.0)) return 0.0f;
+  const Plateau plateau =
+      slopes_plateau(tile, scratch, field, settings.quiet, (float)first.ratio, share);
+  const float friction = (float)plateau.ratio;
+  const double telling = counts_from(scratch.counts, 0);
+  const double pillars = scratch.shared[PF_AT_LOADED];
+  await_others();
+  clear_counts(scratch.counts, share);
+  await_others();
+  count_contradictions(tile, scratch, settings.noise, friction,
+                       (float)scratch.shared[PF_AT_OPEN_PEAK], share);
+  await_others();
+  const double agree = (double)scratch.counts[0];
+  const double contradict = (double)scratch.counts[1];
+  await_others();
+  const bool shows = plateau.share >= 0.1 && plateau.above <= 0.05 && telling >= 0.2 * pillars &&
+                     contradict <= 0.1 * (agree + contradict);
+  return shows ? friction : 0.0f;
+}
+
+/* --- The pressure's shape --------------------------------------------------------------------- */
+
+static inline Trend shared_trend(PF_GLOBAL const double* shared, uint degree, bool squared) {
+  Trend trend;
+  trend.degree = degree;
+  trend.squared = squared;
+  for (uint i = 0; i < PF_TREND_TERMS; ++i) trend.terms[i] = shared[i];
+  trend.inverse_square = shared[PF_AT_INVERSE_SQUARE];
+  return trend;
+}
+
+static inline void share_trend(const Trend* trend, PF_GLOBAL double* shared) {
+  for (uint i = 0; i < PF_TREND_TERMS; ++i) shared[i] = trend->terms[i];
+  shared[PF_AT_INVERSE_SQUARE] = trend->inverse_square;
+}
+
+/* Fits the trend: once with plain weights, twice with robust ones (F8). */
+static inline Trend fit_trend(Tile tile, Scratch scratch, uint degree, bool squared, Share share) {
+  Trend trend;
+  trend.degree = degree;
+  trend.squared = squared;
+  for (uint i = 0; i < PF_TREND_TERMS; ++i) trend.terms[i] = 0.0;
+  trend.inverse_square = 0.0;
+  const float peak = (float)scratch.shared[PF_AT_PEAK];
+  const double unit = powered(squared, (double)peak);
+  const double floor_square = 1e-6 * unit * unit;
+  NormalEquations plain;
+  plain.square = 0.0;
+  plain.weight = 0.0;
+  for (uint round = 0; round < 3; ++round) {
+    sum_lines(tile, scratch.cells, &trend, peak, scratch.lines, share);
+    await_others();
+    if (share.first == 0) {
+      const NormalEquations equations = normal_equations(tile, degree, scratch.lines);
+      if (round == 0) plain = equations;
+      solve_trend(equations, &trend);
+      const double square = mean_square(&plain, &trend);
+      trend.inverse_square = 1.0 / (square > floor_square ? square : floor_square);
+      share_trend(&trend, scratch.shared);
+    }
+    await_others();
+    trend = shared_trend(scratch.shared, degree, squared);
+  }
+  return trend;
+}
+
+/* The candidate's normal force on a pillar as its shape has it, and how much its box objects. */
+typedef struct {
+  float normal;
+  bool objects;
+} Shaped;
+
+static inline Shaped shaped_normal(Cells cells, uint cell, bool squared, double value,
+                                   float noise) {
+  const float high = cells.top[cell];
+  const double pressed = value > 0.0 ? value : 0.0;
+  const float normal = (float)(squared ? sqrt(pressed) : pressed);
+  const float least = 0.05f * high;
+  Shaped shaped;
+  shaped.objects = normal < least || normal > 1.03f * high + noise;
+  shaped.normal = clamped(normal, least, high);
+  return shaped;
+}
+
+/* Writes the candidate, and counts the ratios that it implies: those that are too low to be told
+ * as beyond all, those above the box as none. */
+static inline void evaluate_shape(Tile tile, Scratch scratch, const Trend* trend, float noise,
+                                  Share share) {
+  const Cells cells = scratch.cells;
+  const Frame frame = frame_of(tile);
+  const float peak = (float)scratch.shared[PF_AT_OPEN_PEAK];
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    const TrendLine line = trend_line(trend, (frame.row - (double)row) * frame.scale);
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
+      const double value =
+          on_line(&line, ((double)col - frame.col) * frame.scale) + (double)cells.residual[cell];
+      const Shaped shaped = shaped_normal(cells, cell, trend->squared, value, noise);
+      cells.candidate[cell] = shaped.normal;
+      const float part = cells.top[cell] / peak;
+      const bool low = shaped.normal < 0.5f * cells.top[cell];
+      const uint bin =
+          shaped.objects
+              ? (low ? PF_RATIO_BEYOND : PF_RATIO_NONE)
+              : bin_of_ratio(ratio_on_segment(segment_of_cell(cells, cell), shaped.normal));
+      add_count(scratch.counts + bin, (uint)(part * part * 4095.0f));
+    }
+  }
+}
+
+/* How far the trend is off, one way, where it hands over to ambiguous pillars; relative (F9). */
+static inline double border_misfit(Tile tile, PF_GLOBAL const double* lines) {
+  double residuals = 0.0;
+  double values = 0.0;
+  for (uint row = 0; row < tile.rows; ++row) {
+    residuals += lines[(tile.first_line + row) * PF_LINE_SUMS];
+    values += lines[(tile.first_line + row) * PF_LINE_SUMS + 1];
+  }
+  return values > 0.0 ? fabs(residuals) / values : 1.0;
+}
+
+/* One model of the pressure's shape. Leaves its estimate in the cells' candidates. */
+static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settings, uint degree,
+                                bool squared, Share share) {
+  const Trend trend = fit_trend(tile, scratch, degree, squared, share);
+  begin_residuals(tile, scratch.cells, &trend, (float)scratch.shared[PF_AT_PEAK], share);
+  clear_counts(scratch.counts, share);
+  await_others();
+  for (uint sweep = 0; sweep < 2 * settings.sweeps; ++sweep) {
+    relax_colour(tile, scratch.cells, sweep & 1u, share);
+    await_others();
+  }
+  sum_border(tile, scratch.cells, &trend, scratch.lines, share);
+  evaluate_shape(tile, scratch, &trend, settings.noise, share);
+  await_others();
+  const Plateau plateau = find_plateau(scratch.counts, 1.0833f);
+  Verdict verdict;
+  verdict.friction = (float)plateau.ratio;
+  verdict.misfit = (float)border_misfit(tile, scratch.lines);
+  verdict.score = (float)(plateau.share - 2.0 * plateau.far - 3.0 * (double)verdict.misfit);
+  verdict.way = PF_BY_SHAPE;
+  await_others();
+  return verdict;
+}
+
+static inline void keep_candidates(Tile tile, Cells cells, Share share) {
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      cells.best[cell] = cells.candidate[cell];
+    }
+  }
+}
+
+/* The best model whose evidence is good enough; the pressure and its square, with trends of the
+ * second and, where there are pillars enough for it, of the fourth degree. */
+static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings settings,
+                                 double resolved, Share share) {
+  Verdict best;
+  best.way = PF_BY_NOTHING;
+  best.friction = 0.0f;
+  best.score = (float)PF_LEAST_SCORE;
+  best.misfit = 0.0f;
+  for (uint degree = 2; degree <= PF_TREND_MOST_DEGREE; degree += 2) {
+    if (resolved < 4.0 * (double)terms_of(degree) || best.score > 0.5f) break;
+    for (uint power = 1; power <= 2; ++power) {
+      const Verdict verdict = try_shape(tile, scratch, settings, degree, power == 2, share);
+      if (!(verdict.score > best.score) || verdict.friction > (float)PF_LARGEST_FRICTION) continue;
+      best = verdict;
+      keep_candidates(tile, scratch.cells, share);
+      await_others();
+    }
+  }
+  return best;
+}
+
+/* --- The verdict ------------------------------------------------------------------------------ */
+
+static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, FieldSettings settings,
+                                    Share share) {
+  const double resolved = scratch.shared[PF_AT_RESOLVED];
+  Verdict verdict;
+  verdict.way = settings.friction > 0.0f ? PF_BY_BOUND : PF_BY_NOTHING;
+  verdict.friction = settings.friction;
+  verdict.score = 0.0f;
+  verdict.misfit = 0.0f;
+  if (settings.slips != 0) {
+    verdict.way = PF_BY_FRICTION;
+    return verdict;
+  }
+  if (resolved < PF_LEAST_RESOLVED) return verdict;
+  if (settings.slip != 0) {
+    const float friction = shown_friction(tile, scratch, field, settings, share);
+    if (friction > 0.0f) {
+      verdict.way = PF_BY_SLIP;
+      verdict.friction = friction;
+      return verdict;
+    }
+  }
+  if (settings.shape == 0) return verdict;
+  if (resolved < PF_LEAST_RESOLVED_SHARE * scratch.shared[PF_AT_LOADED]) return verdict;
+  weigh_lines(tile, scratch.cells, (float)scratch.shared[PF_AT_PEAK], share);
+  await_others();
+  const Verdict shape = best_shape(tile, scratch, settings, resolved, share);
+  return shape.way == PF_BY_SHAPE ? shape : verdict;
+}
+
+/* The normal force of an ambiguous pillar that a verdict has (F6, F11). `shaped` is that of the
+ * best model, where there is one. */
+static inline float judged_normal(Segment segment, Verdict verdict, FieldSettings settings,
+                                  float shaped) {
+  float low = 0.0f;
+  if (settings.friction > 0.0f) {
+    low = clamped(normal_at_ratio(segment, settings.friction), 0.0f, segment.high);
+  }
+  if (verdict.way == PF_BY_FRICTION) return low;
+  if (verdict.way == PF_BY_SLIP || verdict.way == PF_BY_SHAPE) {
+    const float slipping = clamped(normal_at_ratio(segment, verdict.friction), low, segment.high);
+    if (verdict.way == PF_BY_SLIP) return slipping;
+    const bool slips = ratio_on_segment(segment, shaped) > 0.9f * verdict.friction;
+    return slips ? slipping : clamped(shaped, low, segment.high);
+  }
+  return middle_of_thetas(segment, low, segment.high);
+}
+
+static inline void write_force(Field field, uint index, Force force, bool resolved) {
+  field.shear_x[index] = force.shear_x;
+  field.shear_y[index] = force.shear_y;
+  field.normal[index] = force.normal;
+  if (resolved) field.status[index] |= PF_STATUS_FROM_NEIGHBOURS;
+}
+
+/* Writes the forces of a contact's ambiguous pillars. */
+static inline void write_contact(Tile tile, Cells cells, Field field, Verdict verdict,
+                                 FieldSettings settings, Share share) {
+  const bool resolved = verdict.way > PF_BY_BOUND;
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
+      const uint index = (tile.row + row) * field.cols + tile.col + col;
+      const float normal = judged_normal(segment_of_cell(cells, cell), verdict, settings,
+                                         verdict.way == PF_BY_SHAPE ? cells.best[cell] : 0.0f);
+      const Mask vertical = moves_vertically((Bits)field.status[index]);
+      write_force(field, index, force_on_segment(force_of_field(field, index), vertical, normal),
+                  resolved);
+    }
+  }
+}
+
+/* Resolves one contact. Its verdict is the same for every work-item. */
+static inline Verdict resolve_contact(Tile tile, Scratch scratch, Field field,
+                                      PF_GLOBAL const Run* runs, FieldSettings settings,
+                                      Share share) {
+  clear_tile(tile, scratch.cells, field, share);
+  await_others();
+  load_tile(tile, scratch.cells, field, runs, share);
+  await_others();
+  summarise_lines(tile, scratch.cells, scratch.lines, share);
+  await_others();
+  if (share.first == 0) share_summary(tile, scratch);
+  await_others();
+  const Verdict verdict = judge_contact(tile, scratch, field, settings, share);
+  write_contact(tile, scratch.cells, field, verdict, settings, share);
+  return verdict;
+}
+
+/* The middle that a pillar keeps where its contact is not resolved, by itself (F4, F6). */
+static inline void resolve_alone(Field field, uint index, FieldSettings settings) {
+  const Force middle = force_of_field(field, index);
+  const Mask vertical = moves_vertically((Bits)field.status[index]);
+  if (!(middle.normal > 0.0f)) return;
+  Verdict verdict;
+  verdict.way = settings.slips != 0 ? PF_BY_FRICTION : PF_BY_NOTHING;
+  verdict.friction = settings.friction;
+  verdict.score = 0.0f;
+  verdict.misfit = 0.0f;
+  const float normal = judged_normal(segment_of(middle, vertical), verdict, settings, 0.0f);
+  write_force(field, index, force_on_segment(middle, vertical, normal), verdict.way > PF_BY_BOUND);
+}
