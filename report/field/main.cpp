@@ -26,7 +26,8 @@ int print_table(const std::vector<std::string>& words) {
   const int sweeps = words.size() > 3 ? std::atoi(words[3].c_str()) : FieldEvidence{}.sweeps;
   const bool tunes = words[1] == "tuning";
   if (!tunes && words[1] != "judging") return usage();
-  const auto scenes = tunes ? field_study::tuning(filter) : field_study::judging(filter);
+  auto scenes = tunes ? field_study::tuning(filter) : field_study::judging(filter);
+  field_study::integrate(scenes);
   std::fputs(scene_lines(scenes, sweeps).c_str(), stdout);
   return 0;
 }

@@ -24,7 +24,7 @@ struct Scene {
   double friction = 1;
   double noise_counts = 0.5;  ///< normal, standard deviation; the threshold is four times that
   std::uint64_t seed = 1;
-  std::shared_ptr<const PillarLoads> loads;  ///< those of the contact
+  std::shared_ptr<const PillarLoads> loads;  ///< those of the contact, from integrate()
 
   [[nodiscard]] std::string name() const;  ///< with friction and noise
   [[nodiscard]] Family family() const { return family_of(contact.body.shape); }
@@ -33,9 +33,13 @@ struct Scene {
 
 /// Scenes by which the estimator was tuned, and those that judge it. They share no contact, no
 /// friction, no direction and no seed; shapes that only the latter have are ellipse, merged
-/// spheres, truncated cone, rounded punch. Only scenes whose name contains `filter`. Some seconds.
+/// spheres, truncated cone, rounded punch. Only scenes whose name contains `filter`. Their loads
+/// are not there yet.
 [[nodiscard]] std::vector<Scene> tuning(std::string_view filter = {});
 [[nodiscard]] std::vector<Scene> judging(std::string_view filter = {});
+
+/// Adds the loads to scenes of one set, each contact integrated once; 4 s for all of them.
+void integrate(std::vector<Scene>& scenes);
 
 /// How wrong the forces of ambiguous pillars are; of the pillars in region 3 by their usable bits.
 struct Score {
@@ -70,7 +74,7 @@ struct Segment {
 /// The segment of pillar `index` of a direct solve, which is in region 3.
 [[nodiscard]] Segment segment_of(const ForceField& direct, std::size_t index);
 
-/// A scene's frames with their truth.
+/// The frames of a scene that has its loads, with their truth.
 class Observed {
  public:
   explicit Observed(const Scene& scene);

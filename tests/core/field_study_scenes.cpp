@@ -44,6 +44,11 @@ std::string body_name(const Body& body) {
   return body.waves > 0 ? fmt::format("{} x {:g}", name, body.waves) : name;
 }
 
+/// Tells contacts of a set apart: those of a name may lie in two places.
+std::string contact_key(const Scene& scene) {
+  return fmt::format("{} {}", scene.contact_name, scene.contact.body.x);
+}
+
 /// Collects contacts; each gets a place of its own between the pillars.
 class Contacts {
  public:
@@ -136,27 +141,12 @@ void append_scenes(const FieldContact& contact, const std::vector<double>& frict
   }
 }
 
-/// Integrates each contact once.
-void add_loads(std::vector<Scene>& scenes) {
-  std::map<std::string, std::shared_ptr<const PillarLoads>> loads;
-  std::vector<const Scene*> first_of_contact;
-  for (const Scene& scene : scenes) {
-    if (loads.try_emplace(scene.contact_name).second) first_of_contact.push_back(&scene);
-  }
-  for_each_index(first_of_contact.size(), [&](std::size_t i) {
-    const Scene& scene = *first_of_contact[i];
-    loads.at(scene.contact_name) = std::make_shared<PillarLoads>(loads_of(scene.contact));
-  });
-  for (Scene& scene : scenes) scene.loads = loads.at(scene.contact_name);
-}
-
 std::vector<Scene> Contacts::scenes(std::string_view filter) const {
   std::vector<Scene> all;
   std::uint64_t seed = set_.first_seed;
   for (const FieldContact& contact : contacts_) append_scenes(contact, set_.frictions, seed, all);
   std::erase_if(all,
                 [&](const Scene& scene) { return scene.name().find(filter) == std::string::npos; });
-  add_loads(all);
   return all;
 }
 
@@ -243,6 +233,19 @@ std::vector<Scene> judging(std::string_view filter) {
   const std::vector<Scene> more = little.scenes(filter);
   scenes.insert(scenes.end(), more.begin(), more.end());
   return scenes;
+}
+
+void integrate(std::vector<Scene>& scenes) {
+  std::map<std::string, std::shared_ptr<const PillarLoads>> loads;
+  std::vector<const Scene*> first_of_contact;
+  for (const Scene& scene : scenes) {
+    if (loads.try_emplace(contact_key(scene)).second) first_of_contact.push_back(&scene);
+  }
+  for_each_index(first_of_contact.size(), [&](std::size_t i) {
+    const Scene& scene = *first_of_contact[i];
+    loads.at(contact_key(scene)) = std::make_shared<PillarLoads>(loads_of(scene.contact));
+  });
+  for (Scene& scene : scenes) scene.loads = loads.at(contact_key(scene));
 }
 
 }  // namespace pillarfield::field_study
