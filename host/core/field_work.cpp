@@ -22,9 +22,9 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
   settings.quiet =
       static_cast<float>(std::max(2 * plan.skin.threshold_counts, 8 * noise) * newtons);
   settings.friction = static_cast<float>(plan.field.friction.value_or(0));
-  settings.slips = plan.field.slips ? 1 : 0;
-  settings.shape = plan.field.shape ? 1 : 0;
-  settings.slip = plan.field.slip ? 1 : 0;
+  settings.slips = plan.field.slips ? 1U : 0U;
+  settings.shape = plan.field.shape ? 1U : 0U;
+  settings.slip = plan.field.slip ? 1U : 0U;
   settings.sweeps = static_cast<std::uint32_t>(plan.field.sweeps);
   return settings;
 }
@@ -44,8 +44,8 @@ Summary summarise(std::span<const ContactRun> runs, std::span<const std::uint8_t
   for (const ContactRun& run : runs) {
     for (std::uint32_t col = run.first; col < run.end; ++col) {
       const std::uint8_t byte = status[std::size_t{run.row} * cols + col];
-      summary.open += maths::is_open(byte) ? 1 : 0;
-      summary.resolved += maths::is_determined(byte) ? 1 : 0;
+      summary.open += maths::is_open(byte) ? 1U : 0U;
+      summary.resolved += maths::is_determined(byte) ? 1U : 0U;
     }
     summary.pillars += run.end - run.first;
     summary.first_col = std::min(summary.first_col, run.first);

@@ -25,9 +25,10 @@ static inline float ratio_of_bin(uint bin) {
 /* A ratio that many share. */
 typedef struct {
   double ratio;
-  double share; /* of all counts */
-  double above; /* share beyond the window */
-  double far;   /* share beyond a quarter more than the ratio */
+  double share;  /* of all counts */
+  double above;  /* share beyond the window */
+  double far;    /* share beyond a quarter more than the ratio */
+  double spread; /* standard deviation of the ratios in the window, relative */
 } Plateau;
 
 static inline void clear_counts(PF_GLOBAL uint* counts, Share share) {
@@ -65,13 +66,18 @@ static inline Plateau find_plateau(PF_GLOBAL const uint* counts, float width) {
   plateau.share = 0.0;
   plateau.above = 0.0;
   plateau.far = 0.0;
+  plateau.spread = 0.0;
   if (!(most > 0.0)) return plateau;
   double sum = 0.0;
+  double squares = 0.0;
   for (uint bin = best; bin < best_end; ++bin) {
     const double middle = 0.5 * ((double)ratio_of_bin(bin) + (double)ratio_of_bin(bin + 1));
     sum += (double)counts[bin] * middle;
+    squares += (double)counts[bin] * middle * middle;
   }
   plateau.ratio = sum / most;
+  const double variance = squares / most - plateau.ratio * plateau.ratio;
+  plateau.spread = variance > 0.0 ? sqrt(variance) / plateau.ratio : 0.0;
   plateau.share = most / total;
   plateau.above = counts_from(counts, best_end) / total;
   const uint far = bin_of_ratio((float)(1.25 * plateau.ratio));

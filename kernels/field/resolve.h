@@ -26,6 +26,7 @@ typedef struct {
   float friction; /* of what slips; zero where none was found */
   float score;    /* of the shape */
   float misfit;   /* of the trend where it hands over, relative */
+  float spread;   /* of the ratios that are taken for the friction, relative */
 } Verdict;
 
 #define PF_SHARED_SUMS 20 /* doubles that the work-items of a contact share */
@@ -47,7 +48,9 @@ typedef struct {
  * of docs/field.md that do not judge). */
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
-#define PF_LEAST_SCORE 0.03
+#define PF_LEAST_SCORE 0.15
+#define PF_MISFIT_PER_SHARE \
+  0.45                          /* of the trend, by the share of the pillars that it is fitted to */
 #define PF_LARGEST_FRICTION 4.0 /* that is believed without being told */
 
 static inline float clamped(float value, float low, float high) {
@@ -306,11 +309,12 @@ static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settin
   sum_border(tile, scratch.cells, &trend, scratch.lines, share);
   evaluate_shape(tile, scratch, &trend, settings.noise, share);
   await_others();
-  const Plateau plateau = find_plateau(scratch.counts, 1.0833f);
+  const Plateau plateau = find_plateau(scratch.counts, 1.15f);
   Verdict verdict;
   verdict.friction = (float)plateau.ratio;
   verdict.misfit = (float)border_misfit(tile, scratch.lines);
-  verdict.score = (float)(plateau.share - 2.0 * plateau.far - 3.0 * (double)verdict.misfit);
+  verdict.score = (float)(plateau.share - 1.5 * plateau.far - (double)verdict.misfit);
+  verdict.spread = (float)plateau.spread;
   verdict.way = PF_BY_SHAPE;
   await_others();
   return verdict;
@@ -329,16 +333,21 @@ static inline void keep_candidates(Tile tile, Cells cells, Share share) {
  * second and, where there are pillars enough for it, of the fourth degree. */
 static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings settings,
                                  double resolved, Share share) {
+  const double most_misfit = PF_MISFIT_PER_SHARE * resolved / scratch.shared[PF_AT_LOADED];
   Verdict best;
   best.way = PF_BY_NOTHING;
   best.friction = 0.0f;
   best.score = (float)PF_LEAST_SCORE;
   best.misfit = 0.0f;
+  best.spread = 0.0f;
   for (uint degree = 2; degree <= PF_TREND_MOST_DEGREE; degree += 2) {
     if (resolved < 4.0 * (double)terms_of(degree) || best.score > 0.5f) break;
     for (uint power = 1; power <= 2; ++power) {
       const Verdict verdict = try_shape(tile, scratch, settings, degree, power == 2, share);
-      if (!(verdict.score > best.score) || verdict.friction > (float)PF_LARGEST_FRICTION) continue;
+      if (!(verdict.score > best.score) || verdict.friction > (float)PF_LARGEST_FRICTION ||
+          (double)verdict.misfit > most_misfit) {
+        continue;
+      }
       best = verdict;
       keep_candidates(tile, scratch.cells, share);
       await_others();
@@ -357,6 +366,7 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
   verdict.friction = settings.friction;
   verdict.score = 0.0f;
   verdict.misfit = 0.0f;
+  verdict.spread = 0.0f;
   if (settings.slips != 0) {
     verdict.way = PF_BY_FRICTION;
     return verdict;
@@ -448,6 +458,7 @@ static inline void resolve_alone(Field field, uint index, FieldSettings settings
   verdict.friction = settings.friction;
   verdict.score = 0.0f;
   verdict.misfit = 0.0f;
+  verdict.spread = 0.0f;
   const float normal = judged_normal(segment_of(middle, vertical), verdict, settings, 0.0f);
   write_force(field, index, force_on_segment(middle, vertical, normal), verdict.way > PF_BY_BOUND);
 }
