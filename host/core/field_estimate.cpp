@@ -15,6 +15,31 @@ std::vector<maths::Run> plain_runs(std::span<const ContactRun> runs) {
   return plain;
 }
 
+/// A plane's values; null where it is empty.
+float* values(std::vector<float>& plane) { return plane.empty() ? nullptr : plane.data(); }
+
+maths::Field planes_of(ForceField& field) {
+  auto& uncertainty = field.uncertainty;
+  return {field.shear_x.data(),
+          field.shear_y.data(),
+          field.normal.data(),
+          field.status.data(),
+          nullptr,
+          nullptr,
+          nullptr,
+          values(uncertainty[Uncertainty::shear_x]),
+          values(uncertainty[Uncertainty::shear_y]),
+          values(uncertainty[Uncertainty::normal]),
+          values(uncertainty[Uncertainty::theta_low]),
+          values(uncertainty[Uncertainty::theta_high]),
+          values(uncertainty[Uncertainty::phi_low]),
+          values(uncertainty[Uncertainty::phi_high]),
+          values(uncertainty[Uncertainty::magnitude_low]),
+          values(uncertainty[Uncertainty::magnitude_high]),
+          field.rows,
+          field.cols};
+}
+
 }  // namespace
 
 HostFieldEstimator::HostFieldEstimator(const SolverPlan& plan) : work_(plan) {}
@@ -39,8 +64,7 @@ void HostFieldEstimator::resolve(ForceField& field) {
   shared_.resize(PF_SHARED_SUMS * tiles);
   counts_.resize(PF_RATIO_COUNTS * tiles);
   verdicts_.resize(tiles);
-  const maths::Field planes = {field.shear_x.data(), field.shear_y.data(), field.normal.data(),
-                               field.status.data(),  field.rows,           field.cols};
+  const maths::Field planes = planes_of(field);
   const std::vector<maths::Run> runs = plain_runs(work_.map().runs());
   for (std::size_t tile = 0; tile < tiles; ++tile) {
     verdicts_[tile] = maths::resolve_contact(work_.tiles()[tile], scratch(tile), planes,

@@ -32,6 +32,23 @@ double mean_noise(const Calibration& calibration) {
 }
 
 constexpr int kMaxBaselineInterval = 1024;
+constexpr double kMaxFriction = 100;
+constexpr int kMaxSweeps = 1000;
+
+void check(const FieldEvidence& evidence, std::string_view where) {
+  if (evidence.friction && !(*evidence.friction > 0 && *evidence.friction <= kMaxFriction)) {
+    throw Error(where, fmt::format("friction is {}", *evidence.friction),
+                fmt::format("it must lie in (0, {}]", kMaxFriction));
+  }
+  if (evidence.slips && !evidence.friction) {
+    throw Error(where, "everything is said to slip, and the friction is not known",
+                "give the friction at which it slips");
+  }
+  if (evidence.sweeps < 0 || evidence.sweeps > kMaxSweeps) {
+    throw Error(where, fmt::format("sweeps is {}", evidence.sweeps),
+                fmt::format("it must lie in [0, {}]", kMaxSweeps));
+  }
+}
 
 }  // namespace
 
@@ -71,9 +88,17 @@ void check(const SolverPlan& plan, std::string_view where) {
     throw Error(where, fmt::format("baseline_interval is {}", plan.baseline_interval),
                 fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
   }
+  if (plan.estimator == Estimator::field) {
+    check(plan.field, where);
+    if (plan.half_output) {
+      throw Error(where, "the field estimator has no results of half precision",
+                  "leave out half_output");
+    }
+  }
   if (!plan.uncertainty) return;
-  if (plan.estimator != Estimator::direct) {
-    throw Error(where, "the paper's estimator has no uncertainty", "use the direct estimator");
+  if (plan.estimator == Estimator::paper) {
+    throw Error(where, "the paper's estimator has no uncertainty",
+                "use the direct estimator, or that of the field");
   }
   if (!plan.noise_counts && plan.calibration.noise.empty()) {
     throw Error(where, "uncertainty is asked for, and the noise of the sensels is not known",

@@ -42,45 +42,71 @@ static inline double counts_from(PF_GLOBAL const uint* counts, uint first) {
   return sum;
 }
 
-/* The window of ratios, the largest `width` times the least, that holds most counts. The lower one
- * of two alike. Share zero where there are no counts. */
-static inline Plateau find_plateau(PF_GLOBAL const uint* counts, float width) {
-  double total = (double)counts[0] + (double)counts[PF_RATIO_NONE] + counts_from(counts, 1);
-  uint end = 1;
+/* A window of bins, and what is in it. */
+typedef struct {
+  uint first;
+  uint end;
+  double counts;
+} Window;
+
+/* Of the windows within [first, end) whose largest ratio is `width` times the least, the one that
+ * holds most counts; the lower of two alike. */
+static inline Window fullest_window(PF_GLOBAL const uint* counts, uint first, uint end,
+                                    float width) {
+  Window best = {first, first, 0.0};
+  uint reached = first;
   double within = 0.0;
-  double most = 0.0;
-  uint best = 0;
-  uint best_end = 0;
-  for (uint bin = 1; bin < PF_RATIO_BINS; ++bin) {
+  for (uint bin = first; bin < end; ++bin) {
     const uint reach = bin_of_ratio(ratio_of_bin(bin) * width);
-    while (end < reach) within += (double)counts[end++];
-    if (within > most) {
-      most = within;
-      best = bin;
-      best_end = end;
+    while (reached < reach && reached < end) within += (double)counts[reached++];
+    if (within > best.counts) {
+      best.first = bin;
+      best.end = reached;
+      best.counts = within;
     }
     within -= (double)counts[bin];
   }
-  Plateau plateau;
-  plateau.ratio = 0.0;
-  plateau.share = 0.0;
-  plateau.above = 0.0;
-  plateau.far = 0.0;
-  plateau.spread = 0.0;
-  if (!(most > 0.0)) return plateau;
+  return best;
+}
+
+/* Mean and standard deviation of the ratios in a window. */
+typedef struct {
+  double mean;
+  double deviation;
+} Spread;
+
+static inline Spread spread_of(PF_GLOBAL const uint* counts, Window window) {
   double sum = 0.0;
   double squares = 0.0;
-  for (uint bin = best; bin < best_end; ++bin) {
+  for (uint bin = window.first; bin < window.end; ++bin) {
     const double middle = 0.5 * ((double)ratio_of_bin(bin) + (double)ratio_of_bin(bin + 1));
     sum += (double)counts[bin] * middle;
     squares += (double)counts[bin] * middle * middle;
   }
-  plateau.ratio = sum / most;
-  const double variance = squares / most - plateau.ratio * plateau.ratio;
-  plateau.spread = variance > 0.0 ? sqrt(variance) / plateau.ratio : 0.0;
-  plateau.share = most / total;
-  plateau.above = counts_from(counts, best_end) / total;
-  const uint far = bin_of_ratio((float)(1.25 * plateau.ratio));
+  Spread spread;
+  spread.mean = sum / window.counts;
+  const double variance = squares / window.counts - spread.mean * spread.mean;
+  spread.deviation = variance > 0.0 ? sqrt(variance) : 0.0;
+  return spread;
+}
+
+/* The plateau of the counts: the window of `width` that holds most of them says how many share it,
+ * and within its reach a narrower one which ratio it is (F10). Share zero where nothing was
+ * counted. */
+static inline Plateau find_plateau(PF_GLOBAL const uint* counts, float width) {
+  const double total = (double)counts[0] + (double)counts[PF_RATIO_NONE] + counts_from(counts, 1);
+  Plateau plateau = {0.0, 0.0, 0.0, 0.0, 0.0};
+  const Window wide = fullest_window(counts, 1, PF_RATIO_BINS, width);
+  if (!(wide.counts > 0.0)) return plateau;
+  const Spread all = spread_of(counts, wide);
+  const uint last = bin_of_ratio((float)(1.127 * all.mean));
+  const Window narrow =
+      fullest_window(counts, wide.first, last < PF_RATIO_BINS ? last : PF_RATIO_BINS, 1.0618f);
+  plateau.ratio = narrow.counts > 0.0 ? spread_of(counts, narrow).mean : all.mean;
+  plateau.spread = all.deviation / all.mean;
+  plateau.share = wide.counts / total;
+  plateau.above = counts_from(counts, wide.end) / total;
+  const uint far = bin_of_ratio((float)(1.25 * all.mean));
   plateau.far = counts_from(counts, far < PF_RATIO_BINS ? far : PF_RATIO_BINS) / total;
   return plateau;
 }

@@ -26,7 +26,8 @@ typedef struct {
   float friction; /* of what slips; zero where none was found */
   float score;    /* of the shape */
   float misfit;   /* of the trend where it hands over, relative */
-  float spread;   /* of the ratios that are taken for the friction, relative */
+  float spread;   /* standard deviation of the friction, relative */
+  float doubt;    /* of the shape's normal force, relative */
 } Verdict;
 
 #define PF_SHARED_SUMS 20 /* doubles that the work-items of a contact share */
@@ -50,7 +51,9 @@ typedef struct {
 #define PF_LEAST_RESOLVED_SHARE 0.06
 #define PF_LEAST_SCORE 0.15
 #define PF_MISFIT_PER_SHARE \
-  0.45                          /* of the trend, by the share of the pillars that it is fitted to */
+  0.45 /* of the trend, by the share of the pillars that it is fitted to */
+#define PF_NOISE_OF_NORMAL \
+  0.6f /* deviation of a normal force at a given ratio, by that of a reading */
 #define PF_LARGEST_FRICTION 4.0 /* that is believed without being told */
 
 static inline float clamped(float value, float low, float high) {
@@ -314,7 +317,8 @@ static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settin
   verdict.friction = (float)plateau.ratio;
   verdict.misfit = (float)border_misfit(tile, scratch.lines);
   verdict.score = (float)(plateau.share - 1.5 * plateau.far - (double)verdict.misfit);
-  verdict.spread = (float)plateau.spread;
+  verdict.spread = (float)(0.02 + plateau.spread + (double)verdict.misfit);
+  verdict.doubt = 0.02f + 0.5f * verdict.spread;
   verdict.way = PF_BY_SHAPE;
   await_others();
   return verdict;
@@ -340,6 +344,7 @@ static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings setti
   best.score = (float)PF_LEAST_SCORE;
   best.misfit = 0.0f;
   best.spread = 0.0f;
+  best.doubt = 0.0f;
   for (uint degree = 2; degree <= PF_TREND_MOST_DEGREE; degree += 2) {
     if (resolved < 4.0 * (double)terms_of(degree) || best.score > 0.5f) break;
     for (uint power = 1; power <= 2; ++power) {
@@ -367,6 +372,7 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
   verdict.score = 0.0f;
   verdict.misfit = 0.0f;
   verdict.spread = 0.0f;
+  verdict.doubt = 0.0f;
   if (settings.slips != 0) {
     verdict.way = PF_BY_FRICTION;
     return verdict;
@@ -377,6 +383,7 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
     if (friction > 0.0f) {
       verdict.way = PF_BY_SLIP;
       verdict.friction = friction;
+      verdict.spread = 0.02f;
       return verdict;
     }
   }
@@ -388,45 +395,111 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
   return shape.way == PF_BY_SHAPE ? shape : verdict;
 }
 
-/* The normal force of an ambiguous pillar that a verdict has (F6, F11). `shaped` is that of the
- * best model, where there is one. */
-static inline float judged_normal(Segment segment, Verdict verdict, FieldSettings settings,
-                                  float shaped) {
-  float low = 0.0f;
-  if (settings.friction > 0.0f) {
-    low = clamped(normal_at_ratio(segment, settings.friction), 0.0f, segment.high);
-  }
-  if (verdict.way == PF_BY_FRICTION) return low;
-  if (verdict.way == PF_BY_SLIP || verdict.way == PF_BY_SHAPE) {
-    const float slipping = clamped(normal_at_ratio(segment, verdict.friction), low, segment.high);
-    if (verdict.way == PF_BY_SLIP) return slipping;
-    const bool slips = ratio_on_segment(segment, shaped) > 0.9f * verdict.friction;
-    return slips ? slipping : clamped(shaped, low, segment.high);
-  }
-  return middle_of_thetas(segment, low, segment.high);
+/* The normal force of an ambiguous pillar, and within what 95 of 100 lie. */
+typedef struct {
+  float normal;
+  float low;
+  float high;
+} Judgement;
+
+/* What is left open of a pillar that slips at a friction with a relative deviation (F12). */
+static inline Judgement slipping_normal(Segment segment, float low, float friction, float spread) {
+  Judgement judgement;
+  judgement.normal = clamped(normal_at_ratio(segment, friction), low, segment.high);
+  judgement.low =
+      clamped(normal_at_ratio(segment, friction * (1.0f + 1.96f * spread)), low, segment.high);
+  judgement.high =
+      clamped(normal_at_ratio(segment, friction * clamped(1.0f - 1.96f * spread, 0.25f, 1.0f)), low,
+              segment.high);
+  return judgement;
 }
 
-static inline void write_force(Field field, uint index, Force force, bool resolved) {
+/* The normal force that a verdict has (F6, F11). `shaped` is that of the best model, where there is
+ * one. */
+static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSettings settings,
+                                      float shaped) {
+  const float bound = settings.friction > 0.0f
+                          ? clamped(normal_at_ratio(segment, settings.friction), 0.0f, segment.high)
+                          : 0.0f;
+  if (verdict.way > PF_BY_BOUND) {
+    const Judgement slipping = slipping_normal(segment, bound, verdict.friction, verdict.spread);
+    if (verdict.way != PF_BY_SHAPE || ratio_on_segment(segment, shaped) > 0.9f * verdict.friction) {
+      return slipping;
+    }
+    Judgement judgement;
+    judgement.normal = clamped(shaped, slipping.normal, segment.high);
+    judgement.low = clamped(shaped * (1.0f - 1.96f * verdict.doubt), slipping.low, segment.high);
+    judgement.high = clamped(shaped * (1.0f + 1.96f * verdict.doubt), slipping.low, segment.high);
+    return judgement;
+  }
+  Judgement judgement;
+  judgement.normal = middle_of_thetas(segment, bound, segment.high);
+  judgement.low = bound;
+  judgement.high = segment.high;
+  return judgement;
+}
+
+/* The ends of direction and magnitude: on the segment theta and magnitude fall as the normal force
+ * grows, and phi goes one way. */
+static inline void write_ends(Field field, uint index, Force least, Force most) {
+  const Direction flat = direction_of(least);
+  const Direction steep = direction_of(most);
+  const bool clockwise = least.shear_x * most.shear_y < least.shear_y * most.shear_x;
+  field.theta_low[index] = steep.theta;
+  field.theta_high[index] = flat.theta;
+  field.phi_low[index] = clockwise ? steep.phi : flat.phi;
+  field.phi_high[index] = clockwise ? flat.phi : steep.phi;
+  field.magnitude_low[index] = steep.magnitude;
+  field.magnitude_high[index] = flat.magnitude;
+}
+
+/* What neighbours left of the uncertainty: of the component that the readings give, nothing new;
+ * of the other two, half the width of the judgement, and the readings' noise on top (F12). */
+static inline void write_deviations(Field field, uint index, Mask vertical, Judgement judgement,
+                                    float noise) {
+  const float width = (judgement.high - judgement.low) * (float)(0.5 / 1.96);
+  const float normal = length_2(width, PF_NOISE_OF_NORMAL * noise);
+  field.deviation_normal[index] = normal;
+  if (vertical) {
+    field.deviation_y[index] = length_2(1.41421356237309504880f * width, noise);
+  } else {
+    field.deviation_x[index] = length_2(1.41421356237309504880f * width, noise);
+  }
+}
+
+static inline void write_judgement(Field field, uint index, Mask vertical, Judgement judgement,
+                                   bool resolved, float noise) {
+  const Force middle = force_of_field(field, index);
+  const Force force = force_on_segment(middle, vertical, judgement.normal);
   field.shear_x[index] = force.shear_x;
   field.shear_y[index] = force.shear_y;
   field.normal[index] = force.normal;
   if (resolved) field.status[index] |= PF_STATUS_FROM_NEIGHBOURS;
+  if (field.magnitude != 0) {
+    const Direction direction = direction_of(force);
+    field.magnitude[index] = direction.magnitude;
+    field.theta[index] = direction.theta;
+    field.phi[index] = direction.phi;
+  }
+  if (field.deviation_normal == 0) return;
+  write_ends(field, index, force_on_segment(middle, vertical, judgement.low),
+             force_on_segment(middle, vertical, judgement.high));
+  if (resolved) write_deviations(field, index, vertical, judgement, noise);
 }
 
 /* Writes the forces of a contact's ambiguous pillars. */
 static inline void write_contact(Tile tile, Cells cells, Field field, Verdict verdict,
                                  FieldSettings settings, Share share) {
-  const bool resolved = verdict.way > PF_BY_BOUND;
   for (uint row = share.first; row < tile.rows; row += share.step) {
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
       if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
       const uint index = (tile.row + row) * field.cols + tile.col + col;
-      const float normal = judged_normal(segment_of_cell(cells, cell), verdict, settings,
-                                         verdict.way == PF_BY_SHAPE ? cells.best[cell] : 0.0f);
-      const Mask vertical = moves_vertically((Bits)field.status[index]);
-      write_force(field, index, force_on_segment(force_of_field(field, index), vertical, normal),
-                  resolved);
+      const Judgement judgement =
+          judged_normal(segment_of_cell(cells, cell), verdict, settings,
+                        verdict.way == PF_BY_SHAPE ? cells.best[cell] : 0.0f);
+      write_judgement(field, index, moves_vertically((Bits)field.status[index]), judgement,
+                      verdict.way > PF_BY_BOUND, settings.noise);
     }
   }
 }
@@ -459,6 +532,7 @@ static inline void resolve_alone(Field field, uint index, FieldSettings settings
   verdict.score = 0.0f;
   verdict.misfit = 0.0f;
   verdict.spread = 0.0f;
-  const float normal = judged_normal(segment_of(middle, vertical), verdict, settings, 0.0f);
-  write_force(field, index, force_on_segment(middle, vertical, normal), verdict.way > PF_BY_BOUND);
+  verdict.doubt = 0.0f;
+  const Judgement judgement = judged_normal(segment_of(middle, vertical), verdict, settings, 0.0f);
+  write_judgement(field, index, vertical, judgement, verdict.way > PF_BY_BOUND, settings.noise);
 }

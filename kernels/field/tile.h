@@ -40,12 +40,25 @@ typedef struct {
   PF_GLOBAL float* best;      /* estimate of the best model so far, N */
 } Cells;
 
-/* The planes of the frame that are read and written. */
+/* The planes of the frame that are read and written. Those from magnitude on are null where the
+ * plan does not ask for them. */
 typedef struct {
   PF_GLOBAL float* shear_x;
   PF_GLOBAL float* shear_y;
   PF_GLOBAL float* normal;
   PF_GLOBAL uchar* status;
+  PF_GLOBAL float* magnitude;
+  PF_GLOBAL float* theta;
+  PF_GLOBAL float* phi;
+  PF_GLOBAL float* deviation_x;
+  PF_GLOBAL float* deviation_y;
+  PF_GLOBAL float* deviation_normal;
+  PF_GLOBAL float* theta_low;
+  PF_GLOBAL float* theta_high;
+  PF_GLOBAL float* phi_low;
+  PF_GLOBAL float* phi_high;
+  PF_GLOBAL float* magnitude_low;
+  PF_GLOBAL float* magnitude_high;
   uint rows;
   uint cols;
 } Field;

@@ -5,7 +5,7 @@
 #define PF_TREND_TERMS 15  /* of a polynomial of degree 4 in two variables */
 #define PF_TREND_MOMENTS 9 /* powers of x in its normal equations */
 #define PF_TREND_RIGHT 5   /* powers of x on their right side */
-#define PF_LINE_SUMS 34    /* doubles of a line's record: three times moments, right side, square */
+#define PF_LINE_SUMS 15    /* doubles of a line's record: moments, right side, square */
 
 /* Coordinates in the box, about -1 to 1. */
 typedef struct {
@@ -100,42 +100,42 @@ static inline void weigh_lines(Tile tile, Cells cells, float peak, Share share) 
   }
 }
 
-/* Adds w x^i to sums[i]. */
-static inline void add_moments(PF_GLOBAL double* sums, double weight, double x) {
-  double power = weight;
-  for (uint i = 0; i < PF_TREND_MOMENTS; ++i) {
-    sums[i] += power;
-    power *= x;
-  }
-}
-
 /* The share of a sample's weight that its residual leaves it (F8). */
 static inline double trust(const Trend* trend, double residual) {
   return 1.0 / (1.0 + residual * residual * trend->inverse_square);
 }
 
-/* The sums of one line: of its pillars and the edges at their sides, of the edges above, and of the
- * edges below, which lie half a pillar off. */
+/* The weight of all edges beside a pillar. */
+static inline float edge_weights(Cells cells, uint cell, int width, float peak) {
+  const int steps[4] = {1, -1, width, -width};
+  float weight = 0.0f;
+  for (int i = 0; i < 4; ++i) {
+    if (is_edge(cells, cell, steps[i])) weight += edge_weight(cells, cell, -steps[i], peak);
+  }
+  return weight;
+}
+
+/* The sums of one line. The edge of a contact passes somewhere through the pillars that it covers
+ * last, in the mean through their middle: there the pressure is taken to vanish (F7). */
 static inline void sum_line(Tile tile, Cells cells, const Trend* trend, float peak, uint row,
                             PF_GLOBAL double* sums) {
   const Frame frame = frame_of(tile);
-  const int width = (int)tile.cols + 2;
-  const double y = (frame.row - (double)row) * frame.scale;
-  const double half_y = 0.5 * frame.scale;
-  const TrendLine here = trend_line(trend, y);
-  const TrendLine above = trend_line(trend, y + half_y);
-  const TrendLine below = trend_line(trend, y - half_y);
+  const TrendLine line = trend_line(trend, (frame.row - (double)row) * frame.scale);
   for (uint i = 0; i < PF_LINE_SUMS; ++i) sums[i] = 0.0;
-  PF_GLOBAL double* const right = sums + 3 * PF_TREND_MOMENTS;
+  PF_GLOBAL double* const right = sums + PF_TREND_MOMENTS;
   for (uint col = 0; col < tile.cols; ++col) {
     const uint cell = cell_at(tile, row, col);
     const uchar kind = cells.kind[cell];
     if (kind < PF_CELL_LOADED) continue;
     const double x = ((double)col - frame.col) * frame.scale;
+    const float edges = edge_weights(cells, cell, (int)tile.cols + 2, peak);
+    if (kind != PF_CELL_RESOLVED && !(edges > 0.0f)) continue;
+    const double here = on_line(&line, x);
+    double moment = (double)edges * trust(trend, here);
     if (kind == PF_CELL_RESOLVED) {
       const double value = powered(trend->squared, (double)cells.top[cell]);
-      const double weight = (double)cells.weight[cell] * trust(trend, value - on_line(&here, x));
-      add_moments(sums, weight, x);
+      const double weight = (double)cells.weight[cell] * trust(trend, value - here);
+      moment += weight;
       double power = weight * value;
       right[PF_TREND_RIGHT] += power * value;
       for (uint i = 0; i < PF_TREND_RIGHT; ++i) {
@@ -143,23 +143,9 @@ static inline void sum_line(Tile tile, Cells cells, const Trend* trend, float pe
         power *= x;
       }
     }
-    for (int side = -1; side <= 1; side += 2) {
-      if (is_edge(cells, cell, side)) {
-        const double at = x + (double)side * half_y;
-        add_moments(
-            sums, (double)edge_weight(cells, cell, -side, peak) * trust(trend, on_line(&here, at)),
-            at);
-      }
-    }
-    if (is_edge(cells, cell, -width)) {
-      add_moments(sums + PF_TREND_MOMENTS,
-                  (double)edge_weight(cells, cell, width, peak) * trust(trend, on_line(&above, x)),
-                  x);
-    }
-    if (is_edge(cells, cell, width)) {
-      add_moments(sums + 2 * PF_TREND_MOMENTS,
-                  (double)edge_weight(cells, cell, -width, peak) * trust(trend, on_line(&below, x)),
-                  x);
+    for (uint i = 0; i < PF_TREND_MOMENTS; ++i) {
+      sums[i] += moment;
+      moment *= x;
     }
   }
 }
@@ -186,26 +172,16 @@ typedef struct {
   double square;
 } Moments;
 
-static inline void add_line(Moments* moments, PF_GLOBAL const double* sums, double y,
-                            double half_y) {
-  double here = 1.0;
-  double above = 1.0;
-  double below = 1.0;
+static inline void add_line(Moments* moments, PF_GLOBAL const double* sums, double y) {
+  double power = 1.0;
   for (uint j = 0; j < PF_TREND_MOMENTS; ++j) {
-    for (uint i = 0; i + j < PF_TREND_MOMENTS; ++i) {
-      moments->plain[i][j] += sums[i] * here + sums[PF_TREND_MOMENTS + i] * above +
-                              sums[2 * PF_TREND_MOMENTS + i] * below;
+    for (uint i = 0; i + j < PF_TREND_MOMENTS; ++i) moments->plain[i][j] += sums[i] * power;
+    for (uint i = 0; i + j < PF_TREND_RIGHT; ++i) {
+      moments->right[i][j] += sums[PF_TREND_MOMENTS + i] * power;
     }
-    if (j < PF_TREND_RIGHT) {
-      for (uint i = 0; i + j < PF_TREND_RIGHT; ++i) {
-        moments->right[i][j] += sums[3 * PF_TREND_MOMENTS + i] * here;
-      }
-    }
-    here *= y;
-    above *= y + half_y;
-    below *= y - half_y;
+    power *= y;
   }
-  moments->square += sums[3 * PF_TREND_MOMENTS + PF_TREND_RIGHT];
+  moments->square += sums[PF_TREND_MOMENTS + PF_TREND_RIGHT];
 }
 
 /* Line by line from the top, whatever work-items summed them. */
@@ -222,7 +198,7 @@ static inline NormalEquations normal_equations(Tile tile, uint degree,
   moments.square = 0.0;
   for (uint row = 0; row < tile.rows; ++row) {
     add_line(&moments, lines + (tile.first_line + row) * PF_LINE_SUMS,
-             (frame.row - (double)row) * frame.scale, 0.5 * frame.scale);
+             (frame.row - (double)row) * frame.scale);
   }
   NormalEquations equations;
   uint a = 0;
