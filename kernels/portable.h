@@ -30,7 +30,8 @@
  * double, uint and uchar, on which both languages agree:
  *
  *   PF_GLOBAL       what a pointer to memory of the frame is declared with
- *   await_others()  waits until all work-items of a contact came here and sees what they wrote
+ *   await_others()  waits until all work-items of a contact came here and sees what they wrote;
+ *                   nothing where there is one only, as PF_ALONE says
  *   add_count(p, n) *p += n, whatever the other work-items do
  *   bits_of_float(x), float_of_bits(b)
  *
@@ -106,7 +107,11 @@ static inline bool any_bits(Bits bits) {
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 #define PF_GLOBAL global
+#ifdef PF_ALONE
+static inline void await_others(void) {}
+#else
 static inline void await_others(void) { barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE); }
+#endif
 static inline void add_count(volatile global uint* count, uint more) { atomic_add(count, more); }
 static inline uint bits_of_float(float value) { return as_uint(value); }
 static inline float float_of_bits(uint bits) { return as_float(bits); }

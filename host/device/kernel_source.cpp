@@ -7,6 +7,7 @@
 #include "core/force_scale.h"
 #include "core/wake_levels.h"
 #include "device/block_lanes.h"
+#include "device/field_stage.h"
 #include "device/kernel_files.h"
 #include "pillarfield/processor.h"
 
@@ -54,7 +55,7 @@ bool is_whole(const SolverPlan& plan) {
   const bool halves = threshold <= kManyCounts && 2 * threshold == std::floor(2 * threshold);
   const bool saturates_below =
       plan.skin.full_scale_counts && static_cast<float>(*plan.skin.full_scale_counts) <= threshold;
-  return plan.sensel_type == SenselType::u8 && plan.estimator == Estimator::direct && !corrects &&
+  return plan.sensel_type == SenselType::u8 && plan.estimator != Estimator::paper && !corrects &&
          !plan.angles && !plan.uncertainty && halves && !saturates_below;
 }
 
@@ -147,6 +148,18 @@ bool is_of_field(std::string_view file) {
   return file.starts_with("field/") || file == "maths/segment.h";
 }
 
+/// Whether it is of what the field estimator shares with the solve.
+bool is_shared_with_field(std::string_view file) {
+  return file == "portable.h" || file == "maths/status.h" || file == "maths/elementary.h" ||
+         file == "maths/pillar_model.h" || file == "maths/angles.h";
+}
+
+/// Appends a file, which compilers then know by its own lines.
+void append(std::string& source, const KernelFile& file) {
+  source += fmt::format("#line 1 \"{}\"\n", file.name);
+  source += file.text;
+}
+
 /// Whether a program of whole numbers has a use for a file: the others are of fractions.
 bool serves_whole_numbers(std::string_view file) {
   return file != "maths/elementary.h" && file != "maths/paper_solve.h" &&
@@ -162,6 +175,7 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   }
   stages.emplace_back(plan.half_output ? "store_half" : "store");
   if (plan.baseline_rate) stages.emplace_back("follow_baseline");
+  if (plan.estimator == Estimator::field) stages.emplace_back("resolve_field");
   return stages;
 }
 
@@ -180,8 +194,18 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   if (paths.skip_silent) define(silence_definitions(plan));
   for (const KernelFile& file : kernel_files()) {
     if (is_of_field(file.name) || (whole && !serves_whole_numbers(file.name))) continue;
-    source += fmt::format("#line 1 \"{}\"\n", file.name);
-    source += file.text;
+    append(source, file);
+  }
+  return source;
+}
+
+std::string field_kernel_source(bool groups) {
+  std::string source =
+      "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
+      "#define PF_LANES 1\n";
+  if (!groups) source += "#define PF_ALONE\n";
+  for (const KernelFile& file : kernel_files()) {
+    if (is_of_field(file.name) || is_shared_with_field(file.name)) append(source, file);
   }
   return source;
 }

@@ -89,6 +89,9 @@ struct Processor::State {
       slots.push_back(
           std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
+    if (wanted.estimator == Estimator::field) {
+      field.emplace(device.state(), wanted, settings.lanes == 1);
+    }
     warm_up();
     baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
     baseline.frame = 0;
@@ -109,6 +112,7 @@ struct Processor::State {
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
+  std::optional<FieldStage> field;
   std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
   SlotTurns turns;
 };
@@ -175,7 +179,10 @@ FieldView<Value> Processor::receive_oldest() {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
   Slot& slot = *state_->slots[state_->turns.oldest()];
-  with_opencl_errors(state_->device.info().name, [&] { slot.wait(); });
+  with_opencl_errors(state_->device.info().name, [&] {
+    slot.wait();
+    if (state_->field) slot.resolve(*state_->field);
+  });
   state_->turns.receive();
   return slot.results<Value>();
 }

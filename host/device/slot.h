@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "device/device_state.h"
+#include "device/field_stage.h"
 #include "device/large_pages.h"
 #include "device/slot_memory.h"
 
@@ -57,6 +58,9 @@ class Slot {
 
   /// Waits for it.
   void wait();
+
+  /// Resolves what the direct solve left open, after wait().
+  void resolve(FieldStage& field) { field.resolve(queue_, *memory_); }
 
   /// What it became, after wait(). `Value` is that of the plan's results: float or Half.
   template <class Value>

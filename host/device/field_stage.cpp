@@ -1,0 +1,119 @@
+#include "device/field_stage.h"
+
+#include <algorithm>
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kGroup = 64;
+constexpr std::size_t kWorkers = 1024;
+constexpr std::size_t kFloatPlanes = 7;
+
+static_assert(sizeof(ContactRun) == sizeof(single_precision::Run),
+              "runs go to the device as they are");
+
+bool has_doubles(const cl::Device& device) {
+  return device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+}
+
+cl::Program build(Device::State& device, bool groups) {
+  if (!has_doubles(device.device)) {
+    throw Error(device.info.name, "the field estimator needs double precision, which it has not",
+                "choose another device, or the direct estimator");
+  }
+  return device.program(field_kernel_source(groups));
+}
+
+}  // namespace
+
+const cl::Buffer& FieldStage::Growing::of(const cl::Context& context, std::size_t bytes) {
+  if (bytes > bytes_ || bytes_ == 0) {
+    bytes_ = std::max<std::size_t>(bytes + bytes / 2, 1);
+    buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes_);
+  }
+  return buffer_;
+}
+
+FieldStage::FieldStage(Device::State& device, const SolverPlan& plan, bool groups)
+    : context_(device.context),
+      rows_(plan.skin.pillar_rows()),
+      cols_(plan.skin.pillar_cols()),
+      work_(plan) {
+  const cl::Program program = build(device, groups);
+  contacts_ = cl::Kernel(program, "resolve_contacts");
+  pillars_ = cl::Kernel(program, "resolve_pillars");
+  if (groups) {
+    group_ = std::min(kGroup, contacts_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device));
+    workers_ = kWorkers;
+  } else {
+    workers_ = device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();
+  }
+}
+
+cl_uint FieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) const {
+  cl_uint argument = 0;
+  for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
+    kernel.setArg(argument++, memory.buffer(plane));
+  }
+  const single_precision::FieldSettings& settings = work_.settings();
+  kernel.setArg(argument++, cl_uint{rows_});
+  kernel.setArg(argument++, cl_uint{cols_});
+  kernel.setArg(argument++, settings.noise);
+  kernel.setArg(argument++, settings.quiet);
+  kernel.setArg(argument++, settings.friction);
+  kernel.setArg(argument++, cl_uint{settings.slips});
+  kernel.setArg(argument++, cl_uint{settings.shape});
+  kernel.setArg(argument++, cl_uint{settings.slip});
+  kernel.setArg(argument++, cl_uint{settings.sweeps});
+  return argument;
+}
+
+void FieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory) {
+  const std::size_t tiles = work_.tiles().size();
+  if (tiles == 0) return;
+  const std::span<const ContactRun> runs = work_.map().runs();
+  const std::size_t tile_bytes = tiles * sizeof(single_precision::Tile);
+  const cl::Buffer& on_device = tiles_.of(context_, tile_bytes);
+  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, tile_bytes, work_.tiles().data());
+  const cl::Buffer& runs_on_device = runs_.of(context_, runs.size_bytes());
+  queue.enqueueWriteBuffer(runs_on_device, CL_FALSE, 0, runs.size_bytes(), runs.data());
+  cl_uint argument = set_field(contacts_, memory);
+  const std::size_t cells = work_.cells();
+  contacts_.setArg(argument++, on_device);
+  contacts_.setArg(argument++, runs_on_device);
+  contacts_.setArg(argument++, verdicts_.of(context_, tiles * sizeof(single_precision::Verdict)));
+  contacts_.setArg(argument++, kinds_.of(context_, cells));
+  contacts_.setArg(argument++, planes_.of(context_, kFloatPlanes * cells * sizeof(float)));
+  contacts_.setArg(argument++, cl_ulong{cells});
+  contacts_.setArg(argument++, lines_.of(context_, PF_LINE_SUMS * work_.lines() * sizeof(double)));
+  contacts_.setArg(argument++, shared_.of(context_, PF_SHARED_SUMS * tiles * sizeof(double)));
+  contacts_.setArg(argument++, counts_.of(context_, PF_RATIO_COUNTS * tiles * sizeof(cl_uint)));
+  queue.enqueueNDRangeKernel(contacts_, cl::NullRange, cl::NDRange(tiles * group_),
+                             cl::NDRange(group_));
+}
+
+void FieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory) {
+  const std::vector<std::uint32_t>& alone = work_.alone();
+  if (alone.empty()) return;
+  const std::size_t bytes = alone.size() * sizeof(std::uint32_t);
+  const cl::Buffer& on_device = alone_.of(context_, bytes);
+  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, bytes, alone.data());
+  cl_uint argument = set_field(pillars_, memory);
+  pillars_.setArg(argument++, on_device);
+  pillars_.setArg(argument++, static_cast<cl_uint>(alone.size()));
+  const std::size_t workers = std::min(workers_, alone.size());
+  queue.enqueueNDRangeKernel(pillars_, cl::NullRange, cl::NDRange(workers));
+}
+
+void FieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
+  const auto* const status = reinterpret_cast<const std::uint8_t*>(memory.host(kStatus));
+  work_.find({status, std::size_t{rows_} * cols_});
+  if (work_.tiles().empty() && work_.alone().empty()) return;
+  memory.release(queue);
+  enqueue_contacts(queue, memory);
+  enqueue_pillars(queue, memory);
+  memory.fetch(queue);
+  queue.finish();
+}
+
+}  // namespace pillarfield

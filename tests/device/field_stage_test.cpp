@@ -1,0 +1,226 @@
+// The field estimator on the device against the same mathematics as a C++ loop: 0 ULP, however
+// contacts are shared among work-items, and whatever the scene says.
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <string>
+
+#include "core/host_solve.h"
+#include "pillarfield/error.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
+#include "pillarfield/status.h"
+#include "random_plan.h"
+#include "tests/device/test_device.h"
+
+namespace pillarfield {
+namespace {
+
+/// A spin, a partial slip, a slide and a roller, cut by the skin's borders in part.
+constexpr const char* kScene = R"(
+[skin]
+pillars = [90, 137]
+threshold_counts = 2
+[sensor]
+noise_counts = 0.5
+adc_bits = 10
+[time]
+frames = 3
+[[contact]]
+shape = "sphere"
+motion = "spin"
+contact_radius_mm = 24
+friction = 1.7
+position_mm = [-55, 20]
+load_n = 150
+[[contact]]
+shape = "sphere"
+motion = "partial_slip"
+contact_radius_mm = 26
+friction = 1.9
+tangential_ratio = 0.7
+position_mm = [10, 35]
+load_n = 200
+[[contact]]
+shape = "flat_punch"
+motion = "slide"
+contact_radius_mm = 15
+friction = 1.6
+position_mm = [62, 0]
+load_n = 120
+[[contact]]
+shape = "cylinder"
+motion = "roll"
+contact_radius_mm = 11
+length_mm = 60
+friction = 1.8
+direction_deg = 90
+tangential_ratio = 0.6
+position_mm = [-10, -38]
+load_n = 220
+)";
+
+SolverPlan plan_of(const Simulator& simulator) {
+  SolverPlan plan;
+  plan.skin = simulator.scene().skin;
+  plan.sensel_type = simulator.sensel_type();
+  plan.calibration = simulator.calibration();
+  set_solver(plan, simulator.scene());
+  plan.estimator = Estimator::field;
+  plan.uncertainty = true;
+  return plan;
+}
+
+void expect_same_bits(std::span<const float> actual, std::span<const float> expected,
+                      const char* plane) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected[i]))
+        << plane << " of pillar " << i << ": " << actual[i] << " is not " << expected[i];
+  }
+}
+
+void expect_same_bits(const ForceFieldView& actual, const ForceFieldView& expected) {
+  expect_same_bits(actual.shear_x, expected.shear_x, "shear_x");
+  expect_same_bits(actual.shear_y, expected.shear_y, "shear_y");
+  expect_same_bits(actual.normal, expected.normal, "normal");
+  for (std::size_t index = 0; index < kUncertaintyPlanes; ++index) {
+    const auto plane = static_cast<Uncertainty>(index);
+    if (expected.uncertainty[plane].empty()) continue;
+    expect_same_bits(actual.uncertainty[plane], expected.uncertainty[plane], name_of(plane));
+  }
+  for (std::size_t i = 0; i < actual.status.size(); ++i) {
+    ASSERT_EQ(actual.status[i], expected.status[i]) << "status of pillar " << i;
+  }
+}
+
+std::size_t count_of(std::span<const std::uint8_t> status, std::uint8_t bit) {
+  std::size_t count = 0;
+  for (const std::uint8_t byte : status) count += (byte & bit) != 0 ? 1U : 0U;
+  return count;
+}
+
+/// What differs from one way to run it to the next: one lane means work-groups for contacts.
+struct Way {
+  const char* name;
+  int lanes;
+  Memory memory;
+};
+
+class EveryWay : public testing::TestWithParam<Way> {
+ protected:
+  void SetUp() override {
+    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
+      GTEST_SKIP() << "this device does not share the host's memory";
+    }
+  }
+
+  [[nodiscard]] static Processor processor(const SolverPlan& plan) {
+    return {test_device(), plan, {.memory = GetParam().memory, .lanes = GetParam().lanes}};
+  }
+
+  /// Solves all frames of the scene, and expects the bits of the C++ loop.
+  static void expect_host_bits(const SolverPlan& plan) {
+    const Simulator simulator(parse_scene(kScene, "scene"));
+    Processor solver = processor(plan);
+    FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+    ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+    for (std::uint64_t index = 0; index < simulator.scene().frames; ++index) {
+      simulator.render(index, raw, truth);
+      solver.submit(raw.view());
+      const ForceField expected = solve_on_host(plan, raw.view());
+      ASSERT_GT(count_of(expected.status, status::kAmbiguous), 100U);
+      expect_same_bits(solver.receive(), expected.view());
+    }
+  }
+};
+
+TEST_P(EveryWay, NothingSaidHasTheBitsOfTheHost) {
+  const SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
+  expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, BoundAndSweepsHaveTheBitsOfTheHost) {
+  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
+  plan.field.friction = 2.5;
+  plan.field.sweeps = 3;
+  expect_host_bits(plan);
+  plan.field.slip = false;
+  plan.field.sweeps = 0;
+  expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, SlippingHasTheBitsOfTheHost) {
+  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
+  plan.field.friction = 1.7;
+  plan.field.slips = true;
+  expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, RandomFramesHaveTheBitsOfTheHost) {
+  for (const SenselType type : {SenselType::u8, SenselType::f32}) {
+    SolverPlan plan = full_plan(66, 2 * 41, type, 5);
+    plan.estimator = Estimator::field;
+    Processor solver = processor(plan);
+    for (std::uint32_t seed = 0; seed < 3; ++seed) {
+      const RandomFrame frame(plan, 3, seed);
+      solver.submit(frame.view());
+      expect_same_bits(solver.receive(), solve_on_host(plan, frame.view()).view());
+    }
+  }
+}
+
+TEST_P(EveryWay, AnglesAreThoseOfTheForces) {
+  const Simulator simulator(parse_scene(kScene, "scene"));
+  SolverPlan plan = plan_of(simulator);
+  plan.angles = true;
+  Processor solver = processor(plan);
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  simulator.render(0, raw, truth);
+  solver.submit(raw.view());
+  const ForceFieldView forces = solver.receive();
+  std::size_t resolved = 0;
+  for (std::size_t i = 0; i < forces.normal.size(); ++i) {
+    if ((forces.status[i] & status::kFromNeighbours) == 0) continue;
+    ++resolved;
+    const double shear = std::hypot(forces.shear_x[i], forces.shear_y[i]);
+    ASSERT_NEAR(forces.theta[i], std::atan2(shear, forces.normal[i]), 1e-6);
+    ASSERT_NEAR(forces.magnitude[i], std::hypot(shear, forces.normal[i]), 1e-6);
+    ASSERT_LE(forces.uncertainty[Uncertainty::theta_low][i], forces.theta[i] + 1e-6F);
+    ASSERT_GE(forces.uncertainty[Uncertainty::theta_high][i], forces.theta[i] - 1e-6F);
+  }
+  EXPECT_GT(resolved, 500U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, EveryWay,
+                         testing::Values(Way{"alone_shared", 16, Memory::shared},
+                                         Way{"alone_staged", 16, Memory::staged},
+                                         Way{"groups_shared", 1, Memory::shared}),
+                         [](const auto& way) { return std::string(way.param.name); });
+
+TEST(FieldStage, IsNamedAmongTheStages) {
+  SolverPlan plan = bare_plan(20, 20, SenselType::u8);
+  plan.estimator = Estimator::field;
+  EXPECT_EQ(kernel_stages(plan).back(), "resolve_field");
+}
+
+TEST(FieldStage, RefusesEvidenceOutOfRange) {
+  SolverPlan plan = bare_plan(20, 20, SenselType::u8);
+  plan.estimator = Estimator::field;
+  plan.field.slips = true;
+  EXPECT_THROW(Processor(test_device(), plan), Error);
+  plan.field.friction = -1;
+  EXPECT_THROW(Processor(test_device(), plan), Error);
+  plan.field.friction = 1;
+  plan.field.sweeps = -1;
+  EXPECT_THROW(Processor(test_device(), plan), Error);
+  plan.field.sweeps = 0;
+  plan.half_output = true;
+  EXPECT_THROW(Processor(test_device(), plan), Error);
+}
+
+}  // namespace
+}  // namespace pillarfield
