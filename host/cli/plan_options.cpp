@@ -5,6 +5,7 @@
 
 #include "cli/choice.h"
 #include "pillarfield/calibration_file.h"
+#include "pillarfield/error.h"
 #include "pillarfield/scene.h"
 
 namespace pillarfield::cli {
@@ -62,6 +63,40 @@ void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s
   }
 }
 
+void add_evidence_options(CLI::App& command, PlanOptions& options) {
+  command
+      .add_option("--friction", options.friction,
+                  "--estimator field: no pillar's shear exceeds this many times its normal force "
+                  "[not known]")
+      ->check(CLI::Range(1e-6, 100.0).description("RATIO"));
+  command.add_flag("--slips", options.slips,
+                   "--estimator field: every pillar slips, at that friction");
+  command.add_flag("--frames-close", options.frames_close,
+                   "--estimator field: forces change little from one frame to the next");
+  command
+      .add_option(
+          "--sweeps", options.sweeps,
+          "--estimator field: sweeps of the pressure's relaxation, more for accuracy, fewer "
+          "for speed [16]")
+      ->check(CLI::Range(0, 1000).description("NUMBER"));
+}
+
+/// Applies what is said of the evidence; it is of no use to other estimators.
+void apply_evidence(const PlanOptions& options, SolverPlan& plan) {
+  const bool said = options.friction || options.slips || options.frames_close || options.sweeps;
+  if (!said) return;
+  if (plan.estimator != Estimator::field) {
+    throw Error("solve",
+                "--friction, --slips, --frames-close and --sweeps say what ambiguous "
+                "pillars may be resolved by, and nothing resolves them",
+                "add --estimator field");
+  }
+  if (options.friction) plan.field.friction = options.friction;
+  if (options.slips) plan.field.slips = true;
+  if (options.frames_close) plan.field.frames_close = true;
+  if (options.sweeps) plan.field.sweeps = *options.sweeps;
+}
+
 }  // namespace
 
 void add_plan_options(CLI::App& command, PlanOptions& options) {
@@ -69,9 +104,12 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
                      "Take the sensor's constants and the parity test from a scene file");
   command.add_option("--calibration", options.calibration,
                      "Take planes and constants from a calibration made by calibrate");
-  add_choice<Estimator>(command, "--estimator", options.estimator,
-                        {{"direct", Estimator::direct}, {"paper", Estimator::paper}},
-                        "How forces are estimated: direct, or the paper's equations [direct]");
+  add_choice<Estimator>(
+      command, "--estimator", options.estimator,
+      {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"field", Estimator::field}},
+      "How forces are estimated: direct; the paper's equations; or field, which "
+      "resolves ambiguous pillars by their contacts [direct]");
+  add_evidence_options(command, options);
   command
       .add_option("--outputs", options.outputs,
                   "What is computed: forces; angles adds magnitude, theta and phi; uncertainty "
@@ -110,6 +148,7 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
   apply_numbers(options, plan);
   if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
   if (options.estimator) plan.estimator = *options.estimator;
+  apply_evidence(options, plan);
   if (!options.outputs.empty()) {
     plan.angles = asks_for(options, "angles");
     plan.uncertainty = asks_for(options, "uncertainty");

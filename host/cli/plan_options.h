@@ -15,6 +15,10 @@ struct PlanOptions {
   std::string scene;
   std::string calibration;
   std::optional<Estimator> estimator;
+  std::optional<double> friction;
+  bool slips = false;
+  bool frames_close = false;
+  std::optional<int> sweeps;
   std::vector<std::string> outputs;
   std::optional<double> threshold_counts;
   std::optional<double> counts_per_newton;

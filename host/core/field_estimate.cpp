@@ -42,7 +42,17 @@ maths::Field planes_of(ForceField& field) {
 
 }  // namespace
 
-HostFieldEstimator::HostFieldEstimator(const SolverPlan& plan) : work_(plan) {}
+HostFieldEstimator::HostFieldEstimator(const SolverPlan& plan) : work_(plan) {
+  if (!plan.field.frames_close) return;
+  past_normal_.resize(plan.skin.pillars());
+  past_deviation_.resize(plan.skin.pillars());
+  past_frame_.resize(plan.skin.pillars());
+}
+
+single_precision::Past HostFieldEstimator::past() {
+  if (past_normal_.empty()) return {nullptr, nullptr, nullptr, now_};
+  return {past_normal_.data(), past_deviation_.data(), past_frame_.data(), now_};
+}
 
 single_precision::Scratch HostFieldEstimator::scratch(std::size_t tile) {
   const std::size_t cells = work_.cells();
@@ -57,6 +67,7 @@ single_precision::Scratch HostFieldEstimator::scratch(std::size_t tile) {
 
 void HostFieldEstimator::resolve(ForceField& field) {
   work_.find(field.status);
+  ++now_;
   const std::size_t tiles = work_.tiles().size();
   kinds_.resize(work_.cells());
   planes_.resize(kFloatPlanes * work_.cells());
@@ -67,12 +78,14 @@ void HostFieldEstimator::resolve(ForceField& field) {
   const maths::Field planes = planes_of(field);
   const std::vector<maths::Run> runs = plain_runs(work_.map().runs());
   for (std::size_t tile = 0; tile < tiles; ++tile) {
-    verdicts_[tile] = maths::resolve_contact(work_.tiles()[tile], scratch(tile), planes,
+    verdicts_[tile] = maths::resolve_contact(work_.tiles()[tile], scratch(tile), planes, past(),
                                              runs.data(), work_.settings(), {0, 1});
   }
   for (const std::uint32_t index : work_.alone()) {
-    maths::resolve_alone(planes, index, work_.settings());
+    maths::resolve_alone(planes, past(), index, work_.settings());
   }
+  if (past_normal_.empty()) return;
+  for (const maths::Run& run : runs) maths::keep_run(planes, past(), run, work_.settings().noise);
 }
 
 }  // namespace pillarfield

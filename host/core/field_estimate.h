@@ -11,7 +11,8 @@ class HostFieldEstimator {
  public:
   explicit HostFieldEstimator(const SolverPlan& plan);
 
-  /// Resolves what the direct solve of the plan left open in a frame.
+  /// Resolves what the direct solve of the plan left open in a frame. Where the plan says that
+  /// frames are close in time, each call is the next frame.
   void resolve(ForceField& field);
 
   [[nodiscard]] const FieldWork& work() const { return work_; }
@@ -20,6 +21,7 @@ class HostFieldEstimator {
 
  private:
   single_precision::Scratch scratch(std::size_t tile);
+  single_precision::Past past();
 
   FieldWork work_;
   std::vector<std::uint8_t> kinds_;
@@ -28,6 +30,10 @@ class HostFieldEstimator {
   std::vector<double> shared_;
   std::vector<std::uint32_t> counts_;
   std::vector<single_precision::Verdict> verdicts_;
+  std::vector<float> past_normal_;  ///< empty where frames are not close
+  std::vector<float> past_deviation_;
+  std::vector<std::uint32_t> past_frame_;
+  std::uint32_t now_ = 1;  ///< frames that were seen, and one: pillars begin with frame 0
 };
 
 }  // namespace pillarfield

@@ -98,6 +98,8 @@ inline constexpr Range kRateHz = {1e-6, 1e6};
 inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
 inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
+inline constexpr Range kFriction = {0, 100, true};
+inline constexpr std::int64_t kMaxSweeps = 1000;
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};
@@ -124,9 +126,10 @@ inline constexpr std::array<Named<ContactMotion>, 5> kMotions = {{
     {"roll", ContactMotion::roll},
 }};
 
-inline constexpr std::array<Named<Estimator>, 2> kEstimators = {{
+inline constexpr std::array<Named<Estimator>, 3> kEstimators = {{
     {"direct", Estimator::direct},
     {"paper", Estimator::paper},
+    {"field", Estimator::field},
 }};
 
 /// Whether the closed forms know this motion of this shape.

@@ -99,16 +99,30 @@ void read_time(TomlSection section, Scene& scene) {
   section.finish();
 }
 
+/// What the field estimator may go by.
+void read_evidence(TomlSection& section, FieldEvidence& evidence) {
+  evidence.friction = section.number("friction", kFriction);
+  evidence.slips = section.flag("slips").value_or(evidence.slips);
+  if (evidence.slips && !evidence.friction) {
+    section.fail("slips", "comes without the friction at which everything slips", "friction = 0.8");
+  }
+  evidence.frames_close = section.flag("frames_close").value_or(evidence.frames_close);
+  if (const auto sweeps = section.whole_number("sweeps", 0, kMaxSweeps)) {
+    evidence.sweeps = static_cast<int>(*sweeps);
+  }
+}
+
 void read_solver(TomlSection section, Scene& scene) {
   scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
   scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
   scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
   scene.angles = section.flag("angles").value_or(scene.angles);
   scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
-  if (scene.uncertainty && scene.estimator != Estimator::direct) {
+  if (scene.uncertainty && scene.estimator == Estimator::paper) {
     section.fail("uncertainty", "comes with the paper's estimator, which has none",
-                 "estimator = \"direct\"");
+                 "estimator = \"direct\" or \"field\"");
   }
+  if (scene.estimator == Estimator::field) read_evidence(section, scene.field);
   section.finish();
 }
 

@@ -55,6 +55,7 @@ void check(const FieldEvidence& evidence, std::string_view where) {
 void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.parity_tolerance_counts = scene.parity_tolerance_counts;
   plan.estimator = scene.estimator;
+  plan.field = scene.field;
   plan.angles = scene.angles;
   plan.uncertainty = scene.uncertainty;
   if (scene.baseline_time_s) {

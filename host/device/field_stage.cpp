@@ -42,6 +42,14 @@ FieldStage::FieldStage(Device::State& device, const SolverPlan& plan, bool group
   const cl::Program program = build(device, groups);
   contacts_ = cl::Kernel(program, "resolve_contacts");
   pillars_ = cl::Kernel(program, "resolve_pillars");
+  keep_ = cl::Kernel(program, "keep_runs");
+  if (plan.field.frames_close) {
+    past_normal_ = cl::Buffer(context_, CL_MEM_READ_WRITE, plan.skin.pillars() * sizeof(float));
+    past_deviation_ = cl::Buffer(context_, CL_MEM_READ_WRITE, plan.skin.pillars() * sizeof(float));
+    std::vector<cl_uint> never(plan.skin.pillars());
+    past_frame_ = cl::Buffer(context_, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR,
+                             never.size() * sizeof(cl_uint), never.data());
+  }
   if (groups) {
     group_ = std::min(kGroup, contacts_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device));
     workers_ = kWorkers;
@@ -65,22 +73,30 @@ cl_uint FieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) cons
   kernel.setArg(argument++, cl_uint{settings.shape});
   kernel.setArg(argument++, cl_uint{settings.slip});
   kernel.setArg(argument++, cl_uint{settings.sweeps});
+  kernel.setArg(argument++, past_normal_);
+  kernel.setArg(argument++, past_deviation_);
+  kernel.setArg(argument++, past_frame_);
+  kernel.setArg(argument++, now_);
   return argument;
+}
+
+const cl::Buffer& FieldStage::send_runs(const cl::CommandQueue& queue) {
+  const std::span<const ContactRun> runs = work_.map().runs();
+  const cl::Buffer& on_device = runs_.of(context_, runs.size_bytes());
+  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, runs.size_bytes(), runs.data());
+  return on_device;
 }
 
 void FieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory) {
   const std::size_t tiles = work_.tiles().size();
   if (tiles == 0) return;
-  const std::span<const ContactRun> runs = work_.map().runs();
   const std::size_t tile_bytes = tiles * sizeof(single_precision::Tile);
   const cl::Buffer& on_device = tiles_.of(context_, tile_bytes);
   queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, tile_bytes, work_.tiles().data());
-  const cl::Buffer& runs_on_device = runs_.of(context_, runs.size_bytes());
-  queue.enqueueWriteBuffer(runs_on_device, CL_FALSE, 0, runs.size_bytes(), runs.data());
   cl_uint argument = set_field(contacts_, memory);
   const std::size_t cells = work_.cells();
   contacts_.setArg(argument++, on_device);
-  contacts_.setArg(argument++, runs_on_device);
+  contacts_.setArg(argument++, send_runs(queue));
   contacts_.setArg(argument++, verdicts_.of(context_, tiles * sizeof(single_precision::Verdict)));
   contacts_.setArg(argument++, kinds_.of(context_, cells));
   contacts_.setArg(argument++, planes_.of(context_, kFloatPlanes * cells * sizeof(float)));
@@ -105,13 +121,24 @@ void FieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory
   queue.enqueueNDRangeKernel(pillars_, cl::NullRange, cl::NDRange(workers));
 }
 
+void FieldStage::keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory) {
+  const std::size_t runs = work_.map().runs().size();
+  if (past_normal_() == nullptr || runs == 0) return;
+  cl_uint argument = set_field(keep_, memory);
+  keep_.setArg(argument++, send_runs(queue));
+  keep_.setArg(argument++, static_cast<cl_uint>(runs));
+  queue.enqueueNDRangeKernel(keep_, cl::NullRange, cl::NDRange(std::min(workers_, runs)));
+}
+
 void FieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
   const auto* const status = reinterpret_cast<const std::uint8_t*>(memory.host(kStatus));
   work_.find({status, std::size_t{rows_} * cols_});
-  if (work_.tiles().empty() && work_.alone().empty()) return;
+  ++now_;
+  if (work_.tiles().empty() && work_.alone().empty() && past_normal_() == nullptr) return;
   memory.release(queue);
   enqueue_contacts(queue, memory);
   enqueue_pillars(queue, memory);
+  keep_for_next(queue, memory);
   memory.fetch(queue);
   queue.finish();
 }

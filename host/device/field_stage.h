@@ -33,6 +33,8 @@ class FieldStage {
   cl_uint set_field(cl::Kernel& kernel, const SlotMemory& memory) const;
   void enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory);
   void enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory);
+  void keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory);
+  const cl::Buffer& send_runs(const cl::CommandQueue& queue);
 
   cl::Context context_;
   std::uint32_t rows_;
@@ -42,6 +44,11 @@ class FieldStage {
   std::size_t workers_ = 1;  ///< work-items for pillars alone
   cl::Kernel contacts_;
   cl::Kernel pillars_;
+  cl::Kernel keep_;
+  cl::Buffer past_normal_;  ///< null where frames are not close in time
+  cl::Buffer past_deviation_;
+  cl::Buffer past_frame_;
+  cl_uint now_ = 1;  ///< frames that were seen, and one: pillars begin with frame 0
   Growing tiles_;
   Growing runs_;
   Growing verdicts_;

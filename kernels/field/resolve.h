@@ -54,7 +54,9 @@ typedef struct {
   0.45 /* of the trend, by the share of the pillars that it is fitted to */
 #define PF_NOISE_OF_NORMAL \
   0.6f /* deviation of a normal force at a given ratio, by that of a reading */
-#define PF_LARGEST_FRICTION 4.0 /* that is believed without being told */
+#define PF_CHANGE_PER_FRAME 0.05f        /* of a normal force, relative deviation */
+#define PF_MOST_RECALLED_DEVIATION 0.15f /* by the length of the segment */
+#define PF_LARGEST_FRICTION 4.0          /* that is believed without being told */
 
 static inline float clamped(float value, float low, float high) {
   return value < low ? low : (high < value ? high : value);
@@ -439,6 +441,39 @@ static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSet
   return judgement;
 }
 
+/* The same by what was known of the pillar a frame before, where that says more than the segment
+ * (F13). */
+static inline bool recalled_normal(Segment segment, Past past, uint index, float noise,
+                                   Judgement* judgement) {
+  if (past.normal == 0 || past.frame[index] + 1 != past.now) return false;
+  const float normal = past.normal[index];
+  const float change = PF_CHANGE_PER_FRAME * normal;
+  const float deviation = length_3(past.deviation[index], change, PF_NOISE_OF_NORMAL * noise);
+  if (deviation > PF_MOST_RECALLED_DEVIATION * (judgement->high - judgement->low)) return false;
+  const float low = judgement->low;
+  judgement->normal = clamped(normal, low, segment.high);
+  judgement->low = clamped(normal - 1.96f * deviation, low, segment.high);
+  judgement->high = clamped(normal + 1.96f * deviation, low, segment.high);
+  return true;
+}
+
+/* Keeps what is known of a pillar for the frame that follows. */
+static inline void keep_for_next(Past past, uint index, float normal, float deviation) {
+  if (past.normal == 0) return;
+  past.normal[index] = normal;
+  past.deviation[index] = deviation;
+  past.frame[index] = past.now;
+}
+
+/* The same of the pillars of a run that are resolved by themselves. */
+static inline void keep_run(Field field, Past past, Run run, float noise) {
+  for (uint col = run.first; col < run.end; ++col) {
+    const uint index = run.row * field.cols + col;
+    if (!is_determined(field.status[index])) continue;
+    keep_for_next(past, index, field.normal[index], PF_NOISE_OF_NORMAL * noise);
+  }
+}
+
 /* The ends of direction and magnitude: on the segment theta and magnitude fall as the normal force
  * grows, and phi goes one way. */
 static inline void write_ends(Field field, uint index, Force least, Force most) {
@@ -467,9 +502,16 @@ static inline void write_deviations(Field field, uint index, Mask vertical, Judg
   }
 }
 
-static inline void write_judgement(Field field, uint index, Mask vertical, Judgement judgement,
-                                   bool resolved, float noise) {
+/* Writes what was judged of a pillar, or what is recalled of it where nothing resolved it. */
+static inline void write_judgement(Field field, Past past, uint index, Segment segment,
+                                   Judgement judgement, bool resolved, float noise) {
   const Force middle = force_of_field(field, index);
+  const Mask vertical = moves_vertically((Bits)field.status[index]);
+  if (!resolved) resolved = recalled_normal(segment, past, index, noise, &judgement);
+  if (resolved) {
+    const float width = (judgement.high - judgement.low) * (float)(0.5 / 1.96);
+    keep_for_next(past, index, judgement.normal, width);
+  }
   const Force force = force_on_segment(middle, vertical, judgement.normal);
   field.shear_x[index] = force.shear_x;
   field.shear_y[index] = force.shear_y;
@@ -488,24 +530,24 @@ static inline void write_judgement(Field field, uint index, Mask vertical, Judge
 }
 
 /* Writes the forces of a contact's ambiguous pillars. */
-static inline void write_contact(Tile tile, Cells cells, Field field, Verdict verdict,
+static inline void write_contact(Tile tile, Cells cells, Field field, Past past, Verdict verdict,
                                  FieldSettings settings, Share share) {
   for (uint row = share.first; row < tile.rows; row += share.step) {
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
       if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
       const uint index = (tile.row + row) * field.cols + tile.col + col;
-      const Judgement judgement =
-          judged_normal(segment_of_cell(cells, cell), verdict, settings,
-                        verdict.way == PF_BY_SHAPE ? cells.best[cell] : 0.0f);
-      write_judgement(field, index, moves_vertically((Bits)field.status[index]), judgement,
-                      verdict.way > PF_BY_BOUND, settings.noise);
+      const Segment segment = segment_of_cell(cells, cell);
+      const Judgement judgement = judged_normal(
+          segment, verdict, settings, verdict.way == PF_BY_SHAPE ? cells.best[cell] : 0.0f);
+      write_judgement(field, past, index, segment, judgement, verdict.way > PF_BY_BOUND,
+                      settings.noise);
     }
   }
 }
 
 /* Resolves one contact. Its verdict is the same for every work-item. */
-static inline Verdict resolve_contact(Tile tile, Scratch scratch, Field field,
+static inline Verdict resolve_contact(Tile tile, Scratch scratch, Field field, Past past,
                                       PF_GLOBAL const Run* runs, FieldSettings settings,
                                       Share share) {
   clear_tile(tile, scratch.cells, field, share);
@@ -517,15 +559,15 @@ static inline Verdict resolve_contact(Tile tile, Scratch scratch, Field field,
   if (share.first == 0) share_summary(tile, scratch);
   await_others();
   const Verdict verdict = judge_contact(tile, scratch, field, settings, share);
-  write_contact(tile, scratch.cells, field, verdict, settings, share);
+  write_contact(tile, scratch.cells, field, past, verdict, settings, share);
   return verdict;
 }
 
 /* The middle that a pillar keeps where its contact is not resolved, by itself (F4, F6). */
-static inline void resolve_alone(Field field, uint index, FieldSettings settings) {
+static inline void resolve_alone(Field field, Past past, uint index, FieldSettings settings) {
   const Force middle = force_of_field(field, index);
-  const Mask vertical = moves_vertically((Bits)field.status[index]);
   if (!(middle.normal > 0.0f)) return;
+  const Segment segment = segment_of(middle, moves_vertically((Bits)field.status[index]));
   Verdict verdict;
   verdict.way = settings.slips != 0 ? PF_BY_FRICTION : PF_BY_NOTHING;
   verdict.friction = settings.friction;
@@ -533,6 +575,7 @@ static inline void resolve_alone(Field field, uint index, FieldSettings settings
   verdict.misfit = 0.0f;
   verdict.spread = 0.0f;
   verdict.doubt = 0.0f;
-  const Judgement judgement = judged_normal(segment_of(middle, vertical), verdict, settings, 0.0f);
-  write_judgement(field, index, vertical, judgement, verdict.way > PF_BY_BOUND, settings.noise);
+  const Judgement judgement = judged_normal(segment, verdict, settings, 0.0f);
+  write_judgement(field, past, index, segment, judgement, verdict.way > PF_BY_BOUND,
+                  settings.noise);
 }

@@ -7,13 +7,16 @@
       global float *deviation_y, global float *deviation_normal, global float *theta_low,         \
       global float *theta_high, global float *phi_low, global float *phi_high,                    \
       global float *magnitude_low, global float *magnitude_high, uint rows, uint cols,            \
-      float noise, float quiet, float friction, uint slips, uint shape, uint slip, uint sweeps
+      float noise, float quiet, float friction, uint slips, uint shape, uint slip, uint sweeps,   \
+      global float *past_normal, global float *past_deviation, global uint *past_frame, uint now
 #define PF_FIELD                                                                                   \
   {                                                                                                \
     shear_x, shear_y, normal, status, magnitude, theta, phi, deviation_x, deviation_y,             \
         deviation_normal, theta_low, theta_high, phi_low, phi_high, magnitude_low, magnitude_high, \
         rows, cols                                                                                 \
   }
+#define PF_PAST \
+  { past_normal, past_deviation, past_frame, now }
 #define PF_FIELD_SETTINGS \
   { noise, quiet, friction, slips, shape, slip, sweeps }
 
@@ -31,6 +34,7 @@ kernel void resolve_contacts(PF_FIELD_PARAMETERS, global const Tile* tiles, glob
   const uint contact = (uint)get_group_id(0);
   const Field field = PF_FIELD;
   const FieldSettings settings = PF_FIELD_SETTINGS;
+  const Past past = PF_PAST;
   const Cells all = {kind,
                      planes,
                      planes + cells,
@@ -42,7 +46,8 @@ kernel void resolve_contacts(PF_FIELD_PARAMETERS, global const Tile* tiles, glob
   const Scratch scratch = {all, lines, shared + contact * PF_SHARED_SUMS,
                            counts + contact * PF_RATIO_COUNTS};
   const Share share = {(uint)get_local_id(0), (uint)get_local_size(0)};
-  const Verdict verdict = resolve_contact(tiles[contact], scratch, field, runs, settings, share);
+  const Verdict verdict =
+      resolve_contact(tiles[contact], scratch, field, past, runs, settings, share);
   if (share.first == 0) verdicts[contact] = verdict;
 }
 
@@ -51,7 +56,17 @@ kernel void resolve_contacts(PF_FIELD_PARAMETERS, global const Tile* tiles, glob
 kernel void resolve_pillars(PF_FIELD_PARAMETERS, global const uint* pillars, uint count) {
   const Field field = PF_FIELD;
   const FieldSettings settings = PF_FIELD_SETTINGS;
+  const Past past = PF_PAST;
   for (uint at = (uint)get_global_id(0); at < count; at += (uint)get_global_size(0)) {
-    resolve_alone(field, pillars[at], settings);
+    resolve_alone(field, past, pillars[at], settings);
+  }
+}
+
+/* A work-item keeps every get_global_size(0)-th of the `count` runs for the frame that follows. */
+kernel void keep_runs(PF_FIELD_PARAMETERS, global const Run* runs, uint count) {
+  const Field field = PF_FIELD;
+  const Past past = PF_PAST;
+  for (uint at = (uint)get_global_id(0); at < count; at += (uint)get_global_size(0)) {
+    keep_run(field, past, runs[at], noise);
   }
 }

@@ -63,6 +63,15 @@ typedef struct {
   uint cols;
 } Field;
 
+/* What was known of pillars when a frame had told it; for scenes whose frames are close in time.
+ * The planes are null elsewhere. */
+typedef struct {
+  PF_GLOBAL float* normal;    /* N */
+  PF_GLOBAL float* deviation; /* N */
+  PF_GLOBAL uint* frame;      /* in which that was */
+  uint now;                   /* the frame at hand, from 1 */
+} Past;
+
 /* The work-items that share a contact, and which of them this one is. */
 typedef struct {
   uint first;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cmath>
 #include <string>
 
+#include "core/field_estimate.h"
 #include "core/host_solve.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
@@ -157,6 +159,26 @@ TEST_P(EveryWay, SlippingHasTheBitsOfTheHost) {
   plan.field.friction = 1.7;
   plan.field.slips = true;
   expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, FramesThatAreCloseHaveTheBitsOfTheHost) {
+  const Simulator simulator(parse_scene(kScene, "scene"));
+  SolverPlan plan = plan_of(simulator);
+  plan.field.shape = false;
+  plan.field.frames_close = true;
+  SolverPlan direct = plan;
+  direct.estimator = Estimator::direct;
+  HostFieldEstimator estimator(plan);
+  Processor solver = processor(plan);
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    simulator.render(index, raw, truth);
+    solver.submit(raw.view());
+    ForceField expected = solve_on_host(direct, raw.view());
+    estimator.resolve(expected);
+    expect_same_bits(solver.receive(), expected.view());
+  }
 }
 
 TEST_P(EveryWay, RandomFramesHaveTheBitsOfTheHost) {
