@@ -43,8 +43,9 @@ struct FrameContacts {
 /// What contacts are looked for and how they are followed.
 struct ContactOptions {
   std::uint64_t minimum_pillars = 1;  ///< smaller contacts are neither listed nor followed
-  std::optional<double> friction;     ///< of every contact, (0, 100]; unset: each may show its own
-  double reach_mm = 10;               ///< how far a contact may jump, 0 to 1000
+  std::optional<double> friction =
+      {};                ///< of every contact, (0, 100]; unset: each may show its own
+  double reach_mm = 10;  ///< how far a contact may jump, 0 to 1000
 };
 
 /// Throws Error, its place being `where`, when a member is out of its range.
