@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -92,6 +93,20 @@ TEST(ContactTracker, AContactThatJumpsWithinReachKeepsItsId) {
   EXPECT_EQ(ids_of(frame), Ids{2});
   EXPECT_EQ(ended_ids(frame), Ids{1});
   EXPECT_FALSE(frame.ended[0].merged_into);
+}
+
+TEST(ContactTracker, MayJumpInAnyDirection) {
+  for (int direction = 0; direction < 16; ++direction) {
+    const double angle = direction * M_PI / 8;
+    const double row = 30.5 + 9 * std::sin(angle);
+    const double col = 30.5 + 9 * std::cos(angle);
+    for (int shift = 0; shift < 12; ++shift) {
+      ContactTracker tracker(kPitchMm);
+      tracker.update(Patch(75, 75).disc(30.5 + shift, 30.5, 2).view(), 0);
+      const Patch jumped = Patch(75, 75).disc(row + shift, col, 2);
+      EXPECT_EQ(ids_of(tracker.update(jumped.view(), 1)), Ids{1}) << direction << " " << shift;
+    }
+  }
 }
 
 TEST(ContactTracker, WithoutReachOnlySharedPillarsCount) {
