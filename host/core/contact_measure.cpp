@@ -38,10 +38,12 @@ double ceiling_of(const PillarForce& pillar) {
 
 }  // namespace
 
-ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm)
+ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm,
+                               FrictionHistogram& scratch)
     : forces_(forces),
       pitch_mm_(pillar_pitch_mm),
-      quanta_(std::uint64_t{forces.rows} * forces.cols) {}
+      quanta_(std::uint64_t{forces.rows} * forces.cols),
+      histogram_(scratch) {}
 
 PillarForce ContactMeasure::pillar(std::uint32_t row, std::uint32_t col) const {
   const std::size_t place = std::size_t{row} * forces_.cols + col;
@@ -64,7 +66,7 @@ ContactSum ContactMeasure::sum(std::span<const ContactRun> runs) const {
 }
 
 std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs,
-                                               std::int64_t peak) {
+                                               std::int64_t peak) const {
   if (peak <= 0) return std::nullopt;
   histogram_.clear();
   visit(runs, [&](const PillarForce& force) {
@@ -73,7 +75,7 @@ std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs,
     if (!ratio) return;
     const double weight = FrictionHistogram::kMostWeight * static_cast<double>(force.normal) /
                           static_cast<double>(peak);
-    histogram_.add(*ratio, static_cast<std::uint32_t>(std::lrint(weight)), ceiling_of(force));
+    histogram_.add(*ratio, static_cast<std::uint32_t>(weight + 0.5), ceiling_of(force));
   });
   const std::optional<FrictionPlateau> plateau = histogram_.plateau();
   if (!plateau) return std::nullopt;

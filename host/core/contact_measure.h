@@ -23,13 +23,15 @@ struct SlipSum {
 /// Reads a field as whole numbers, contact by contact.
 class ContactMeasure {
  public:
-  ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm);
+  /// `scratch` is cleared whenever it is used; it is kept from frame to frame for its memory.
+  ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm, FrictionHistogram& scratch);
 
   [[nodiscard]] ContactSum sum(std::span<const ContactRun> runs) const;
 
   /// The friction that the pillars of a contact show. Those that bear a quarter of its `peak` or
   /// more are asked, weighted with their normal force: noise moves the ratio of the others.
-  [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs, std::int64_t peak);
+  [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs,
+                                               std::int64_t peak) const;
 
   [[nodiscard]] SlipSum slip(std::span<const ContactRun> runs, double friction) const;
 
@@ -45,7 +47,7 @@ class ContactMeasure {
   ForceFieldView forces_;
   double pitch_mm_;
   ForceQuanta quanta_;
-  FrictionHistogram histogram_;
+  FrictionHistogram& histogram_;
 };
 
 /// Adds what a friction says of a contact's slip. `slip` is that of ContactMeasure with it.

@@ -18,12 +18,6 @@ ForceQuanta::ForceQuanta(std::uint64_t pillars)
     : largest_(std::ldexp(
           1, std::min(kMostForceBits, kSumBits - static_cast<int>(std::bit_width(pillars))))) {}
 
-std::int64_t ForceQuanta::of(float force_n) const {
-  if (std::isnan(force_n)) return 0;
-  const double quanta = static_cast<double>(force_n) / kForceQuantum;
-  return std::llrint(std::clamp(quanta, -largest_, largest_));
-}
-
 double MomentSum::value() const {
   return std::ldexp(static_cast<double>(high_), kLowBits) + static_cast<double>(low_);
 }

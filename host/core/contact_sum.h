@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace pillarfield {
@@ -7,7 +9,7 @@ namespace pillarfield {
 /// Forces of pillars as whole numbers of kForceQuantum, so that sums of them are the same bits in
 /// whatever order they are added.
 ///
-/// A pillar's force is rounded to the nearest quantum, at most half of one away, and held within
+/// A pillar's force is rounded to the nearest quantum, halves away from zero, and held within
 /// ±largest_n(); NaN counts as zero. A patch of fewer than 2^25 pillars leaves 8192 N to each, a
 /// larger one so much less that no sum can overflow: 256 N on the largest that a skin can have.
 class ForceQuanta {
@@ -17,7 +19,12 @@ class ForceQuanta {
   /// For a patch of so many pillars, fewer than 2^30.
   explicit ForceQuanta(std::uint64_t pillars);
 
-  [[nodiscard]] std::int64_t of(float force_n) const;
+  [[nodiscard]] std::int64_t of(float force_n) const {
+    if (std::isnan(force_n)) return 0;
+    const double held = std::clamp(force_n / kForceQuantum, -largest_, largest_);
+    // Exact, for a float leaves room for the half; and much faster than llrint.
+    return static_cast<std::int64_t>(held + std::copysign(0.5, held));
+  }
   [[nodiscard]] double largest_n() const { return largest_ * kForceQuantum; }
 
  private:

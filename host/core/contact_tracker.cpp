@@ -56,9 +56,9 @@ struct ContactTracker::State {
   State(double pillar_pitch_mm, const ContactOptions& contact_options);
 
   void require_size(const ForceFieldView& forces);
-  void measure(ContactMeasure& measure);
+  void measure(const ContactMeasure& measure);
   void identify(double time_s);
-  void judge_slip(ContactMeasure& measure);
+  void judge_slip(const ContactMeasure& measure);
 
   double pitch_mm;
   ContactOptions options;
@@ -74,6 +74,7 @@ struct ContactTracker::State {
   std::vector<std::uint32_t> indices;  // of these, the place in frame.contacts, or kNoContact
   ContactTraces traces;
   ContactTraces traces_before;
+  FrictionHistogram histogram;
 };
 
 ContactTracker::State::State(double pillar_pitch_mm, const ContactOptions& contact_options)
@@ -97,7 +98,7 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
 }
 
 /// Lists the contacts that are large enough and what they exert, and the patch.
-void ContactTracker::State::measure(ContactMeasure& measure) {
+void ContactTracker::State::measure(const ContactMeasure& measure) {
   sums.clear();
   indices.clear();
   frame.contacts.clear();
@@ -162,7 +163,7 @@ void ContactTracker::State::identify(double time_s) {
 }
 
 /// Which friction goes for each contact, and what slips at it.
-void ContactTracker::State::judge_slip(ContactMeasure& measure) {
+void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
   for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
     TrackedContact& contact = frame.contacts[i];
     const auto runs = map.runs(contact.number);
@@ -195,7 +196,7 @@ const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double
   State& state = *state_;
   state.require_size(forces);
   state.map.find(forces.status, forces.rows, forces.cols);
-  ContactMeasure measure(forces, state.pitch_mm);
+  const ContactMeasure measure(forces, state.pitch_mm, state.histogram);
   state.frame.time_s = time_s;
   state.measure(measure);
   state.identify(time_s);

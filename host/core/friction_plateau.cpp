@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 namespace pillarfield {
 namespace {
@@ -55,11 +56,8 @@ struct Evidence {
 
 std::int64_t sum(const std::array<std::int64_t, kRatios>& values, std::uint32_t first,
                  std::uint32_t count) {
-  std::int64_t total = 0;
-  for (std::uint32_t bin = first; bin < first + count && bin < kRatios; ++bin) {
-    total += values.at(bin);
-  }
-  return total;
+  const auto begin = values.begin() + first;
+  return std::accumulate(begin, begin + std::min(count, kRatios - first), std::int64_t{0});
 }
 
 /// Whether the window from bin `first` is a plateau of weight `within`.
@@ -67,7 +65,7 @@ bool is_plateau(const Evidence& evidence, std::uint32_t first, std::int64_t with
                 std::int64_t low_weight) {
   const std::uint32_t below_first = first < kWindow ? 0 : first - kWindow;
   const std::int64_t below = sum(evidence.weight, below_first, first - below_first);
-  const std::int64_t above = sum(evidence.weight, first + kWindow, kRatios);
+  const std::int64_t above = sum(evidence.weight, first + kWindow, kRatios - first - kWindow);
   return 100 * within >= 15 * (evidence.all_weight + low_weight) && 10 * above <= within &&
          5 * below <= 2 * within && sum(evidence.pillars, first, kWindow) >= kFewestPillars;
 }
@@ -88,7 +86,7 @@ void FrictionHistogram::add(double ratio, std::uint32_t weight, double ceiling) 
   Cell& cell = cells_[place];
   if (cell.pillars == 0) touched_.push_back(place);
   cell.weight += weight;
-  cell.moment += weight * static_cast<std::int64_t>(std::llrint(ratio * 65536));
+  cell.moment += weight * static_cast<std::int64_t>(ratio * 65536 + 0.5);
   ++cell.pillars;
 }
 
@@ -106,8 +104,15 @@ std::optional<FrictionPlateau> FrictionHistogram::plateau() const {
   std::optional<FrictionPlateau> best;
   std::int64_t most = 0;
   std::size_t taken = 0;
+  std::uint32_t lowest = kRatios;
+  std::uint32_t highest = 0;
+  for (const std::uint32_t place : touched_) {
+    lowest = std::min(lowest, place % kRatios);
+    highest = std::max(highest, place % kRatios);
+  }
   // From the highest ratio down, for then the pillars with room above only grow in number.
-  for (std::uint32_t first = kRatios - kWindow + 1; first-- > 0;) {
+  for (std::uint32_t first = std::min(highest, kRatios - kWindow) + 1; first-- > 0;) {
+    if (first + kWindow <= lowest) break;
     const std::uint32_t least = least_ceiling_bin(middle_of(first + kHalfWindow)) * kRatios;
     for (; taken < by_ceiling_.size() && by_ceiling_[taken] >= least; ++taken) {
       const Cell& cell = cells_[by_ceiling_[taken]];
