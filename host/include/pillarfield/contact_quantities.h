@@ -33,7 +33,7 @@ enum class FrictionSource : std::uint8_t {
 /// "none", "given", "shown", "remembered".
 [[nodiscard]] const char* name_of(FrictionSource source);
 
-/// What a contact exerts on the skin, and where (docs/contact_objects.md). Forces are sums over its
+/// What a contact exerts on the skin, and where (docs/contacts_found.md). Forces are sums over its
 /// pillars, with the signs of ForceFieldView.
 ///
 /// Sums are exact: forces are rounded to 2^-24 N and added as integers, so they are the same bits
