@@ -76,7 +76,8 @@ class Neighbourhood {
   /// Appends the nearest ones within reach of `place`, kNearest at most.
   void add_nearest(const PatchPlace& place, std::uint32_t now, std::vector<Near>& found) const {
     const std::size_t begin = found.size();
-    for (double row = row_of(place.y_mm) - 1; row <= row_of(place.y_mm) + 1; ++row) {
+    for (const int step : {-1, 0, 1}) {
+      const double row = row_of(place.y_mm) + step;
       const Entry left = {row, place.x_mm - reach_mm_, 0, 0};
       for (auto entry = std::lower_bound(entries_.begin(), entries_.end(), left);
            entry != entries_.end() && entry->row == row && entry->x_mm <= place.x_mm + reach_mm_;

@@ -75,7 +75,7 @@ std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs,
     if (!ratio) return;
     const double weight = FrictionHistogram::kMostWeight * static_cast<double>(force.normal) /
                           static_cast<double>(peak);
-    histogram_.add(*ratio, static_cast<std::uint32_t>(weight + 0.5), ceiling_of(force));
+    histogram_.add(*ratio, static_cast<std::uint32_t>(weight), ceiling_of(force));
   });
   const std::optional<FrictionPlateau> plateau = histogram_.plateau();
   if (!plateau) return std::nullopt;

@@ -89,7 +89,7 @@ struct ContactSum {
 
  private:
   /// Of equal peaks the one that comes first row by row counts.
-  void add_peak(std::int64_t normal, std::int64_t at_x, std::int64_t at_y);
+  void add_peak(std::int64_t candidate, std::int64_t at_x, std::int64_t at_y);
 };
 
 }  // namespace pillarfield

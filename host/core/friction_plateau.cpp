@@ -56,7 +56,7 @@ struct Evidence {
 
 std::int64_t sum(const std::array<std::int64_t, kRatios>& values, std::uint32_t first,
                  std::uint32_t count) {
-  const auto begin = values.begin() + first;
+  const std::int64_t* const begin = values.data() + first;
   return std::accumulate(begin, begin + std::min(count, kRatios - first), std::int64_t{0});
 }
 
@@ -86,7 +86,7 @@ void FrictionHistogram::add(double ratio, std::uint32_t weight, double ceiling) 
   Cell& cell = cells_[place];
   if (cell.pillars == 0) touched_.push_back(place);
   cell.weight += weight;
-  cell.moment += weight * static_cast<std::int64_t>(ratio * 65536 + 0.5);
+  cell.moment += weight * static_cast<std::int64_t>(ratio * 65536);
   ++cell.pillars;
 }
 

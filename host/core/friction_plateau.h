@@ -53,7 +53,7 @@ class FrictionHistogram {
  private:
   struct Cell {
     std::int64_t weight = 0;
-    std::int64_t moment = 0;  ///< of weight times ratio, in steps of 2^-16
+    std::int64_t moment = 0;  ///< of weight times ratio, cut to steps of 2^-16
     std::int64_t pillars = 0;
   };
 

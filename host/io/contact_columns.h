@@ -20,11 +20,11 @@ enum class ColumnKind : std::uint8_t {
 /// holds every count there can be.
 template <class Row>
 struct ContactColumn {
-  const char* name;  ///< with its unit: "shear_x_n"
-  const char* unit;  ///< "N", "mm", ...; empty for plain numbers
-  ColumnKind kind;
-  double (*get)(const Row&);
-  void (*set)(Row&, double);              ///< takes any number, which may come from a damaged file
+  const char* name = "";  ///< with its unit: "shear_x_n"
+  const char* unit = "";  ///< "N", "mm", ...; empty for plain numbers
+  ColumnKind kind = ColumnKind::count;
+  double (*get)(const Row&) = nullptr;
+  void (*set)(Row&, double) = nullptr;    ///< takes any number, which may come from a damaged file
   const char* (*word)(double) = nullptr;  ///< of kind word
 };
 

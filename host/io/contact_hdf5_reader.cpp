@@ -53,9 +53,13 @@ ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.pa
   for (const char* name : layout::kPatchRows) patch_.open(file, layout::kPatch, name);
   for (const auto& column : quantity_columns()) patch_.open(file, layout::kPatch, column.name);
   for (const auto& column : ended_columns()) ended_.open(file, layout::kEnded, column.name);
+  count_frames(file.unclosed);
+}
+
+void ContactTablesReader::count_frames(bool unclosed) {
   // Of a writer that was killed, the last frames may have told of rows that are not there.
   frames_ = patch_.rows;
-  while (file.unclosed && frames_ > 0 &&
+  while (unclosed && frames_ > 0 &&
          (count_at(kFirstContact, frames_ - 1) + count_at(kContactCount, frames_ - 1) >
               contacts_.rows ||
           count_at(kFirstEnded, frames_ - 1) + count_at(kEndedCount, frames_ - 1) > ended_.rows)) {

@@ -32,6 +32,7 @@ class ContactTablesReader {
   };
 
   void read_options(const hdf5::File& file);
+  void count_frames(bool unclosed);
   [[nodiscard]] std::uint64_t count_at(std::size_t column, std::uint64_t index) const;
   void require_rows(const Table& table, std::uint64_t first, std::uint64_t count) const;
 

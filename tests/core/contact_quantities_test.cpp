@@ -71,8 +71,10 @@ TEST(ContactQuantities, MomentMovesToAnyPoint) {
   for (const PatchPlace point : {PatchPlace{0, 0}, {7, -3}, contact.centre_of_pressure}) {
     Moment expected;
     for (std::uint32_t i = 0; i < 25; ++i) {
-      const double x = (i % 5 - 2.0) * kPitchMm - point.x_mm;
-      const double y = (2.0 - i / 5) * kPitchMm - point.y_mm;
+      const auto row = static_cast<int>(i / 5);
+      const auto col = static_cast<int>(i % 5);
+      const double x = (col - 2) * kPitchMm - point.x_mm;
+      const double y = (2 - row) * kPitchMm - point.y_mm;
       const auto place = std::size_t{i};
       expected.x_nmm += y * -double{field.normal[place]};
       expected.y_nmm -= x * -double{field.normal[place]};

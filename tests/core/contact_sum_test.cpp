@@ -132,7 +132,7 @@ TEST(ContactSum, IsWithinItsQuantumOfALongDoubleSum) {
     places += std::abs(pillar.x) + std::abs(pillar.y);
   }
   constexpr long double kQuantum = ForceQuanta::kForceQuantum;
-  const long double count = static_cast<long double>(pillars.size());
+  const auto count = static_cast<long double>(pillars.size());
   const auto newtons = [&](auto quanta) { return static_cast<long double>(quanta) * kQuantum; };
   EXPECT_LE(std::abs(newtons(sum.shear_x) - shear_x), count * kQuantum / 2);
   EXPECT_LE(std::abs(newtons(sum.normal) - normal), count * kQuantum / 2);
@@ -160,7 +160,7 @@ TEST(ContactSum, CannotOverflow) {
           static_cast<long double>(force) * kFarthest * static_cast<long double>(stands_for);
       EXPECT_EQ(static_cast<long double>(doubled.value()), expected);
       // The rest of the pillars fits too: each part is below half of what 63 bits hold.
-      const long double low = static_cast<long double>((1 << 15) - 1) * kFarthest;
+      const auto low = static_cast<long double>((1 << 15) - 1) * kFarthest;
       const long double high = std::abs(std::floor(static_cast<long double>(force) / (1 << 15)));
       EXPECT_LT(low * static_cast<long double>(pillars), 9.2e18L);
       EXPECT_LT(high * kFarthest * static_cast<long double>(pillars), 9.2e18L);
