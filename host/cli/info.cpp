@@ -108,6 +108,7 @@ Json facts_of_forces(const std::string& file) {
           {"source", info.source},
           {"angles", info.angles},
           {"uncertainty", info.uncertainty},
+          {"contacts", info.contacts.has_value()},
           {"remarks", reader.remarks()}};
 }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.h"
+#include "cli/contact_output.h"
 #include "cli/device_options.h"
 #include "cli/interrupt.h"
 #include "cli/plan_options.h"
@@ -25,6 +26,7 @@ struct SolveOptions {
   std::string output;
   PlanOptions plan;
   DeviceOptions device;
+  ContactOutputOptions contacts;
   bool json = false;
   bool quiet = false;
 };
@@ -69,14 +71,17 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
+  ask_for_contacts(options.contacts, options.output, info);
   return info;
 }
 
 /// Frames on their way through the processor: reading, solving and writing overlap.
 class Pipeline {
  public:
-  Pipeline(FrameSource& source, Processor& processor, ForceSink& sink, const SolverPlan& plan)
-      : source_(source), processor_(processor), sink_(sink) {
+  /// `contacts` may be null.
+  Pipeline(FrameSource& source, Processor& processor, ForceSink& sink, ContactOutput* contacts,
+           const SolverPlan& plan)
+      : source_(source), processor_(processor), sink_(sink), contacts_(contacts) {
     for (int i = 0; i < kFramesInFlight; ++i) {
       frames_.emplace_back(plan.sensel_type, plan.skin.rows, plan.skin.cols);
     }
@@ -101,7 +106,9 @@ class Pipeline {
     const ForceFieldView forces = processor_.receive();
     summary_.seconds_in_solver += watch.seconds();
     summary_.regions.add(forces.status);
-    sink_.append(forces, times_.at(summary_.frames % frames_.size()));
+    const double time_s = times_.at(summary_.frames % frames_.size());
+    sink_.append(forces, time_s);
+    if (contacts_ != nullptr) contacts_->append(forces, time_s, sink_);
     ++summary_.frames;
   }
 
@@ -115,6 +122,7 @@ class Pipeline {
   FrameSource& source_;
   Processor& processor_;
   ForceSink& sink_;
+  ContactOutput* contacts_;
   std::vector<FrameBuffer> frames_;
   std::array<double, kFramesInFlight> times_{};
   std::uint64_t pushed_ = 0;
@@ -128,14 +136,15 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 }
 
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
-                const SolveSummary& summary, const std::vector<std::string>& remarks) {
+                const SolveSummary& summary, const ContactOutput* contacts,
+                const std::vector<std::string>& remarks) {
   const auto pillars = static_cast<double>(summary.regions.all());
   nlohmann::ordered_json regions;
   for (const Region region :
        {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
     regions[name_of(region)] = summary.regions.of(region);
   }
-  const nlohmann::ordered_json json = {
+  nlohmann::ordered_json json = {
       {"input", options.input},
       {"output", options.output},
       {"estimator", name_of(plan.estimator)},
@@ -152,11 +161,16 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
       {"solver_seconds", summary.seconds_in_solver},
       {"solver_pillars_per_second", per_second(pillars, summary.seconds_in_solver)},
       {"remarks", remarks}};
+  if (contacts != nullptr) {
+    json["contacts_output"] = options.contacts.file;
+    json["contacts"] = contacts->contacts();
+    json["contacts_at_once"] = contacts->most_at_once();
+  }
   fmt::print("{}\n", json.dump());
 }
 
 void print_text(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
-                const SolveSummary& summary) {
+                const SolveSummary& summary, const ContactOutput* contacts) {
   const RegionCount& regions = summary.regions;
   const auto frames = static_cast<double>(summary.frames);
   const auto pillars = static_cast<double>(regions.all());
@@ -179,11 +193,16 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   }
   fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
              regions.saturated, regions.inconsistent);
+  if (contacts != nullptr) {
+    fmt::print("Contacts: {} in all, at most {} at once, in {}\n", contacts->contacts(),
+               contacts->most_at_once(), options.contacts.file);
+  }
   fmt::print("Wrote {}\n", options.output);
 }
 
 void solve(const SolveOptions& options) {
   const Stopwatch watch;
+  check(options.contacts, options.output);
   const std::unique_ptr<FrameSource> source = open_frames(options.input);
   for (const std::string& remark : source->remarks()) {
     fmt::print(stderr, "{}: {}\n", options.input, remark);
@@ -193,9 +212,11 @@ void solve(const SolveOptions& options) {
   Processor processor(
       device, plan,
       {.memory = options.device.memory, .frames_in_flight = Pipeline::kFramesInFlight});
-  const std::unique_ptr<ForceSink> sink =
-      create_force_sink(options.output, file_info(options, plan, device));
-  Pipeline pipeline(*source, processor, *sink, plan);
+  const ForceFileInfo info = file_info(options, plan, device);
+  const std::unique_ptr<ForceSink> sink = create_force_sink(options.output, info);
+  std::optional<ContactOutput> contacts;
+  if (!options.contacts.file.empty()) contacts.emplace(options.contacts, info, options.output);
+  Pipeline pipeline(*source, processor, *sink, contacts ? &*contacts : nullptr, plan);
   {
     Progress progress("Solving", source->frames(), options.quiet);
     for (std::uint64_t index = 0; index < source->frames(); ++index) {
@@ -206,12 +227,14 @@ void solve(const SolveOptions& options) {
     pipeline.drain();
   }
   sink->finish();
+  if (contacts) contacts->finish();
   SolveSummary summary = pipeline.summary();
   summary.seconds_in_all = watch.seconds();
   if (options.json) {
-    print_json(options, plan, processor, summary, source->remarks());
+    print_json(options, plan, processor, summary, contacts ? &*contacts : nullptr,
+               source->remarks());
   } else {
-    print_text(options, plan, processor, summary);
+    print_text(options, plan, processor, summary, contacts ? &*contacts : nullptr);
   }
 }
 
@@ -229,6 +252,7 @@ void add_solve(CLI::App& app, Work& work) {
                    "Force fields to write; the ending chooses: .h5, .csv or .npy")
       ->required();
   add_plan_options(*command, options->plan);
+  add_contact_options(*command, options->contacts);
   add_device_options(*command, options->device);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");

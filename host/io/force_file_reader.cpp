@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/contact_hdf5_reader.h"
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
@@ -23,11 +24,13 @@ struct ForceFileReader::State {
   void read_size();
   void read_info();
   void count_frames();
+  void require_frame(std::uint64_t index) const;
 
   hdf5::File file;
   std::vector<hdf5::StoredFrames> planes;  // shear_x, shear_y, normal, and the uncertainty if any
   hdf5::StoredFrames status;
   hdf5::StoredFrames time;
+  std::optional<ContactTablesReader> contacts;
   ForceFileInfo info;
   std::uint64_t frames = 0;
   std::vector<std::string> remarks;
@@ -62,6 +65,10 @@ ForceFileReader::State::State(const std::filesystem::path& path) : file(hdf5::op
   require_class(status, H5T_INTEGER, "integers", path);
   time = {file, layout::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
+  if (hdf5::exists(file, layout::kContacts)) {
+    contacts.emplace(file);
+    info.contacts = contacts->options();
+  }
   read_size();
   read_info();
   count_frames();
@@ -106,12 +113,19 @@ void ForceFileReader::State::read_info() {
 void ForceFileReader::State::count_frames() {
   frames = std::min(time.frames(), status.frames());
   for (const auto& plane : planes) frames = std::min(frames, plane.frames());
+  if (contacts) frames = std::min(frames, contacts->frames());
   if (file.unclosed) {
     remarks.push_back(fmt::format(
         "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
         "are read.",
         frames));
   }
+}
+
+void ForceFileReader::State::require_frame(std::uint64_t index) const {
+  if (index < frames) return;
+  throw Error(file.path.string(), fmt::format("has no frame {}", index),
+              fmt::format("it holds {} frames, counted from 0", frames));
 }
 
 ForceFileReader::ForceFileReader(const std::filesystem::path& path) {
@@ -129,10 +143,7 @@ const std::vector<std::string>& ForceFileReader::remarks() const { return state_
 
 double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   const hdf5::QuietErrors quiet;
-  if (index >= state_->frames) {
-    throw Error(state_->file.path.string(), fmt::format("has no frame {}", index),
-                fmt::format("it holds {} frames, counted from 0", state_->frames));
-  }
+  state_->require_frame(index);
   if (forces.rows != state_->info.rows || forces.cols != state_->info.cols) {
     forces = ForceField(state_->info.rows, state_->info.cols);
   }
@@ -150,6 +161,17 @@ double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   double time_s = 0;
   state_->time.get(index, H5T_NATIVE_DOUBLE, &time_s);
   return time_s;
+}
+
+FrameContacts ForceFileReader::read_contacts(std::uint64_t index) const {
+  const hdf5::QuietErrors quiet;
+  state_->require_frame(index);
+  if (!state_->contacts) {
+    throw Error(state_->file.path.string(), "holds no contacts", "solve with --contacts");
+  }
+  FrameContacts contacts = state_->contacts->read(index);
+  state_->time.get(index, H5T_NATIVE_DOUBLE, &contacts.time_s);
+  return contacts;
 }
 
 bool is_force_file(const std::filesystem::path& path) {

@@ -20,4 +20,15 @@ inline constexpr const char* kStatus = "/force/status";
 inline constexpr const char* kMagnitude = "/force/magnitude";
 inline constexpr const char* kUncertainty = "/uncertainty";
 
+inline constexpr const char* kContacts = "/contacts";
+inline constexpr const char* kPatch = "/contacts/patch";
+inline constexpr const char* kEnded = "/contacts/ended";
+inline constexpr const char* kFrameColumn = "frame";
+/// Of a frame: where its rows of /contacts and /contacts/ended begin, and how many they are.
+inline constexpr const char* kPatchRows[] = {"first_contact", "contacts", "first_ended", "ended"};
+inline constexpr const char* kWords = "words";
+inline constexpr const char* kMinimumPillars = "minimum_pillars";
+inline constexpr const char* kGivenFriction = "given_friction";
+inline constexpr const char* kReach = "reach_mm";
+
 }  // namespace pillarfield::force_format

@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include "io/contact_hdf5_tables.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/force_sink.h"
@@ -29,12 +30,14 @@ class Hdf5Sink final : public ForceSink {
   ~Hdf5Sink() override;
 
   void append(const ForceFieldView& forces, double time_s) override;
+  void append_contacts(const FrameContacts& contacts) override;
   void finish() override;
 
  private:
   void write_info();
   void create_datasets();
   void require_open() const;
+  void require_contacts() const;
   void put(const ForceFieldView& forces, double time_s);
   void flush();
 
@@ -45,6 +48,7 @@ class Hdf5Sink final : public ForceSink {
   std::vector<hdf5::GrowingDataset> planes_;  // those of all_planes(), in that order
   hdf5::GrowingDataset status_;
   hdf5::GrowingDataset time_;
+  ContactTables contacts_;
   std::uint64_t frames_ = 0;
   std::uint64_t flushed_ = 0;
 };
@@ -62,6 +66,7 @@ Hdf5Sink::~Hdf5Sink() {
   planes_.clear();
   status_ = {};
   time_ = {};
+  contacts_ = {};
   file_ = {};
 }
 
@@ -89,6 +94,7 @@ void Hdf5Sink::create_datasets() {
   }
   status_ = {file_, layout::kStatus, H5T_STD_U8LE, shape};
   time_ = {file_, layout::kTime, H5T_IEEE_F64LE, {}};
+  if (info_.contacts) contacts_ = {file_, *info_.contacts};
 }
 
 void Hdf5Sink::require_open() const {
@@ -105,7 +111,14 @@ void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
   time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);
 }
 
+/// Those of all frames so far.
+void Hdf5Sink::require_contacts() const {
+  if (!info_.contacts || contacts_.frames() == frames_) return;
+  throw Error(path_.string(), "a frame is without its contacts", "append them after each frame");
+}
+
 void Hdf5Sink::flush() {
+  if (info_.contacts) contacts_.write();
   hdf5::flush(file_);
   flushed_ = frames_;
 }
@@ -113,19 +126,33 @@ void Hdf5Sink::flush() {
 void Hdf5Sink::append(const ForceFieldView& forces, double time_s) {
   const hdf5::QuietErrors quiet;
   require_open();
+  require_contacts();
   check(forces, time_s, info_, path_.string());
   put(forces, time_s);
   ++frames_;
+  if (!info_.contacts && frames_ % kFlushEvery == 0) flush();
+}
+
+void Hdf5Sink::append_contacts(const FrameContacts& contacts) {
+  const hdf5::QuietErrors quiet;
+  require_open();
+  if (!info_.contacts) return ForceSink::append_contacts(contacts);
+  if (contacts_.frames() >= frames_) {
+    throw Error(path_.string(), "a frame has its contacts already", "append the next frame first");
+  }
+  contacts_.append(contacts);
   if (frames_ % kFlushEvery == 0) flush();
 }
 
 void Hdf5Sink::finish() {
   const hdf5::QuietErrors quiet;
   require_open();
+  require_contacts();
   flush();
   for (auto& plane : planes_) plane.close();
   status_.close();
   time_.close();
+  contacts_.close();
   hdf5::close(file_);
   part_.commit();
 }

@@ -2,23 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 
+#include "io/ending.h"
 #include "io/force_planes.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
 namespace {
-
-std::string ending_of(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  return ending;
-}
 
 void check(const ForceFileInfo& info, const std::string& where) {
   const auto in_range = [](std::uint32_t size) { return size >= 1 && size <= kMaxSensels / 2; };
@@ -52,11 +44,19 @@ void check(const ForceFieldView& forces, double time_s, const ForceFileInfo& inf
     throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
 }
 
+void ForceSink::append_contacts(const FrameContacts& /*contacts*/) {
+  throw Error("", "a file of forces alone was given contacts", "name them in its ForceFileInfo");
+}
+
 std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                              const ForceFileInfo& info) {
   check(info, path.string());
   const std::string ending = ending_of(path);
   if (ending == ".h5" || ending == ".hdf5") return create_hdf5_sink(path, info);
+  if (info.contacts) {
+    throw Error(path.string(), "only HDF5 files hold contacts beside the forces",
+                "end it in .h5, or write the contacts to a file of their own");
+  }
   if (ending == ".csv") return create_csv_sink(path, info);
   if (ending == ".npy") return create_npy_sink(path, info);
   throw Error(path.string(), "its ending names no format of forces",

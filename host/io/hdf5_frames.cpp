@@ -32,15 +32,16 @@ std::vector<hsize_t> chunk_of(const FrameShape& shape, hsize_t value_bytes) {
   return chunk;
 }
 
-/// Selects one frame of a dataset's space.
+/// Selects frames of a dataset's space.
 Handle frame_selection(const std::filesystem::path& path, const std::string& failure,
-                       const std::vector<hsize_t>& extent, std::uint64_t index) {
+                       const std::vector<hsize_t>& extent, std::uint64_t index,
+                       std::uint64_t frames = 1) {
   Handle space =
       own(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), path, failure);
   std::vector<hsize_t> start(extent.size(), 0);
   std::vector<hsize_t> count = extent;
   start[0] = index;
-  count[0] = 1;
+  count[0] = frames;
   require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
                               nullptr),
           path, failure);
@@ -61,6 +62,14 @@ Handle memory_selection(const std::filesystem::path& path, const std::string& fa
                               nullptr),
           path, failure);
   return space;
+}
+
+/// Frames in memory that lie close together.
+Handle dense_frames(const std::filesystem::path& path, const std::string& failure,
+                    std::vector<hsize_t> extent, std::uint64_t frames) {
+  extent[0] = frames;
+  return own(H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), path,
+             failure);
 }
 
 }  // namespace
@@ -102,6 +111,18 @@ void GrowingDataset::put(std::uint64_t index, hid_t memory_type, const void* fra
   require_written(*health_, path_);
 }
 
+void GrowingDataset::append(hid_t memory_type, const void* frames, std::size_t count) {
+  if (count == 0) return;
+  const hsize_t first = extent_[0];
+  extent_[0] += count;
+  require(H5Dset_extent(dataset_.get(), extent_.data()), path_, failure_);
+  const Handle target = frame_selection(path_, failure_, extent_, first, count);
+  const Handle source = dense_frames(path_, failure_, extent_, count);
+  require(H5Dwrite(dataset_.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, frames),
+          path_, failure_);
+  require_written(*health_, path_);
+}
+
 StoredFrames::StoredFrames(const File& file, const char* name, std::size_t frame_rank)
     : path_(file.path), name_(name), dataset_(open_dataset(file, name)) {
   type_ = own(H5Dget_type(dataset_.get()), path_, name_ + " has no type");
@@ -122,6 +143,17 @@ void StoredFrames::get(std::uint64_t index, hid_t memory_type, void* frame) cons
   const Handle source = frame_selection(path_, failure, extent_, index);
   const Handle target = memory_selection(path_, failure, extent_, 1);
   require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, frame),
+          path_, failure, kDamaged);
+}
+
+void StoredFrames::get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type,
+                           void* frames) const {
+  if (count == 0) return;
+  const std::string failure =
+      fmt::format("{} of {} from {} on cannot be read", count, name_, first);
+  const Handle source = frame_selection(path_, failure, extent_, first, count);
+  const Handle target = dense_frames(path_, failure, extent_, count);
+  require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, frames),
           path_, failure, kDamaged);
 }
 

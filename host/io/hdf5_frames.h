@@ -24,6 +24,12 @@ class GrowingDataset {
   /// longer reaches the file with the next flush.
   void put(std::uint64_t index, hid_t memory_type, const void* frame, std::size_t row_stride = 1);
 
+  /// Writes `count` dense frames after the last, as put() does one.
+  void append(hid_t memory_type, const void* frames, std::size_t count);
+
+  /// To write attributes on it.
+  [[nodiscard]] hid_t id() const { return dataset_.get(); }
+
   void close() { (void)dataset_.close(); }
 
  private:
@@ -53,6 +59,9 @@ class StoredFrames {
 
   /// Reads frame `index` < frames(), dense, converted to `memory_type`.
   void get(std::uint64_t index, hid_t memory_type, void* frame) const;
+
+  /// Reads `count` frames from `first` on, all below frames().
+  void get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type, void* frames) const;
 
  private:
   std::filesystem::path path_;

@@ -11,6 +11,7 @@
 
 #include "pillarfield/force_file.h"
 #include "pillarfield/recording.h"
+#include "tests/io/sample_contacts.h"
 #include "tests/io/sample_files.h"
 
 /// HDF5 1.10 does not free what it had made of an object's header when that turns out damaged.
@@ -205,6 +206,22 @@ TEST(KilledForces, GiveEveryFlushedFrame) {
     EXPECT_GE(reader.frames(), flushed);
     ASSERT_EQ(reader.remarks().size(), 1u);
     expect_written_frames(reader);
+  }
+}
+
+TEST(KilledForces, GiveTheContactsOfEveryFlushedFrame) {
+  for (std::uint64_t trial = 0; trial < 6; ++trial) {
+    const TemporaryDirectory directory;
+    const std::string size = trial % 2 == 1 ? "20" : "1";
+    const std::uint64_t flushed = flushed_by_killed("contacts", directory / "f.h5", size,
+                                                    16 + 32 * trial, number_at(trial, 1) % 3000);
+    const ForceFileReader reader(directory / "f.h5.part");
+    EXPECT_GE(reader.frames(), flushed);
+    for (std::uint64_t index = 0; index < reader.frames(); ++index) {
+      ASSERT_EQ(io_test::written_out(reader.read_contacts(index)),
+                io_test::written_out(io_test::sample_contacts(index)))
+          << index;
+    }
   }
 }
 

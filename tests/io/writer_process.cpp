@@ -1,7 +1,7 @@
 // Writes frames whose content follows from their index until it is done, or dies of what the test
 // does to it. Prints the number of frames known to be flushed, one line each time.
 //
-//     io_writer_process recording|forces PATH ROWS COLS FRAMES [FILE_SIZE_LIMIT]
+//     io_writer_process recording|forces|contacts PATH ROWS COLS FRAMES [FILE_SIZE_LIMIT]
 //
 // ROWS and COLS count pillars. Exit status 3: an Error, whose text is the last line printed.
 
@@ -15,6 +15,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/recording.h"
+#include "tests/io/sample_contacts.h"
 #include "tests/io/sample_files.h"
 
 namespace {
@@ -50,10 +51,13 @@ void write_recording(const std::string& path, std::uint32_t rows, std::uint32_t 
 }
 
 void write_forces(const std::string& path, std::uint32_t rows, std::uint32_t cols,
-                  std::uint64_t frames) {
-  const auto sink = create_force_sink(path, {rows, cols, 1.25, "direct", "a device", "it", false});
+                  std::uint64_t frames, bool contacts) {
+  ForceFileInfo info = {rows, cols, 1.25, "direct", "a device", "it", false};
+  if (contacts) info.contacts.emplace();
+  const auto sink = create_force_sink(path, info);
   for (std::uint64_t index = 0; index < frames; ++index) {
     sink->append(sample_forces(index, rows, cols).view(), 0.25 * static_cast<double>(index));
+    if (contacts) sink->append_contacts(io_test::sample_contacts(index));
     if ((index + 1) % kForceFlushEvery == 0) say(index + 1);
   }
   sink->finish();
@@ -76,7 +80,8 @@ int main(int argc, char** argv) {
   if (argc > 6) limit_file_size(static_cast<rlim_t>(std::atoll(argv[6])));
   try {
     if (kind == "recording") write_recording(argv[2], rows, cols, frames);
-    if (kind == "forces") write_forces(argv[2], rows, cols, frames);
+    if (kind == "forces") write_forces(argv[2], rows, cols, frames, false);
+    if (kind == "contacts") write_forces(argv[2], rows, cols, frames, true);
   } catch (const pillarfield::Error& error) {
     std::printf("%s\n", error.what());
     return 3;

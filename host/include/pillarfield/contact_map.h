@@ -35,13 +35,16 @@ class ContactMap {
     return std::span(runs_).subspan(starts_[contact], starts_[contact + 1] - starts_[contact]);
   }
 
+  /// The same runs row by row from the left.
+  [[nodiscard]] std::span<const ContactRun> runs_by_row() const { return found_; }
+
  private:
   void number_contacts();
   void sort_runs();
 
   std::vector<ContactRun> runs_;
   std::vector<std::size_t> starts_;     ///< first run of each contact, and one past the last
-  std::vector<ContactRun> found_;       ///< row by row, before they are sorted
+  std::vector<ContactRun> found_;       ///< row by row
   std::vector<std::uint32_t> parents_;  ///< a run before each in its contact, or itself
   std::vector<std::size_t> next_;       ///< of each contact, where its next run goes
 };

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
 
 namespace pillarfield {
@@ -15,11 +17,12 @@ struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
   double pillar_pitch_mm = 0;
-  std::string estimator;     ///< "direct" or "paper"
-  std::string device;        ///< name of the device that solved it
-  std::string source;        ///< name of the file the frames came from
-  bool angles = false;       ///< with magnitude, theta and phi
-  bool uncertainty = false;  ///< with the planes of Uncertainty
+  std::string estimator;                        ///< "direct" or "paper"
+  std::string device;                           ///< name of the device that solved it
+  std::string source;                           ///< name of the file the frames came from
+  bool angles = false;                          ///< with magnitude, theta and phi
+  bool uncertainty = false;                     ///< with the planes of Uncertainty
+  std::optional<ContactOptions> contacts = {};  ///< with the contacts that these find; HDF5 only
 };
 
 /// Takes solved frames one by one. Like recordings, files are written under `path` + ".part" and
@@ -29,6 +32,11 @@ class ForceSink {
  public:
   virtual ~ForceSink() = default;
   virtual void append(const ForceFieldView& forces, double time_s) = 0;
+
+  /// Takes the contacts of the frame that was appended last, of each where ForceFileInfo::contacts
+  /// is set, and of none elsewhere. Throws Error otherwise, then or with the next frame.
+  virtual void append_contacts(const FrameContacts& contacts);
+
   virtual void finish() = 0;
 };
 
@@ -56,6 +64,9 @@ class ForceFileReader {
   /// Reads frame `index`, with its uncertainty where the file has it, and returns its time in
   /// seconds.
   double read(std::uint64_t index, ForceField& forces) const;
+
+  /// Reads the contacts of frame `index`. Throws Error where ForceFileInfo::contacts is unset.
+  [[nodiscard]] FrameContacts read_contacts(std::uint64_t index) const;
 
  private:
   struct State;

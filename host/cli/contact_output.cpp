@@ -1,0 +1,95 @@
+#include "cli/contact_output.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::cli {
+namespace {
+
+std::string ending_of(const std::string& file) {
+  std::string ending = std::filesystem::path(file).extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
+  return ending;
+}
+
+bool is_table(const std::string& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".csv" || ending == ".json";
+}
+
+bool is_hdf5(const std::string& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".h5" || ending == ".hdf5";
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
+}
+
+}  // namespace
+
+void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
+  CLI::Option* const file = command.add_option(
+      "--contacts", options.file,
+      "Find and follow contacts, and write them: .csv, .json, or the .h5 of --output; such an "
+      "output holds them in any case");
+  command
+      .add_option("--minimum-pillars", options.contacts.minimum_pillars,
+                  "Contacts of fewer pillars are not told of [1]")
+      ->needs(file);
+  command
+      .add_option("--contact-friction", options.contacts.friction,
+                  "Friction of every contact [what each shows]")
+      ->needs(file);
+  command
+      .add_option("--contact-reach", options.contacts.reach_mm,
+                  "How far a contact may jump from frame to frame, mm [10]")
+      ->needs(file);
+}
+
+void check(const ContactOutputOptions& options, const std::string& output) {
+  if (options.file.empty()) return;
+  check(options.contacts, "the command line");
+  const bool same = same_file(options.file, output);
+  if (same && !is_hdf5(output)) {
+    throw Error(options.file, "forces and contacts cannot share this file",
+                "give contacts a name of their own");
+  }
+  if (!same && !is_table(options.file)) {
+    throw Error(options.file, "its ending names no table of contacts",
+                "end it in .csv or .json, or name the .h5 file of forces");
+  }
+}
+
+void ask_for_contacts(const ContactOutputOptions& options, const std::string& output,
+                      ForceFileInfo& forces) {
+  if (!options.file.empty() && is_hdf5(output)) forces.contacts = options.contacts;
+}
+
+ContactOutput::ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
+                             const std::string& output)
+    : tracker_(forces.pillar_pitch_mm, options.contacts),
+      in_force_file_(forces.contacts.has_value()) {
+  if (same_file(options.file, output)) return;
+  table_ =
+      create_contact_sink(options.file, {forces.pillar_pitch_mm, forces.source, options.contacts});
+}
+
+void ContactOutput::append(const ForceFieldView& forces, double time_s, ForceSink& sink) {
+  const FrameContacts& frame = tracker_.update(forces, time_s);
+  if (in_force_file_) sink.append_contacts(frame);
+  if (table_) table_->append(frame);
+  most_at_once_ = std::max(most_at_once_, frame.contacts.size());
+  for (const TrackedContact& contact : frame.contacts) contacts_ = std::max(contacts_, contact.id);
+}
+
+void ContactOutput::finish() {
+  if (table_) table_->finish();
+}
+
+}  // namespace pillarfield::cli

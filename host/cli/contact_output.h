@@ -1,0 +1,55 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "pillarfield/contact_file.h"
+#include "pillarfield/contact_tracker.h"
+#include "pillarfield/force_file.h"
+
+namespace pillarfield::cli {
+
+/// Which contacts are told of, and where, as far as the command line says.
+struct ContactOutputOptions {
+  std::string file;  ///< empty: nowhere
+  ContactOptions contacts;
+};
+
+/// --contacts and what goes with it.
+void add_contact_options(CLI::App& command, ContactOutputOptions& options);
+
+/// Throws Error unless contacts can be written to where `options` says, or nothing is said.
+/// `output` is the file of forces.
+void check(const ContactOutputOptions& options, const std::string& output);
+
+/// Lets the file of forces hold contacts where `options` asks for any and it can.
+void ask_for_contacts(const ContactOutputOptions& options, const std::string& output,
+                      ForceFileInfo& forces);
+
+/// Follows the contacts of solved frames and writes them: into the file of forces where that is
+/// HDF5, and into a table of their own unless the options name that file.
+class ContactOutput {
+ public:
+  /// `forces` is what its file `output` says of itself.
+  ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
+                const std::string& output);
+
+  /// Takes a frame that `sink` has just taken.
+  void append(const ForceFieldView& forces, double time_s, ForceSink& sink);
+  void finish();
+
+  [[nodiscard]] std::uint64_t contacts() const { return contacts_; }  ///< different ones
+  [[nodiscard]] std::size_t most_at_once() const { return most_at_once_; }
+
+ private:
+  ContactTracker tracker_;
+  bool in_force_file_;
+  std::unique_ptr<ContactSink> table_;
+  std::uint64_t contacts_ = 0;
+  std::size_t most_at_once_ = 0;
+};
+
+}  // namespace pillarfield::cli

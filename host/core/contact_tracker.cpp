@@ -1,0 +1,211 @@
+#include "pillarfield/contact_tracker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/contact_identity.h"
+#include "core/contact_measure.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr const char* kPlace = "ContactTracker";
+constexpr double kMostFriction = 100;
+constexpr double kMostReachMm = 1000;
+
+/// Fewer cannot show a friction.
+constexpr std::uint64_t kFewestForFriction = 8;
+
+void require_whole(const ForceFieldView& forces) {
+  const std::size_t pillars = std::size_t{forces.rows} * forces.cols;
+  for (const std::span<const float> plane : {forces.shear_x, forces.shear_y, forces.normal}) {
+    if (plane.size() == pillars) continue;
+    throw Error(kPlace,
+                fmt::format("a plane of {} forces for {} x {} pillars", plane.size(), forces.rows,
+                            forces.cols),
+                "give one for each pillar");
+  }
+}
+
+/// What is remembered of a contact.
+struct Known {
+  std::optional<std::uint64_t> parent;
+  double first_time_s = 0;
+  std::optional<double> friction;  ///< last shown
+};
+
+}  // namespace
+
+void check(const ContactOptions& options, const std::string& where) {
+  const auto& friction = options.friction;
+  if (friction && !(*friction > 0 && *friction <= kMostFriction)) {
+    throw Error(where, fmt::format("a friction of {}", *friction),
+                fmt::format("it must be above 0 and at most {}", kMostFriction));
+  }
+  if (!(options.reach_mm >= 0 && options.reach_mm <= kMostReachMm)) {
+    throw Error(where, fmt::format("contacts that jump by {} mm", options.reach_mm),
+                fmt::format("it must be 0 to {}", kMostReachMm));
+  }
+}
+
+struct ContactTracker::State {
+  State(double pillar_pitch_mm, const ContactOptions& contact_options);
+
+  void require_size(const ForceFieldView& forces);
+  void measure(const ContactMeasure& measure);
+  void identify(double time_s);
+  void judge_slip(const ContactMeasure& measure);
+
+  double pitch_mm;
+  ContactOptions options;
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  bool any_frame = false;
+  double last_time_s = 0;
+  std::uint64_t next_id = 1;
+  ContactMap map;
+  FrameContacts frame;
+  std::vector<Known> known;            // of frame.contacts
+  std::vector<ContactSum> sums;        // of the contacts of the map
+  std::vector<std::uint32_t> indices;  // of these, the place in frame.contacts, or kNoContact
+  ContactTraces traces;
+  ContactTraces traces_before;
+  FrictionHistogram histogram;
+};
+
+ContactTracker::State::State(double pillar_pitch_mm, const ContactOptions& contact_options)
+    : pitch_mm(pillar_pitch_mm), options(contact_options) {
+  if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
+    throw Error(kPlace, fmt::format("a pillar pitch of {} mm", pitch_mm), "it must be above zero");
+  }
+  check(options, kPlace);
+}
+
+void ContactTracker::State::require_size(const ForceFieldView& forces) {
+  require_whole(forces);
+  if (any_frame && (forces.rows != rows || forces.cols != cols)) {
+    throw Error(kPlace,
+                fmt::format("a frame of {} x {} pillars after such of {} x {}", forces.rows,
+                            forces.cols, rows, cols),
+                "follow them with another tracker");
+  }
+  rows = forces.rows;
+  cols = forces.cols;
+}
+
+/// Lists the contacts that are large enough and what they exert, and the patch.
+void ContactTracker::State::measure(const ContactMeasure& measure) {
+  sums.clear();
+  indices.clear();
+  frame.contacts.clear();
+  ContactSum patch;
+  for (std::uint32_t number = 0; number < map.contacts(); ++number) {
+    sums.push_back(measure.sum(map.runs(number)));
+    patch.add(sums.back());
+    indices.push_back(kNoContact);
+    if (static_cast<std::uint64_t>(sums.back().pillars) < options.minimum_pillars) continue;
+    indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
+    TrackedContact contact;
+    contact.number = number;
+    contact.quantities = measure.quantities(sums.back());
+    frame.contacts.push_back(contact);
+  }
+  frame.patch = measure.quantities(patch);
+}
+
+/// Gives each contact of the frame its id, and tells which of the frame before have ended.
+void ContactTracker::State::identify(double time_s) {
+  std::swap(traces, traces_before);
+  traces.runs.assign(map.runs_by_row().begin(), map.runs_by_row().end());
+  for (ContactRun& run : traces.runs) run.contact = indices[run.contact];
+  traces.ids.clear();
+  traces.centres.clear();
+  for (const TrackedContact& contact : frame.contacts) {
+    traces.centres.push_back(contact.quantities.centre);
+  }
+  const ContactMatches matches = match_contacts(traces_before, traces, options.reach_mm);
+
+  std::vector<bool> lives(traces_before.ids.size());
+  const std::vector<Known> known_before = std::exchange(known, {});
+  for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
+    TrackedContact& contact = frame.contacts[i];
+    const std::uint32_t earlier = matches.earlier[i];
+    if (earlier != kNoContact) {
+      lives[earlier] = true;
+      contact.id = traces_before.ids[earlier];
+      known.push_back(known_before[earlier]);
+    } else {
+      contact.id = next_id++;
+      const std::uint32_t parent = matches.parents[i];
+      known.push_back({std::nullopt, time_s, std::nullopt});
+      if (parent != kNoContact) known.back().parent = traces_before.ids[parent];
+    }
+    contact.parent = known.back().parent;
+    contact.first_time_s = known.back().first_time_s;
+    contact.age_s = time_s - contact.first_time_s;
+    traces.ids.push_back(contact.id);
+  }
+
+  frame.ended.clear();
+  for (std::size_t i = 0; i < lives.size(); ++i) {
+    if (lives[i]) continue;
+    const std::uint32_t merged = matches.merged[i];
+    EndedContact ended = {traces_before.ids[i], {}, known_before[i].first_time_s, last_time_s};
+    if (merged != kNoContact) ended.merged_into = traces.ids[merged];
+    frame.ended.push_back(ended);
+  }
+  std::sort(frame.ended.begin(), frame.ended.end(),
+            [](const EndedContact& a, const EndedContact& b) { return a.id < b.id; });
+}
+
+/// Which friction goes for each contact, and what slips at it.
+void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
+  for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
+    TrackedContact& contact = frame.contacts[i];
+    const auto runs = map.runs(contact.number);
+    FrictionSource source = FrictionSource::given;
+    std::optional<double> friction = options.friction;
+    if (!friction) {
+      if (contact.quantities.pillars >= kFewestForFriction) {
+        friction = measure.friction(runs, sums[contact.number].peak);
+      }
+      source = friction ? FrictionSource::shown : FrictionSource::remembered;
+      if (!friction) friction = known[i].friction;
+      known[i].friction = friction;
+    }
+    if (friction) {
+      set_slip(contact.quantities, *friction, source, measure.slip(runs, *friction));
+    }
+  }
+  if (!options.friction || frame.patch.pillars == 0) return;
+  set_slip(frame.patch, *options.friction, FrictionSource::given,
+           measure.slip(map.runs(), *options.friction));
+}
+
+ContactTracker::ContactTracker(double pillar_pitch_mm, const ContactOptions& options)
+    : state_(std::make_unique<State>(pillar_pitch_mm, options)) {}
+ContactTracker::~ContactTracker() = default;
+ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;
+ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;
+
+const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s) {
+  State& state = *state_;
+  state.require_size(forces);
+  state.map.find(forces.status, forces.rows, forces.cols);
+  const ContactMeasure measure(forces, state.pitch_mm, state.histogram);
+  state.frame.time_s = time_s;
+  state.measure(measure);
+  state.identify(time_s);
+  state.judge_slip(measure);
+  state.any_frame = true;
+  state.last_time_s = time_s;
+  return state.frame;
+}
+
+const ContactMap& ContactTracker::map() const { return state_->map; }
+
+}  // namespace pillarfield

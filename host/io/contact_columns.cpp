@@ -1,0 +1,166 @@
+#include "io/contact_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace pillarfield {
+namespace {
+
+constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
+constexpr int kWords = 4;  // of either list
+
+/// Counts end where doubles stop being exact.
+std::uint64_t as_count(double value) {
+  constexpr double kMost = 0x1p53;
+  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMost)) : 0;
+}
+
+std::optional<std::uint64_t> as_identity(double value) {
+  const std::uint64_t id = as_count(value);
+  if (id == 0) return std::nullopt;
+  return id;
+}
+
+std::optional<double> as_number(double value) {
+  if (std::isnan(value)) return std::nullopt;
+  return value;
+}
+
+/// Unknown words are the first, which says least.
+template <class Word>
+Word as_word(double value) {
+  const std::uint64_t place = as_count(value);
+  return static_cast<Word>(place < kWords ? place : 0);
+}
+
+template <class Word>
+const char* word_of(double value) {
+  return name_of(as_word<Word>(value));
+}
+
+using Contact = TrackedContact;
+using Quantities = ContactQuantities;
+using Ended = EndedContact;
+using enum ColumnKind;
+
+constexpr std::array<ContactColumn<Contact>, 5> kIdentity = {{
+    {"id", "", identity, [](const Contact& c) { return static_cast<double>(c.id); },
+     [](Contact& c, double v) { c.id = as_count(v); }},
+    {"parent", "", identity,
+     [](const Contact& c) { return static_cast<double>(c.parent.value_or(0)); },
+     [](Contact& c, double v) { c.parent = as_identity(v); }},
+    {"number", "", count, [](const Contact& c) { return static_cast<double>(c.number); },
+     [](Contact& c, double v) { c.number = static_cast<std::uint32_t>(as_count(v)); }},
+    {"first_time_s", "s", number, [](const Contact& c) { return c.first_time_s; },
+     [](Contact& c, double v) { c.first_time_s = v; }},
+    {"age_s", "s", number, [](const Contact& c) { return c.age_s; },
+     [](Contact& c, double v) { c.age_s = v; }},
+}};
+
+constexpr std::array<ContactColumn<Ended>, 4> kEnded = {{
+    {"id", "", identity, [](const Ended& c) { return static_cast<double>(c.id); },
+     [](Ended& c, double v) { c.id = as_count(v); }},
+    {"merged_into", "", identity,
+     [](const Ended& c) { return static_cast<double>(c.merged_into.value_or(0)); },
+     [](Ended& c, double v) { c.merged_into = as_identity(v); }},
+    {"first_time_s", "s", number, [](const Ended& c) { return c.first_time_s; },
+     [](Ended& c, double v) { c.first_time_s = v; }},
+    {"last_time_s", "s", number, [](const Ended& c) { return c.last_time_s; },
+     [](Ended& c, double v) { c.last_time_s = v; }},
+}};
+
+constexpr std::array<ContactColumn<Quantities>, 21> kQuantities = {{
+    {"pillars", "", count, [](const Quantities& q) { return static_cast<double>(q.pillars); },
+     [](Quantities& q, double v) { q.pillars = as_count(v); }},
+    {"ambiguous", "", count, [](const Quantities& q) { return static_cast<double>(q.ambiguous); },
+     [](Quantities& q, double v) { q.ambiguous = as_count(v); }},
+    {"resolved", "", count, [](const Quantities& q) { return static_cast<double>(q.resolved); },
+     [](Quantities& q, double v) { q.resolved = as_count(v); }},
+    {"shear_x_n", "N", number, [](const Quantities& q) { return q.shear_x_n; },
+     [](Quantities& q, double v) { q.shear_x_n = v; }},
+    {"shear_y_n", "N", number, [](const Quantities& q) { return q.shear_y_n; },
+     [](Quantities& q, double v) { q.shear_y_n = v; }},
+    {"normal_n", "N", number, [](const Quantities& q) { return q.normal_n; },
+     [](Quantities& q, double v) { q.normal_n = v; }},
+    {"centre_of_pressure_x_mm", "mm", number,
+     [](const Quantities& q) { return q.centre_of_pressure.x_mm; },
+     [](Quantities& q, double v) { q.centre_of_pressure.x_mm = v; }},
+    {"centre_of_pressure_y_mm", "mm", number,
+     [](const Quantities& q) { return q.centre_of_pressure.y_mm; },
+     [](Quantities& q, double v) { q.centre_of_pressure.y_mm = v; }},
+    {"centre_x_mm", "mm", number, [](const Quantities& q) { return q.centre.x_mm; },
+     [](Quantities& q, double v) { q.centre.x_mm = v; }},
+    {"centre_y_mm", "mm", number, [](const Quantities& q) { return q.centre.y_mm; },
+     [](Quantities& q, double v) { q.centre.y_mm = v; }},
+    {"torque_nmm", "N mm", number, [](const Quantities& q) { return q.torque_nmm; },
+     [](Quantities& q, double v) { q.torque_nmm = v; }},
+    {"area_mm2", "mm^2", number, [](const Quantities& q) { return q.area_mm2; },
+     [](Quantities& q, double v) { q.area_mm2 = v; }},
+    {"peak_n", "N", number, [](const Quantities& q) { return q.peak_n; },
+     [](Quantities& q, double v) { q.peak_n = v; }},
+    {"peak_x_mm", "mm", number, [](const Quantities& q) { return q.peak.x_mm; },
+     [](Quantities& q, double v) { q.peak.x_mm = v; }},
+    {"peak_y_mm", "mm", number, [](const Quantities& q) { return q.peak.y_mm; },
+     [](Quantities& q, double v) { q.peak.y_mm = v; }},
+    {"mean_pressure_kpa", "kPa", number, [](const Quantities& q) { return q.mean_pressure_kpa; },
+     [](Quantities& q, double v) { q.mean_pressure_kpa = v; }},
+    {"friction", "", number, [](const Quantities& q) { return q.friction.value_or(kUnset); },
+     [](Quantities& q, double v) { q.friction = as_number(v); }},
+    {"friction_source", "", ColumnKind::word,
+     [](const Quantities& q) { return static_cast<double>(q.friction_source); },
+     [](Quantities& q, double v) { q.friction_source = as_word<FrictionSource>(v); },
+     word_of<FrictionSource>},
+    {"slip", "", ColumnKind::word, [](const Quantities& q) { return static_cast<double>(q.slip); },
+     [](Quantities& q, double v) { q.slip = as_word<SlipState>(v); }, word_of<SlipState>},
+    {"slipping_share", "", number,
+     [](const Quantities& q) { return q.slipping_share.value_or(kUnset); },
+     [](Quantities& q, double v) { q.slipping_share = as_number(v); }},
+    {"slip_margin", "", number, [](const Quantities& q) { return q.slip_margin.value_or(kUnset); },
+     [](Quantities& q, double v) { q.slip_margin = as_number(v); }},
+}};
+
+}  // namespace
+
+std::span<const ContactColumn<TrackedContact>> identity_columns() { return kIdentity; }
+std::span<const ContactColumn<ContactQuantities>> quantity_columns() { return kQuantities; }
+std::span<const ContactColumn<EndedContact>> ended_columns() { return kEnded; }
+
+template <class Row>
+std::string text_of(const ContactColumn<Row>& column, const Row& row, const char* unset) {
+  const double value = column.get(row);
+  switch (column.kind) {
+    case ColumnKind::word:
+      return column.word(value);
+    case ColumnKind::number:
+      return std::isfinite(value) ? fmt::format("{}", value) : unset;
+    case ColumnKind::identity:
+      if (value == 0) return unset;
+      break;
+    case ColumnKind::count:
+      break;
+  }
+  return fmt::format("{}", static_cast<std::uint64_t>(value));
+}
+
+template <class Row>
+std::string words_of(const ContactColumn<Row>& column) {
+  std::string words = column.word(0);
+  for (int place = 1; place < kWords; ++place) words += std::string(", ") + column.word(place);
+  return words;
+}
+
+template std::string text_of(const ContactColumn<TrackedContact>&, const TrackedContact&,
+                             const char*);
+template std::string text_of(const ContactColumn<ContactQuantities>&, const ContactQuantities&,
+                             const char*);
+template std::string text_of(const ContactColumn<EndedContact>&, const EndedContact&, const char*);
+template std::string words_of(const ContactColumn<TrackedContact>&);
+template std::string words_of(const ContactColumn<ContactQuantities>&);
+template std::string words_of(const ContactColumn<EndedContact>&);
+
+}  // namespace pillarfield

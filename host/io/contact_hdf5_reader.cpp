@@ -1,0 +1,127 @@
+#include "io/contact_hdf5_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "io/contact_columns.h"
+#include "io/force_format.h"
+#include "io/hdf5_attribute.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+namespace layout = force_format;
+
+/// Places in kPatchRows.
+enum PatchRow : std::uint8_t { kFirstContact, kContactCount, kFirstEnded, kEndedCount };
+
+/// Sets a column of each of `rows`; `part` gives what of a row the column is of.
+template <class Row, class Item, class Part>
+void read_columns(std::span<const ContactColumn<Row>> columns, const hdf5::StoredFrames* datasets,
+                  std::uint64_t first, std::vector<Item>& rows, Part part) {
+  std::vector<double> values(rows.size());
+  for (const auto& column : columns) {
+    datasets->get_all(first, values.size(), H5T_NATIVE_DOUBLE, values.data());
+    ++datasets;
+    for (std::size_t i = 0; i < rows.size(); ++i) column.set(part(rows[i]), values[i]);
+  }
+}
+
+}  // namespace
+
+void ContactTablesReader::Table::open(const hdf5::File& file, const std::string& group,
+                                      const char* name) {
+  columns.emplace_back(file, (group + "/" + name).c_str(), 0);
+  const H5T_class_t kind = columns.back().value_class();
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) {
+    throw Error(file.path.string(), fmt::format("{} holds no numbers", columns.back().name()),
+                "docs/formats.md tells its type");
+  }
+  rows = columns.size() == 1 ? columns.back().frames() : std::min(rows, columns.back().frames());
+}
+
+ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.path) {
+  read_options(file);
+  for (const auto& column : identity_columns())
+    contacts_.open(file, layout::kContacts, column.name);
+  for (const auto& column : quantity_columns())
+    contacts_.open(file, layout::kContacts, column.name);
+  for (const char* name : layout::kPatchRows) patch_.open(file, layout::kPatch, name);
+  for (const auto& column : quantity_columns()) patch_.open(file, layout::kPatch, column.name);
+  for (const auto& column : ended_columns()) ended_.open(file, layout::kEnded, column.name);
+  count_frames(file.unclosed);
+}
+
+void ContactTablesReader::count_frames(bool unclosed) {
+  // Of a writer that was killed, the last frames may have told of rows that are not there.
+  frames_ = patch_.rows;
+  while (unclosed && frames_ > 0 &&
+         (count_at(kFirstContact, frames_ - 1) + count_at(kContactCount, frames_ - 1) >
+              contacts_.rows ||
+          count_at(kFirstEnded, frames_ - 1) + count_at(kEndedCount, frames_ - 1) > ended_.rows)) {
+    --frames_;
+  }
+}
+
+void ContactTablesReader::read_options(const hdf5::File& file) {
+  const hdf5::Handle group = hdf5::own(H5Gopen2(file.id.get(), layout::kContacts, H5P_DEFAULT),
+                                       file.path, "its contacts cannot be read", hdf5::kDamaged);
+  const auto minimum = hdf5::read_number(file, group.get(), layout::kMinimumPillars);
+  constexpr double kMost = 0x1p53;
+  if (minimum && *minimum >= 0 && *minimum <= kMost) {
+    options_.minimum_pillars = static_cast<std::uint64_t>(*minimum);
+  }
+  options_.friction = hdf5::read_number(file, group.get(), layout::kGivenFriction);
+  options_.reach_mm =
+      hdf5::read_number(file, group.get(), layout::kReach).value_or(options_.reach_mm);
+  check(options_, file.path.string());
+}
+
+std::uint64_t ContactTablesReader::count_at(std::size_t column, std::uint64_t index) const {
+  std::uint64_t count = 0;
+  patch_.columns[column].get(index, H5T_NATIVE_UINT64, &count);
+  // Sums of two of them must not wrap.
+  return std::min<std::uint64_t>(count, INT64_MAX);
+}
+
+void ContactTablesReader::require_rows(const Table& table, std::uint64_t first,
+                                       std::uint64_t count) const {
+  if (first + count <= table.rows) return;
+  throw Error(path_.string(),
+              fmt::format("has {} rows in {}, and a frame wants row {}", table.rows,
+                          table.columns.front().name(), first + count - 1),
+              hdf5::kDamaged);
+}
+
+FrameContacts ContactTablesReader::read(std::uint64_t index) const {
+  const std::uint64_t first_contact = count_at(kFirstContact, index);
+  const std::uint64_t contacts = count_at(kContactCount, index);
+  const std::uint64_t first_ended = count_at(kFirstEnded, index);
+  const std::uint64_t ended = count_at(kEndedCount, index);
+  require_rows(contacts_, first_contact, contacts);
+  require_rows(ended_, first_ended, ended);
+
+  FrameContacts frame;
+  frame.contacts.resize(contacts);
+  frame.ended.resize(ended);
+  const auto itself = [](auto& row) -> auto& { return row; };
+  const auto quantities = [](TrackedContact& contact) -> ContactQuantities& {
+    return contact.quantities;
+  };
+  const hdf5::StoredFrames* const contact_columns = contacts_.columns.data();
+  read_columns(identity_columns(), contact_columns, first_contact, frame.contacts, itself);
+  read_columns(quantity_columns(), contact_columns + identity_columns().size(), first_contact,
+               frame.contacts, quantities);
+  read_columns(ended_columns(), ended_.columns.data(), first_ended, frame.ended, itself);
+  std::vector<ContactQuantities> patch(1);
+  read_columns(quantity_columns(), patch_.columns.data() + std::size(layout::kPatchRows), index,
+               patch, itself);
+  frame.patch = patch[0];
+  return frame;
+}
+
+}  // namespace pillarfield

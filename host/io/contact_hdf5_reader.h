@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "io/hdf5_file.h"
+#include "io/hdf5_frames.h"
+#include "pillarfield/contact_tracker.h"
+
+namespace pillarfield {
+
+/// Reads the group /contacts of a force file that has one.
+class ContactTablesReader {
+ public:
+  /// Throws Error where a table lacks a column or options are out of range.
+  explicit ContactTablesReader(const hdf5::File& file);
+
+  [[nodiscard]] std::uint64_t frames() const { return frames_; }
+  [[nodiscard]] const ContactOptions& options() const { return options_; }
+
+  /// All of frame `index` < frames() but its time. Throws Error where the tables contradict each
+  /// other.
+  [[nodiscard]] FrameContacts read(std::uint64_t index) const;
+
+ private:
+  /// The datasets of a group, in the order of its columns, and how many rows all of them have.
+  struct Table {
+    std::vector<hdf5::StoredFrames> columns;
+    std::uint64_t rows = 0;
+
+    void open(const hdf5::File& file, const std::string& group, const char* name);
+  };
+
+  void read_options(const hdf5::File& file);
+  void count_frames(bool unclosed);
+  [[nodiscard]] std::uint64_t count_at(std::size_t column, std::uint64_t index) const;
+  void require_rows(const Table& table, std::uint64_t first, std::uint64_t count) const;
+
+  std::filesystem::path path_;
+  ContactOptions options_;
+  Table contacts_;
+  Table patch_;  ///< the columns of kPatchRows first
+  Table ended_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace pillarfield

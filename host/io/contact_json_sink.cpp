@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include "io/contact_columns.h"
+#include "io/contact_sink.h"
+#include "io/text_part.h"
+
+namespace pillarfield {
+namespace {
+
+/// A string of JSON, quotes and all.
+std::string quoted(const std::string& text) {
+  std::string json = "\"";
+  for (const char character : text) {
+    const auto code = static_cast<unsigned char>(character);
+    if (character == '"' || character == '\\') {
+      json += '\\';
+      json += character;
+    } else if (code < 0x20) {
+      json += fmt::format("\\u{:04x}", code);
+    } else {
+      json += character;
+    }
+  }
+  return json + '"';
+}
+
+/// `"name":value` for each column, set apart by commas.
+template <class Row>
+std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& row) {
+  std::string members;
+  for (const auto& column : columns) {
+    const std::string value = text_of(column, row, "null");
+    const bool is_word = column.kind == ColumnKind::word;
+    members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", column.name,
+                           is_word ? quoted(value) : value);
+  }
+  return members;
+}
+
+/// One object; each frame is a line of it.
+class JsonSink final : public ContactSink {
+ public:
+  JsonSink(const std::filesystem::path& path, const ContactFileInfo& info);
+
+  void append(const FrameContacts& frame) override;
+  void finish() override;
+
+ private:
+  std::filesystem::path path_;
+  TextPart file_;
+  std::uint64_t frames_ = 0;
+};
+
+JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& info)
+    : path_(path), file_(path) {
+  const auto& friction = info.options.friction;
+  file_.write(
+      fmt::format("{{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":{},"
+                  "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+                  "\"reach_mm\":{},\"frames\":[",
+                  quoted(info.source), info.pillar_pitch_mm, info.options.minimum_pillars,
+                  friction ? fmt::format("{}", *friction) : "null", info.options.reach_mm));
+}
+
+void JsonSink::append(const FrameContacts& frame) {
+  file_.require_open();
+  check(frame, path_);
+  file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
+                          frames_ == 0 ? "" : ",", frames_, frame.time_s,
+                          members_of(quantity_columns(), frame.patch)));
+  const char* separator = "";
+  for (const TrackedContact& contact : frame.contacts) {
+    file_.write(fmt::format("{}{{{},{}}}", separator, members_of(identity_columns(), contact),
+                            members_of(quantity_columns(), contact.quantities)));
+    separator = ",";
+  }
+  file_.write("],\"ended\":[");
+  separator = "";
+  for (const EndedContact& contact : frame.ended) {
+    file_.write(fmt::format("{}{{{}}}", separator, members_of(ended_columns(), contact)));
+    separator = ",";
+  }
+  file_.write("]}");
+  ++frames_;
+}
+
+void JsonSink::finish() {
+  file_.require_open();
+  file_.write("\n]}\n");
+  file_.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<ContactSink> create_contact_json_sink(const std::filesystem::path& path,
+                                                      const ContactFileInfo& info) {
+  return std::make_unique<JsonSink>(path, info);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,35 @@
+#include "io/text_part.h"
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kBufferBytes = 1 << 20;
+
+}  // namespace
+
+TextPart::TextPart(const std::filesystem::path& path)
+    : path_(path), part_(path), file_(part_.path()) {}
+
+void TextPart::write(std::string_view text) {
+  text_.append(text);
+  if (text_.size() < kBufferBytes) return;
+  file_.write(std::string_view(text_.data(), text_.size()));
+  text_.clear();
+}
+
+void TextPart::finish() {
+  require_open();
+  file_.write(std::string_view(text_.data(), text_.size()));
+  text_.clear();
+  file_.close();
+  part_.commit();
+}
+
+void TextPart::require_open() const {
+  if (file_.is_open()) return;
+  throw Error(path_.string(), "is finished", "start another file");
+}
+
+}  // namespace pillarfield

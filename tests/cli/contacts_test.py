@@ -1,0 +1,181 @@
+"""`pillarfield solve --contacts`, as a user meets it."""
+
+import csv
+import json
+import signal
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from command import PROGRAM, SCENES, CommandTest, run, run_json
+
+WORDS = {"friction_source", "slip"}
+
+
+class Contacts(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.recording = self.folder / "several.h5"
+        self.forces = self.folder / "forces.h5"
+        self.csv = self.folder / "contacts.csv"
+        self.json = self.folder / "contacts.json"
+        run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 40)
+
+    def solve(self, *arguments):
+        return run_json("solve", self.recording, "-o", self.forces, "--minimum-pillars", 4,
+                        *arguments)
+
+    def rows(self):
+        with open(self.csv, newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_forces_add_up_to_the_loads(self):
+        solved = self.solve("--contacts", self.csv)
+        self.assertEqual((solved["contacts"], solved["contacts_at_once"]), (3, 3))
+        self.assertEqual(solved["contacts_output"], str(self.csv))
+        rows = self.rows()
+        with h5py.File(self.recording) as file:
+            loads = file["/truth/normal"][:].sum(axis=(1, 2))
+        for frame in range(40):
+            own = [row for row in rows if int(row["frame"]) == frame and row["row"] == "contact"]
+            patch, = (row for row in rows if int(row["frame"]) == frame and row["row"] == "patch")
+            total = sum(float(row["normal_n"]) for row in own)
+            self.assertAlmostEqual(total, loads[frame], delta=0.01 * loads[frame] + 0.1)
+            self.assertAlmostEqual(float(patch["normal_n"]), loads[frame],
+                                   delta=0.01 * loads[frame] + 0.1)
+            self.assertEqual(float(patch["time_s"]), frame / 100)
+            self.assertEqual(patch["id"], "")
+        slides = [row for row in rows if row["row"] == "contact" and row["id"] == "1"]
+        self.assertEqual(len(slides), 40)
+        for row in slides:
+            self.assertEqual(row["slip"], "sliding")
+            self.assertAlmostEqual(float(row["friction"]), 0.6, delta=0.02)
+            self.assertAlmostEqual(float(row["centre_of_pressure_y_mm"]), 20, delta=0.2)
+
+    def test_every_format_says_the_same(self):
+        self.solve("--contacts", self.csv)
+        self.solve("--contacts", self.json)
+        table = json.loads(self.json.read_text(encoding="utf-8"))
+        self.assertEqual((table["format"], table["version"], table["source"]),
+                         ("pillarfield-contacts", 1, "several.h5"))
+        self.assertEqual(len(table["frames"]), 40)
+        rows = iter(self.rows())
+        with h5py.File(self.forces) as file:
+            group = file["contacts"]
+            names = [name for name in group["patch"] if name in table["frames"][0]["patch"]]
+            self.assertEqual(len(names), 21)
+            self.assertEqual(group.attrs["minimum_pillars"], 4)
+            self.assertEqual(group["normal_n"].attrs["unit"], b"N")
+            row_of_contact = 0
+            for index, frame in enumerate(table["frames"]):
+                self.check_row(next(rows), "patch", frame["patch"], names, group["patch"], index)
+                self.assertEqual(group["patch/first_contact"][index], row_of_contact)
+                self.assertEqual(group["patch/contacts"][index], len(frame["contacts"]))
+                for contact in frame["contacts"]:
+                    row = next(rows)
+                    self.assertEqual(int(row["id"]), contact["id"])
+                    self.assertEqual(group["frame"][row_of_contact], index)
+                    self.assertEqual(group["id"][row_of_contact], contact["id"])
+                    self.check_row(row, "contact", contact, names, group, row_of_contact)
+                    row_of_contact += 1
+                for ended in frame["ended"]:
+                    row = next(rows)
+                    self.assertEqual((row["row"], int(row["id"])), ("ended", ended["id"]))
+            self.assertEqual(len(group["frame"]), row_of_contact)
+        self.assertIsNone(next(rows, None))
+
+    def check_row(self, row, kind, members, names, group, index):
+        self.assertEqual(row["row"], kind)
+        for name in names:
+            value = members[name]
+            stored = group[name][index]
+            if name in WORDS:
+                self.assertEqual(row[name], value)
+                words = group[name].attrs["words"].decode().split(", ")
+                self.assertEqual(words[stored], value)
+            elif value is None:
+                self.assertEqual(row[name], "")
+                self.assertTrue(np.isnan(stored))
+            else:
+                self.assertEqual(float(row[name]), value)
+                self.assertEqual(stored, value)
+
+    def test_runs_give_the_same_bytes(self):
+        copies = [self.folder / name for name in ("a.json", "b.json")]
+        for copy, memory in zip(copies, ("auto", "staged")):
+            self.solve("--contacts", copy, "--memory", memory)
+        self.assertEqual(copies[0].read_bytes(), copies[1].read_bytes())
+
+    def test_contacts_only_in_the_force_file(self):
+        self.solve("--contacts", self.forces)
+        self.assert_folder_holds("several.h5", "forces.h5")
+        self.assertTrue(run_json("info", self.forces)["contacts"])
+        with h5py.File(self.forces) as file:
+            self.assertEqual(len(file["contacts/patch/normal_n"]), 40)
+        run("solve", self.recording, "-o", self.forces)
+        self.assertFalse(run_json("info", self.forces)["contacts"])
+        with h5py.File(self.forces) as file:
+            self.assertNotIn("contacts", file)
+
+    def test_beside_forces_that_hold_none(self):
+        for ending in ("csv", "npy"):
+            forces = self.folder / f"forces.{ending}"
+            run("solve", self.recording, "-o", forces, "--contacts", self.csv)
+            self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)
+
+    def test_given_friction(self):
+        self.solve("--contacts", self.csv, "--contact-friction", 2)
+        for row in self.rows():
+            if row["row"] != "ended":
+                self.assertEqual((row["friction"], row["friction_source"]), ("2", "given"))
+        text = run("solve", self.recording, "-o", self.forces, "--contacts", self.csv).stdout
+        self.assertIn("Contacts: ", text)
+
+    def test_wrong_names_end_before_any_work(self):
+        before = sorted(path.name for path in self.folder.iterdir())
+        cases = {"contacts.txt": ".csv or .json", "contacts": ".csv or .json",
+                 "other.h5": ".csv or .json", "no/such/folder.csv": "no/such/folder.csv"}
+        for name, says in cases.items():
+            with self.subTest(name=name):
+                self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts",
+                                  self.folder / name, says=[name, says])
+                self.assert_folder_holds(*before)
+        table = self.folder / "both.csv"
+        self.assert_fails("solve", self.recording, "-o", table, "--contacts", table,
+                          says=["both.csv", "share"])
+        # Nothing is read before: the error is not that of the recording.
+        self.assert_fails("solve", self.folder / "absent.h5", "-o", self.forces, "--contacts",
+                          "c.txt", says=["c.txt"])
+        for option, value in (("--contact-friction", "-1"), ("--contact-reach", "1e9")):
+            self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
+                              option, value, says=["the command line"])
+        self.assert_folder_holds(*before)
+        result = run("solve", self.recording, "-o", self.forces, "--minimum-pillars", 4, expect=2)
+        self.assertIn("--contacts", result.stderr)
+
+    def test_interrupt_leaves_no_half_table(self):
+        run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 4000)
+        self.csv.write_text("precious", encoding="utf-8")
+        with subprocess.Popen([PROGRAM, "solve", self.recording, "-o", self.folder / "f.npy",
+                               "--contacts", self.csv], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as process:
+            part = self.folder / "contacts.csv.part"
+            deadline = time.monotonic() + 60
+            while not part.exists() and process.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.001)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(60), 1)
+        self.assertEqual(self.csv.read_text(encoding="utf-8"), "precious")
+        self.assert_folder_holds("contacts.csv", "several.h5")
+
+    def test_completion_knows_the_options(self):
+        script = run("completion", "bash").stdout
+        for option in ("--contacts", "--minimum-pillars", "--contact-friction", "--contact-reach"):
+            self.assertIn(option, script)
+
+
+if __name__ == "__main__":
+    unittest.main()

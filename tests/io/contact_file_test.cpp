@@ -1,0 +1,273 @@
+#include "pillarfield/contact_file.h"
+
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <sstream>
+
+#include "pillarfield/force_file.h"
+#include "tests/io/sample_contacts.h"
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::cells_of;
+using io_test::error_of;
+using io_test::has_all;
+using io_test::sample_contacts;
+using io_test::sample_forces;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+using io_test::written_out;
+
+using Names = std::vector<std::string>;
+
+ContactFileInfo sample_info() { return {1.25, "a \"quoted\"\\\n name.h5", {3, 0.5, 7}}; }
+
+void write(const std::filesystem::path& path, std::uint64_t frames) {
+  const auto sink = create_contact_sink(path, sample_info());
+  for (std::uint64_t index = 0; index < frames; ++index) sink->append(sample_contacts(index));
+  sink->finish();
+}
+
+std::vector<std::string> lines_of(const std::filesystem::path& path) {
+  std::istringstream text(bytes_of(path));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+ForceFileInfo force_info(std::optional<ContactOptions> contacts = ContactOptions{3, 0.5, 7}) {
+  ForceFileInfo info = {2, 3, 1.25, "direct", "a device", "press.h5"};
+  info.contacts = contacts;
+  return info;
+}
+
+void append(ForceSink& sink, std::uint64_t index) {
+  sink.append(sample_forces(index, 2, 3).view(), 0.25 * static_cast<double>(index));
+  sink.append_contacts(sample_contacts(index));
+}
+
+void write_forces(const std::filesystem::path& path, std::uint64_t frames) {
+  const auto sink = create_force_sink(path, force_info());
+  for (std::uint64_t index = 0; index < frames; ++index) append(*sink, index);
+  sink->finish();
+}
+
+TEST(ContactColumns, HaveNamesOfTheirOwn) {
+  std::set<std::string> names;
+  for (const auto& column : identity_columns()) EXPECT_TRUE(names.insert(column.name).second);
+  for (const auto& column : quantity_columns()) EXPECT_TRUE(names.insert(column.name).second);
+  EXPECT_EQ(names.size(), 26);
+}
+
+TEST(ContactColumns, SetWhatTheyGet) {
+  ContactQuantities expected = io_test::sample_quantities(3);
+  ContactQuantities set;
+  for (const auto& column : quantity_columns()) column.set(set, column.get(expected));
+  EXPECT_EQ(cells_of(quantity_columns(), set), cells_of(quantity_columns(), expected));
+}
+
+/// Values of damaged files.
+TEST(ContactColumns, TakeAnyNumber) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double value :
+       {-1.0, 1e300, kInfinity, -kInfinity, 4.0, 0.5, std::numeric_limits<double>::quiet_NaN()}) {
+    ContactQuantities quantities;
+    TrackedContact contact;
+    EndedContact ended;
+    for (const auto& column : quantity_columns()) column.set(quantities, value);
+    for (const auto& column : identity_columns()) column.set(contact, value);
+    for (const auto& column : ended_columns()) column.set(ended, value);
+    EXPECT_FALSE(cells_of(quantity_columns(), quantities).empty());
+    EXPECT_FALSE(cells_of(identity_columns(), contact).empty());
+  }
+}
+
+TEST(ContactCsv, HasALineForThePatchAndForEachContact) {
+  const TemporaryDirectory directory;
+  write(directory / "c.csv", 6);
+  EXPECT_EQ(directory.names(), Names{"c.csv"});
+  const auto lines = lines_of(directory / "c.csv");
+  std::size_t line = 1;
+  for (std::uint64_t index = 0; index < 6; ++index) {
+    const FrameContacts frame = sample_contacts(index);
+    std::ostringstream start;
+    start << index << "," << frame.time_s << ",";
+    EXPECT_EQ(lines.at(line++),
+              "patch," + start.str() + ",,,," + cells_of(quantity_columns(), frame.patch, ""));
+    for (const TrackedContact& contact : frame.contacts) {
+      const std::string parent = contact.parent ? std::to_string(*contact.parent) : "";
+      const std::string begin =
+          "contact," + start.str() + std::to_string(contact.id) + "," + parent + ",,";
+      EXPECT_TRUE(lines.at(line).starts_with(begin)) << lines[line];
+      EXPECT_TRUE(lines[line].ends_with(cells_of(quantity_columns(), contact.quantities, "")));
+      ++line;
+    }
+    for (const EndedContact& contact : frame.ended) {
+      const std::string merged = contact.merged_into ? std::to_string(*contact.merged_into) : "";
+      EXPECT_TRUE(lines.at(line).starts_with("ended," + start.str() + std::to_string(contact.id) +
+                                             ",," + merged + ","));
+      ++line;
+    }
+  }
+  EXPECT_EQ(line, lines.size());
+  for (const std::string& each : lines) {
+    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 28) << each;
+  }
+  EXPECT_TRUE(has_all(lines[0], {"row,frame,time_s,id,parent,merged_into,first_time_s,age_s,",
+                                 ",shear_x_n,", ",torque_nmm,", ",slip,"}));
+}
+
+TEST(ContactJson, IsAnObjectOfFramesByLine) {
+  const TemporaryDirectory directory;
+  write(directory / "c.JSON", 3);
+  const auto lines = lines_of(directory / "c.JSON");
+  ASSERT_EQ(lines.size(), 5);
+  EXPECT_EQ(lines[0],
+            "{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":\"a \\\"quoted\\\"\\\\"
+            "\\u000a name.h5\",\"pillar_pitch_mm\":1.25,\"minimum_pillars\":3,"
+            "\"given_friction\":0.5,\"reach_mm\":7,\"frames\":[");
+  EXPECT_TRUE(has_all(lines[1], {"{\"frame\":0,\"time_s\":0,\"patch\":{\"pillars\":",
+                                 "\"friction\":null", "\"contacts\":[],\"ended\":[]},"}));
+  EXPECT_TRUE(has_all(
+      lines[3], {"\"contacts\":[{\"id\":21,\"parent\":null,\"number\":0,",
+                 "{\"id\":22,\"parent\":3,\"number\":2,", "\"slip\":\"partial\"",
+                 "\"ended\":[{\"id\":3,\"merged_into\":null,", "{\"id\":4,\"merged_into\":5,"}));
+  EXPECT_EQ(lines[4], "]}");
+}
+
+TEST(ContactSink, RefusesWhatItCannotWrite) {
+  const TemporaryDirectory directory;
+  for (const std::string name : {"c.h5", "c.txt", "c", ".csv"}) {
+    EXPECT_TRUE(has_all(error_of([&] { (void)create_contact_sink(directory / name, {}); }),
+                        {name, ".csv or .json"}));
+  }
+  EXPECT_TRUE(has_all(error_of([&] { (void)create_contact_sink(directory / "no/c.csv", {}); }),
+                      {"no/c.csv"}));
+  EXPECT_TRUE(directory.names().empty());
+  for (const std::string name : {"c.csv", "c.json"}) {
+    const auto sink = create_contact_sink(directory / name, sample_info());
+    FrameContacts frame;
+    frame.time_s = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(has_all(error_of([&] { sink->append(frame); }), {name, "its time is nan"}));
+    sink->finish();
+    EXPECT_TRUE(has_all(error_of([&] { sink->append({}); }), {name, "is finished"}));
+    EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {name, "is finished"}));
+  }
+}
+
+TEST(ContactSink, KeepsTheOldFileUntilItIsFinished) {
+  for (const std::string name : {"c.csv", "c.json"}) {
+    const TemporaryDirectory directory;
+    write_bytes(directory / name, "old");
+    {
+      const auto sink = create_contact_sink(directory / name, sample_info());
+      sink->append(sample_contacts(3));
+      EXPECT_EQ(bytes_of(directory / name), "old");
+      EXPECT_EQ(directory.names(), (Names{name, name + ".part"}));
+    }
+    EXPECT_EQ(directory.names(), Names{name});
+    EXPECT_EQ(bytes_of(directory / name), "old");
+  }
+}
+
+TEST(ContactsOfForceFile, AreKept) {
+  for (const std::uint64_t frames : {0u, 1u, 15u, 16u, 50u, 2100u}) {
+    const TemporaryDirectory directory;
+    write_forces(directory / "f.h5", frames);
+    const ForceFileReader reader(directory / "f.h5");
+    ASSERT_EQ(reader.frames(), frames);
+    ASSERT_TRUE(reader.info().contacts.has_value());
+    EXPECT_EQ(reader.info().contacts->minimum_pillars, 3);
+    EXPECT_EQ(reader.info().contacts->friction, 0.5);
+    EXPECT_EQ(reader.info().contacts->reach_mm, 7);
+    for (std::uint64_t index = 0; index<frames; index += frames> 100 ? 97 : 1) {
+      ASSERT_EQ(written_out(reader.read_contacts(index)), written_out(sample_contacts(index)))
+          << index;
+    }
+    EXPECT_TRUE(has_all(error_of([&] { (void)reader.read_contacts(frames); }), {"has no frame"}));
+  }
+}
+
+TEST(ContactsOfForceFile, AreThereOnlyWhereAskedFor) {
+  const TemporaryDirectory directory;
+  const auto sink = create_force_sink(directory / "f.h5", force_info(std::nullopt));
+  sink->append(sample_forces(0, 2, 3).view(), 0);
+  EXPECT_TRUE(has_all(error_of([&] { sink->append_contacts({}); }), {"forces alone"}));
+  sink->finish();
+  const ForceFileReader reader(directory / "f.h5");
+  EXPECT_FALSE(reader.info().contacts);
+  EXPECT_TRUE(has_all(error_of([&] { (void)reader.read_contacts(0); }),
+                      {"f.h5", "holds no contacts", "--contacts"}));
+  for (const std::string name : {"f.csv", "f.npy"}) {
+    EXPECT_TRUE(has_all(error_of([&] { (void)create_force_sink(directory / name, force_info()); }),
+                        {name, "only HDF5"}));
+  }
+}
+
+TEST(ContactsOfForceFile, ComeOnceAfterEachFrame) {
+  const TemporaryDirectory directory;
+  const auto sink = create_force_sink(directory / "f.h5", force_info());
+  EXPECT_TRUE(has_all(error_of([&] { sink->append_contacts({}); }), {"already"}));
+  append(*sink, 0);
+  EXPECT_TRUE(has_all(error_of([&] { sink->append_contacts({}); }), {"already"}));
+  const ForceField forces = sample_forces(1, 2, 3);
+  sink->append(forces.view(), 1);
+  EXPECT_TRUE(has_all(error_of([&] { sink->append(forces.view(), 2); }), {"without its contacts"}));
+  EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {"without its contacts"}));
+  sink->append_contacts(sample_contacts(1));
+  sink->finish();
+  EXPECT_EQ(ForceFileReader(directory / "f.h5").frames(), 2);
+}
+
+/// Changes the one value of an unsigned column at `row`.
+void overwrite(const std::filesystem::path& path, const char* column, hsize_t row,
+               std::uint64_t value) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  const hid_t dataset = H5Dopen2(file, column, H5P_DEFAULT);
+  const hid_t space = H5Dget_space(dataset);
+  const hsize_t one = 1;
+  H5Sselect_hyperslab(space, H5S_SELECT_SET, &row, nullptr, &one, nullptr);
+  const hid_t memory = H5Screate_simple(1, &one, nullptr);
+  EXPECT_GE(H5Dwrite(dataset, H5T_NATIVE_UINT64, memory, space, H5P_DEFAULT, &value), 0);
+  H5Sclose(memory);
+  H5Sclose(space);
+  H5Dclose(dataset);
+  H5Fclose(file);
+}
+
+void remove_link(const std::filesystem::path& path, const char* name) {
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
+  EXPECT_GE(H5Ldelete(file, name, H5P_DEFAULT), 0);
+  H5Fclose(file);
+}
+
+TEST(ContactsOfForceFile, DamageIsAnError) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "f.h5";
+  for (const char* column : {"/contacts/patch/first_contact", "/contacts/patch/contacts",
+                             "/contacts/patch/first_ended", "/contacts/patch/ended"}) {
+    for (const std::uint64_t value : {std::uint64_t{30}, UINT64_MAX, std::uint64_t{INT64_MAX}}) {
+      write_forces(path, 8);
+      overwrite(path, column, 5, value);
+      const ForceFileReader reader(path);
+      EXPECT_TRUE(has_all(error_of([&] { (void)reader.read_contacts(5); }), {"f.h5", "damaged"}));
+      EXPECT_EQ(written_out(reader.read_contacts(7)), written_out(sample_contacts(7)));
+    }
+  }
+  for (const char* name : {"/contacts/id", "/contacts/slip_margin", "/contacts/patch",
+                           "/contacts/patch/normal_n", "/contacts/ended/id"}) {
+    write_forces(path, 2);
+    remove_link(path, name);
+    EXPECT_TRUE(has_all(error_of([&] { const ForceFileReader reader(path); }), {"has no", name}));
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
