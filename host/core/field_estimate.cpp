@@ -5,7 +5,7 @@ namespace {
 
 namespace maths = single_precision;
 
-constexpr std::size_t kFloatPlanes = 7;
+constexpr std::size_t kFloatPlanes = 6;
 
 /// Runs as the mathematics reads them.
 std::vector<maths::Run> plain_runs(std::span<const ContactRun> runs) {
@@ -60,7 +60,7 @@ single_precision::Scratch HostFieldEstimator::scratch(std::size_t tile) {
   const maths::Cells all = {kinds_.data(),      planes,
                             planes + cells,     planes + 2 * cells,
                             planes + 3 * cells, planes + 4 * cells,
-                            planes + 5 * cells, planes + 6 * cells};
+                            planes + 5 * cells};
   return {all, lines_.data(), shared_.data() + tile * PF_SHARED_SUMS,
           counts_.data() + tile * PF_RATIO_COUNTS};
 }

@@ -29,6 +29,10 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
   return settings;
 }
 
+/// Of a contact at least one pillar in so many must be open for its evidence to be heard: fewer are
+/// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
+constexpr std::uint32_t kLeastOpenShare = 64;
+
 /// What a contact is made of.
 struct Summary {
   std::uint32_t pillars = 0;
@@ -81,7 +85,8 @@ void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t>
   const std::size_t cells = (std::size_t{rows} + 2) * (cols + 2);
   const bool compact = cells <= std::max(kSmallBox, kMostCellsPerPillar * summary.pillars);
   const bool asks = settings_.slips == 0 && (settings_.shape != 0 || settings_.slip != 0);
-  if (asks && compact && summary.resolved >= PF_LEAST_RESOLVED) {
+  const bool matters = kLeastOpenShare * summary.open >= summary.pillars;
+  if (asks && compact && matters && summary.resolved >= PF_LEAST_RESOLVED) {
     tiles_.push_back({runs.front().row, summary.first_col, rows, cols,
                       static_cast<std::uint32_t>(cells_), static_cast<std::uint32_t>(lines_),
                       static_cast<std::uint32_t>(runs.data() - map_.runs().data()),

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kWorkers = 1024;
-constexpr std::size_t kFloatPlanes = 7;
+constexpr std::size_t kFloatPlanes = 6;
 
 static_assert(sizeof(ContactRun) == sizeof(single_precision::Run),
               "runs go to the device as they are");

@@ -83,11 +83,15 @@ static inline void relax_colour(Tile tile, Cells cells, uint colour, Share share
   }
 }
 
-/* Residual and pressure at the anchors beside ambiguous pillars: sums of both. */
+/* What the trend leaves of the pressure, and the pressure, at the anchors beside ambiguous pillars:
+ * sums of both. */
 static inline void sum_border(Tile tile, Cells cells, const Trend* trend, PF_GLOBAL double* lines,
                               Share share) {
+  const uint sampling = sampling_of(tile);
+  const Frame frame = frame_of(tile);
   const uint width = tile.cols + 2;
-  for (uint row = share.first; row < tile.rows; row += share.step) {
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
+    const TrendLine line = trend_line(trend, (frame.row - (double)row) * frame.scale);
     double residuals = 0.0;
     double values = 0.0;
     for (uint col = 0; col < tile.cols; ++col) {
@@ -98,8 +102,9 @@ static inline void sum_border(Tile tile, Cells cells, const Trend* trend, PF_GLO
                           cells.kind[cell - width] == PF_CELL_AMBIGUOUS ||
                           cells.kind[cell + width] == PF_CELL_AMBIGUOUS;
       if (!beside) continue;
-      residuals += (double)cells.residual[cell];
-      values += powered(trend->squared, (double)cells.top[cell]);
+      const double value = powered(trend->squared, (double)cells.top[cell]);
+      residuals += value - on_line(&line, ((double)col - frame.col) * frame.scale);
+      values += value;
     }
     PF_GLOBAL double* const sums = lines + (tile.first_line + row) * PF_LINE_SUMS;
     sums[0] = residuals;

@@ -30,12 +30,13 @@ typedef struct {
   float doubt;    /* of the shape's normal force, relative */
 } Verdict;
 
-#define PF_SHARED_SUMS 20 /* doubles that the work-items of a contact share */
+#define PF_SHARED_SUMS 36 /* doubles that the work-items of a contact share */
 #define PF_AT_INVERSE_SQUARE 15
 #define PF_AT_PEAK 16
 #define PF_AT_OPEN_PEAK 17
-#define PF_AT_RESOLVED 18 /* pillars */
+#define PF_AT_RESOLVED 18 /* pillars of the sampled rows */
 #define PF_AT_LOADED 19
+#define PF_AT_BEST 20 /* the best trend so far, as the one at hand */
 
 /* Scratch memory of one contact. */
 typedef struct {
@@ -50,6 +51,7 @@ typedef struct {
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
 #define PF_LEAST_SCORE 0.15
+#define PF_GOOD_SCORE 0.5 /* further models are not tried */
 #define PF_MISFIT_PER_SHARE \
   0.45 /* of the trend, by the share of the pillars that it is fitted to */
 #define PF_NOISE_OF_NORMAL \
@@ -65,7 +67,8 @@ static inline float clamped(float value, float low, float high) {
 /* --- What stands where ------------------------------------------------------------------------ */
 
 static inline void summarise_lines(Tile tile, Cells cells, PF_GLOBAL double* lines, Share share) {
-  for (uint row = share.first; row < tile.rows; row += share.step) {
+  const uint sampling = sampling_of(tile);
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     float peak = 0.0f;
     float open_peak = 0.0f;
     double resolved = 0.0;
@@ -94,7 +97,7 @@ static inline void share_summary(Tile tile, Scratch scratch) {
   double open_peak = 0.0;
   double resolved = 0.0;
   double loaded = 0.0;
-  for (uint row = 0; row < tile.rows; ++row) {
+  for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
     PF_GLOBAL const double* const sums = scratch.lines + (tile.first_line + row) * PF_LINE_SUMS;
     if (peak < sums[0]) peak = sums[0];
     if (open_peak < sums[1]) open_peak = sums[1];
@@ -131,7 +134,8 @@ static inline Slope slope_of(Force force) {
  * tenth more than `plateau`, which is zero in the first round. */
 static inline void count_slopes(Tile tile, Scratch scratch, Field field, float quiet, float plateau,
                                 Share share) {
-  for (uint row = share.first; row < tile.rows; row += share.step) {
+  const uint sampling = sampling_of(tile);
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     for (uint col = 0; col < tile.cols; ++col) {
       if (scratch.cells.kind[cell_at(tile, row, col)] != PF_CELL_RESOLVED) continue;
       const Force force = force_of_field(field, (tile.row + row) * field.cols + tile.col + col);
@@ -160,8 +164,9 @@ static inline Plateau slopes_plateau(Tile tile, Scratch scratch, Field field, fl
  * friction: their least ratio is above it. */
 static inline void count_contradictions(Tile tile, Scratch scratch, float noise, float friction,
                                         float peak, Share share) {
+  const uint sampling = sampling_of(tile);
   const Cells cells = scratch.cells;
-  for (uint row = share.first; row < tile.rows; row += share.step) {
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
       if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
@@ -262,22 +267,24 @@ static inline Shaped shaped_normal(Cells cells, uint cell, bool squared, double 
   return shaped;
 }
 
-/* Writes the candidate, and counts the ratios that it implies: those that are too low to be told
- * as beyond all, those above the box as none. */
-static inline void evaluate_shape(Tile tile, Scratch scratch, const Trend* trend, float noise,
-                                  Share share) {
+/* The estimates of a trend, with the membrane on top or without, and the counts of the ratios that
+ * they imply: those that are too low to be told as beyond all, those above the box as none. In
+ * sampled rows, or in all. */
+static inline void evaluate_shape(Tile tile, Scratch scratch, const Trend* trend, bool relaxed,
+                                  float noise, Share share) {
   const Cells cells = scratch.cells;
   const Frame frame = frame_of(tile);
+  const uint sampling = relaxed ? 1u : sampling_of(tile);
   const float peak = (float)scratch.shared[PF_AT_OPEN_PEAK];
-  for (uint row = share.first; row < tile.rows; row += share.step) {
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     const TrendLine line = trend_line(trend, (frame.row - (double)row) * frame.scale);
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
       if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
-      const double value =
-          on_line(&line, ((double)col - frame.col) * frame.scale) + (double)cells.residual[cell];
+      double value = on_line(&line, ((double)col - frame.col) * frame.scale);
+      if (relaxed) value += (double)cells.residual[cell];
       const Shaped shaped = shaped_normal(cells, cell, trend->squared, value, noise);
-      cells.candidate[cell] = shaped.normal;
+      if (relaxed) cells.shaped[cell] = shaped.normal;
       const float part = cells.top[cell] / peak;
       const bool low = shaped.normal < 0.5f * cells.top[cell];
       const uint bin =
@@ -293,17 +300,45 @@ static inline void evaluate_shape(Tile tile, Scratch scratch, const Trend* trend
 static inline double border_misfit(Tile tile, PF_GLOBAL const double* lines) {
   double residuals = 0.0;
   double values = 0.0;
-  for (uint row = 0; row < tile.rows; ++row) {
+  for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
     residuals += lines[(tile.first_line + row) * PF_LINE_SUMS];
     values += lines[(tile.first_line + row) * PF_LINE_SUMS + 1];
   }
   return values > 0.0 ? fabs(residuals) / values : 1.0;
 }
 
-/* One model of the pressure's shape. Leaves its estimate in the cells' candidates. */
+/* What the counts and the border say of a model. */
+static inline Verdict verdict_of_shape(Scratch scratch, double misfit) {
+  const Plateau plateau = find_plateau(scratch.counts, 1.15f);
+  Verdict verdict;
+  verdict.way = PF_BY_SHAPE;
+  verdict.friction = (float)plateau.ratio;
+  verdict.misfit = (float)misfit;
+  verdict.score = (float)(plateau.share - 1.5 * plateau.far - misfit);
+  verdict.spread = (float)(0.02 + plateau.spread + misfit);
+  verdict.doubt = 0.02f + 0.5f * verdict.spread;
+  return verdict;
+}
+
+/* One model of the pressure's shape, judged by its trend in the sampled rows. */
 static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settings, uint degree,
                                 bool squared, Share share) {
   const Trend trend = fit_trend(tile, scratch, degree, squared, share);
+  clear_counts(scratch.counts, share);
+  await_others();
+  sum_border(tile, scratch.cells, &trend, scratch.lines, share);
+  evaluate_shape(tile, scratch, &trend, false, settings.noise, share);
+  await_others();
+  const double misfit = border_misfit(tile, scratch.lines);
+  const Verdict verdict = verdict_of_shape(scratch, misfit);
+  await_others();
+  return verdict;
+}
+
+/* The model that was chosen, with the membrane that resolved pillars hold up. */
+static inline Verdict relax_shape(Tile tile, Scratch scratch, FieldSettings settings,
+                                  Verdict chosen, uint degree, bool squared, Share share) {
+  const Trend trend = shared_trend(scratch.shared + PF_AT_BEST, degree, squared);
   begin_residuals(tile, scratch.cells, &trend, (float)scratch.shared[PF_AT_PEAK], share);
   clear_counts(scratch.counts, share);
   await_others();
@@ -311,56 +346,42 @@ static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settin
     relax_colour(tile, scratch.cells, sweep & 1u, share);
     await_others();
   }
-  sum_border(tile, scratch.cells, &trend, scratch.lines, share);
-  evaluate_shape(tile, scratch, &trend, settings.noise, share);
+  evaluate_shape(tile, scratch, &trend, true, settings.noise, share);
   await_others();
-  const Plateau plateau = find_plateau(scratch.counts, 1.15f);
-  Verdict verdict;
-  verdict.friction = (float)plateau.ratio;
-  verdict.misfit = (float)border_misfit(tile, scratch.lines);
-  verdict.score = (float)(plateau.share - 1.5 * plateau.far - (double)verdict.misfit);
-  verdict.spread = (float)(0.02 + plateau.spread + (double)verdict.misfit);
-  verdict.doubt = 0.02f + 0.5f * verdict.spread;
-  verdict.way = PF_BY_SHAPE;
-  await_others();
-  return verdict;
+  return verdict_of_shape(scratch, (double)chosen.misfit);
 }
 
-static inline void keep_candidates(Tile tile, Cells cells, Share share) {
-  for (uint row = share.first; row < tile.rows; row += share.step) {
-    for (uint col = 0; col < tile.cols; ++col) {
-      const uint cell = cell_at(tile, row, col);
-      cells.best[cell] = cells.candidate[cell];
-    }
-  }
-}
-
-/* The best model whose evidence is good enough; the pressure and its square, with trends of the
+/* The best model whose evidence is good enough: of the pressure and its square, with trends of the
  * second and, where there are pillars enough for it, of the fourth degree. */
 static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings settings,
-                                 double resolved, Share share) {
+                                 Verdict otherwise, Share share) {
+  const double resolved = scratch.shared[PF_AT_RESOLVED];
   const double most_misfit = PF_MISFIT_PER_SHARE * resolved / scratch.shared[PF_AT_LOADED];
-  Verdict best;
-  best.way = PF_BY_NOTHING;
-  best.friction = 0.0f;
+  Verdict best = otherwise;
   best.score = (float)PF_LEAST_SCORE;
-  best.misfit = 0.0f;
-  best.spread = 0.0f;
-  best.doubt = 0.0f;
-  for (uint degree = 2; degree <= PF_TREND_MOST_DEGREE; degree += 2) {
-    if (resolved < 4.0 * (double)terms_of(degree) || best.score > 0.5f) break;
-    for (uint power = 1; power <= 2; ++power) {
-      const Verdict verdict = try_shape(tile, scratch, settings, degree, power == 2, share);
-      if (!(verdict.score > best.score) || verdict.friction > (float)PF_LARGEST_FRICTION ||
-          (double)verdict.misfit > most_misfit) {
-        continue;
-      }
-      best = verdict;
-      keep_candidates(tile, scratch.cells, share);
-      await_others();
+  uint best_degree = 0;
+  bool best_squared = false;
+  for (uint model = 0; model < 4; ++model) {
+    const uint degree = model < 2 ? 2 : 4;
+    const bool squared = (model & 1u) == 0;
+    if (resolved < 4.0 * (double)terms_of(degree) || best.score > (float)PF_GOOD_SCORE) break;
+    const Verdict verdict = try_shape(tile, scratch, settings, degree, squared, share);
+    if (!(verdict.score > best.score) || verdict.friction > (float)PF_LARGEST_FRICTION ||
+        (double)verdict.misfit > most_misfit) {
+      continue;
     }
+    best = verdict;
+    best_degree = degree;
+    best_squared = squared;
+    if (share.first == 0) {
+      for (uint i = 0; i <= PF_AT_INVERSE_SQUARE; ++i) {
+        scratch.shared[PF_AT_BEST + i] = scratch.shared[i];
+      }
+    }
+    await_others();
   }
-  return best;
+  if (best_degree == 0) return otherwise;
+  return relax_shape(tile, scratch, settings, best, best_degree, best_squared, share);
 }
 
 /* --- The verdict ------------------------------------------------------------------------------ */
@@ -393,8 +414,7 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
   if (resolved < PF_LEAST_RESOLVED_SHARE * scratch.shared[PF_AT_LOADED]) return verdict;
   weigh_lines(tile, scratch.cells, (float)scratch.shared[PF_AT_PEAK], share);
   await_others();
-  const Verdict shape = best_shape(tile, scratch, settings, resolved, share);
-  return shape.way == PF_BY_SHAPE ? shape : verdict;
+  return best_shape(tile, scratch, settings, verdict, share);
 }
 
 /* The normal force of an ambiguous pillar, and within what 95 of 100 lie. */
@@ -539,7 +559,7 @@ static inline void write_contact(Tile tile, Cells cells, Field field, Past past,
       const uint index = (tile.row + row) * field.cols + tile.col + col;
       const Segment segment = segment_of_cell(cells, cell);
       const Judgement judgement = judged_normal(
-          segment, verdict, settings, verdict.way == PF_BY_SHAPE ? cells.best[cell] : 0.0f);
+          segment, verdict, settings, verdict.way == PF_BY_SHAPE ? cells.shaped[cell] : 0.0f);
       write_judgement(field, past, index, segment, judgement, verdict.way > PF_BY_BOUND,
                       settings.noise);
     }

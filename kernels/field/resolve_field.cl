@@ -41,8 +41,7 @@ kernel void resolve_contacts(PF_FIELD_PARAMETERS, global const Tile* tiles, glob
                      planes + 2 * cells,
                      planes + 3 * cells,
                      planes + 4 * cells,
-                     planes + 5 * cells,
-                     planes + 6 * cells};
+                     planes + 5 * cells};
   const Scratch scratch = {all, lines, shared + contact * PF_SHARED_SUMS,
                            counts + contact * PF_RATIO_COUNTS};
   const Share share = {(uint)get_local_id(0), (uint)get_local_size(0)};

@@ -36,8 +36,7 @@ typedef struct {
   PF_GLOBAL float* moving;   /* Segment::moving, N */
   PF_GLOBAL float* weight;   /* of a resolved pillar in the fit */
   PF_GLOBAL float* residual; /* of the pressure's power from its trend */
-  PF_GLOBAL float* candidate; /* estimate of the model at hand, N */
-  PF_GLOBAL float* best;      /* estimate of the best model so far, N */
+  PF_GLOBAL float* shaped;   /* normal force by the pressure's shape, N */
 } Cells;
 
 /* The planes of the frame that are read and written. Those from magnitude on are null where the
@@ -77,6 +76,13 @@ typedef struct {
   uint first;
   uint step;
 } Share;
+
+/* Evidence is taken from so many rows of a box at most: every row of a small one. */
+#define PF_MOST_SAMPLED_ROWS 32u
+
+static inline uint sampling_of(Tile tile) {
+  return (tile.rows + PF_MOST_SAMPLED_ROWS - 1) / PF_MOST_SAMPLED_ROWS;
+}
 
 static inline uint cell_at(Tile tile, uint row, uint col) {
   return tile.first_cell + (row + 1) * (tile.cols + 2) + col + 1;

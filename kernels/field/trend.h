@@ -152,7 +152,8 @@ static inline void sum_line(Tile tile, Cells cells, const Trend* trend, float pe
 
 static inline void sum_lines(Tile tile, Cells cells, const Trend* trend, float peak,
                              PF_GLOBAL double* lines, Share share) {
-  for (uint row = share.first; row < tile.rows; row += share.step) {
+  const uint sampling = sampling_of(tile);
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     sum_line(tile, cells, trend, peak, row, lines + (tile.first_line + row) * PF_LINE_SUMS);
   }
 }
@@ -184,7 +185,7 @@ static inline void add_line(Moments* moments, PF_GLOBAL const double* sums, doub
   moments->square += sums[PF_TREND_MOMENTS + PF_TREND_RIGHT];
 }
 
-/* Line by line from the top, whatever work-items summed them. */
+/* Sampled line by sampled line from the top, whatever work-items summed them. */
 static inline NormalEquations normal_equations(Tile tile, uint degree,
                                                PF_GLOBAL const double* lines) {
   const Frame frame = frame_of(tile);
@@ -196,7 +197,7 @@ static inline NormalEquations normal_equations(Tile tile, uint degree,
     for (uint j = 0; j < PF_TREND_RIGHT; ++j) moments.right[i][j] = 0.0;
   }
   moments.square = 0.0;
-  for (uint row = 0; row < tile.rows; ++row) {
+  for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
     add_line(&moments, lines + (tile.first_line + row) * PF_LINE_SUMS,
              (frame.row - (double)row) * frame.scale);
   }
