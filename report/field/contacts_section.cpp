@@ -23,7 +23,7 @@ const SceneResult* find(const std::vector<SceneResult>& results, const std::stri
                         double friction) {
   const auto found = std::find_if(results.begin(), results.end(), [&](const SceneResult& result) {
     return result.scene.contact_name == contact && result.scene.friction == friction &&
-           result.scene.noise_counts == 0.5;
+           result.scene.noise_counts == kTypicalNoise;
   });
   return found == results.end() ? nullptr : &*found;
 }

@@ -10,6 +10,9 @@ namespace pillarfield::report {
 namespace {
 
 using field_study::Family;
+using field_study::kFrictionTold;
+using field_study::kNothingSaid;
+using field_study::kSlipTold;
 using field_study::Motion;
 using field_study::Scene;
 using field_study::Shape;
@@ -26,9 +29,6 @@ struct Rule {
   bool (*holds)(const SceneResult& result);
 };
 
-constexpr std::size_t kNothingSaid = 0;
-constexpr std::size_t kFrictionTold = 3;
-constexpr std::size_t kSlipTold = 5;
 constexpr double kResolvedShare = 0.1;
 
 bool is_slide(const SceneResult& result) { return result.scene.motion() == Motion::slide; }

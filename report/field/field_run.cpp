@@ -23,6 +23,11 @@ std::optional<Score> score_of(const Scene& scene, const Observed& observed, cons
   return observed.score(*solved);
 }
 
+bool has_goal(std::size_t method) {
+  return method == field_study::kNothingSaid || method == field_study::kFrictionTold ||
+         method == field_study::kSlipTold;
+}
+
 SceneResult result_of(const Scene& scene, bool all_methods) {
   const Observed observed(scene);
   SceneResult result;
@@ -30,11 +35,13 @@ SceneResult result_of(const Scene& scene, bool all_methods) {
   result.middle = observed.score(observed.direct());
   result.theta = observed.score(observed.theta_midpoint());
   result.best = observed.score(observed.with_true_normal());
-  for (const Method& method : field_study::methods()) {
-    result.by_method.push_back(score_of(scene, observed, method));
-    if (!all_methods) return result;
+  const auto& methods = field_study::methods();
+  const bool typical = scene.noise_counts == kTypicalNoise;
+  result.by_method.resize(methods.size());
+  for (std::size_t i = 0; i < (all_methods ? methods.size() : 1); ++i) {
+    if (typical || has_goal(i)) result.by_method[i] = score_of(scene, observed, methods[i]);
   }
-  if (scene.noise_counts != 0.5) return result;
+  if (!typical || !all_methods) return result;
   for (std::size_t i = 0; i < kSweeps.size(); ++i) {
     Method method = field_study::methods().front();
     method.evidence.sweeps = kSweeps[i];
@@ -138,9 +145,14 @@ Pooled pool(const std::vector<SceneResult>& results,
   return pooled;
 }
 
-Pooled pool_method(const std::vector<SceneResult>& results, const Kind& kind, std::size_t method) {
+Pooled pool_method(const std::vector<SceneResult>& results, const Kind& kind, std::size_t method,
+                   bool typical_noise) {
   return pool(
-      results, [&](const SceneResult& result) { return kind.holds(result.scene); },
+      results,
+      [&](const SceneResult& result) {
+        return kind.holds(result.scene) &&
+               (!typical_noise || result.scene.noise_counts == kTypicalNoise);
+      },
       [&](const SceneResult& result) { return result.by_method.at(method); });
 }
 

@@ -17,14 +17,18 @@ inline constexpr std::array kSweeps = {0, 1, 2, 4, 8, 16, 32, 64, 128};
 /// Of a ratio or a share to mean something: ambiguous pillars in a scene.
 inline constexpr std::size_t kEnoughPillars = 30;
 
+/// The noise at which all is measured, counts.
+inline constexpr double kTypicalNoise = 0.5;
+
 /// How wrong a scene's ambiguous pillars are, by each way to resolve them.
 struct SceneResult {
   field_study::Scene scene;
-  field_study::Score middle;                                 ///< of the segment: the direct solve
-  field_study::Score theta;                                  ///< the paper's midpoint
-  field_study::Score best;                                   ///< the true normal force: noise alone
-  std::vector<std::optional<field_study::Score>> by_method;  ///< as field_study::methods()
-  std::array<std::optional<field_study::Score>, kSweeps.size()> by_sweeps;  ///< noise 0.5 alone
+  field_study::Score middle;  ///< of the segment: the direct solve
+  field_study::Score theta;   ///< the paper's midpoint
+  field_study::Score best;    ///< the true normal force: noise alone
+  /// As field_study::methods(); those that no goal is about at kTypicalNoise alone.
+  std::vector<std::optional<field_study::Score>> by_method;
+  std::array<std::optional<field_study::Score>, kSweeps.size()> by_sweeps;  ///< at kTypicalNoise
 
   [[nodiscard]] const field_study::Score& field() const { return *by_method.front(); }
   [[nodiscard]] double ratio(std::size_t method = 0) const;  ///< to the paper's midpoint
@@ -62,9 +66,9 @@ struct Kind {
     const std::vector<SceneResult>& results, const std::function<bool(const SceneResult&)>& holds,
     const std::function<std::optional<field_study::Score>(const SceneResult&)>& score_of);
 
-/// The same for a method.
+/// The same for a method, at all noises or only at the typical one.
 [[nodiscard]] Pooled pool_method(const std::vector<SceneResult>& results, const Kind& kind,
-                                 std::size_t method);
+                                 std::size_t method, bool typical_noise = false);
 
 /// "0.093"; "–" where no scene counts.
 [[nodiscard]] std::string ratio_text(const Pooled& pooled);

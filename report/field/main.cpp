@@ -53,7 +53,7 @@ std::vector<Scene> integrated(std::vector<Scene> scenes) {
 std::vector<Scene> middling(const std::vector<Scene>& scenes) {
   std::vector<Scene> some;
   std::copy_if(scenes.begin(), scenes.end(), std::back_inserter(some), [](const Scene& scene) {
-    return scene.friction == 1.6 && scene.noise_counts == 0.5;
+    return scene.friction == 1.6 && scene.noise_counts == kTypicalNoise;
   });
   return some;
 }

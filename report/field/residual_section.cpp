@@ -43,19 +43,20 @@ constexpr std::array kTelling = {
 };
 
 constexpr const char* kScript = R"(
-set multiplot layout 1,2 margins 0.02, 0.88, 0.03, 0.9 spacing 0.03
+set multiplot layout 1,2 margins 0.02, 0.86, 0.03, 0.88 spacing 0.03
 unset border
 unset tics
 unset colorbox
 set size ratio -1
+set autoscale fix
 set palette defined (-0.12 '#ffffff', -0.061 '#ffffff', -0.06 '#cccccc', -0.001 '#cccccc', 0 '#fff7ec', 0.15 '#fdd49e', 0.4 '#fc8d59', 0.7 '#d7301f', 1 '#5a0000')
 set cbrange [-0.12 * most : most]
-set title 'paper''s midpoint'
+set title 'paper''s midpoint' offset 0,-0.9
 plot $errors index 0 matrix with image
-set title 'field'
-set colorbox user origin 0.9,0.06 size 0.02,0.82
+set title 'field' offset 0,-0.9
+set colorbox user origin 0.87,0.06 size 0.02,0.8
 set cbtics out
-set cblabel 'error, counts'
+set label 1 'error, counts' at screen 0.99, 0.93 right
 plot $errors index 1 matrix with image
 unset multiplot
 )";
@@ -127,7 +128,7 @@ std::string residual_section(const FieldContext& context) {
         std::find_if(context.judging.begin(), context.judging.end(), [&](const auto& result) {
           const Scene& scene = result.scene;
           return scene.contact_name.starts_with(telling.contact) &&
-                 scene.friction == telling.friction && scene.noise_counts == 0.5;
+                 scene.friction == telling.friction && scene.noise_counts == kTypicalNoise;
         });
     if (found != context.judging.end() && found->theta.open > 0) {
       text += picture_of(context, *found, telling.file);

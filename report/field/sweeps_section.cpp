@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -27,12 +28,12 @@ constexpr const char* kPicture = R"(
 
 constexpr const char* kScript = R"(
 set logscale y
-set xlabel 'time, that of the direct solve = 1'
-set ylabel 'RMS error in region 3, the paper''s midpoint = 1'
+set xlabel 'time (direct solve: 1)'
+set ylabel 'RMS error in region 3 (midpoint: 1)'
 set ytics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
 set grid ytics linecolor '#dddddd'
-set xrange [1 : *]
-set yrange [0.02 : 2]
+set xrange [1 : {:.1f}]
+set yrange [{:.3f} : 2]
 set key outside right top Left reverse
 )";
 
@@ -64,10 +65,12 @@ void draw_chart(const FieldContext& context) {
   std::string data = "$points << END\n";
   std::string plot;
   int line = 0;
+  double least = 0.1;
   for (const Kind& kind : kinds()) {
     if (kind.name == "press, any") continue;
     for (std::size_t i = 0; i < kSweeps.size(); ++i) {
       const Pooled pooled = at_sweeps(context.judging, kind, i);
+      if (pooled.ratio() > 0) least = std::min(least, pooled.ratio());
       data += fmt::format("{:.4f} {:.4f}\n", context.times.over_direct.at(i), pooled.ratio());
     }
     data += "\n\n";
@@ -76,8 +79,12 @@ void draw_chart(const FieldContext& context) {
                         kind.name);
     ++line;
   }
+  const auto& times = context.times.over_direct;
+  const double longest = *std::max_element(times.begin(), times.end());
   gnuplot::draw(context.docs / "pictures/field/error_and_time",
-                data + "END\n" + kScript + plot + "\n", {860, 420});
+                data + "END\n" + fmt::format(kScript, std::max(2.0, 1.1 * longest), 0.8 * least) +
+                    plot + "\n",
+                {860, 420});
 }
 
 }  // namespace

@@ -120,6 +120,11 @@ inline constexpr int kSequenceFrames = 8;
 /// Nothing said; shape alone; slip alone; neither; what may be told; the frame before.
 [[nodiscard]] const std::vector<Method>& methods();
 
+/// Of methods(): those that goals are about.
+inline constexpr std::size_t kNothingSaid = 0;
+inline constexpr std::size_t kFrictionTold = 3;
+inline constexpr std::size_t kSlipTold = 5;
+
 /// The forces of a scene by a method; nothing where it says what is not so.
 [[nodiscard]] std::optional<ForceField> solve(const Scene& scene, const Observed& observed,
                                               const Method& method);
