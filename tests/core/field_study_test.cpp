@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <set>
 
+#include "core/contact_traction.h"
 #include "core/pillar_maths.h"
 #include "field_study_twins.h"
 #include "pillarfield/status.h"
@@ -112,6 +114,60 @@ TEST(FieldContacts, DragByTheirLoadRatio) {
   }
 }
 
+/// What the simulator makes of the same contact, in counts and for friction 1: other mathematics,
+/// corner functions instead of points.
+ForceField simulated(const FieldContact& contact, const PillarLoads& loads) {
+  const std::map<Motion, ContactMotion> motions = {
+      {Motion::press, ContactMotion::press},
+      {Motion::slide, ContactMotion::slide},
+      {Motion::partial_slip, ContactMotion::partial_slip},
+      {Motion::spin, ContactMotion::spin},
+      {Motion::roll, ContactMotion::roll}};
+  const Body& body = contact.body;
+  Contact made;
+  made.motion = motions.at(contact.drive.motion);
+  made.direction_deg = contact.drive.direction_deg;
+  if (body.shape == Shape::punch) made.shape = ContactShape::flat_punch;
+  if (body.shape == Shape::cylinder) {
+    made.shape = ContactShape::cylinder;
+    made.direction_deg = body.angle_deg;
+  }
+  made.contact_radius_mm = body.radius;
+  made.reference_load_n = sum(loads.normal);
+  made.length_mm = 2 * body.aspect * body.radius;
+  made.friction = 1;
+  made.tangential_ratio = contact.drive.load_ratio;
+  ForceField forces(loads.rows, loads.cols);
+  add_contact(made, {0, body.x, body.y, made.reference_load_n}, 1, forces);
+  return forces;
+}
+
+TEST(FieldContacts, AreThoseOfTheSimulator) {
+  const std::vector<std::pair<Shape, Motion>> cases = {
+      {Shape::sphere, Motion::press},   {Shape::sphere, Motion::slide},
+      {Shape::sphere, Motion::spin},    {Shape::sphere, Motion::partial_slip},
+      {Shape::cylinder, Motion::press}, {Shape::cylinder, Motion::roll},
+      {Shape::punch, Motion::slide},    {Shape::punch, Motion::spin}};
+  for (const auto& [shape, motion] : cases) {
+    SCOPED_TRACE(std::string(name_of(shape)) + ", " + name_of(motion));
+    FieldContact contact = contact_of(shape);
+    if (shape != Shape::cylinder) contact.body.angle_deg = 0;
+    contact.drive = {.motion = motion, .direction_deg = 70, .load_ratio = 0.6};
+    const PillarLoads loads = loads_of(contact);
+    const ForceField forces = simulated(contact, loads);
+    // Of 100 counts; at the edge of a punch the pressure has no end.
+    const double doubt = std::map<Shape, double>{
+        {Shape::sphere, 0.03},
+        {Shape::cylinder, 0.2},
+        {Shape::punch, 1}}.at(shape);
+    for (std::size_t i = 0; i < forces.pillars(); ++i) {
+      ASSERT_NEAR(loads.normal[i], forces.normal[i], doubt);
+      ASSERT_NEAR(loads.shear_x[i], forces.shear_x[i], doubt);
+      ASSERT_NEAR(loads.shear_y[i], forces.shear_y[i], doubt);
+    }
+  }
+}
+
 TEST(FieldContacts, SphereBearsItsPressureInTheMiddle) {
   FieldContact contact = contact_of(Shape::sphere);
   contact.drive = {.motion = Motion::slide, .direction_deg = 90};
@@ -205,6 +261,12 @@ TEST(FieldStudy, LastOfTheFramesIsTheFrame) {
   const auto frame = observed.frame().readings<float>();
   EXPECT_TRUE(std::equal(last.begin(), last.end(), frame.begin(), frame.end()));
   EXPECT_FALSE(std::equal(first.begin(), first.end(), frame.begin(), frame.end()));
+}
+
+TEST(FieldStudy, MethodsAreWhereGoalsLookForThem) {
+  EXPECT_EQ(methods().at(kNothingSaid).name, "nothing said");
+  EXPECT_EQ(methods().at(kFrictionTold).name, "friction told");
+  EXPECT_EQ(methods().at(kSlipTold).name, "friction told, and that it slips");
 }
 
 TEST(FieldStudy, SetsShareNoSceneFrictionOrSeed) {
