@@ -35,7 +35,7 @@ Pressures and shear are closed forms, integrated over each pillar's cell by Gaus
 | two spheres | root of the sum of both squares, where discs overlap | both cores shrink alike: made up |
 | merged spheres | the larger of both | the same |
 | wavy, A and n waves | √(1 − r²) (1 + A cos nx cos ny) | that of the sphere, times the wave: made up |
-| punch | 1/√(1 − r²) | a core of shear (1 − r²/c²) less: made up |
+| punch | 1/√(1 − r²), at most 100 | a core of shear (1 − r²/c²) less: made up |
 
 What is made up obeys friction everywhere, but no theory of elasticity. Partial slip: friction times (the pressure less that of a smaller contact), at three load ratios (drag over what friction can bear). Roll: the part that touches the leading edge sticks, strip by strip (Carter; Haines and Ollerton).
 Spin: about the centre; turn: about a pivot off it; partial turn: shear of partial slip in the directions of a turn.
@@ -60,6 +60,7 @@ std::string motions_of(const std::vector<SceneResult>& results, const std::strin
     contacts[name_of(result.scene.motion())].insert(result.scene.contact_name);
   }
   std::vector<std::string> parts;
+  parts.reserve(contacts.size());
   for (const auto& [motion, names] : contacts) {
     parts.push_back(names.size() > 1 ? fmt::format("{} {}", names.size(), motion) : motion);
   }

@@ -12,7 +12,6 @@
 namespace pillarfield::report {
 namespace {
 
-using field_study::Method;
 using field_study::Observed;
 using field_study::Scene;
 
