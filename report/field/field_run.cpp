@@ -34,7 +34,7 @@ SceneResult result_of(const Scene& scene, bool all_methods) {
   result.scene = scene;
   result.middle = observed.score(observed.direct());
   result.theta = observed.score(observed.theta_midpoint());
-  result.best = observed.score(observed.with_true_normal());
+  result.best = observed.score(observed.nearest());
   const auto& methods = field_study::methods();
   const bool typical = scene.noise_counts == kTypicalNoise;
   result.by_method.resize(methods.size());

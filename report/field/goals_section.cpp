@@ -15,8 +15,8 @@ constexpr const char* kIntroduction = R"(## Goals
 
 What was wanted before anything was measured, on the judging scenes: RMS error of the vector force over the pillars of region 3, divided by that of
 the paper's midpoint. A goal counts as met where *every* scene meets it; "pooled" takes all pillars of those scenes together. Scenes with fewer than
-{enough} ambiguous pillars have no ratio: there are {few} of {all}. "Noise alone" is the ratio that the *true normal force* of every pillar would leave, since the
-shear is still read with noise.
+{enough} ambiguous pillars have no ratio: there are {few} of {all}. "Noise alone" is the ratio that remains where every pillar has the force that is *nearest to the
+truth* of all that explain its readings: these are noisy.
 
 )";
 

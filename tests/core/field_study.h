@@ -69,6 +69,8 @@ struct Segment {
   [[nodiscard]] double shear_y(double normal) const;
   /// The normal force at which the force's θ is the middle of what it may be.
   [[nodiscard]] double theta_midpoint() const;
+  /// The normal force at which the force is nearest to one with these components, N.
+  [[nodiscard]] double nearest(double shear_x, double shear_y, double normal) const;
 };
 
 /// The segment of pillar `index` of a direct solve, which is in region 3.
@@ -89,8 +91,10 @@ class Observed {
   /// pressure stays.
   [[nodiscard]] std::vector<FrameBuffer> frames(int count) const;
 
-  [[nodiscard]] ForceField theta_midpoint() const;    ///< the paper's answer for region 3
-  [[nodiscard]] ForceField with_true_normal() const;  ///< the best point of each segment's line
+  [[nodiscard]] ForceField theta_midpoint() const;  ///< the paper's answer for region 3
+  /// The force on each segment's line that is nearest to the truth: noise leaves that much to
+  /// whatever explains the readings.
+  [[nodiscard]] ForceField nearest() const;
   [[nodiscard]] Score score(const ForceField& solved) const;
 
  private:

@@ -283,12 +283,22 @@ TEST(FieldStudy, BandOfOtherPillarsIsTheirSegment) {
   EXPECT_GT(outside, 0);
 }
 
-TEST(FieldStudy, KnowingTheNormalForceLeavesOnlyNoise) {
+TEST(FieldStudy, NearestIsNearest) {
   for (const Scene& scene : few_scenes()) {
     const Observed observed(scene);
-    const double best = observed.score(observed.with_true_normal()).rms_counts();
-    EXPECT_LT(best, 2 * scene.noise_counts);
-    EXPECT_LT(best, observed.score(observed.theta_midpoint()).rms_counts() / 4);
+    const double nearest = observed.score(observed.nearest()).rms_counts();
+    EXPECT_LT(nearest, 2 * scene.noise_counts);
+    for (const double step_n : {-1e-4, 1e-4}) {
+      ForceField beside = observed.nearest();
+      for (const std::size_t i : observed.open()) {
+        const Segment segment = segment_of(observed.direct(), i);
+        const double normal = beside.normal[i] + step_n;
+        beside.shear_x[i] = static_cast<float>(segment.shear_x(normal));
+        beside.shear_y[i] = static_cast<float>(segment.shear_y(normal));
+        beside.normal[i] = static_cast<float>(normal);
+      }
+      EXPECT_GT(observed.score(beside).rms_counts(), nearest);
+    }
   }
 }
 
