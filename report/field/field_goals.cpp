@@ -89,6 +89,8 @@ FieldGoal goal_of(const Rule& rule, const std::vector<SceneResult>& judging) {
     ++missed;
     ++goal.missed;
     if (result.best.rms_counts() > rule.limit * result.theta.rms_counts()) ++goal.by_noise;
+    const field_study::Score& score = *result.by_method[rule.method];
+    if (2 * score.resolved < score.open) ++goal.left;
   }
   goal.misses = misses_by_shape(by_shape);
   return goal;

@@ -18,7 +18,8 @@ struct FieldGoal {
   double worst = 0;
   std::string worst_scene;
   std::size_t missed = 0;    ///< scenes above the limit
-  std::size_t by_noise = 0;  ///< of them those where noise alone is above it: the true normal force
+  std::size_t by_noise = 0;  ///< of them those where noise alone is above it
+  std::size_t left = 0;      ///< of them those with less than half of the pillars resolved
   std::string misses;        ///< what the missed ones are, by shape; empty without any
 
   [[nodiscard]] bool is_met() const { return scenes > 0 && missed == 0; }

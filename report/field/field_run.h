@@ -25,7 +25,7 @@ struct SceneResult {
   field_study::Scene scene;
   field_study::Score middle;  ///< of the segment: the direct solve
   field_study::Score theta;   ///< the paper's midpoint
-  field_study::Score best;    ///< the true normal force: noise alone
+  field_study::Score best;    ///< the nearest that explains the readings: noise alone
   /// As field_study::methods(); those that no goal is about at kTypicalNoise alone.
   std::vector<std::optional<field_study::Score>> by_method;
   std::array<std::optional<field_study::Score>, kSweeps.size()> by_sweeps;  ///< at kTypicalNoise

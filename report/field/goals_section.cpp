@@ -40,9 +40,13 @@ std::string text_of_missed(const FieldGoal& goal) {
                                  goal.limit, goal.worst_scene, goal.worst, goal.misses);
   if (goal.by_noise > 0) {
     text += fmt::format(
-        " In {} of these {} scenes noise alone is above the limit: no estimate of the normal force "
-        "could meet it.",
+        " In {} of these {} scenes noise alone is above the limit: no force that explains the "
+        "readings could meet it.",
         goal.by_noise, goal.missed);
+  }
+  if (goal.left > 0) {
+    text += fmt::format(" In {} the evidence does not suffice, and most pillars keep the midpoint.",
+                        goal.left);
   }
   return text + "\n";
 }
