@@ -19,7 +19,8 @@ struct SweepTimes {
 };
 
 /// A frame of 16 contacts of different kinds, and one of a square metre, each solved in turns by
-/// both; medians of the ratios. Ten seconds. Throws Error where the scene cannot be read.
+/// both, 40 times; means of the middle half of the times. Ten seconds. Throws Error where the scene
+/// cannot be read.
 [[nodiscard]] SweepTimes measure_sweep_times(const std::vector<field_study::Scene>& scenes,
                                              const std::filesystem::path& square_metre);
 

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kIntroduction = R"(## Sweeps and time
 
 The sweeps of the relaxation are the knob of speed against error. Below: the ratio of the RMS errors by sweeps (noise 0.5, nothing said), and what they cost on {device}: the time
-over that of the direct solve of the same frame, in which {share:.0f} % of the pillars are in contact, both measured in turns, medians of 15 rounds. Without the evidence of shape it is {slip:.2f}.
+over that of the direct solve of the same frame, in which {share:.0f} % of the pillars are in contact, both measured in turns, 40 rounds. Without the evidence of shape it is {slip:.2f}.
 
 )";
 
