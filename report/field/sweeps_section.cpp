@@ -27,12 +27,13 @@ constexpr const char* kPicture = R"(
 )";
 
 constexpr const char* kScript = R"(
-set logscale y
+set logscale xy
+set xtics (1, 1.2, 1.5, 2, 3, 5, 10, 20, 50, 100)
 set xlabel 'time (direct solve: 1)'
 set ylabel 'RMS error in region 3 (midpoint: 1)'
 set ytics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
 set grid ytics linecolor '#dddddd'
-set xrange [1 : {:.1f}]
+set xrange [0.95 : {:.1f}]
 set yrange [{:.3f} : 2]
 set key outside right top Left reverse
 )";
