@@ -33,7 +33,7 @@ Line line_of(const Scene& scene, int sweeps) {
   Method method = field_study::methods().front();
   method.evidence.sweeps = sweeps;
   return {observed.score(observed.direct()), observed.score(observed.theta_midpoint()),
-          observed.score(observed.with_true_normal()),
+          observed.score(observed.nearest()),
           observed.score(*field_study::solve(scene, observed, method))};
 }
 

@@ -45,6 +45,10 @@ double paraboloid_size(double load) {
   return (low + high) / 2;
 }
 
+/// 1/√(1 − r²), but no edge is so sharp that it bears more than a hundred times what the centre
+/// does.
+double punch_pressure(double r2) { return r2 < 1 ? 1 / std::sqrt(std::max(1 - r2, 1e-4)) : 0; }
+
 /// The squared pressures of two spheres.
 std::array<double, 2> two_squares(const Body& body, double x, double y, double size) {
   const double half_distance = body.aspect * (1 + body.second) / 2;
@@ -302,7 +306,7 @@ double pressure_at(const Body& body, double x, double y, double size) {
     case Shape::truncated_cone:
       return cone_pressure(r, size) - cone_pressure(r, body.second);
     case Shape::punch:
-      return size < 1 ? root(size * size - r2) : (r2 < 1 ? 1 / std::sqrt(1 - r2) : 0);
+      return size < 1 ? root(size * size - r2) : punch_pressure(r2);
     case Shape::rounded_punch:
       break;
   }

@@ -23,7 +23,7 @@ enum class Shape : std::uint8_t {
   cylinder,        ///< √(1 − x²) for |y| < aspect
   cone,            ///< acosh(1/r)
   truncated_cone,  ///< acosh(1/r), less acosh(second/r) within the tip's radius, `second`
-  punch,           ///< 1/√(1 − r²)
+  punch,           ///< 1/√(1 − r²), at most 100
   rounded_punch,  ///< √(1 − r²), less √(second² − r²) within the flat's radius, `second`
 };
 

@@ -130,6 +130,11 @@ double Segment::theta_midpoint() const {
   return flat / (turned + std::sqrt(turned * turned + (slope * slope - 2) * flat));
 }
 
+double Segment::nearest(double shear_x, double shear_y, double normal) const {
+  const double off = moving + rate * normal - (moves_in_y ? shear_y : shear_x);
+  return normal - rate * off / (1 + rate * rate);
+}
+
 Segment segment_of(const ForceField& direct, std::size_t index) {
   // Shear to the right presses sensels 1 and 4, up 1 and 2. Where these read, a larger normal force
   // leaves less of it for the same readings: √2 times as much (D3, D6).
@@ -193,8 +198,10 @@ ForceField Observed::theta_midpoint() const {
   return with_normals([](const Segment& segment, std::size_t) { return segment.theta_midpoint(); });
 }
 
-ForceField Observed::with_true_normal() const {
-  return with_normals([&](const Segment&, std::size_t i) { return double{truth_.normal[i]}; });
+ForceField Observed::nearest() const {
+  return with_normals([&](const Segment& segment, std::size_t i) {
+    return segment.nearest(truth_.shear_x[i], truth_.shear_y[i], truth_.normal[i]);
+  });
 }
 
 bool Observed::covers(const ForceField& solved, std::size_t i) const {

@@ -69,6 +69,8 @@ struct Segment {
   [[nodiscard]] double shear_y(double normal) const;
   /// The normal force at which the force's θ is the middle of what it may be.
   [[nodiscard]] double theta_midpoint() const;
+  /// The normal force at which the force is nearest to one with these components, N.
+  [[nodiscard]] double nearest(double shear_x, double shear_y, double normal) const;
 };
 
 /// The segment of pillar `index` of a direct solve, which is in region 3.
@@ -89,8 +91,10 @@ class Observed {
   /// pressure stays.
   [[nodiscard]] std::vector<FrameBuffer> frames(int count) const;
 
-  [[nodiscard]] ForceField theta_midpoint() const;    ///< the paper's answer for region 3
-  [[nodiscard]] ForceField with_true_normal() const;  ///< the best point of each segment's line
+  [[nodiscard]] ForceField theta_midpoint() const;  ///< the paper's answer for region 3
+  /// The force on each segment's line that is nearest to the truth: noise leaves that much to
+  /// whatever explains the readings.
+  [[nodiscard]] ForceField nearest() const;
   [[nodiscard]] Score score(const ForceField& solved) const;
 
  private:
@@ -119,6 +123,11 @@ inline constexpr int kSequenceFrames = 8;
 
 /// Nothing said; shape alone; slip alone; neither; what may be told; the frame before.
 [[nodiscard]] const std::vector<Method>& methods();
+
+/// Of methods(): those that goals are about.
+inline constexpr std::size_t kNothingSaid = 0;
+inline constexpr std::size_t kFrictionTold = 3;
+inline constexpr std::size_t kSlipTold = 5;
 
 /// The forces of a scene by a method; nothing where it says what is not so.
 [[nodiscard]] std::optional<ForceField> solve(const Scene& scene, const Observed& observed,

@@ -25,7 +25,7 @@ struct Set {
 };
 
 std::string drive_name(const Drive& drive) {
-  const std::string name = name_of(drive.motion);
+  std::string name = name_of(drive.motion);
   switch (drive.motion) {
     case Motion::partial_slip:
       return fmt::format("{} {:g} at {:g}°", name, drive.load_ratio, drive.direction_deg);
@@ -40,7 +40,7 @@ std::string drive_name(const Drive& drive) {
 }
 
 std::string body_name(const Body& body) {
-  const std::string name = fmt::format("{} {:g}", name_of(body.shape), body.radius);
+  std::string name = fmt::format("{} {:g}", name_of(body.shape), body.radius);
   return body.waves > 0 ? fmt::format("{} x {:g}", name, body.waves) : name;
 }
 

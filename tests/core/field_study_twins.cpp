@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "core/ideal_readings.h"
-#include "field_contacts.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::field_study {
@@ -32,12 +31,16 @@ void check_lifted(const Force& force) {
 
 }  // namespace
 
-Twins sliding_twins(const TwinScene& scene) {
+FieldContact contact_of(const TwinScene& scene) {
   FieldContact contact;
   contact.body.radius = scene.radius;
   contact.drive = {.motion = Motion::slide, .direction_deg = scene.direction_deg};
   contact.peak_counts = scene.peak_counts;
-  const PillarLoads loads = loads_of(contact);
+  return contact;
+}
+
+Twins sliding_twins(const TwinScene& scene) {
+  const PillarLoads loads = loads_of(contact_of(scene));
   const double per_count = 1 / kCountsPerNewton;
   Twins twins;
   for (std::size_t i = 0; i < loads.normal.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/pillar_maths.h"
+#include "field_contacts.h"
 
 /// Two bodies that no estimator can tell from each other.
 namespace pillarfield::field_study {
@@ -15,6 +16,9 @@ struct TwinScene {
   double direction_deg = 3;
   double normal_share = 0.7;  ///< the second's normal force over the first's
 };
+
+/// The first body.
+[[nodiscard]] FieldContact contact_of(const TwinScene& scene);
 
 /// Forces of both bodies on every pillar; they slide all over.
 struct Twins {
