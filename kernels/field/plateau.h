@@ -6,7 +6,8 @@
 #define PF_RATIO_BINS 384u
 #define PF_RATIO_BEYOND 384u
 #define PF_RATIO_NONE 385u
-#define PF_RATIO_COUNTS 386u
+#define PF_RATIO_PILLARS 386u /* how many pillars were counted, whatever their weight */
+#define PF_RATIO_COUNTS 387u
 #define PF_RATIO_SHIFT 17
 #define PF_RATIO_FIRST 0x3f000000u
 

@@ -130,11 +130,12 @@ static inline Slope slope_of(Force force) {
   return slope;
 }
 
-/* Counts the ratios of resolved pillars that would have been resolved at a tenth more, or at a
- * tenth more than `plateau`, which is zero in the first round. */
+/* Counts the ratios of resolved pillars, by their normal force, that would have been resolved at a
+ * tenth more, or at a tenth more than `plateau`, which is zero in the first round. */
 static inline void count_slopes(Tile tile, Scratch scratch, Field field, float quiet, float plateau,
                                 Share share) {
   const uint sampling = sampling_of(tile);
+  const float peak = (float)scratch.shared[PF_AT_PEAK];
   for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     for (uint col = 0; col < tile.cols; ++col) {
       if (scratch.cells.kind[cell_at(tile, row, col)] != PF_CELL_RESOLVED) continue;
@@ -144,18 +145,19 @@ static inline void count_slopes(Tile tile, Scratch scratch, Field field, float q
       if (!(slope.ratio * force.normal > quiet)) continue;
       const float beyond = plateau > 0.0f ? plateau : slope.ratio;
       if (!(slope.ceiling > 1.1f * beyond)) continue;
-      add_count(scratch.counts + bin_of_ratio(slope.ratio), 1);
+      add_count(scratch.counts + bin_of_ratio(slope.ratio), (uint)(force.normal / peak * 4095.0f));
+      add_count(scratch.counts + PF_RATIO_PILLARS, 1);
     }
   }
 }
 
 static inline Plateau slopes_plateau(Tile tile, Scratch scratch, Field field, float quiet,
-                                     float from, Share share) {
+                                     float from, float width, Share share) {
   clear_counts(scratch.counts, share);
   await_others();
   count_slopes(tile, scratch, field, quiet, from, share);
   await_others();
-  const Plateau plateau = find_plateau(scratch.counts, 1.0618f);
+  const Plateau plateau = find_plateau(scratch.counts, width);
   await_others();
   return plateau;
 }
@@ -182,12 +184,14 @@ static inline void count_contradictions(Tile tile, Scratch scratch, float noise,
 /* The friction that resolved pillars show, and that open ones do not contradict; zero if none. */
 static inline float shown_friction(Tile tile, Scratch scratch, Field field, FieldSettings settings,
                                    Share share) {
-  const Plateau first = slopes_plateau(tile, scratch, field, settings.quiet, 0.0f, share);
+  /* Noise spreads the ratios of pillars that bear little. */
+  const float width = 1.06f + 4.0f * settings.noise / (float)scratch.shared[PF_AT_PEAK];
+  const Plateau first = slopes_plateau(tile, scratch, field, settings.quiet, 0.0f, width, share);
   if (!(first.share > 0.0)) return 0.0f;
   const Plateau plateau =
-      slopes_plateau(tile, scratch, field, settings.quiet, (float)first.ratio, share);
+      slopes_plateau(tile, scratch, field, settings.quiet, (float)first.ratio, width, share);
   const float friction = (float)plateau.ratio;
-  const double telling = counts_from(scratch.counts, 0);
+  const double telling = (double)scratch.counts[PF_RATIO_PILLARS];
   const double pillars = scratch.shared[PF_AT_LOADED];
   await_others();
   clear_counts(scratch.counts, share);
@@ -198,7 +202,9 @@ static inline float shown_friction(Tile tile, Scratch scratch, Field field, Fiel
   const double agree = (double)scratch.counts[0];
   const double contradict = (double)scratch.counts[1];
   await_others();
-  const bool shows = plateau.share >= 0.1 && plateau.above <= 0.05 && telling >= 0.2 * pillars &&
+  const bool ends =
+      plateau.above <= 0.05 || (plateau.share >= 0.5 && plateau.above <= 0.3 * plateau.share);
+  const bool shows = plateau.share >= 0.1 && ends && telling >= 0.2 * pillars &&
                      contradict <= 0.1 * (agree + contradict);
   return shows ? friction : 0.0f;
 }
@@ -320,39 +326,42 @@ static inline Verdict verdict_of_shape(Scratch scratch, double misfit) {
   return verdict;
 }
 
-/* One model of the pressure's shape, judged by its trend in the sampled rows. */
-static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settings, uint degree,
-                                bool squared, Share share) {
-  const Trend trend = fit_trend(tile, scratch, degree, squared, share);
-  clear_counts(scratch.counts, share);
-  await_others();
-  sum_border(tile, scratch.cells, &trend, scratch.lines, share);
-  evaluate_shape(tile, scratch, &trend, false, settings.noise, share);
-  await_others();
-  const double misfit = border_misfit(tile, scratch.lines);
-  const Verdict verdict = verdict_of_shape(scratch, misfit);
-  await_others();
-  return verdict;
-}
-
-/* The model that was chosen, with the membrane that resolved pillars hold up. */
-static inline Verdict relax_shape(Tile tile, Scratch scratch, FieldSettings settings,
-                                  Verdict chosen, uint degree, bool squared, Share share) {
-  const Trend trend = shared_trend(scratch.shared + PF_AT_BEST, degree, squared);
-  begin_residuals(tile, scratch.cells, &trend, (float)scratch.shared[PF_AT_PEAK], share);
+/* Lets resolved pillars hold up the trend, and counts what that implies. */
+static inline void relax_shape(Tile tile, Scratch scratch, FieldSettings settings,
+                               const Trend* trend, Share share) {
+  begin_residuals(tile, scratch.cells, trend, (float)scratch.shared[PF_AT_PEAK], share);
   clear_counts(scratch.counts, share);
   await_others();
   for (uint sweep = 0; sweep < 2 * settings.sweeps; ++sweep) {
     relax_colour(tile, scratch.cells, sweep & 1u, share);
     await_others();
   }
-  evaluate_shape(tile, scratch, &trend, true, settings.noise, share);
+  evaluate_shape(tile, scratch, trend, true, settings.noise, share);
   await_others();
-  return verdict_of_shape(scratch, (double)chosen.misfit);
+}
+
+/* One model of the pressure's shape, judged by its trend in the sampled rows, or relaxed. */
+static inline Verdict try_shape(Tile tile, Scratch scratch, FieldSettings settings, uint degree,
+                                bool squared, bool relaxed, Share share) {
+  const Trend trend = fit_trend(tile, scratch, degree, squared, share);
+  sum_border(tile, scratch.cells, &trend, scratch.lines, share);
+  clear_counts(scratch.counts, share);
+  await_others();
+  const double misfit = border_misfit(tile, scratch.lines);
+  if (relaxed) {
+    relax_shape(tile, scratch, settings, &trend, share);
+  } else {
+    evaluate_shape(tile, scratch, &trend, false, settings.noise, share);
+    await_others();
+  }
+  const Verdict verdict = verdict_of_shape(scratch, misfit);
+  await_others();
+  return verdict;
 }
 
 /* The best model whose evidence is good enough: of the pressure and its square, with trends of the
- * second and, where there are pillars enough for it, of the fourth degree. */
+ * second and, where there are pillars enough for it, of the fourth degree. Relaxing costs most, so
+ * models are relaxed only where no trend by itself is good enough; and the one that is chosen. */
 static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings settings,
                                  Verdict otherwise, Share share) {
   const double resolved = scratch.shared[PF_AT_RESOLVED];
@@ -361,11 +370,12 @@ static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings setti
   best.score = (float)PF_LEAST_SCORE;
   uint best_degree = 0;
   bool best_squared = false;
-  for (uint model = 0; model < 4; ++model) {
-    const uint degree = model < 2 ? 2 : 4;
+  for (uint model = 0; model < 8; ++model) {
+    const uint degree = (model & 2u) == 0 ? 2 : 4;
     const bool squared = (model & 1u) == 0;
-    if (resolved < 4.0 * (double)terms_of(degree) || best.score > (float)PF_GOOD_SCORE) break;
-    const Verdict verdict = try_shape(tile, scratch, settings, degree, squared, share);
+    if (resolved < 4.0 * (double)terms_of(degree)) continue;
+    if (best.score > (float)PF_GOOD_SCORE || (model == 4 && best_degree != 0)) break;
+    const Verdict verdict = try_shape(tile, scratch, settings, degree, squared, model >= 4, share);
     if (!(verdict.score > best.score) || verdict.friction > (float)PF_LARGEST_FRICTION ||
         (double)verdict.misfit > most_misfit) {
       continue;
@@ -381,7 +391,11 @@ static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings setti
     await_others();
   }
   if (best_degree == 0) return otherwise;
-  return relax_shape(tile, scratch, settings, best, best_degree, best_squared, share);
+  const Trend trend = shared_trend(scratch.shared + PF_AT_BEST, best_degree, best_squared);
+  relax_shape(tile, scratch, settings, &trend, share);
+  const Verdict relaxed = verdict_of_shape(scratch, (double)best.misfit);
+  await_others();
+  return relaxed;
 }
 
 /* --- The verdict ------------------------------------------------------------------------------ */
