@@ -29,7 +29,7 @@ typedef struct {
   double share;  /* of all counts */
   double above;  /* share beyond the window */
   double far;    /* share beyond a quarter more than the ratio */
-  double spread; /* standard deviation of the ratios in the window, relative */
+  double spread; /* how far the ratios of the window are from it, relative */
 } Plateau;
 
 static inline void clear_counts(PF_GLOBAL uint* counts, Share share) {
@@ -104,7 +104,7 @@ static inline Plateau find_plateau(PF_GLOBAL const uint* counts, float width) {
   const Window narrow =
       fullest_window(counts, wide.first, last < PF_RATIO_BINS ? last : PF_RATIO_BINS, 1.0618f);
   plateau.ratio = narrow.counts > 0.0 ? spread_of(counts, narrow).mean : all.mean;
-  plateau.spread = all.deviation / all.mean;
+  plateau.spread = (all.deviation + fabs(plateau.ratio - all.mean)) / all.mean;
   plateau.share = wide.counts / total;
   plateau.above = counts_from(counts, wide.end) / total;
   const uint far = bin_of_ratio((float)(1.25 * all.mean));

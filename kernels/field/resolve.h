@@ -46,19 +46,19 @@ typedef struct {
   PF_GLOBAL uint* counts;   /* PF_RATIO_COUNTS of this one */
 } Scratch;
 
-/* Evidence must be this good (docs/derivations/field.md, section 6; the values are tuned on scenes
- * of docs/field.md that do not judge). */
+/* How good evidence must be, and what is taken for granted (docs/derivations/field.md, section
+ * 6). The values were tuned on scenes of docs/field.md that do not judge. */
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
 #define PF_LEAST_SCORE 0.15
-#define PF_GOOD_SCORE 0.5 /* further models are not tried */
-#define PF_MISFIT_PER_SHARE \
-  0.45 /* of the trend, by the share of the pillars that it is fitted to */
-#define PF_NOISE_OF_NORMAL \
-  0.6f /* deviation of a normal force at a given ratio, by that of a reading */
-#define PF_CHANGE_PER_FRAME 0.05f        /* of a normal force, relative deviation */
-#define PF_MOST_RECALLED_DEVIATION 0.15f /* by the length of the segment */
-#define PF_LARGEST_FRICTION 4.0          /* that is believed without being told */
+#define PF_GOOD_SCORE 0.5         /* further models are not tried */
+#define PF_MISFIT_PER_SHARE 0.45  /* most, by the share of resolved pillars */
+#define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
+#define PF_TRUST_IN_BOUND 0.8f    /* 1: an open pillar is at the bound told */
+#define PF_NOISE_OF_NORMAL 0.45f  /* by a reading's, at a given ratio */
+#define PF_NOISE_OF_RESOLVED 0.7f /* by a reading's, of a resolved pillar */
+#define PF_CHANGE_PER_FRAME 0.05f /* of a normal force, relative deviation */
+#define PF_MOST_RECALLED 0.15f    /* deviation, by the length of the segment */
 
 static inline float clamped(float value, float low, float high) {
   return value < low ? low : (high < value ? high : value);
@@ -321,8 +321,8 @@ static inline Verdict verdict_of_shape(Scratch scratch, double misfit) {
   verdict.friction = (float)plateau.ratio;
   verdict.misfit = (float)misfit;
   verdict.score = (float)(plateau.share - 1.5 * plateau.far - misfit);
-  verdict.spread = (float)(0.02 + plateau.spread + misfit);
-  verdict.doubt = 0.02f + 0.5f * verdict.spread;
+  verdict.spread = (float)(0.03 + 2.5 * plateau.spread + 3.0 * misfit);
+  verdict.doubt = 0.03f + 0.8f * verdict.spread;
   return verdict;
 }
 
@@ -420,7 +420,7 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
     if (friction > 0.0f) {
       verdict.way = PF_BY_SLIP;
       verdict.friction = friction;
-      verdict.spread = 0.02f;
+      verdict.spread = 0.005f;
       return verdict;
     }
   }
@@ -469,7 +469,8 @@ static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSet
     return judgement;
   }
   Judgement judgement;
-  judgement.normal = middle_of_thetas(segment, bound, segment.high);
+  judgement.normal =
+      between_thetas(segment, bound, segment.high, bound > 0.0f ? PF_TRUST_IN_BOUND : 0.5f);
   judgement.low = bound;
   judgement.high = segment.high;
   return judgement;
@@ -483,7 +484,7 @@ static inline bool recalled_normal(Segment segment, Past past, uint index, float
   const float normal = past.normal[index];
   const float change = PF_CHANGE_PER_FRAME * normal;
   const float deviation = length_3(past.deviation[index], change, PF_NOISE_OF_NORMAL * noise);
-  if (deviation > PF_MOST_RECALLED_DEVIATION * (judgement->high - judgement->low)) return false;
+  if (deviation > PF_MOST_RECALLED * (judgement->high - judgement->low)) return false;
   const float low = judgement->low;
   judgement->normal = clamped(normal, low, segment.high);
   judgement->low = clamped(normal - 1.96f * deviation, low, segment.high);
@@ -504,7 +505,7 @@ static inline void keep_run(Field field, Past past, Run run, float noise) {
   for (uint col = run.first; col < run.end; ++col) {
     const uint index = run.row * field.cols + col;
     if (!is_determined(field.status[index])) continue;
-    keep_for_next(past, index, field.normal[index], PF_NOISE_OF_NORMAL * noise);
+    keep_for_next(past, index, field.normal[index], PF_NOISE_OF_RESOLVED * noise);
   }
 }
 

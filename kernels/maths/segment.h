@@ -61,9 +61,10 @@ static inline Real normal_at_ratio(Segment segment, Real ratio) {
   return is_point ? zero : normal;
 }
 
-/* The normal force whose theta is halfway between those of two others, of which `low` may be zero
- * (F4): the paper's choice, where they are the ends. */
-static inline Real middle_of_thetas(Segment segment, Real low, Real high) {
+/* The normal force whose theta divides the way between those of two others, of which `low` may be
+ * zero (F4): at a half of `part` it is halfway, the paper's choice where they are the ends; at more
+ * it is nearer to that of `low`. */
+static inline Real between_thetas(Segment segment, Real low, Real high, Real part) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const Real upright = ratio_on_segment(segment, high);
@@ -71,8 +72,11 @@ static inline Real middle_of_thetas(Segment segment, Real low, Real high) {
   const Mask flat = !(low > zero);
   const Real inclined = ratio_on_segment(segment, flat ? high : low);
   const Real inclined_length = length_2(one, inclined);
-  const Real sine = upright / upright_length + (flat ? one : inclined / inclined_length);
-  const Real cosine = one / upright_length + (flat ? zero : one / inclined_length);
+  const Real flat_sine = flat ? one : inclined / inclined_length;
+  const Real flat_cosine = flat ? zero : one / inclined_length;
+  const Real rest = one - part;
+  const Real sine = rest * (upright / upright_length) + part * flat_sine;
+  const Real cosine = rest / upright_length + part * flat_cosine;
   const Real normal = normal_at_ratio(segment, sine / cosine);
   return normal < low ? low : (high < normal ? high : normal);
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <thread>
 
+#include "core/field_estimate.h"
 #include "core/host_solve.h"
 #include "core/ideal_readings.h"
 #include "core/sensor.h"
@@ -88,7 +89,15 @@ double squared_error(const ForceField& solved, const ForceField& truth, std::siz
 
 /// The one place where frames are solved one after the other, each with the help of that before.
 ForceField solve_sequence(const SolverPlan& plan, const std::vector<FrameBuffer>& frames) {
-  return solve_on_host(plan, frames.back().view());
+  SolverPlan direct = plan;
+  direct.estimator = Estimator::direct;
+  HostFieldEstimator estimator(plan);
+  ForceField solved;
+  for (const FrameBuffer& frame : frames) {
+    solved = solve_on_host(direct, frame.view());
+    estimator.resolve(solved);
+  }
+  return solved;
 }
 
 }  // namespace
