@@ -1,0 +1,240 @@
+// The field estimator: what it may touch, what it must not make worse, and contacts that are hard
+// for it, by name.
+
+#include "core/field_estimate.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/host_solve.h"
+#include "field_study.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr float kThreshold = 2;
+SolverPlan plan_of(std::uint32_t rows, std::uint32_t cols) {
+  SolverPlan plan;
+  plan.skin.rows = 2 * rows;
+  plan.skin.cols = 2 * cols;
+  plan.skin.counts_per_newton = 1;
+  plan.skin.threshold_counts = kThreshold;
+  plan.sensel_type = SenselType::f32;
+  plan.noise_counts = 0.5;
+  plan.estimator = Estimator::field;
+  return plan;
+}
+
+/// A frame of float32 readings that pillars are pressed into one by one.
+class Pressed {
+ public:
+  Pressed(std::uint32_t rows, std::uint32_t cols)
+      : plan(plan_of(rows, cols)), readings_(std::size_t{2 * rows} * 2 * cols) {}
+
+  /// A pillar that slips to the right: its right sensels read, its left ones are lifted.
+  void slip(std::uint32_t row, std::uint32_t col, double normal, double friction) {
+    const double reading = normal * (1 + friction / std::numbers::sqrt2);
+    set(2 * row, 2 * col + 1, reading);
+    set(2 * row + 1, 2 * col + 1, reading);
+  }
+  void press(std::uint32_t row, std::uint32_t col, double normal) {
+    for (const std::uint32_t at : {0U, 1U}) {
+      set(2 * row + at, 2 * col, normal);
+      set(2 * row + at, 2 * col + 1, normal);
+    }
+  }
+  void set(std::uint32_t row, std::uint32_t col, double reading) {
+    readings_[std::size_t{row} * plan.skin.cols + col] = static_cast<float>(reading);
+  }
+  [[nodiscard]] ForceField solve() const { return solve_on_host(plan, frame()); }
+  [[nodiscard]] ForceField direct() const {
+    SolverPlan other = plan;
+    other.estimator = Estimator::direct;
+    return solve_on_host(other, frame());
+  }
+
+  SolverPlan plan;
+
+ private:
+  [[nodiscard]] FrameView frame() const {
+    return {SenselType::f32, readings_.data(), plan.skin.rows, plan.skin.cols, plan.skin.cols};
+  }
+
+  std::vector<float> readings_;
+};
+
+double theta_of(const ForceField& field, std::size_t i) {
+  return std::atan2(std::hypot(field.shear_x[i], field.shear_y[i]), field.normal[i]);
+}
+
+/// Where nothing is known, theta is halfway between that of the steepest force and a right angle.
+void expect_middle(const ForceField& solved, const ForceField& direct, std::size_t i) {
+  const double steepest = std::atan2(
+      std::hypot(direct.shear_x[i] - direct.normal[i] * std::numbers::sqrt2, direct.shear_y[i]),
+      2 * direct.normal[i]);
+  EXPECT_NEAR(theta_of(solved, i), (steepest + std::numbers::pi / 2) / 2, 1e-5);
+  EXPECT_EQ(solved.status[i], direct.status[i]);
+}
+
+TEST(FieldEstimate, OnePillarKeepsTheMiddle) {
+  Pressed skin(5, 5);
+  skin.slip(2, 2, 40, 1.8);
+  expect_middle(skin.solve(), skin.direct(), 12);
+}
+
+TEST(FieldEstimate, AWholeSkinThatSlidesKeepsTheMiddle) {
+  Pressed skin(20, 20);
+  for (std::uint32_t i = 0; i < 400; ++i) skin.slip(i / 20, i % 20, 40, 1.8);
+  const ForceField solved = skin.solve();
+  const ForceField direct = skin.direct();
+  for (std::size_t i = 0; i < 400; ++i) expect_middle(solved, direct, i);
+}
+
+TEST(FieldEstimate, TheSkinMayEndInTheContact) {
+  Pressed skin(12, 12);
+  for (std::uint32_t row = 0; row < 12; ++row) {
+    for (std::uint32_t col = 0; col < 12; ++col) {
+      if (col < 6) {
+        skin.press(row, col, 50);
+      } else {
+        skin.slip(row, col, 50, 1.7);
+      }
+    }
+  }
+  const ForceField solved = skin.solve();
+  for (const float normal : solved.normal) {
+    EXPECT_TRUE(std::isfinite(normal));
+    EXPECT_GT(normal, 0);
+  }
+}
+
+TEST(FieldEstimate, WhatSlipsAtAKnownFrictionIsExact) {
+  Pressed skin(9, 9);
+  for (std::uint32_t i = 0; i < 81; ++i) skin.slip(i / 9, i % 9, 30 + i, 1.9);
+  skin.plan.field.friction = 1.9;
+  skin.plan.field.slips = true;
+  const ForceField solved = skin.solve();
+  for (std::size_t i = 0; i < 81; ++i) {
+    ASSERT_NEAR(solved.normal[i], 30 + static_cast<double>(i), 1e-3);
+    ASSERT_NEAR(solved.shear_x[i], 1.9 * (30 + static_cast<double>(i)), 2e-3);
+    ASSERT_EQ(solved.status[i] & status::kFromNeighbours, status::kFromNeighbours);
+  }
+}
+
+TEST(FieldEstimate, ABoundIsKept) {
+  Pressed skin(9, 9);
+  for (std::uint32_t i = 0; i < 81; ++i) skin.slip(i / 9, i % 9, 30 + i, 1.9);
+  skin.plan.field.friction = 1.9;
+  const ForceField solved = skin.solve();
+  for (std::size_t i = 0; i < 81; ++i) {
+    EXPECT_GE(solved.normal[i], 29.99 + static_cast<double>(i));
+    EXPECT_EQ(solved.status[i] & status::kFromNeighbours, 0) << "a bound resolves nothing";
+  }
+}
+
+TEST(FieldEstimate, APillarIsRememberedAFrameLongAndForgotten) {
+  Pressed before(5, 5);
+  before.press(2, 2, 40);
+  Pressed after(5, 5);
+  after.slip(2, 2, 40, 1.8);
+  after.plan.field.frames_close = true;
+  HostFieldEstimator estimator(after.plan);
+  ForceField first = before.direct();
+  estimator.resolve(first);
+  ForceField second = after.direct();
+  estimator.resolve(second);
+  EXPECT_NEAR(second.normal[12], 40, 1e-3);
+  EXPECT_NE(second.status[12] & status::kFromNeighbours, 0);
+  ForceField gone = Pressed(5, 5).direct();
+  estimator.resolve(gone);
+  ForceField again = after.direct();
+  estimator.resolve(again);
+  expect_middle(again, after.direct(), 12);
+}
+
+TEST(FieldEstimate, FaultsAndSaturationAreLeftAlone) {
+  Pressed skin(8, 8);
+  skin.plan.skin.full_scale_counts = 200;
+  for (std::uint32_t i = 0; i < 64; ++i) skin.slip(i / 8, i % 8, 40, 1.8);
+  skin.set(4, 5, 1000);
+  skin.set(9, 9, std::numeric_limits<float>::quiet_NaN());
+  const ForceField solved = skin.solve();
+  const ForceField direct = skin.direct();
+  for (std::size_t i = 0; i < 64; ++i) {
+    if ((direct.status[i] & (status::kSaturated | status::kInconsistent)) == 0) continue;
+    EXPECT_EQ(solved.normal[i], direct.normal[i]);
+    EXPECT_EQ(solved.status[i], direct.status[i]);
+  }
+}
+
+TEST(FieldEstimate, MemoryOfThinContactsStaysSmall) {
+  // Nested angles, each with a box as large as the skin: their boxes would take 100 times the skin.
+  constexpr std::uint32_t kSize = 200;
+  Pressed skin(kSize, kSize);
+  for (std::uint32_t ring = 0; ring < kSize; ring += 2) {
+    for (std::uint32_t at = 0; at < kSize - ring; ++at) {
+      skin.slip(ring, ring + at, 40, 1.8);
+      if (at > 30) {
+        skin.press(ring + at, ring, 40);
+      }
+    }
+  }
+  HostFieldEstimator estimator(skin.plan);
+  ForceField field = skin.direct();
+  estimator.resolve(field);
+  EXPECT_LE(estimator.work().cells(), 17U * kSize * kSize + 1024U * 100U);
+}
+
+/// On the study's tuning scenes; those that judge are the page's.
+class OnScenes : public testing::Test {
+ protected:
+  /// Calls `check(score, midpoint, scene)` with those of every scene whose name contains a filter.
+  template <class Check>
+  static void for_scenes(const char* filter, Check check) {
+    auto scenes = field_study::tuning(filter);
+    ASSERT_FALSE(scenes.empty());
+    field_study::integrate(scenes);
+    for (const field_study::Scene& scene : scenes) {
+      if (scene.noise_counts != 0.5) continue;
+      const field_study::Observed observed(scene);
+      const auto solved =
+          field_study::solve(scene, observed, field_study::methods()[field_study::kNothingSaid]);
+      const field_study::Score midpoint = observed.score(observed.theta_midpoint());
+      if (midpoint.open < 30) continue;
+      check(observed.score(*solved), midpoint, scene);
+    }
+  }
+};
+
+TEST_F(OnScenes, NothingIsMadeWorse) {
+  for (const char* filter : {"punch 26", "cone 29", "slide"}) {
+    for_scenes(filter, [](const auto& score, const auto& midpoint, const auto& scene) {
+      EXPECT_LE(score.rms_counts(), 1.02 * midpoint.rms_counts()) << scene.name();
+      EXPECT_EQ(score.touched, 0U) << "pillars of regions 1 and 2 in " << scene.name();
+    });
+  }
+}
+
+TEST_F(OnScenes, SpinIsResolvedWhateverTheShape) {
+  for_scenes(", spin", [](const auto& score, const auto& midpoint, const auto& scene) {
+    EXPECT_LE(score.rms_counts(), 0.1 * midpoint.rms_counts()) << scene.name();
+  });
+}
+
+TEST_F(OnScenes, RoundContactsThatStickInTheMiddleAreResolved) {
+  for (const char* filter : {"sphere 31, partial slip 0.5", "sphere 31, partial slip 0.7",
+                             "paraboloid 27, partial slip 0.5", "cylinder 15, roll"}) {
+    for_scenes(filter, [](const auto& score, const auto& midpoint, const auto& scene) {
+      EXPECT_LE(score.rms_counts(), 0.3 * midpoint.rms_counts()) << scene.name();
+      EXPECT_EQ(score.resolved, score.open) << scene.name();
+    });
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
