@@ -49,7 +49,6 @@ Opened open_source(const Options& options, double scale) {
   Opened opened;
   opened.look = first_look(options, *producer, scale);
   opened.player = std::make_unique<Player>(std::move(producer));
-  opened.player->set_contacts(opened.look.contacts);
   return opened;
 }
 

@@ -18,7 +18,8 @@ constexpr double kMostRatio = 3;
 
 constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< lets the lines be seen on any colour
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
-constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);  ///< of texts
+constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< unlike the arrows of cells
+constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< of texts
 
 ImVec2 to_imgui(Vec2 point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
@@ -74,11 +75,11 @@ class Brush {
   void force(const ContactMark& mark) const {
     const ImVec2 centre = to_imgui(mark.centre);
     if (mark.tip) {
-      arrow(mark.centre, *mark.tip, 2.2, kEdge);
-      arrow(mark.centre, *mark.tip, 0, kLine);
+      arrow(mark.centre, *mark.tip, 3, IM_COL32(0, 0, 0, 255));
+      arrow(mark.centre, *mark.tip, 0, kForce);
     }
     list_.AddCircleFilled(centre, 4.6f * unit_, kEdge);
-    list_.AddCircleFilled(centre, 3.4f * unit_, kLine);
+    list_.AddCircleFilled(centre, 3.4f * unit_, kForce);
     list_.AddCircleFilled(centre, 1.6f * unit_, kEdge);
   }
 
@@ -109,11 +110,11 @@ class Brush {
     if (length < 1) return;
     const auto unit = static_cast<double>(unit_);
     const Vec2 way{(to.x - from.x) / length, (to.y - from.y) / length};
-    const double head = std::min(9 * unit, length) + more * unit;
+    const double head = std::min(11 * unit, length) + more * unit;
     const double half = 0.45 * head + 0.3 * more * unit;
     const Vec2 tip{to.x + more * unit * way.x, to.y + more * unit * way.y};
     const Vec2 neck{tip.x - head * way.x, tip.y - head * way.y};
-    list_.AddLine(to_imgui(from), to_imgui(neck), colour, static_cast<float>(2.4 + more) * unit_);
+    list_.AddLine(to_imgui(from), to_imgui(neck), colour, static_cast<float>(3 + more) * unit_);
     list_.AddTriangleFilled(to_imgui(tip), to_imgui({neck.x - half * way.y, neck.y + half * way.x}),
                             to_imgui({neck.x + half * way.y, neck.y - half * way.x}), colour);
   }
