@@ -25,15 +25,16 @@ std::string ambiguous_words(const ContactQuantities& contact) {
 
 const std::array<ContactColumn, kContactColumns>& contact_columns() {
   static constexpr std::array<ContactColumn, kContactColumns> kColumns{{
-      {"id", "stays the same while the contact is followed"},
-      {"normal", "normal force, N"},
-      {"shear", "shear force, N"},
-      {"area", "mm²"},
-      {"peak", "largest normal force of a pillar, N"},
-      {"mean", "mean pressure, kPa"},
-      {"µ", "friction, where it is known"},
-      {"slip", "sticking, partial, sliding or unknown"},
-      {"ambiguous", "share of the pillars / share of those that neighbours resolved"},
+      {"id", "stays the same while the contact is followed", "0000"},
+      {"normal", "normal force, N", "00000"},
+      {"shear", "shear force, N", "00000"},
+      {"µ", "friction, where it is known", "0.00"},
+      {"slip", "sticking, partial, sliding or unknown", "unknown"},
+      {"ambiguous", "share of the pillars / share of those that neighbours resolved",
+       "00 % / 00 %"},
+      {"mean", "mean pressure, kPa", "00000"},
+      {"area", "mm²", "00000"},
+      {"peak", "largest normal force of a pillar, N", "0.000"},
   }};
   return kColumns;
 }
@@ -43,12 +44,12 @@ std::array<std::string, kContactColumns> contact_words(const std::string& name,
   return {name,
           three_digits(contact.normal_n),
           three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n)),
-          three_digits(contact.area_mm2),
-          three_digits(contact.peak_n),
-          three_digits(contact.mean_pressure_kpa),
           contact.friction ? fmt::format("{:.2f}", *contact.friction) : "–",
           name_of(contact.slip),
-          ambiguous_words(contact)};
+          ambiguous_words(contact),
+          three_digits(contact.mean_pressure_kpa),
+          three_digits(contact.area_mm2),
+          three_digits(contact.peak_n)};
 }
 
 }  // namespace pillarfield::viewer

@@ -12,8 +12,9 @@ inline constexpr std::size_t kContactColumns = 9;
 
 /// The head of a column of the table of contacts, and what it means.
 struct ContactColumn {
-  const char* head;  ///< "normal"
-  const char* help;  ///< "normal force, N"
+  const char* head;    ///< "normal"
+  const char* help;    ///< "normal force, N"
+  const char* widest;  ///< words that are hardly ever exceeded
 };
 [[nodiscard]] const std::array<ContactColumn, kContactColumns>& contact_columns();
 

@@ -1,6 +1,5 @@
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "viewer/app/changes.h"
@@ -16,6 +15,15 @@ namespace {
 constexpr int kFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                        ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_BordersInnerV;
 constexpr std::size_t kMostRows = 9;  ///< seen at a time
+
+/// Columns stand where they are, whatever the numbers.
+void set_columns() {
+  for (const ContactColumn& column : contact_columns()) {
+    const double width = std::max(width_of(column.head), width_of(column.widest));
+    ImGui::TableSetupColumn(column.head, ImGuiTableColumnFlags_WidthFixed,
+                            static_cast<float>(std::ceil(width)));
+  }
+}
 
 /// Stands still while contacts are scrolled.
 void write_head() {
@@ -74,7 +82,7 @@ std::optional<std::size_t> contact_table(const PanelInk& ink, const ShownContact
     return std::nullopt;
   }
   ImGui::TableSetupScrollFreeze(1, 2);
-  for (const ContactColumn& column : contact_columns()) ImGui::TableSetupColumn(column.head);
+  set_columns();
   write_head();
   write_row("all", contacts.found.patch);
   const auto clicked = contact_rows(contacts);
