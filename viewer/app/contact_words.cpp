@@ -16,7 +16,7 @@ std::string percent_words(std::uint64_t part, std::uint64_t all) {
 
 /// "42 %", and "42 % / 90 %" where neighbours resolved some of them.
 std::string ambiguous_words(const ContactQuantities& contact) {
-  const std::string share = percent_words(contact.ambiguous, contact.pillars);
+  std::string share = percent_words(contact.ambiguous, contact.pillars);
   if (contact.resolved == 0) return share;
   return share + " / " + percent_words(contact.resolved, contact.ambiguous);
 }
