@@ -97,6 +97,7 @@ Look first_look(const Options& options, FieldProducer& producer, double scale) {
   look.arrows = options.arrows;
   look.fans = options.fans;
   look.hatch = options.hatch;
+  look.contacts = options.contacts;
   look.legend = options.legend;
   look.scale = scale;
   look.full_force_n = full_arrow(producer, Quantity::magnitude);

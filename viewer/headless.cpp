@@ -81,7 +81,11 @@ void run_headless(const Options& options) {
         std::make_unique<VideoWriter>(options.video, options.width, options.height, source.rate_hz);
   }
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
-    const Pixels pixels = renderer.render(producer->produce(frame), source, look);
+    ShownField field = producer->produce(frame);
+    if (look.contacts) {
+      field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
+    }
+    const Pixels pixels = renderer.render(field, source, look);
     if (!options.png.empty()) {
       write_png(span.end - span.begin == 1 ? options.png
                                            : numbered(options.png, frame + 1, source.frames),

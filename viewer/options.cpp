@@ -175,6 +175,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_flag("--fans", options.fans, "Show what ambiguous shear may be, where pillars are large");
   app.add_flag_callback(
       "--no-hatch", [&] { options.hatch = false; }, "Ambiguous pillars are not hatched");
+  app.add_flag("--contacts", options.contacts,
+               "Mark contacts: extent, id, force, centre of pressure, shear");
   app.add_flag_callback(
       "--no-legend", [&] { options.legend = false; },
       "Neither axes nor colour bar: the field alone");

@@ -37,6 +37,7 @@ struct Options {
   bool arrows = true;
   bool fans = false;
   bool hatch = true;
+  bool contacts = false;
   bool legend = true;
 
   std::filesystem::path png;

@@ -125,6 +125,8 @@ void Application::listen_to_player() {
 void Application::run() {
   window_.show();
   if (options_.first_frame != 0) session_.player->seek(options_.first_frame);
+  // Not before: contacts are followed from the frame that is seen first.
+  session_.player->set_contacts(session_.look.contacts);
   if (!options_.paused) session_.player->play();
   while (!window_.closes() && !requests_.quit) {
     wait();

@@ -8,6 +8,7 @@
 
 #include "viewer/app/pins.h"
 #include "viewer/app/region_sums.h"
+#include "viewer/app/screen.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -92,6 +93,11 @@ void show_orbit(Session& session, const FieldPlace& place, bool orbit) {
   session.look.view = next;
 }
 
+void show_contacts(Session& session, bool shown) {
+  session.look.contacts = shown;
+  session.player->set_contacts(shown);
+}
+
 void reset_view(Session& session, const FieldPlace& place) {
   session.look.view = fitted(session, place, shows_orbit(session.look));
   session.view_is_fitted = true;
@@ -123,6 +129,20 @@ void toggle_pin(Session& session, PillarIndex pillar) {
 void mark_region(Session& session, const PillarRect& rect) {
   session.region = MarkedRegion{rect, History()};
   if (session.field) follow_region(session);
+}
+
+void mark_contact(Session& session, const FieldPlace& place, const PatchPlace& centre,
+                  const PillarRect& extent) {
+  mark_region(session, extent);
+  const Vec2 point{centre.x_mm, centre.y_mm};
+  const auto pixel = pixel_of(place, session.look, point);
+  if (pixel && contains(place.plot(session.look), *pixel)) return;
+  if (auto* const top = std::get_if<TopView>(&session.look.view)) {
+    top->centre_mm = point;
+  } else {
+    std::get<OrbitView>(session.look.view).target_mm = point;
+  }
+  session.view_is_fitted = false;
 }
 
 void clear_marks(Session& session) {

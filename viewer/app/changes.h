@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pillarfield/contact_quantities.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/session.h"
 
@@ -22,6 +23,9 @@ void set_range(Session& session, Range range);
 void show_orbit(Session& session, const FieldPlace& place, bool orbit);
 [[nodiscard]] bool shows_orbit(const Look& look);
 
+/// Whether contacts are looked for and marked.
+void show_contacts(Session& session, bool shown);
+
 /// The whole skin.
 void reset_view(Session& session, const FieldPlace& place);
 
@@ -31,6 +35,10 @@ void set_surface(Session& session, const FieldPlace& place, const Surface& surfa
 /// Pins a pillar, or takes its pin away.
 void toggle_pin(Session& session, PillarIndex pillar);
 void mark_region(Session& session, const PillarRect& rect);
+/// Marks the pillars about a contact; where its centre of pressure is out of sight the view goes
+/// there.
+void mark_contact(Session& session, const FieldPlace& place, const PatchPlace& centre,
+                  const PillarRect& extent);
 void clear_marks(Session& session);
 
 /// Plays so much faster (or slower, -1) in steps of 1, 2, 5, 10.

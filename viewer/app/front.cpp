@@ -39,6 +39,7 @@ void column(const Command& command) {
   if (section("Under the cursor")) hover_panel(session);
   if (section("Pillar")) pillar_panel(session);
   if (section("Region")) region_panel(session);
+  if (section("Contacts")) contacts_panel(session, command.place);
   if (section("Over time")) time_panel(session);
   if (section("Write")) write_panel(command);
 }

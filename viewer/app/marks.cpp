@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "viewer/app/panel_ink.h"
 #include "viewer/app/pins.h"
 #include "viewer/app/style.h"
+#include "viewer/draw/skin_outline.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -26,18 +25,10 @@ class Marker {
         list_(*ImGui::GetBackgroundDrawList()),
         unit_(static_cast<float>(session.look.scale)) {}
 
-  /// The outline of pillars on the skin, which may be bent: sides have points in between.
   void outline(const PillarRect& rect, ImU32 colour) const {
-    const Vec2 upper_left = corner_of(place_, rect.row_begin, rect.col_begin);
-    const Vec2 lower_right = corner_of(place_, rect.row_end, rect.col_end);
-    const std::array<Vec2, 5> corners{upper_left,
-                                      {lower_right.x, upper_left.y},
-                                      lower_right,
-                                      {upper_left.x, lower_right.y},
-                                      upper_left};
     std::vector<ImVec2> points;
-    for (std::size_t side = 0; side + 1 < corners.size(); ++side) {
-      if (!add_side(points, corners.at(side), corners.at(side + 1))) return;
+    for (const Vec2& point : outline_of(rect, *place_.source, look_, place_.plot(look_))) {
+      points.push_back(to_imgui(point));
     }
     const auto count = static_cast<int>(points.size());
     list_.AddPolyline(points.data(), count, IM_COL32(0, 0, 0, 200), ImDrawFlags_Closed, 3 * unit_);
@@ -79,20 +70,6 @@ class Marker {
     const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
     const double half = 0.5 * place_.source->skin.pillar_pitch_mm();
     return pixel_of(place_, look_, {corner.x + half, corner.y - half});
-  }
-
-  bool add_side(std::vector<ImVec2>& points, Vec2 from, Vec2 to) const {
-    const bool straight =
-        std::holds_alternative<TopView>(look_.view) || look_.surface.kind == SurfaceKind::plane;
-    const int pieces = straight ? 1 : 32;
-    for (int i = 0; i < pieces; ++i) {
-      const double share = static_cast<double>(i) / pieces;
-      const auto pixel = pixel_of(
-          place_, look_, {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)});
-      if (!pixel) return false;
-      points.push_back(to_imgui(*pixel));
-    }
-    return true;
   }
 
   const Look& look_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "viewer/app/field_place.h"
 #include "viewer/app/session.h"
 
 namespace pillarfield::viewer {
@@ -17,6 +18,10 @@ void pillar_panel(Session& session);
 
 /// The marked region: total force, centre of pressure, area, peak, mean, shares of the regions.
 void region_panel(Session& session);
+
+/// The contacts of the field on display, heaviest first, and all of them together; one that is
+/// clicked becomes the marked region. Says so where they are not looked for.
+void contacts_panel(Session& session, const FieldPlace& place);
 
 /// Force over time of pinned pillars and the marked region, with the play head.
 void time_panel(Session& session);

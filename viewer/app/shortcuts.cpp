@@ -74,6 +74,10 @@ void toggle_view(const Command& command) {
   show_orbit(command.session, command.place, !shows_orbit(command.session.look));
 }
 
+void toggle_contacts(const Command& command) {
+  show_contacts(command.session, !command.session.look.contacts);
+}
+
 /// What is open or under way ends first.
 void escape(const Command& command) {
   if (command.session.show_help) {
@@ -128,6 +132,7 @@ constexpr std::array kShortcuts{
     Shortcut{Group::look, plain(GLFW_KEY_A), "A", "arrows", toggle<&Look::arrows>},
     Shortcut{Group::look, plain(GLFW_KEY_U), "U", "fans of the ambiguous", toggle<&Look::fans>},
     Shortcut{Group::look, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars", toggle<&Look::hatch>},
+    Shortcut{Group::look, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
     Shortcut{Group::look, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
     Shortcut{Group::look, plain(GLFW_KEY_R), "R", "the whole skin",
              [](const Command& command) { reset_view(command.session, command.place); }},

@@ -114,13 +114,17 @@ void choose_map(Look& look) {
   ImGui::EndCombo();
 }
 
-void choose_layers(Look& look) {
+void choose_layers(Session& session) {
+  Look& look = session.look;
   labelled("Layers");
   ImGui::Checkbox("arrows", &look.arrows);
   ImGui::SameLine();
   ImGui::Checkbox("fans", &look.fans);
   ImGui::SameLine();
   ImGui::Checkbox("hatch", &look.hatch);
+  labelled("");
+  bool contacts = look.contacts;
+  if (ImGui::Checkbox("contacts", &contacts)) show_contacts(session, contacts);
 }
 
 void choose_view(const Command& command) {
@@ -168,7 +172,7 @@ void view_panel(const Command& command) {
   choose_quantity(session);
   choose_range(session);
   choose_map(session.look);
-  choose_layers(session.look);
+  choose_layers(session);
   choose_view(command);
   if (shows_orbit(session.look)) choose_surface(command);
   choose_theme(session.look);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "viewer/draw/contact_marks.h"
 #include "viewer/draw/scene.h"
 #include "viewer/picture/ticks.h"
 
@@ -287,6 +288,9 @@ void write_overlay(const Interface& interface, const ShownField& field, const So
   io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
   io.DeltaTime = 1;
   ImGui::NewFrame();
+  if (look.contacts && field.contacts != nullptr) {
+    draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts, source, look, layout.plot);
+  }
   if (look.legend) {
     const bool dark = look.theme == Theme::dark;
     const Pen pen{*ImGui::GetBackgroundDrawList(), look,

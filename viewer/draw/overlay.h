@@ -8,7 +8,8 @@
 namespace pillarfield::viewer {
 
 /// Writes what stands around and upon the field: title, axes in millimetres, the colour bar with
-/// its numbers and unit, and the meaning of colours and arrows. `interface.draw()` then draws it.
+/// its numbers and unit, the meaning of colours and arrows, and contacts. `interface.draw()` then
+/// draws it.
 void write_overlay(const Interface& interface, const ShownField& field, const SourceInfo& source,
                    const Look& look, const Layout& layout, vk::Extent2D size);
 

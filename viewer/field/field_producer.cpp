@@ -75,6 +75,9 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   if (scene.baseline_time_s) {
     info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
   }
+  if (scene.field.frames_close) {
+    info.remarks.emplace_back("Each frame is solved by itself: frames are solved in any order.");
+  }
   SolverPlan plan;
   plan.skin = scene.skin;
   plan.sensel_type = simulator.sensel_type();
@@ -113,6 +116,11 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 }
 
 }  // namespace
+
+ShownContacts FieldProducer::contacts_of(const ShownField& field) {
+  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm());
+  return watch_->contacts_of(field);
+}
 
 std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
                                              const ProducerOptions& options,

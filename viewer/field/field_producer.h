@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/skin.h"
+#include "viewer/field/shown_contacts.h"
 #include "viewer/field/shown_field.h"
 
 namespace pillarfield::viewer {
@@ -46,9 +48,16 @@ class FieldProducer {
   /// there is no such frame or reading or solving fails.
   [[nodiscard]] virtual ShownField produce(std::uint64_t index) = 0;
 
+  /// The contacts of the field that was produced last: those that the source knows, or else such as
+  /// are found now, by what was asked for before. Throws Error where reading fails.
+  [[nodiscard]] virtual ShownContacts contacts_of(const ShownField& field);
+
   /// Looks whether the source has grown (a recording that is still being written); true if its
   /// number of frames is another now, which info() tells.
   virtual bool refresh() { return false; }
+
+ private:
+  std::optional<ContactWatch> watch_;
 };
 
 struct ProducerOptions {
@@ -61,10 +70,10 @@ struct ProducerOptions {
 
 /// Opens a scene (.toml), a recording, a Tekscan ASCII export or a file of force fields, told apart
 /// by name (scenes) and content (the others). Frames of the first three are solved with angles, and
-/// with uncertainty where the noise is known and the estimator is direct. A scene's baseline is not
-/// followed, since frames may come in any order. `progress` is called with shares 0..1 while a
-/// scene is simulated; it may throw to stop. Throws Error where the source cannot be opened or has
-/// no frames.
+/// with uncertainty where the noise is known and the estimator can tell. Neither a scene's baseline
+/// nor what was known of pillars is kept from frame to frame, since frames may come in any order.
+/// `progress` is called with shares 0..1 while a scene is simulated; it may throw to stop. Throws
+/// Error where the source cannot be opened or has no frames.
 [[nodiscard]] std::unique_ptr<FieldProducer> open_producer(
     const std::filesystem::path& path, const ProducerOptions& options,
     const std::function<void(double)>& progress = {});

@@ -84,6 +84,12 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
           .keep_alive = block};
 }
 
+ShownContacts ForceFileProducer::contacts_of(const ShownField& field) {
+  if (!reader_->info().contacts) return FieldProducer::contacts_of(field);
+  map_.find(field.forces.status, field.forces.rows, field.forces.cols);
+  return with_extents(reader_->read_contacts(field.index), map_);
+}
+
 void ForceFileProducer::open(const std::filesystem::path& path) {
   ForceFileReader reader(path);
   const ForceFileInfo& found = reader.info();

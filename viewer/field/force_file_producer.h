@@ -19,6 +19,7 @@ class ForceFileProducer final : public FieldProducer {
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
   [[nodiscard]] ShownField produce(std::uint64_t index) override;
+  [[nodiscard]] ShownContacts contacts_of(const ShownField& field) override;
   bool refresh() override;
 
  private:
@@ -29,6 +30,7 @@ class ForceFileProducer final : public FieldProducer {
   SourceInfo info_;
   ForceField forces_;  ///< as read last
   LendingPool<PlaneBlock> blocks_;
+  ContactMap map_;
 };
 
 }  // namespace pillarfield::viewer

@@ -58,6 +58,8 @@ void Playback::seek(std::uint64_t frame, Time now) {
   restart(now + Time(std::llround(period_ns())));
 }
 
+void Playback::again(Time now) { show(frame_, now); }
+
 void Playback::step(std::int64_t frames, Time now) {
   pause();
   // No source has more frames than a signed number counts.

@@ -23,6 +23,7 @@ class Playback {
   void play(Time now);  ///< from the first frame where it stopped at the last one
   void pause();
   void seek(std::uint64_t frame, Time now);  ///< clamped; shows it whether playing or not
+  void again(Time now);                      ///< makes the frame that is shown once more
   void step(std::int64_t frames, Time now);  ///< pauses; wraps around in a loop, else clamped
   void set_speed(double speed, Time now);    ///< 0.01..100; 1 is the source's own time
   void set_rate(double rate_hz, Time now);   ///< frames per second at speed 1, 0.001..1e6

@@ -61,6 +61,7 @@ struct Player::State {
   RecentTimes times;
   Time refreshed{0};
   std::unique_ptr<ShownField> waiting;
+  bool wants_contacts = false;
   bool stopping = false;
   std::exception_ptr failed;
 
@@ -113,9 +114,13 @@ void Player::State::refresh(std::unique_lock<std::mutex>& lock) {
 }
 
 void Player::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
+  const bool with_contacts = wants_contacts;
   lock.unlock();
   const Time start = now();
   auto field = std::make_unique<ShownField>(producer->produce(frame));
+  if (with_contacts) {
+    field->contacts = std::make_shared<const ShownContacts>(producer->contacts_of(*field));
+  }
   const Time end = now();
   lock.lock();
   times.add(start, end);
@@ -163,6 +168,13 @@ void Player::set_loop(bool loop) {
 }
 void Player::set_follow(bool follow) {
   state_->command([&](Time now) { state_->playback.set_follow(follow, now); });
+}
+void Player::set_contacts(bool wanted) {
+  state_->command([&](Time now) {
+    if (wanted == state_->wants_contacts) return;
+    state_->wants_contacts = wanted;
+    if (wanted) state_->playback.again(now);
+  });
 }
 
 PlayerState Player::state() const {

@@ -20,7 +20,7 @@ struct PlayerStatistics {
   std::uint64_t not_shown = 0;   ///< replaced by a newer one before the display took them
   std::uint64_t waiting = 0;     ///< 0 or 1, not taken yet
   double produced_hz = 0;        ///< lately
-  double produce_ms_median = 0;  ///< time to solve or read one field, lately
+  double produce_ms_median = 0;  ///< time to solve or read one field, and its contacts, lately
   double produce_ms_worst = 0;
   double behind_ms = 0;  ///< by how much the play head is late
 };
@@ -61,6 +61,8 @@ class Player {
   void set_rate(double rate_hz);
   void set_loop(bool loop);
   void set_follow(bool follow);
+  /// Whether fields come with their contacts; where they begin to, the one shown comes again.
+  void set_contacts(bool wanted);
 
   [[nodiscard]] PlayerState state() const;
   [[nodiscard]] PlayerStatistics statistics() const;

@@ -10,6 +10,8 @@
 
 namespace pillarfield::viewer {
 
+struct ShownContacts;
+
 /// A field to look at. Its memory stays as it is for as long as a copy of it is alive; whoever made
 /// it gets the memory back with the last one.
 struct ShownField {
@@ -21,6 +23,7 @@ struct ShownField {
   /// place.
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;
+  std::shared_ptr<const ShownContacts> contacts = {};  ///< none where they are not looked for
 };
 
 }  // namespace pillarfield::viewer

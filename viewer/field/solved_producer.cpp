@@ -21,8 +21,10 @@ struct Held {
 SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   plan.angles = true;
-  plan.uncertainty = knows_noise && plan.estimator == Estimator::direct;
-  plan.baseline_rate.reset();  // It would depend on which frames were looked at before.
+  plan.uncertainty = knows_noise && plan.estimator != Estimator::paper;
+  // Both would depend on which frames were looked at before.
+  plan.baseline_rate.reset();
+  plan.field.frames_close = false;
   return plan;
 }
 

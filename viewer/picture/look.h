@@ -17,8 +17,9 @@ struct Look {
   View view = TopView{};
   Surface surface;
   bool arrows = true;
-  bool fans = false;  ///< what ambiguous shear may be, once a pillar has a cell of its own
-  bool hatch = true;  ///< ambiguous pillars are hatched
+  bool fans = false;      ///< what ambiguous shear may be, once a pillar has a cell of its own
+  bool hatch = true;      ///< ambiguous pillars are hatched
+  bool contacts = false;  ///< marks of contacts, where the field has them
   /// Mean force per pillar whose arrow is as long as its cell and a half; from above arrows are
   /// those of shear.
   double full_force_n = 1;

@@ -44,6 +44,9 @@ Session make_session(const MadeField& made, Player& player) {
   Session session;
   session.player = &player;
   session.field = made.shown();
+  session.look.contacts = true;
+  session.field->contacts =
+      std::make_shared<const ShownContacts>(ContactWatch(1.265).contacts_of(*session.field));
   session.hovered = a_pillar(made, Region::two);
   for (const PillarIndex pillar :
        {a_pillar(made, Region::one), a_pillar(made, Region::two), a_pillar(made, Region::three)}) {
@@ -85,10 +88,11 @@ void in_window(const char* name, const Viewport& box, double scale, Panel&& pane
 }
 
 constexpr double kWidth = 1550;
-constexpr double kHeight = 1000;
+constexpr double kHeight = 1260;
 
 /// The column of the window is 340 wide; others may be wider.
 void draw_windows(Session& session, double scale) {
+  const FieldPlace place{{0, 0, 800, 600}, &session.player->info()};
   in_window("Cursor", {10, 10, 340, 220}, scale, [&] { hover_panel(session); });
   in_window("Region", {10, 240, 340, 310}, scale, [&] { region_panel(session); });
   in_window("Region 3", {360, 10, 340, 540}, scale, [&] { pillar_panel(session); });
@@ -105,8 +109,12 @@ void draw_windows(Session& session, double scale) {
     hover_panel(nothing);
     pillar_panel(nothing);
     region_panel(nothing);
+    contacts_panel(nothing, place);
     time_panel(nothing);
   });
+  in_window("Contacts", {10, 1000, 340, 250}, scale, [&] { contacts_panel(session, place); });
+  in_window("Contacts, wide", {360, 1000, 830, 250}, scale,
+            [&] { contacts_panel(session, place); });
   session.field->raw = {};
   in_window("No readings", {10, 730, 340, 260}, scale, [&] { pillar_panel(session); });
 }

@@ -57,6 +57,12 @@ const std::vector<GoldenPicture>& golden_pictures() {
               o.fans = true;
               o.centre_mm = Vec2{6, 1};
             })},
+      {"demo_contacts", "demo", 30,
+       with(look_at(Quantity::normal),
+            [](Options& o) {
+              o.contacts = true;
+              o.arrows = false;
+            })},
       {"sliding_shear_x", "sliding", 20, look_at(Quantity::shear_x)},
       {"sliding_cylinder", "sliding", 25,
        with(look_at(Quantity::shear),
@@ -121,8 +127,11 @@ class Golden : public testing::TestWithParam<GoldenPicture> {
         first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, look).plot);
     if (other_map) look.map = *other_map;
     Drawing drawing;
-    Pixels pixels =
-        drawing.draw(producer->produce(picture.frame), producer->info(), look, kWidth, kHeight);
+    ShownField field = producer->produce(picture.frame);
+    if (look.contacts) {
+      field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
+    }
+    Pixels pixels = drawing.draw(field, producer->info(), look, kWidth, kHeight);
     EXPECT_EQ(drawing.validation_messages(), 0);
     return pixels;
   }
@@ -160,8 +169,8 @@ TEST_P(GoldenColours, WouldShowAnotherColourMap) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pictures, GoldenColours,
-                         testing::Values(golden_pictures().front(), golden_pictures().at(5),
-                                         golden_pictures().at(7)),
+                         testing::Values(golden_pictures().front(), golden_pictures().at(6),
+                                         golden_pictures().at(8)),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -266,5 +266,23 @@ TEST(Playback, PlaysIntoFramesThatWereAdded) {
   EXPECT_EQ(playback.next(kStart), 1U) << "the source shrank";
 }
 
+TEST(Playback, AgainMakesTheFrameOnceMoreAndEndsNothing) {
+  Playback playing(10, 100);
+  static_cast<void>(playing.next(Time(0)));
+  playing.play(Time(0));
+  const auto due = playing.next_due();
+  playing.again(Time(1));
+  EXPECT_EQ(playing.next(Time(2)), 0U);
+  EXPECT_TRUE(playing.playing());
+  EXPECT_EQ(playing.next_due(), due);
+  Playback following(10, 100);
+  following.set_follow(true, Time(0));
+  EXPECT_EQ(following.next(Time(1)), 9U);
+  following.again(Time(2));
+  EXPECT_EQ(following.next(Time(3)), 9U);
+  EXPECT_TRUE(following.follows());
+  EXPECT_EQ(following.next(Time(4)), std::nullopt);
+}
+
 }  // namespace
 }  // namespace pillarfield::viewer

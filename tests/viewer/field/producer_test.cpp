@@ -15,6 +15,7 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "tests/io/sample_files.h"
+#include "tests/viewer/field/touched_field.h"
 #include "viewer/field/direction.h"
 #include "viewer/field/field_producer.h"
 #include "viewer/field/frame_rate.h"
@@ -348,6 +349,105 @@ TEST(ForceFileProducer, ShowsWhatTheFileHasAndAngles) {
       EXPECT_EQ(field.forces.uncertainty[Uncertainty::magnitude_high][7], 0.25F);
     }
   }
+}
+
+TEST(SceneProducer, SolvesWithTheFieldEstimatorAndItsUncertainty) {
+  const auto path = std::filesystem::path(PILLARFIELD_SCENES) / "ambiguous_contacts.toml";
+  const Simulator simulator(load_scene(path));
+  const SolverPlan plan = plan_of(simulator);
+  ASSERT_EQ(plan.estimator, Estimator::field);
+  FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  const auto producer = open_producer(path, {.most_frames = 2});
+  EXPECT_TRUE(has_all(producer->info().solver, {"field on "}));
+  EXPECT_TRUE(producer->info().has_uncertainty);
+  const ShownField field = producer->produce(1);
+  simulator.render(1, frame, truth);
+  expect_same_forces(field.forces, solve_on_host(plan, frame.view()).view());
+  EXPECT_FALSE(field.forces.uncertainty[Uncertainty::theta_low].empty());
+  const auto resolved = std::ranges::count_if(
+      field.forces.status, [](std::uint8_t s) { return (s & status::kFromNeighbours) != 0; });
+  EXPECT_GT(resolved, 100);
+  const ShownContacts contacts = producer->contacts_of(field);
+  ASSERT_EQ(contacts.found.contacts.size(), 3U);
+  std::uint64_t told = 0;
+  for (const auto& contact : contacts.found.contacts) told += contact.quantities.resolved;
+  EXPECT_EQ(told, static_cast<std::uint64_t>(resolved));
+}
+
+TEST(SceneProducer, FramesThatWouldKnowOfTheOneBeforeAreSolvedByThemselves) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "close.toml";
+  write_bytes(path,
+              "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"field\"\nframes_close = true\n"
+              "[sensor]\nnoise_counts = 0.5\n[time]\nframes = 3\n"
+              "[[contact]]\nshape = \"sphere\"\nmotion = \"slide\"\ncontact_radius_mm = 8\n"
+              "friction = 1.8\ndirection_deg = 0\nposition_mm = [0, 0]\nload_n = 30\n");
+  const auto producer = open_producer(path, {});
+  ASSERT_EQ(producer->info().remarks.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().remarks[0], {"Each frame is solved by itself"}));
+  const ForceField first = copy_of(producer->produce(2).forces);
+  static_cast<void>(producer->produce(1));
+  expect_same_forces(producer->produce(2).forces, first.view());
+}
+
+/// Two bodies that pass from frame to frame; in frame 2 the left one is away.
+ShownField passing(std::uint64_t index) {
+  const auto col = static_cast<std::uint32_t>(index);
+  const Touch left{{2, 6, 2 + col, 6 + col}};
+  const Touch right{{12, 16, 20 - col, 24 - col}, 2};
+  return index == 2 ? touched_field(index, 20, 30, {right})
+                    : touched_field(index, 20, 30, {left, right});
+}
+
+/// Written with the contacts of two pillars or more, or with none.
+void write_passing(const std::filesystem::path& path, bool with_contacts) {
+  ForceFileInfo info = {20, 30, 1.3, "direct", "a device", "press.h5", false, false};
+  const ContactOptions options{.minimum_pillars = 2};
+  if (with_contacts) info.contacts = options;
+  const auto sink = create_force_sink(path, info);
+  ContactTracker tracker(info.pillar_pitch_mm, options);
+  for (std::uint64_t index = 0; index < kFrames; ++index) {
+    const ShownField field = passing(index);
+    sink->append(field.forces, field.time_s);
+    if (with_contacts) sink->append_contacts(tracker.update(field.forces, field.time_s));
+  }
+  sink->finish();
+}
+
+std::vector<std::uint64_t> ids_of(const ShownContacts& contacts) {
+  std::vector<std::uint64_t> ids;
+  for (const auto& contact : contacts.found.contacts) ids.push_back(contact.id);
+  return ids;
+}
+
+TEST(ForceFileProducer, ContactsOfTheFileKeepTheirIdsInWhateverOrderTheyAreSeen) {
+  const TemporaryDirectory directory;
+  write_passing(directory / "c.h5", true);
+  const auto producer = open_producer(directory / "c.h5", {});
+  const auto at = [&](std::uint64_t index) {
+    return producer->contacts_of(producer->produce(index));
+  };
+  EXPECT_EQ(ids_of(at(4)), (std::vector<std::uint64_t>{3, 2}));
+  EXPECT_EQ(ids_of(at(0)), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(ids_of(at(2)), (std::vector<std::uint64_t>{2}));
+  const ShownContacts contacts = at(3);
+  ASSERT_EQ(contacts.extents.size(), 2U);
+  EXPECT_EQ(contacts.extents[1].row_begin, 12U);
+  EXPECT_EQ(contacts.extents[1].col_begin, 17U);
+  EXPECT_EQ(contacts.heaviest, (std::vector<std::size_t>{1, 0}));
+}
+
+TEST(ForceFileProducer, WithoutContactsTheyAreFollowedAsTheyAreSeen) {
+  const TemporaryDirectory directory;
+  write_passing(directory / "n.h5", false);
+  const auto producer = open_producer(directory / "n.h5", {});
+  const auto at = [&](std::uint64_t index) {
+    return ids_of(producer->contacts_of(producer->produce(index)));
+  };
+  EXPECT_EQ(at(2), (std::vector<std::uint64_t>{1}));
+  EXPECT_EQ(at(3), (std::vector<std::uint64_t>{2, 1}));
+  EXPECT_EQ(at(0), (std::vector<std::uint64_t>{1, 2}));
 }
 
 TEST(FieldProducer, FieldsStayWhateverTheSource) {

@@ -133,7 +133,8 @@ def field_of(pixels, statistics):
 class PictureTest(WindowTest):
     def test_field_is_what_headless_writes(self):
         for (name, options) in (("top", []), ("orbit", ["--view", "orbit", "--layer", "shear"]),
-                                ("light", ["--light", "--layer", "region", "--copy"])):
+                                ("light", ["--light", "--layer", "region", "--copy"]),
+                                ("contacts", ["--contacts"])):
             with self.subTest(name):
                 window = self.open(SCENES / "demo.toml", "--paused", "--frame", 31, *options)
                 pixels = self.shoot("field_" + name)
@@ -151,7 +152,7 @@ class KeyTest(WindowTest):
     def test_every_key_changes_what_is_seen(self):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20)
         before = self.shoot("opened")
-        keys = ["2", "3", "4", "5", "6", "7", "8", "9", "0", "y", "1", "a", "a", "x", "x", "v",
+        keys = ["2", "3", "4", "5", "6", "7", "8", "9", "0", "y", "1", "a", "a", "x", "x", "k", "k", "v",
                 "u", "r", "v", "t", "t", "g", "Tab", "Tab", "Right", "Left", "shift+Right",
                 "shift+Left", "Home", "End", "plus", "minus", "l", "l", "question", "Escape"]
         for (index, key) in enumerate(keys):
@@ -240,8 +241,9 @@ class WidgetTest(WindowTest):
             ("quantities", lambda: window.click(1145, 61)),
             ("chosen", lambda: window.click(1145, 140)),
             ("arrows", lambda: window.click(1036, 174)),
-            ("space", lambda: window.click(1205, 202)),
-            ("cylinder", lambda: window.click(1205, 230)),
+            ("contacts", lambda: window.click(1036, 202)),
+            ("space", lambda: window.click(1205, 230)),
+            ("cylinder", lambda: window.click(1205, 258)),
             ("fitted", lambda: window.click(1083, 118)),
         ]
         for (name, act) in steps:
