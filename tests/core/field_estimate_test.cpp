@@ -62,7 +62,7 @@ class Pressed {
 
  private:
   [[nodiscard]] FrameView frame() const {
-    return {SenselType::f32, readings_.data(), plan.skin.rows, plan.skin.cols, plan.skin.cols};
+    return {readings_.data(), SenselType::f32, plan.skin.rows, plan.skin.cols, plan.skin.cols};
   }
 
   std::vector<float> readings_;
