@@ -199,6 +199,11 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   return source;
 }
 
+std::string field_source(const SolverPlan& plan, int device_lanes) {
+  if (plan.estimator != Estimator::field) return {};
+  return field_kernel_source(block_lanes(device_lanes, plan.skin.pillar_cols()) == 1);
+}
+
 std::string field_kernel_source(bool groups) {
   std::string source =
       "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"

@@ -75,7 +75,11 @@ struct SpeedPaths {
 [[nodiscard]] std::string kernel_source(const SolverPlan& plan, int device_lanes,
                                         const SpeedPaths& paths = {});
 
-/// The stages that kernel_source holds, in their order, one name each.
+/// The OpenCL C that resolves what the direct solve left open, a program of its own; empty where
+/// the estimator is not that of the field.
+[[nodiscard]] std::string field_source(const SolverPlan& plan, int device_lanes);
+
+/// The stages that kernel_source and field_source hold, in their order, one name each.
 [[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
 
 /// Solves frames on a device, by the estimator and with the stages that a plan names.
