@@ -18,10 +18,19 @@ constexpr double kMostOpen = 0.25;
 constexpr std::uint64_t kFewestForFriction = 8;
 constexpr std::uint64_t kSamples = 1000;
 
+constexpr std::uint64_t kFewestRows = 16;
+
 std::uint64_t pillars_of(std::span<const ContactRun> runs) {
   std::uint64_t pillars = 0;
   for (const ContactRun& run : runs) pillars += run.end - run.first;
   return pillars;
+}
+
+/// One of so many rows of a contact is asked for its friction.
+std::uint64_t step_of(std::span<const ContactRun> runs, std::uint64_t pillars) {
+  const std::uint64_t rows = runs.back().row - runs.front().row + 1;
+  const std::uint64_t enough = (pillars + kSamples - 1) / kSamples;
+  return std::min(enough, std::max<std::uint64_t>(rows / kFewestRows, 1));
 }
 
 }  // namespace
@@ -35,7 +44,7 @@ std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs)
   if (pillars < kFewestForFriction) return std::nullopt;
   const std::int64_t peak = ForceQuanta(forces_.normal.size()).of(peak_of(forces_, runs));
   if (peak <= 0) return std::nullopt;
-  const std::uint64_t step = (pillars + kSamples - 1) / kSamples;
+  const std::uint64_t step = step_of(runs, pillars);
   histogram_.clear();
   for (const ContactRun& run : runs) {
     if ((run.row - runs.front().row) % step != step / 2) continue;
