@@ -18,7 +18,7 @@ constexpr double kMostOpen = 0.25;
 constexpr std::uint64_t kFewestForFriction = 8;
 constexpr std::uint64_t kSamples = 1000;
 
-constexpr std::uint64_t kFewestRows = 16;
+constexpr std::uint64_t kFewestRows = 8;
 
 std::uint64_t pillars_of(std::span<const ContactRun> runs) {
   std::uint64_t pillars = 0;

@@ -21,7 +21,7 @@ class ContactMeasure {
   /// The friction that the pillars of a contact show. Those that bear a quarter of its peak or
   /// more are asked, weighted with their normal force: noise moves the ratio of the others. Of a
   /// contact of N pillars only every k-th row is looked at, k = N / 1000 rounded up, so that 500 to
-  /// 1000 pillars are asked; but 16 of its rows if it has as many.
+  /// 1000 pillars are asked; but 8 of its rows if it has as many.
   [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs) const;
 
   /// What a contact's pillars sum to, and with a friction their slip.

@@ -180,6 +180,21 @@ void add_piece(const PieceSum& piece, std::int64_t pillars, std::int64_t x, std:
       {value_of(piece.slip.pressing), value_of(piece.slip.known), value_of(piece.slip.slipping)});
 }
 
+/// Asks for what the next runs need: rows are too far apart for a processor to guess.
+PF_INLINE void ask_for(std::span<const float> plane, const ForceFieldView& forces,
+                       std::span<const ContactRun> runs, std::size_t run) {
+#if defined(__GNUC__)
+  constexpr std::size_t kAhead = 2;
+  constexpr std::uint32_t kLine = 16;
+  if (run + kAhead >= runs.size()) return;
+  const ContactRun& ahead = runs[run + kAhead];
+  const float* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
+  for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
+    __builtin_prefetch(row + std::min(col, ahead.end - 1));
+  }
+#endif
+}
+
 /// Raises each peak to the normal force beside it, where that is above it and no NaN.
 PF_INLINE std::array<float, kBlock> raised(const std::array<float, kBlock>& peaks,
                                            const float* normal) {
@@ -207,7 +222,11 @@ PF_WIDE ContactTotals totals_of(const ForceFieldView& forces, std::span<const Co
   ContactTotals totals;
   std::int32_t peak = 0;
   ContactRun with_peak;
-  for (const ContactRun& run : runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ContactRun& run = runs[i];
+    ask_for(forces.shear_x, forces, runs, i);
+    ask_for(forces.shear_y, forces, runs, i);
+    ask_for(forces.normal, forces, runs, i);
     for (std::uint32_t first = run.first; first < run.end; first += kPiece) {
       const std::uint32_t end = std::min(first + kPiece, run.end);
       const std::size_t begin = std::size_t{run.row} * forces.cols + first;
@@ -236,7 +255,9 @@ PF_WIDE ContactTotals totals_of(const ForceFieldView& forces, std::span<const Co
 
 PF_WIDE float peak_of(const ForceFieldView& forces, std::span<const ContactRun> runs) {
   std::array<float, kBlock> peaks{};
-  for (const ContactRun& run : runs) {
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const ContactRun& run = runs[i];
+    ask_for(forces.normal, forces, runs, i);
     const float* const normal = forces.normal.data() + std::size_t{run.row} * forces.cols;
     std::uint32_t col = run.first;
     for (; col + kBlock <= run.end; col += kBlock) peaks = raised(peaks, normal + col);
