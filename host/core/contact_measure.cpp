@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/contact_ratios.h"
 
@@ -42,14 +43,13 @@ ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch
 std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs) const {
   const std::uint64_t pillars = pillars_of(runs);
   if (pillars < kFewestForFriction) return std::nullopt;
-  const std::int64_t peak = ForceQuanta(forces_.normal.size()).of(peak_of(forces_, runs));
-  if (peak <= 0) return std::nullopt;
   const std::uint64_t step = step_of(runs, pillars);
-  histogram_.clear();
+  std::vector<ContactRun> asked;
   for (const ContactRun& run : runs) {
-    if ((run.row - runs.front().row) % step != step / 2) continue;
-    add_ratios(forces_, run, peak, histogram_);
+    if ((run.row - runs.front().row) % step == step / 2) asked.push_back(run);
   }
+  histogram_.clear();
+  add_ratios(forces_, asked, peak_of(forces_, asked), histogram_);
   const std::optional<FrictionPlateau> plateau = histogram_.plateau();
   if (!plateau) return std::nullopt;
   return plateau->friction;

@@ -18,10 +18,10 @@ class ContactMeasure {
   /// `scratch` is cleared whenever it is used; it is kept from frame to frame for its memory.
   ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm, FrictionHistogram& scratch);
 
-  /// The friction that the pillars of a contact show. Those that bear a quarter of its peak or
-  /// more are asked, weighted with their normal force: noise moves the ratio of the others. Of a
-  /// contact of N pillars only every k-th row is looked at, k = N / 1000 rounded up, so that 500 to
-  /// 1000 pillars are asked; but 8 of its rows if it has as many.
+  /// The friction that the pillars of a contact show. Of one of N pillars every k-th row is
+  /// looked at, k = N / 1000 rounded up, so that 500 to 1000 pillars are; but 8 of its rows if it
+  /// has as many. Those that bear a quarter of the largest force there, or more, are asked,
+  /// weighted with their normal force: noise moves the ratio of the others.
   [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs) const;
 
   /// What a contact's pillars sum to, and with a friction their slip.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdint>
+#include <span>
 
 #include "core/friction_plateau.h"
 #include "pillarfield/contact_map.h"
@@ -8,10 +8,10 @@
 
 namespace pillarfield {
 
-/// Adds the ratios of those pillars of a run whose readings determine their force and that bear a
-/// quarter of `peak`, quanta, or more. Each weighs as much of FrictionHistogram::kMostWeight as it
-/// bears of the peak.
-void add_ratios(const ForceFieldView& forces, const ContactRun& run, std::int64_t peak,
+/// Adds the ratios of those pillars whose readings determine their force and that bear a quarter of
+/// `peak_n`, newtons, or more; none where that is not above zero. Each weighs as much of
+/// FrictionHistogram::kMostWeight as it bears of the peak.
+void add_ratios(const ForceFieldView& forces, std::span<const ContactRun> runs, float peak_n,
                 FrictionHistogram& histogram);
 
 }  // namespace pillarfield
