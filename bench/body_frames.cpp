@@ -63,6 +63,7 @@ Scene scene_of(Bodies bodies, std::size_t frames) {
   scene.rate_hz = static_cast<double>(frames);
   scene.frames = static_cast<std::uint32_t>(frames);
   std::vector<Contact> contacts;
+  contacts.reserve(kBodies);
   const double size_mm = scene.skin.sensel_pitch_mm * scene.skin.rows;
   for (int i = 0; i < kBodies; ++i) {
     contacts.push_back(ball(i, bodies == Bodies::mixed ? kMixed[i] : kSlipping[i], size_mm));

@@ -117,8 +117,8 @@ void add_field_rows(const Session& session) {
   for (const auto& [name, bodies] :
        {std::pair{"mixed", Bodies::mixed}, {"slipping", Bodies::slipping}}) {
     for (const What& what : kWhat) {
-      add_row(fmt::format("field/{}/{}", name, what.name), [&session, what, bodies, store] {
-        return race_field(session, what, store->of(bodies));
+      add_row(fmt::format("field/{}/{}", name, what.name), [&session, what, which = bodies, store] {
+        return race_field(session, what, store->of(which));
       });
     }
   }

@@ -198,7 +198,7 @@ PF_INLINE void ask_for(std::span<const float> plane, const ForceFieldView& force
 /// Raises each peak to the normal force beside it, where that is above it and no NaN.
 PF_INLINE std::array<float, kBlock> raised(const std::array<float, kBlock>& peaks,
                                            const float* normal) {
-  std::array<float, kBlock> higher;
+  std::array<float, kBlock> higher{};
   for (std::size_t i = 0; i < kBlock; ++i) higher[i] = normal[i] > peaks[i] ? normal[i] : peaks[i];
   return higher;
 }

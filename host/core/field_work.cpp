@@ -70,14 +70,14 @@ void FieldWork::find(std::span<const std::uint8_t> status) {
 /// Notes also which runs have open pillars.
 FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
                                         std::span<const std::uint8_t> status) {
-  static const StatusCounts kCounts = make_counts();
+  static const StatusCounts counts_of = make_counts();
   Summary summary;
   std::uint64_t all = 0;
   open_runs_.clear();
   for (const ContactRun& run : runs) {
     const std::uint8_t* const row = status.data() + std::size_t{run.row} * cols_;
     std::uint64_t counts = 0;
-    for (std::uint32_t col = run.first; col < run.end; ++col) counts += kCounts[row[col]];
+    for (std::uint32_t col = run.first; col < run.end; ++col) counts += counts_of[row[col]];
     if (static_cast<std::uint32_t>(counts) != 0) open_runs_.push_back(run);
     all += counts;
     summary.pillars += run.end - run.first;
