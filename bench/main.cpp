@@ -40,7 +40,7 @@ Usage: pillarfield-bench [OPTIONS]
   --benchmark_counters_tabular=BOOL, --benchmark_enable_random_interleaving=BOOL, ...
 
 Rows: ceiling/ size/ contact/ regions/ type/ output/ estimator/ lanes/ stage/ latency/ throughput/
-      opponent/ by_hand/ spread/ variant/ render/
+      opponent/ by_hand/ spread/ variant/ field/ render/
 
 Try:  pillarfield-bench --benchmark_filter=size/
       pillarfield-bench --benchmark_filter=opponent/ --seconds=5
@@ -127,7 +127,7 @@ int run(const Arguments& arguments) {
   tell_context(session.device);
   for (const auto add :
        {add_ceiling_rows, add_size_rows, add_plan_rows, add_time_rows, add_opponent_rows,
-        add_by_hand_rows, add_spread_rows, add_variant_rows, add_render_rows}) {
+        add_by_hand_rows, add_spread_rows, add_variant_rows, add_field_rows, add_render_rows}) {
     add(session);
   }
   PlainNames reporter;

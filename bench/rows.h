@@ -15,6 +15,7 @@ void add_opponent_rows(const Session& session);  ///< opponent/
 void add_by_hand_rows(const Session& session);   ///< by_hand/
 void add_spread_rows(const Session& session);    ///< spread/
 void add_variant_rows(const Session& session);   ///< variant/
+void add_field_rows(const Session& session);     ///< field/
 void add_render_rows(const Session& session);    ///< render/
 
 }  // namespace pillarfield::bench

@@ -15,9 +15,23 @@ struct Shared {
   std::uint64_t pillars = 0;
 };
 
-/// One entry for each two runs that meet.
-std::vector<Shared> meetings(std::span<const ContactRun> before, std::span<const ContactRun> now) {
+/// Adds a meeting of two runs to the last entry of the later contact, if that is of the same two.
+void add_meeting(const Shared& meeting, std::vector<Shared>& found,
+                 std::vector<std::size_t>& last) {
+  const std::size_t place = last[meeting.now];
+  if (place < found.size() && found[place].before == meeting.before) {
+    found[place].pillars += meeting.pillars;
+    return;
+  }
+  last[meeting.now] = found.size();
+  found.push_back(meeting);
+}
+
+/// One entry or more for each two contacts whose runs meet.
+std::vector<Shared> meetings(std::span<const ContactRun> before, std::span<const ContactRun> now,
+                             std::size_t contacts_now) {
   std::vector<Shared> found;
+  std::vector<std::size_t> last(contacts_now, SIZE_MAX);
   std::size_t a = 0;
   std::size_t b = 0;
   while (a < before.size() && b < now.size()) {
@@ -27,7 +41,9 @@ std::vector<Shared> meetings(std::span<const ContactRun> before, std::span<const
       const std::uint32_t first = std::max(earlier.first, later.first);
       const std::uint32_t end = std::min(earlier.end, later.end);
       const bool followed = earlier.contact != kNoContact && later.contact != kNoContact;
-      if (first < end && followed) found.push_back({earlier.contact, later.contact, end - first});
+      if (first < end && followed) {
+        add_meeting({earlier.contact, later.contact, end - first}, found, last);
+      }
     }
     const bool earlier_ends = std::tie(earlier.row, earlier.end) < std::tie(later.row, later.end);
     ++(earlier_ends ? a : b);
@@ -37,7 +53,7 @@ std::vector<Shared> meetings(std::span<const ContactRun> before, std::span<const
 
 /// One entry for each two contacts that share pillars.
 std::vector<Shared> shared_pillars(const ContactTraces& before, const ContactTraces& now) {
-  std::vector<Shared> found = meetings(before.runs, now.runs);
+  std::vector<Shared> found = meetings(before.runs, now.runs, now.centres.size());
   std::sort(found.begin(), found.end(), [](const Shared& a, const Shared& b) {
     return std::tie(a.before, a.now) < std::tie(b.before, b.now);
   });

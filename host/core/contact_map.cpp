@@ -41,15 +41,24 @@ unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
   return loaded_of(word);
 }
 
-/// The first column at or after `col`, a multiple of a word from it, where not all is silent.
+/// So many bytes are looked at together where there is silence.
+constexpr std::size_t kStride = 4 * kWord;
+
+bool is_silent(const std::uint8_t* bytes) {
+  // Not a loop: that would not be unrolled.
+  const std::uint64_t any = word_at(bytes) | word_at(bytes + kWord) | word_at(bytes + 2 * kWord) |
+                            word_at(bytes + 3 * kWord);
+  return any == 0;
+}
+
+/// The row's end if all from `col` on is silent; else a column at or after it, a multiple of a word
+/// from it, before which all is silent.
 std::size_t skip_silence(std::span<const std::uint8_t> row, std::size_t col) {
-  constexpr std::size_t kStride = 4 * kWord;
   for (; col + kStride <= row.size(); col += kStride) {
-    const std::uint8_t* const bytes = row.data() + col;
-    const std::uint64_t any = word_at(bytes) | word_at(bytes + kWord) | word_at(bytes + 2 * kWord) |
-                              word_at(bytes + 3 * kWord);
-    if (any != 0) break;
+    if (!is_silent(row.data() + col)) return col;
   }
+  // What is left is less than a stride: with what is before it, it makes one.
+  if (row.size() >= kStride && is_silent(row.data() + row.size() - kStride)) return row.size();
   return col;
 }
 

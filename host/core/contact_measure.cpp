@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <vector>
 
-#include "pillarfield/status.h"
+#include "core/contact_ratios.h"
 
 namespace pillarfield {
 namespace {
@@ -15,87 +15,50 @@ constexpr double kQuantum = ForceQuanta::kForceQuantum;
 constexpr double kFew = 0.1;
 constexpr double kMostOpen = 0.25;
 
-/// Shear over normal force of a pillar that presses and whose readings determine it: in region 1
-/// or 2. It may be doubtful which of the two: that moves the force by a threshold's worth at most.
-std::optional<double> ratio_of(const PillarForce& pillar) {
-  constexpr int kDoubtful = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
-  if (pillar.normal <= 0 || (pillar.status & kDoubtful) != 0) return std::nullopt;
-  const Region region = region_of(pillar.status);
-  if (region != Region::one && region != Region::two) return std::nullopt;
-  const auto x = static_cast<double>(pillar.shear_x);
-  const auto y = static_cast<double>(pillar.shear_y);
-  return std::sqrt(x * x + y * y) / static_cast<double>(pillar.normal);
+/// Fewer pillars cannot show a friction, and more of a contact need not be asked.
+constexpr std::uint64_t kFewestForFriction = 8;
+constexpr std::uint64_t kSamples = 1000;
+
+constexpr std::uint64_t kFewestRows = 8;
+
+std::uint64_t pillars_of(std::span<const ContactRun> runs) {
+  std::uint64_t pillars = 0;
+  for (const ContactRun& run : runs) pillars += run.end - run.first;
+  return pillars;
 }
 
-/// The largest ratio at which the pillar, sheared in its direction, would not be ambiguous:
-/// 1 / min(|cos d|, |sin d|) with d from a diagonal.
-double ceiling_of(const PillarForce& pillar) {
-  const auto x = static_cast<double>(pillar.shear_x);
-  const auto y = static_cast<double>(pillar.shear_y);
-  const double least = std::min(std::abs(x + y), std::abs(y - x));
-  return std::sqrt(2 * (x * x + y * y)) / least;
+/// One of so many rows of a contact is asked for its friction.
+std::uint64_t step_of(std::span<const ContactRun> runs, std::uint64_t pillars) {
+  const std::uint64_t rows = runs.back().row - runs.front().row + 1;
+  const std::uint64_t enough = (pillars + kSamples - 1) / kSamples;
+  return std::min(enough, std::max<std::uint64_t>(rows / kFewestRows, 1));
 }
 
 }  // namespace
 
 ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm,
                                FrictionHistogram& scratch)
-    : forces_(forces),
-      pitch_mm_(pillar_pitch_mm),
-      quanta_(std::uint64_t{forces.rows} * forces.cols),
-      histogram_(scratch) {}
+    : forces_(forces), pitch_mm_(pillar_pitch_mm), histogram_(scratch) {}
 
-PillarForce ContactMeasure::pillar(std::uint32_t row, std::uint32_t col) const {
-  const std::size_t place = std::size_t{row} * forces_.cols + col;
-  return {quanta_.of(forces_.shear_x[place]),       quanta_.of(forces_.shear_y[place]),
-          quanta_.of(forces_.normal[place]),        2 * std::int64_t{col} + 1 - forces_.cols,
-          forces_.rows - 2 * std::int64_t{row} - 1, forces_.status[place]};
-}
-
-template <class Visit>
-void ContactMeasure::visit(std::span<const ContactRun> runs, Visit visit_pillar) const {
+std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs) const {
+  const std::uint64_t pillars = pillars_of(runs);
+  if (pillars < kFewestForFriction) return std::nullopt;
+  const std::uint64_t step = step_of(runs, pillars);
+  std::vector<ContactRun> asked;
   for (const ContactRun& run : runs) {
-    for (std::uint32_t col = run.first; col < run.end; ++col) visit_pillar(pillar(run.row, col));
+    if ((run.row - runs.front().row) % step == step / 2) asked.push_back(run);
   }
-}
-
-ContactSum ContactMeasure::sum(std::span<const ContactRun> runs) const {
-  ContactSum total;
-  visit(runs, [&](const PillarForce& force) { total.add(force); });
-  return total;
-}
-
-std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs,
-                                               std::int64_t peak) const {
-  if (peak <= 0) return std::nullopt;
   histogram_.clear();
-  visit(runs, [&](const PillarForce& force) {
-    if (force.normal < peak / 4) return;
-    const std::optional<double> ratio = ratio_of(force);
-    if (!ratio) return;
-    const double weight = FrictionHistogram::kMostWeight * static_cast<double>(force.normal) /
-                          static_cast<double>(peak);
-    histogram_.add(*ratio, static_cast<std::uint32_t>(weight), ceiling_of(force));
-  });
+  add_ratios(forces_, asked, peak_of(forces_, asked), histogram_);
   const std::optional<FrictionPlateau> plateau = histogram_.plateau();
   if (!plateau) return std::nullopt;
   return plateau->friction;
 }
 
-SlipSum ContactMeasure::slip(std::span<const ContactRun> runs, double friction) const {
-  SlipSum total;
-  visit(runs, [&](const PillarForce& force) {
-    if (force.normal <= 0) return;
-    const std::optional<double> ratio = ratio_of(force);
-    if (!ratio) {
-      total.open += force.normal;
-    } else if (*ratio >= kWithinPlateau * friction) {
-      total.slipping += force.normal;
-    } else {
-      total.sticking += force.normal;
-    }
-  });
-  return total;
+ContactTotals ContactMeasure::totals(std::span<const ContactRun> runs,
+                                     std::optional<double> friction) const {
+  if (friction) friction = kWithinPlateau * *friction;
+  return totals_of(forces_, runs, friction);
 }
 
 ContactQuantities ContactMeasure::quantities(const ContactSum& sum) const {
@@ -131,10 +94,10 @@ ContactQuantities ContactMeasure::quantities(const ContactSum& sum) const {
 
 namespace {
 
-SlipState state_of(const SlipSum& slip) {
+SlipState state_of(const PressingSum& slip) {
   const auto slipping = static_cast<double>(slip.slipping);
-  const auto sticking = static_cast<double>(slip.sticking);
-  const auto open = static_cast<double>(slip.open);
+  const auto sticking = static_cast<double>(slip.known - slip.slipping);
+  const auto open = static_cast<double>(slip.pressing - slip.known);
   const double all = slipping + sticking + open;
   if (all == 0 || open == all) return SlipState::unknown;
   if (slipping + open <= kFew * all) return SlipState::sticking;
@@ -148,11 +111,11 @@ SlipState state_of(const SlipSum& slip) {
 }  // namespace
 
 void set_slip(ContactQuantities& contact, double friction, FrictionSource source,
-              const SlipSum& slip) {
+              const PressingSum& slip) {
   contact.friction = friction;
   contact.friction_source = source;
   contact.slip = state_of(slip);
-  const auto known = static_cast<double>(slip.slipping + slip.sticking);
+  const auto known = static_cast<double>(slip.known);
   if (known > 0) contact.slipping_share = static_cast<double>(slip.slipping) / known;
   if (contact.normal_n > 0) {
     const double shear_n =

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "core/contact_sum.h"
+#include "core/contact_totals.h"
 #include "core/friction_plateau.h"
 #include "pillarfield/contact_map.h"
 #include "pillarfield/contact_quantities.h"
@@ -12,46 +12,33 @@
 
 namespace pillarfield {
 
-/// The normal force of a contact's pillars by what they tell of its slip, quanta; pillars that do
-/// not press are left out.
-struct SlipSum {
-  std::int64_t slipping = 0;
-  std::int64_t sticking = 0;
-  std::int64_t open = 0;  ///< of pillars whose ratio of shear to normal force is not known
-};
-
 /// Reads a field as whole numbers, contact by contact.
 class ContactMeasure {
  public:
   /// `scratch` is cleared whenever it is used; it is kept from frame to frame for its memory.
   ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm, FrictionHistogram& scratch);
 
-  [[nodiscard]] ContactSum sum(std::span<const ContactRun> runs) const;
+  /// The friction that the pillars of a contact show. Of one of N pillars every k-th row is
+  /// looked at, k = N / 1000 rounded up, so that 500 to 1000 pillars are; but 8 of its rows if it
+  /// has as many. Those that bear a quarter of the largest force there, or more, are asked,
+  /// weighted with their normal force: noise moves the ratio of the others.
+  [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs) const;
 
-  /// The friction that the pillars of a contact show. Those that bear a quarter of its `peak` or
-  /// more are asked, weighted with their normal force: noise moves the ratio of the others.
-  [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs,
-                                               std::int64_t peak) const;
-
-  [[nodiscard]] SlipSum slip(std::span<const ContactRun> runs, double friction) const;
+  /// What a contact's pillars sum to, and with a friction their slip.
+  [[nodiscard]] ContactTotals totals(std::span<const ContactRun> runs,
+                                     std::optional<double> friction) const;
 
   /// All but the slip.
   [[nodiscard]] ContactQuantities quantities(const ContactSum& sum) const;
 
  private:
-  [[nodiscard]] PillarForce pillar(std::uint32_t row, std::uint32_t col) const;
-
-  template <class Visit>
-  void visit(std::span<const ContactRun> runs, Visit visit_pillar) const;
-
   ForceFieldView forces_;
   double pitch_mm_;
-  ForceQuanta quanta_;
   FrictionHistogram& histogram_;
 };
 
-/// Adds what a friction says of a contact's slip. `slip` is that of ContactMeasure with it.
+/// Adds what a friction says of a contact's slip. `slip` is of ContactMeasure::totals with it.
 void set_slip(ContactQuantities& contact, double friction, FrictionSource source,
-              const SlipSum& slip);
+              const PressingSum& slip);
 
 }  // namespace pillarfield

@@ -19,7 +19,9 @@ ForceQuanta::ForceQuanta(std::uint64_t pillars)
           1, std::min(kMostForceBits, kSumBits - static_cast<int>(std::bit_width(pillars))))) {}
 
 double MomentSum::value() const {
-  return std::ldexp(static_cast<double>(high_), kLowBits) + static_cast<double>(low_);
+  // However the sum is divided among the two, the same bits.
+  const std::int64_t high = high_ + (low_ >> kLowBits);
+  return std::ldexp(static_cast<double>(high), kLowBits) + static_cast<double>(low_ & kLowMask);
 }
 
 void ContactSum::add_peak(std::int64_t candidate, std::int64_t at_x, std::int64_t at_y) {

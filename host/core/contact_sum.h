@@ -39,6 +39,11 @@ class MomentSum {
     high_ += (force >> kLowBits) * place;
     low_ += (force & kLowMask) * place;
   }
+  /// Adds a sum of products.
+  void add_product(std::int64_t product) {
+    high_ += product >> kLowBits;
+    low_ += product & kLowMask;
+  }
   void add(const MomentSum& other) {
     high_ += other.high_;
     low_ += other.low_;
@@ -86,8 +91,6 @@ struct ContactSum {
 
   void add(const PillarForce& pillar);
   void add(const ContactSum& other);
-
- private:
   /// Of equal peaks the one that comes first row by row counts.
   void add_peak(std::int64_t candidate, std::int64_t at_x, std::int64_t at_y);
 };

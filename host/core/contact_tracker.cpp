@@ -17,9 +17,6 @@ constexpr const char* kPlace = "ContactTracker";
 constexpr double kMostFriction = 100;
 constexpr double kMostReachMm = 1000;
 
-/// Fewer cannot show a friction.
-constexpr std::uint64_t kFewestForFriction = 8;
-
 void require_whole(const ForceFieldView& forces) {
   const std::size_t pillars = std::size_t{forces.rows} * forces.cols;
   for (const std::span<const float> plane : {forces.shear_x, forces.shear_y, forces.normal}) {
@@ -30,6 +27,12 @@ void require_whole(const ForceFieldView& forces) {
                 "give one for each pillar");
   }
 }
+
+/// What a contact of the frame shows by itself.
+struct Shown {
+  ContactTotals totals;  ///< slip included where the friction is known
+  std::optional<double> friction;
+};
 
 /// What is remembered of a contact.
 struct Known {
@@ -70,7 +73,8 @@ struct ContactTracker::State {
   ContactMap map;
   FrameContacts frame;
   std::vector<Known> known;            // of frame.contacts
-  std::vector<ContactSum> sums;        // of the contacts of the map
+  std::vector<Shown> shown;            // of the contacts of the map
+  PressingSum patch_slip;              // where a friction was given
   std::vector<std::uint32_t> indices;  // of these, the place in frame.contacts, or kNoContact
   ContactTraces traces;
   ContactTraces traces_before;
@@ -99,19 +103,23 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
 
 /// Lists the contacts that are large enough and what they exert, and the patch.
 void ContactTracker::State::measure(const ContactMeasure& measure) {
-  sums.clear();
+  shown.clear();
   indices.clear();
   frame.contacts.clear();
   ContactSum patch;
+  patch_slip = {};
   for (std::uint32_t number = 0; number < map.contacts(); ++number) {
-    sums.push_back(measure.sum(map.runs(number)));
-    patch.add(sums.back());
+    const auto runs = map.runs(number);
+    const auto friction = options.friction ? options.friction : measure.friction(runs);
+    const Shown& each = shown.emplace_back(Shown{measure.totals(runs, friction), friction});
+    patch.add(each.totals.sum);
+    patch_slip.add(each.totals.slip);
     indices.push_back(kNoContact);
-    if (static_cast<std::uint64_t>(sums.back().pillars) < options.minimum_pillars) continue;
+    if (static_cast<std::uint64_t>(each.totals.sum.pillars) < options.minimum_pillars) continue;
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
     contact.number = number;
-    contact.quantities = measure.quantities(sums.back());
+    contact.quantities = measure.quantities(each.totals.sum);
     frame.contacts.push_back(contact);
   }
   frame.patch = measure.quantities(patch);
@@ -166,24 +174,18 @@ void ContactTracker::State::identify(double time_s) {
 void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
   for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
     TrackedContact& contact = frame.contacts[i];
-    const auto runs = map.runs(contact.number);
-    FrictionSource source = FrictionSource::given;
-    std::optional<double> friction = options.friction;
-    if (!friction) {
-      if (contact.quantities.pillars >= kFewestForFriction) {
-        friction = measure.friction(runs, sums[contact.number].peak);
-      }
-      source = friction ? FrictionSource::shown : FrictionSource::remembered;
-      if (!friction) friction = known[i].friction;
-      known[i].friction = friction;
-    }
-    if (friction) {
-      set_slip(contact.quantities, *friction, source, measure.slip(runs, *friction));
+    const Shown& now = shown[contact.number];
+    if (now.friction) {
+      const auto source = options.friction ? FrictionSource::given : FrictionSource::shown;
+      set_slip(contact.quantities, *now.friction, source, now.totals.slip);
+      known[i].friction = now.friction;
+    } else if (const auto& before = known[i].friction) {
+      set_slip(contact.quantities, *before, FrictionSource::remembered,
+               measure.totals(map.runs(contact.number), before).slip);
     }
   }
   if (!options.friction || frame.patch.pillars == 0) return;
-  set_slip(frame.patch, *options.friction, FrictionSource::given,
-           measure.slip(map.runs(), *options.friction));
+  set_slip(frame.patch, *options.friction, FrictionSource::given, patch_slip);
 }
 
 ContactTracker::ContactTracker(double pillar_pitch_mm, const ContactOptions& options)

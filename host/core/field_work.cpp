@@ -1,6 +1,7 @@
 #include "core/field_work.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pillarfield {
@@ -33,29 +34,19 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
 /// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
 constexpr std::uint32_t kLeastOpenShare = 64;
 
-/// What a contact is made of.
-struct Summary {
-  std::uint32_t pillars = 0;
-  std::uint32_t open = 0;
-  std::uint32_t resolved = 0;
-  std::uint32_t first_col = ~std::uint32_t{0};
-  std::uint32_t end_col = 0;
-};
+/// By status byte what to add up, to count open pillars in the lower half of a word and those that
+/// their own readings determine in the upper half.
+using StatusCounts = std::array<std::uint64_t, 256>;
+constexpr int kDeterminedShift = 32;
 
-Summary summarise(std::span<const ContactRun> runs, std::span<const std::uint8_t> status,
-                  std::uint32_t cols) {
-  Summary summary;
-  for (const ContactRun& run : runs) {
-    for (std::uint32_t col = run.first; col < run.end; ++col) {
-      const std::uint8_t byte = status[std::size_t{run.row} * cols + col];
-      summary.open += maths::is_open(byte) ? 1U : 0U;
-      summary.resolved += maths::is_determined(byte) ? 1U : 0U;
-    }
-    summary.pillars += run.end - run.first;
-    summary.first_col = std::min(summary.first_col, run.first);
-    summary.end_col = std::max(summary.end_col, run.end);
+StatusCounts make_counts() {
+  StatusCounts counts{};
+  for (std::size_t bits = 0; bits < counts.size(); ++bits) {
+    const auto status = static_cast<std::uint8_t>(bits);
+    counts.at(bits) = std::uint64_t{maths::is_open(status) ? 1U : 0U} |
+                      std::uint64_t{maths::is_determined(status) ? 1U : 0U} << kDeterminedShift;
   }
-  return summary;
+  return counts;
 }
 
 }  // namespace
@@ -76,9 +67,31 @@ void FieldWork::find(std::span<const std::uint8_t> status) {
   }
 }
 
+/// Notes also which runs have open pillars.
+FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
+                                        std::span<const std::uint8_t> status) {
+  static const StatusCounts counts_of = make_counts();
+  Summary summary;
+  std::uint64_t all = 0;
+  open_runs_.clear();
+  for (const ContactRun& run : runs) {
+    const std::uint8_t* const row = status.data() + std::size_t{run.row} * cols_;
+    std::uint64_t counts = 0;
+    for (std::uint32_t col = run.first; col < run.end; ++col) counts += counts_of[row[col]];
+    if (static_cast<std::uint32_t>(counts) != 0) open_runs_.push_back(run);
+    all += counts;
+    summary.pillars += run.end - run.first;
+    summary.first_col = std::min(summary.first_col, run.first);
+    summary.end_col = std::max(summary.end_col, run.end);
+  }
+  summary.open = static_cast<std::uint32_t>(all);
+  summary.resolved = static_cast<std::uint32_t>(all >> kDeterminedShift);
+  return summary;
+}
+
 void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t> status) {
   const std::span<const ContactRun> runs = map_.runs(contact);
-  const Summary summary = summarise(runs, status, cols_);
+  const Summary summary = summarise(runs, status);
   if (summary.open == 0) return;
   const std::uint32_t rows = runs.back().row - runs.front().row + 1;
   const std::uint32_t cols = summary.end_col - summary.first_col;
@@ -95,7 +108,7 @@ void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t>
     lines_ += rows;
     return;
   }
-  for (const ContactRun& run : runs) {
+  for (const ContactRun& run : open_runs_) {
     const std::size_t first = std::size_t{run.row} * cols_;
     for (std::size_t index = first + run.first; index < first + run.end; ++index) {
       if (maths::is_open(status[index])) alone_.push_back(static_cast<std::uint32_t>(index));

@@ -30,6 +30,16 @@ class FieldWork {
   [[nodiscard]] std::size_t lines() const { return lines_; }  ///< records of lines of all tiles
 
  private:
+  /// What a contact is made of.
+  struct Summary {
+    std::uint32_t pillars = 0;
+    std::uint32_t open = 0;
+    std::uint32_t resolved = 0;
+    std::uint32_t first_col = ~std::uint32_t{0};
+    std::uint32_t end_col = 0;
+  };
+
+  Summary summarise(std::span<const ContactRun> runs, std::span<const std::uint8_t> status);
   void add_contact(std::uint32_t contact, std::span<const std::uint8_t> status);
 
   std::uint32_t rows_;
@@ -38,6 +48,7 @@ class FieldWork {
   ContactMap map_;
   std::vector<single_precision::Tile> tiles_;
   std::vector<std::uint32_t> alone_;
+  std::vector<ContactRun> open_runs_;  ///< of the contact at hand, those with open pillars
   std::size_t cells_ = 0;
   std::size_t lines_ = 0;
 };

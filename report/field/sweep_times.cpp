@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numeric>
 
+#include "pillarfield/contact_tracker.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
@@ -33,10 +34,13 @@ void paste(const FrameBuffer& frame, const Skin& skin, FrameBuffer& into, std::u
   }
 }
 
-double seconds_of(Processor& processor, const FrameBuffer& frame) {
+/// Follows the contacts of the result too, where there is a tracker.
+double seconds_of(Processor& processor, const FrameBuffer& frame,
+                  ContactTracker* tracker = nullptr) {
   const auto begin = std::chrono::steady_clock::now();
   processor.submit(frame.view());
-  (void)processor.receive();
+  const ForceFieldView forces = processor.receive();
+  if (tracker != nullptr) tracker->update(forces, 0);
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
@@ -48,8 +52,11 @@ double mean_of_middle_half(std::vector<double> times) {
   return sum / static_cast<double>(times.end() - times.begin() - 2 * quarter);
 }
 
-/// Time of `plan` over that of its direct solve.
-double measure(const Device& device, const SolverPlan& plan, const FrameBuffer& frame) {
+/// Time of `plan`, with its contacts if so wished, over that of its direct solve.
+double measure(const Device& device, const SolverPlan& plan, const FrameBuffer& frame,
+               bool contacts = false) {
+  ContactTracker contact_tracker(plan.skin.pillar_pitch_mm());
+  ContactTracker* const tracker = contacts ? &contact_tracker : nullptr;
   SolverPlan direct_plan = plan;
   direct_plan.estimator = Estimator::direct;
   Processor field(device, plan);
@@ -59,9 +66,9 @@ double measure(const Device& device, const SolverPlan& plan, const FrameBuffer& 
   for (int round = -4; round < kRounds; ++round) {
     // Who comes second finds the frame in the caches.
     const bool field_first = round % 2 == 0;
-    const double before = field_first ? seconds_of(field, frame) : 0;
+    const double before = field_first ? seconds_of(field, frame, tracker) : 0;
     const double direct_s = seconds_of(direct, frame);
-    const double field_s = field_first ? before : seconds_of(field, frame);
+    const double field_s = field_first ? before : seconds_of(field, frame, tracker);
     if (round < 0) continue;
     field_times.push_back(field_s);
     direct_times.push_back(direct_s);
@@ -108,6 +115,7 @@ void measure_square_metre(const Device& device, const std::filesystem::path& pat
   ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   simulator.render(simulator.scene().frames / 2, frame, truth);
   times.square_metre = measure(device, plan, frame);
+  times.square_metre_with_contacts = measure(device, plan, frame, true);
   const auto loaded = std::count_if(truth.status.begin(), truth.status.end(),
                                     [](std::uint8_t bits) { return bits != 0; });
   times.square_metre_share = static_cast<double>(loaded) / static_cast<double>(truth.pillars());

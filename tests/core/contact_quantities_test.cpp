@@ -203,6 +203,41 @@ TEST(Slip, FrictionOnceShownIsRemembered) {
   EXPECT_NEAR(*stuck.slip_margin, 0.98, 1e-3);
 }
 
+/// A contact of so many rows and columns, most of which slip in directions of their own. The others
+/// stick; all have a little noise.
+ForceField mostly_sliding(std::uint32_t rows, std::uint32_t cols, double friction) {
+  ForceField field(rows, cols);
+  for (std::uint32_t i = 0; i < rows * cols; ++i) {
+    const double direction = 0.1 * i;
+    const double noise = 1 + 0.02 * std::sin(1.7 * i);
+    const double ratio = i % 7 == 0 ? 0.2 * friction : friction * noise;
+    load(field, i / cols, i % cols, static_cast<float>(ratio * std::cos(direction)),
+         static_cast<float>(ratio * std::sin(direction)), 1);
+  }
+  return field;
+}
+
+/// Of a large contact not every row is asked. What it shows is the same within a tenth of what a
+/// pillar's noise is, for any number of rows and columns, one alone too.
+TEST(Friction, OfALargeContactIsSeenInSomeOfItsRows) {
+  for (const auto& [rows, cols] : {std::pair{10U, 10U},
+                                   {30U, 33U},
+                                   {30U, 34U},
+                                   {63U, 64U},
+                                   {200U, 210U},
+                                   {1U, 5000U},
+                                   {2U, 3000U},
+                                   {5000U, 1U},
+                                   {300U, 7U}}) {
+    const ContactQuantities contact = only_contact(mostly_sliding(rows, cols, 0.7));
+    ASSERT_TRUE(contact.friction.has_value()) << rows << " x " << cols;
+    EXPECT_NEAR(*contact.friction, 0.7, 0.01) << rows << " x " << cols;
+    EXPECT_EQ(contact.friction_source, FrictionSource::shown);
+    // Of slip all pillars tell.
+    EXPECT_NEAR(*contact.slipping_share, 6.0 / 7, 0.01) << rows << " x " << cols;
+  }
+}
+
 TEST(Slip, StatesAndSourcesHaveNames) {
   std::set<std::string> names;
   for (int i = 0; i < 4; ++i) {
