@@ -12,6 +12,7 @@ void RegionCount::add(std::span<const std::uint8_t> status) {
     pillars.at(static_cast<std::size_t>(region_of(static_cast<std::uint8_t>(byte)))) += count;
     if ((byte & status::kSaturated) != 0) saturated += count;
     if ((byte & status::kInconsistent) != 0) inconsistent += count;
+    if ((byte & status::kFromNeighbours) != 0) resolved += count;
   }
 }
 
@@ -28,7 +29,7 @@ const char* meaning_of(Region region) {
     case Region::two:
       return "three usable: force known";
     case Region::three:
-      return "two usable: ambiguous, middle of the possible forces";
+      return "two usable: ambiguous by its own readings";
     case Region::four:
       return "one usable: force along the skin";
     case Region::opposite:

@@ -155,6 +155,7 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
       {"pillar_rows", plan.skin.pillar_rows()},
       {"pillar_cols", plan.skin.pillar_cols()},
       {"regions", regions},
+      {"resolved", summary.regions.resolved},
       {"saturated", summary.regions.saturated},
       {"inconsistent", summary.regions.inconsistent},
       {"seconds", summary.seconds_in_all},
@@ -190,6 +191,10 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
     fmt::print("  {:<9} {:6.2f} %  {}\n",
                region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
+  }
+  if (plan.estimator == Estimator::field) {
+    fmt::print("Resolved with the help of their contacts: {} of {} pillars of region 3\n",
+               regions.resolved, regions.of(Region::three));
   }
   fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
              regions.saturated, regions.inconsistent);

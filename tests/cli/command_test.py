@@ -146,6 +146,26 @@ class Work(CommandTest):
         self.assertGreater(solved["inconsistent"], 0)
         self.assertIn("parity_test", solved["stages"])
 
+    def test_the_field_resolves_what_its_readings_leave_open(self):
+        scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
+        run("simulate", scene, "-o", self.recording, "--frames", 2)
+        errors = {}
+        for estimator in ("direct", "field"):
+            solved = run_json("solve", self.recording, "-o", self.forces, "--noise", 0.5,
+                              "--estimator", estimator)
+            compared = run_json("compare", self.forces, self.recording)
+            errors[estimator] = compared["regions"]["3"]["rms_n"]
+            self.assertEqual("resolve_field" in solved["stages"], estimator == "field")
+            self.assertEqual(solved["resolved"] > 0, estimator == "field")
+        self.assertLess(errors["field"], 0.3 * errors["direct"])
+
+    def test_evidence_is_of_use_to_the_field_alone(self):
+        run("simulate", self.scene, "-o", self.recording)
+        self.assert_fails("solve", self.recording, "-o", self.forces, "--friction", 0.8,
+                          says=["--estimator field"])
+        self.assert_fails("solve", self.recording, "-o", self.forces, "--estimator", "field",
+                          "--slips", says=["friction"])
+
     def test_info_describes_every_file(self):
         run("simulate", self.scene, "-o", self.recording)
         run("solve", self.recording, "-o", self.forces)
