@@ -32,6 +32,14 @@ namespace pillarfield::single_precision {
 // what needs the trend
 #include "kernels/field/plateau.h"
 #include "kernels/field/residual.h"
+// and what judges by all of these
+#include "kernels/field/verdict.h"
+// by the friction shown, by the pressure's shape
+#include "kernels/field/slip.h"
+// as above
+#include "kernels/field/shape.h"
+// and what becomes of it
+#include "kernels/field/judgement.h"
 // and all of it
 #include "kernels/field/resolve.h"
 #pragma GCC diagnostic pop

@@ -1,0 +1,152 @@
+/* From the verdict on a contact to the forces of its pillars, and what is kept for the frame that
+ * follows (docs/derivations/field.md, section 6). */
+
+/* The normal force of an ambiguous pillar, and within what 95 of 100 lie. */
+typedef struct {
+  float normal;
+  float low;
+  float high;
+} Judgement;
+
+/* What is left open of a pillar that slips at a friction with a relative deviation (F12). */
+static inline Judgement slipping_normal(Segment segment, float low, float friction, float spread) {
+  Judgement judgement;
+  judgement.normal = clamped(normal_at_ratio(segment, friction), low, segment.high);
+  judgement.low =
+      clamped(normal_at_ratio(segment, friction * (1.0f + 1.96f * spread)), low, segment.high);
+  judgement.high =
+      clamped(normal_at_ratio(segment, friction * clamped(1.0f - 1.96f * spread, 0.25f, 1.0f)), low,
+              segment.high);
+  return judgement;
+}
+
+/* The normal force that a verdict has (F6, F11). `shaped` is that of the best model, where there is
+ * one. */
+static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSettings settings,
+                                      float shaped) {
+  const float bound = settings.friction > 0.0f
+                          ? clamped(normal_at_ratio(segment, settings.friction), 0.0f, segment.high)
+                          : 0.0f;
+  if (verdict.way > PF_BY_BOUND) {
+    const Judgement slipping = slipping_normal(segment, bound, verdict.friction, verdict.spread);
+    if (verdict.way != PF_BY_SHAPE || ratio_on_segment(segment, shaped) > 0.9f * verdict.friction) {
+      return slipping;
+    }
+    Judgement judgement;
+    judgement.normal = clamped(shaped, slipping.normal, segment.high);
+    judgement.low = clamped(shaped * (1.0f - 1.96f * verdict.doubt), slipping.low, segment.high);
+    judgement.high = clamped(shaped * (1.0f + 1.96f * verdict.doubt), slipping.low, segment.high);
+    return judgement;
+  }
+  Judgement judgement;
+  judgement.normal =
+      between_thetas(segment, bound, segment.high, bound > 0.0f ? PF_TRUST_IN_BOUND : 0.5f);
+  judgement.low = bound;
+  judgement.high = segment.high;
+  return judgement;
+}
+
+/* The same by what was known of the pillar a frame before, where that says more than the segment
+ * (F13). */
+static inline bool recalled_normal(Segment segment, Past past, uint index, float noise,
+                                   Judgement* judgement) {
+  if (past.normal == 0 || past.frame[index] + 1 != past.now) return false;
+  const float normal = past.normal[index];
+  const float change = PF_CHANGE_PER_FRAME * normal;
+  const float deviation = length_3(past.deviation[index], change, PF_NOISE_OF_NORMAL * noise);
+  if (deviation > PF_MOST_RECALLED * (judgement->high - judgement->low)) return false;
+  const float low = judgement->low;
+  judgement->normal = clamped(normal, low, segment.high);
+  judgement->low = clamped(normal - 1.96f * deviation, low, segment.high);
+  judgement->high = clamped(normal + 1.96f * deviation, low, segment.high);
+  return true;
+}
+
+/* Keeps what is known of a pillar for the frame that follows. */
+static inline void keep_for_next(Past past, uint index, float normal, float deviation) {
+  if (past.normal == 0) return;
+  past.normal[index] = normal;
+  past.deviation[index] = deviation;
+  past.frame[index] = past.now;
+}
+
+/* The same of the pillars of a run that are resolved by themselves. */
+static inline void keep_run(Field field, Past past, Run run, float noise) {
+  for (uint col = run.first; col < run.end; ++col) {
+    const uint index = run.row * field.cols + col;
+    if (!is_determined(field.status[index])) continue;
+    keep_for_next(past, index, field.normal[index], PF_NOISE_OF_RESOLVED * noise);
+  }
+}
+
+/* The ends of direction and magnitude: on the segment theta and magnitude fall as the normal force
+ * grows, and phi goes one way. */
+static inline void write_ends(Field field, uint index, Force least, Force most) {
+  const Direction flat = direction_of(least);
+  const Direction steep = direction_of(most);
+  const bool clockwise = least.shear_x * most.shear_y < least.shear_y * most.shear_x;
+  field.theta_low[index] = steep.theta;
+  field.theta_high[index] = flat.theta;
+  field.phi_low[index] = clockwise ? steep.phi : flat.phi;
+  field.phi_high[index] = clockwise ? flat.phi : steep.phi;
+  field.magnitude_low[index] = steep.magnitude;
+  field.magnitude_high[index] = flat.magnitude;
+}
+
+/* What neighbours left of the uncertainty: of the component that the readings give, nothing new;
+ * of the other two, half the width of the judgement, and the readings' noise on top (F12). */
+static inline void write_deviations(Field field, uint index, Mask vertical, Judgement judgement,
+                                    float noise) {
+  const float width = (judgement.high - judgement.low) * (float)(0.5 / 1.96);
+  const float normal = length_2(width, PF_NOISE_OF_NORMAL * noise);
+  field.deviation_normal[index] = normal;
+  if (vertical) {
+    field.deviation_y[index] = length_2(1.41421356237309504880f * width, noise);
+  } else {
+    field.deviation_x[index] = length_2(1.41421356237309504880f * width, noise);
+  }
+}
+
+/* Writes what was judged of a pillar, or what is recalled of it where nothing resolved it. */
+static inline void write_judgement(Field field, Past past, uint index, Segment segment,
+                                   Judgement judgement, bool resolved, float noise) {
+  const Force middle = force_of_field(field, index);
+  const Mask vertical = moves_vertically((Bits)field.status[index]);
+  if (!resolved) resolved = recalled_normal(segment, past, index, noise, &judgement);
+  if (resolved) {
+    const float width = (judgement.high - judgement.low) * (float)(0.5 / 1.96);
+    keep_for_next(past, index, judgement.normal, width);
+  }
+  const Force force = force_on_segment(middle, vertical, judgement.normal);
+  field.shear_x[index] = force.shear_x;
+  field.shear_y[index] = force.shear_y;
+  field.normal[index] = force.normal;
+  if (resolved) field.status[index] |= PF_STATUS_FROM_NEIGHBOURS;
+  if (field.magnitude != 0) {
+    const Direction direction = direction_of(force);
+    field.magnitude[index] = direction.magnitude;
+    field.theta[index] = direction.theta;
+    field.phi[index] = direction.phi;
+  }
+  if (field.deviation_normal == 0) return;
+  write_ends(field, index, force_on_segment(middle, vertical, judgement.low),
+             force_on_segment(middle, vertical, judgement.high));
+  if (resolved) write_deviations(field, index, vertical, judgement, noise);
+}
+
+/* Writes the forces of a contact's ambiguous pillars. */
+static inline void write_contact(Tile tile, Cells cells, Field field, Past past, Verdict verdict,
+                                 FieldSettings settings, Share share) {
+  for (uint row = share.first; row < tile.rows; row += share.step) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
+      const uint index = (tile.row + row) * field.cols + tile.col + col;
+      const Segment segment = segment_of_cell(cells, cell);
+      const Judgement judgement = judged_normal(
+          segment, verdict, settings, verdict.way == PF_BY_SHAPE ? cells.shaped[cell] : 0.0f);
+      write_judgement(field, past, index, segment, judgement, verdict.way > PF_BY_BOUND,
+                      settings.noise);
+    }
+  }
+}

@@ -1,0 +1,99 @@
+/* The friction that resolved pillars show, because they slip (docs/derivations/field.md, section
+ * 5). */
+
+/* Shear over normal force of a pillar, and the largest ratio at which, sheared that way, it would
+ * still be resolved (F10). */
+typedef struct {
+  float ratio;
+  float ceiling;
+} Slope;
+
+static inline Slope slope_of(Force force) {
+  const float shear = length_2(force.shear_x, force.shear_y);
+  const float rising = fabs(force.shear_x + force.shear_y);
+  const float falling = fabs(force.shear_x - force.shear_y);
+  const float least = 0.70710678118654752440f * (rising < falling ? rising : falling);
+  Slope slope;
+  slope.ratio = shear / force.normal;
+  slope.ceiling = least > 0.0f ? shear / least : 1e30f;
+  return slope;
+}
+
+/* Counts the ratios of resolved pillars, by their normal force, that would have been resolved at a
+ * tenth more, or at a tenth more than `plateau`, which is zero in the first round. */
+static inline void count_slopes(Tile tile, Scratch scratch, Field field, float quiet, float plateau,
+                                Share share) {
+  const uint sampling = sampling_of(tile);
+  const float peak = (float)scratch.shared[PF_AT_PEAK];
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      if (scratch.cells.kind[cell_at(tile, row, col)] != PF_CELL_RESOLVED) continue;
+      const Force force = force_of_field(field, (tile.row + row) * field.cols + tile.col + col);
+      if (!(force.normal > quiet)) continue;
+      const Slope slope = slope_of(force);
+      if (!(slope.ratio * force.normal > quiet)) continue;
+      const float beyond = plateau > 0.0f ? plateau : slope.ratio;
+      if (!(slope.ceiling > 1.1f * beyond)) continue;
+      add_count(scratch.counts + bin_of_ratio(slope.ratio), (uint)(force.normal / peak * 4095.0f));
+      add_count(scratch.counts + PF_RATIO_PILLARS, 1);
+    }
+  }
+}
+
+static inline Plateau slopes_plateau(Tile tile, Scratch scratch, Field field, float quiet,
+                                     float from, float width, Share share) {
+  clear_counts(scratch.counts, share);
+  await_others();
+  count_slopes(tile, scratch, field, quiet, from, share);
+  await_others();
+  const Plateau plateau = find_plateau(scratch.counts, width);
+  await_others();
+  return plateau;
+}
+
+/* The part of the open pillars, by the square of what they may bear, that could not slip at a
+ * friction: their least ratio is above it. */
+static inline void count_contradictions(Tile tile, Scratch scratch, float noise, float friction,
+                                        float peak, Share share) {
+  const uint sampling = sampling_of(tile);
+  const Cells cells = scratch.cells;
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
+      const float high = cells.top[cell];
+      const float part = high / peak;
+      const bool contradicts =
+          normal_at_ratio(segment_of_cell(cells, cell), friction) > 1.02f * high + noise;
+      add_count(scratch.counts + (contradicts ? 1 : 0), (uint)(part * part * 4095.0f));
+    }
+  }
+}
+
+/* The friction that resolved pillars show, and that open ones do not contradict; zero if none. */
+static inline float shown_friction(Tile tile, Scratch scratch, Field field, FieldSettings settings,
+                                   Share share) {
+  /* Noise spreads the ratios of pillars that bear little. */
+  const float width = 1.06f + 4.0f * settings.noise / (float)scratch.shared[PF_AT_PEAK];
+  const Plateau first = slopes_plateau(tile, scratch, field, settings.quiet, 0.0f, width, share);
+  if (!(first.share > 0.0)) return 0.0f;
+  const Plateau plateau =
+      slopes_plateau(tile, scratch, field, settings.quiet, (float)first.ratio, width, share);
+  const float friction = (float)plateau.ratio;
+  const double telling = (double)scratch.counts[PF_RATIO_PILLARS];
+  const double pillars = scratch.shared[PF_AT_LOADED];
+  await_others();
+  clear_counts(scratch.counts, share);
+  await_others();
+  count_contradictions(tile, scratch, settings.noise, friction,
+                       (float)scratch.shared[PF_AT_OPEN_PEAK], share);
+  await_others();
+  const double agree = (double)scratch.counts[0];
+  const double contradict = (double)scratch.counts[1];
+  await_others();
+  const bool ends =
+      plateau.above <= 0.05 || (plateau.share >= 0.5 && plateau.above <= 0.3 * plateau.share);
+  const bool shows = plateau.share >= 0.1 && ends && telling >= 0.2 * pillars &&
+                     contradict <= 0.1 * (agree + contradict);
+  return shows ? friction : 0.0f;
+}

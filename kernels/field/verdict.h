@@ -1,0 +1,120 @@
+/* What a contact's work-items go by and share, and how its verdict looks
+ * (docs/derivations/field.md, section 6). */
+
+/* What the plan and its scene say. */
+typedef struct {
+  float noise;    /* standard deviation of a reading, N; zero where it is not known */
+  float quiet;    /* normal force below which a ratio is mostly noise, N */
+  float friction; /* bound of shear over normal force; zero where there is none */
+  uint slips;     /* every pillar slips at that friction */
+  uint shape;     /* the pressure's shape may be used */
+  uint slip;      /* friction may be learnt */
+  uint sweeps;
+} FieldSettings;
+
+/* How a contact was resolved. */
+#define PF_BY_NOTHING 0u  /* its ambiguous pillars keep the middle */
+#define PF_BY_BOUND 1u    /* the middle of what a friction bound leaves */
+#define PF_BY_FRICTION 2u /* they slip, at the friction given */
+#define PF_BY_SLIP 3u     /* they slip, at the friction that resolved pillars show */
+#define PF_BY_SHAPE 4u    /* by the pressure's shape, and the friction that it implies */
+
+/* What was found of a contact; for the host, and for the last stage. */
+typedef struct {
+  uint way;
+  float friction; /* of what slips; zero where none was found */
+  float score;    /* of the shape */
+  float misfit;   /* of the trend where it hands over, relative */
+  float spread;   /* standard deviation of the friction, relative */
+  float doubt;    /* of the shape's normal force, relative */
+} Verdict;
+
+#define PF_SHARED_SUMS 36 /* doubles that the work-items of a contact share */
+#define PF_AT_INVERSE_SQUARE 15
+#define PF_AT_PEAK 16
+#define PF_AT_OPEN_PEAK 17
+#define PF_AT_RESOLVED 18 /* pillars of the sampled rows */
+#define PF_AT_LOADED 19
+#define PF_AT_BEST 20 /* the best trend so far, as the one at hand */
+
+/* Scratch memory of one contact. */
+typedef struct {
+  Cells cells;
+  PF_GLOBAL double* lines;  /* of all tiles */
+  PF_GLOBAL double* shared; /* PF_SHARED_SUMS of this one */
+  PF_GLOBAL uint* counts;   /* PF_RATIO_COUNTS of this one */
+} Scratch;
+
+/* How good evidence must be, and what is taken for granted (docs/derivations/field.md, section
+ * 6). The values were tuned on scenes of docs/field.md that do not judge. */
+#define PF_LEAST_RESOLVED 12.0 /* pillars */
+#define PF_LEAST_RESOLVED_SHARE 0.06
+#define PF_LEAST_SCORE 0.15
+#define PF_GOOD_SCORE 0.5         /* further models are not tried */
+#define PF_MISFIT_PER_SHARE 0.45  /* most, by the share of resolved pillars */
+#define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
+#define PF_TRUST_IN_BOUND 0.8f    /* 1: an open pillar is at the bound told */
+#define PF_NOISE_OF_NORMAL 0.45f  /* by a reading's, at a given ratio */
+#define PF_NOISE_OF_RESOLVED 0.7f /* by a reading's, of a resolved pillar */
+#define PF_CHANGE_PER_FRAME 0.05f /* of a normal force, relative deviation */
+#define PF_MOST_RECALLED 0.15f    /* deviation, by the length of the segment */
+
+static inline float clamped(float value, float low, float high) {
+  return value < low ? low : (high < value ? high : value);
+}
+
+/* A verdict that knows nothing yet. */
+static inline Verdict verdict_by(uint way, float friction) {
+  Verdict verdict;
+  verdict.way = way;
+  verdict.friction = friction;
+  verdict.score = 0.0f;
+  verdict.misfit = 0.0f;
+  verdict.spread = 0.0f;
+  verdict.doubt = 0.0f;
+  return verdict;
+}
+
+static inline void summarise_lines(Tile tile, Cells cells, PF_GLOBAL double* lines, Share share) {
+  const uint sampling = sampling_of(tile);
+  for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
+    float peak = 0.0f;
+    float open_peak = 0.0f;
+    double resolved = 0.0;
+    double loaded = 0.0;
+    for (uint col = 0; col < tile.cols; ++col) {
+      const uint cell = cell_at(tile, row, col);
+      const uchar kind = cells.kind[cell];
+      if (kind < PF_CELL_LOADED) continue;
+      const float top = cells.top[cell];
+      loaded += 1.0;
+      if (kind == PF_CELL_RESOLVED) resolved += 1.0;
+      if (peak < top) peak = top;
+      if (kind == PF_CELL_AMBIGUOUS && open_peak < top) open_peak = top;
+    }
+    PF_GLOBAL double* const sums = lines + (tile.first_line + row) * PF_LINE_SUMS;
+    sums[0] = (double)peak;
+    sums[1] = (double)open_peak;
+    sums[2] = resolved;
+    sums[3] = loaded;
+  }
+}
+
+/* For one work-item. */
+static inline void share_summary(Tile tile, Scratch scratch) {
+  double peak = 0.0;
+  double open_peak = 0.0;
+  double resolved = 0.0;
+  double loaded = 0.0;
+  for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
+    PF_GLOBAL const double* const sums = scratch.lines + (tile.first_line + row) * PF_LINE_SUMS;
+    if (peak < sums[0]) peak = sums[0];
+    if (open_peak < sums[1]) open_peak = sums[1];
+    resolved += sums[2];
+    loaded += sums[3];
+  }
+  scratch.shared[PF_AT_PEAK] = peak;
+  scratch.shared[PF_AT_OPEN_PEAK] = open_peak;
+  scratch.shared[PF_AT_RESOLVED] = resolved;
+  scratch.shared[PF_AT_LOADED] = loaded;
+}
