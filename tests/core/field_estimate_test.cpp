@@ -34,7 +34,7 @@ SolverPlan plan_of(std::uint32_t rows, std::uint32_t cols) {
 class Pressed {
  public:
   Pressed(std::uint32_t rows, std::uint32_t cols)
-      : plan(plan_of(rows, cols)), readings_(std::size_t{2 * rows} * 2 * cols) {}
+      : plan(plan_of(rows, cols)), readings_(4 * std::size_t{rows} * cols) {}
 
   /// A pillar that slips to the right: its right sensels read, its left ones are lifted.
   void slip(std::uint32_t row, std::uint32_t col, double normal, double friction) {
