@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -41,6 +43,16 @@ class Pressed {
     const double reading = normal * (1 + friction / std::numbers::sqrt2);
     set(2 * row, 2 * col + 1, reading);
     set(2 * row + 1, 2 * col + 1, reading);
+  }
+  /// A pillar with any force; what would be pulled reads nothing.
+  void push(std::uint32_t row, std::uint32_t col, double normal, double ratio, double azimuth) {
+    constexpr std::array<std::array<std::uint32_t, 2>, 4> kPlaces = {
+        {{0, 1}, {0, 0}, {1, 0}, {1, 1}}};
+    for (std::size_t n = 0; n < 4; ++n) {
+      const double sensel = std::numbers::pi / 4 * (2 * static_cast<double>(n) + 1);
+      const double reading = normal * (1 + ratio * std::cos(azimuth - sensel));
+      set(2 * row + kPlaces.at(n)[0], 2 * col + kPlaces.at(n)[1], std::max(0.0, reading));
+    }
   }
   void press(std::uint32_t row, std::uint32_t col, double normal) {
     for (const std::uint32_t at : {0U, 1U}) {
@@ -188,6 +200,93 @@ TEST(FieldEstimate, MemoryOfThinContactsStaysSmall) {
   ForceField field = skin.direct();
   estimator.resolve(field);
   EXPECT_LE(estimator.work().cells(), 17U * kSize * kSize + 1024U * 100U);
+}
+
+TEST(FieldEstimate, AFrictionThatOpenPillarsExceedIsNotTheirs) {
+  // Sixty pillars share a ratio of 1.5, shown along a diagonal; thirty open ones have 3 and cannot
+  // have less than 2.3, whatever their normal force.
+  Pressed skin(9, 10);
+  for (std::uint32_t i = 0; i < 90; ++i) {
+    const bool shows = i < 60;
+    skin.push(i / 10, i % 10, 50, shows ? 1.5 : 3, shows ? std::numbers::pi / 4 : 0.35);
+  }
+  HostFieldEstimator estimator(skin.plan);
+  ForceField field = skin.direct();
+  estimator.resolve(field);
+  ASSERT_EQ(estimator.verdicts().size(), 1U);
+  EXPECT_NE(estimator.verdicts()[0].way, PF_BY_SLIP);
+}
+
+TEST(FieldEstimate, AFrictionThatIsShownIsTakenOver) {
+  Pressed skin(9, 10);
+  for (std::uint32_t i = 0; i < 90; ++i) {
+    skin.push(i / 10, i % 10, 50, 1.8, i < 60 ? std::numbers::pi / 4 : 0);
+  }
+  HostFieldEstimator estimator(skin.plan);
+  ForceField field = skin.direct();
+  estimator.resolve(field);
+  ASSERT_EQ(estimator.verdicts().size(), 1U);
+  EXPECT_EQ(estimator.verdicts()[0].way, PF_BY_SLIP);
+  EXPECT_NEAR(estimator.verdicts()[0].friction, 1.8, 0.02);
+  for (std::size_t i = 60; i < 90; ++i) EXPECT_NEAR(field.normal[i], 50, 1);
+}
+
+namespace maths = single_precision;
+
+TEST(Plateau, IsWhatMostShareAndLittleExceeds) {
+  std::array<std::uint32_t, PF_RATIO_COUNTS> counts{};
+  counts.at(maths::bin_of_ratio(1.8F)) = 50;
+  counts.at(maths::bin_of_ratio(0.9F)) = 20;
+  counts.at(maths::bin_of_ratio(1.95F)) = 10;
+  counts.at(maths::bin_of_ratio(3.0F)) = 15;
+  counts.at(PF_RATIO_NONE) = 5;
+  const maths::Plateau plateau = maths::find_plateau(counts.data(), 1.06F);
+  EXPECT_NEAR(plateau.ratio, 1.8, 0.02);
+  EXPECT_NEAR(plateau.share, 0.5, 1e-9);
+  EXPECT_NEAR(plateau.above, 0.25, 1e-9);
+  EXPECT_NEAR(plateau.far, 0.15, 1e-9);
+  EXPECT_EQ(maths::find_plateau(std::array<std::uint32_t, PF_RATIO_COUNTS>{}.data(), 1.06F).share,
+            0);
+}
+
+TEST(Plateau, BinsKeepTheOrderOfRatios) {
+  std::uint32_t before = 0;
+  for (int step = 0; step < 2000; ++step) {
+    const float ratio = 0.4F * std::pow(1.003F, static_cast<float>(step));
+    const std::uint32_t bin = maths::bin_of_ratio(ratio);
+    ASSERT_GE(bin, before);
+    before = bin;
+    if (bin == 0 || bin >= PF_RATIO_BINS) continue;
+    ASSERT_LE(maths::ratio_of_bin(bin), ratio);
+    ASSERT_GT(maths::ratio_of_bin(bin + 1), ratio);
+  }
+  EXPECT_EQ(before, PF_RATIO_BEYOND);
+}
+
+TEST(Score, FallsByWhatIsFarAboveAndByTheMisfit) {
+  std::array<std::uint32_t, PF_RATIO_COUNTS> counts{};
+  counts.at(maths::bin_of_ratio(1.8F)) = 80;
+  counts.at(maths::bin_of_ratio(1.0F)) = 20;
+  maths::Scratch scratch{};
+  scratch.counts = counts.data();
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, 0).score, 0.8, 1e-6);
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, 0.1).score, 0.7, 1e-6);
+  counts.at(maths::bin_of_ratio(1.0F)) = 0;
+  counts.at(maths::bin_of_ratio(4.0F)) = 20;
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, 0).score, 0.5, 1e-6);
+}
+
+TEST(Edge, WeighsByHowLittleIsBorneBesideIt) {
+  std::array<float, 3> top = {0, 0, 0};
+  maths::Cells cells{};
+  cells.top = top.data();
+  EXPECT_EQ(maths::edge_weight(cells, 1, 1, 10), 1);
+  top = {0, 2, 5};
+  EXPECT_NEAR(maths::edge_weight(cells, 1, 1, 10), 0.25, 1e-6);
+  top = {0, 6, 5};
+  EXPECT_NEAR(maths::edge_weight(cells, 1, 1, 10), 0.16, 1e-6);
+  top = {0, 10, 5};
+  EXPECT_EQ(maths::edge_weight(cells, 1, 1, 10), 0);
 }
 
 /// On the study's tuning scenes; those that judge are the page's.
