@@ -174,14 +174,17 @@ TEST(FieldEstimate, FaultsAndSaturationAreLeftAlone) {
   skin.plan.skin.full_scale_counts = 200;
   for (std::uint32_t i = 0; i < 64; ++i) skin.slip(i / 8, i % 8, 40, 1.8);
   skin.set(4, 5, 1000);
-  skin.set(9, 9, std::numeric_limits<float>::quiet_NaN());
+  skin.set(9, 8, std::numeric_limits<float>::quiet_NaN());  // One that would be lifted.
   const ForceField solved = skin.solve();
   const ForceField direct = skin.direct();
+  int faults = 0;
   for (std::size_t i = 0; i < 64; ++i) {
     if ((direct.status[i] & (status::kSaturated | status::kInconsistent)) == 0) continue;
+    ++faults;
     EXPECT_EQ(solved.normal[i], direct.normal[i]);
     EXPECT_EQ(solved.status[i], direct.status[i]);
   }
+  EXPECT_EQ(faults, 2);
 }
 
 TEST(FieldEstimate, MemoryOfThinContactsStaysSmall) {
