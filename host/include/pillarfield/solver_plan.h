@@ -26,7 +26,7 @@ struct FieldEvidence {
   std::optional<double> friction;
   bool slips = false;         ///< every pillar slips at that friction, which must be set
   bool frames_close = false;  ///< forces change little from one frame to the next
-  int sweeps = 8;            ///< of the relaxation of the pressure, 0 to 1000: speed against error
+  int sweeps = 8;             ///< of the relaxation of the pressure, 0 to 1000: speed against error
 };
 
 /// "direct", "paper" or "field".
