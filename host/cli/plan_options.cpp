@@ -82,11 +82,11 @@ void add_evidence_options(CLI::App& command, PlanOptions& options) {
 }
 
 /// Applies what is said of the evidence; it is of no use to other estimators.
-void apply_evidence(const PlanOptions& options, SolverPlan& plan) {
+void apply_evidence(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
   const bool said = options.friction || options.slips || options.frames_close || options.sweeps;
   if (!said) return;
   if (plan.estimator != Estimator::field) {
-    throw Error("solve",
+    throw Error(source,
                 "--friction, --slips, --frames-close and --sweeps say what ambiguous "
                 "pillars may be resolved by, and nothing resolves them",
                 "add --estimator field");
@@ -148,7 +148,7 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
   apply_numbers(options, plan);
   if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
   if (options.estimator) plan.estimator = *options.estimator;
-  apply_evidence(options, plan);
+  apply_evidence(options, source, plan);
   if (!options.outputs.empty()) {
     plan.angles = asks_for(options, "angles");
     plan.uncertainty = asks_for(options, "uncertainty");

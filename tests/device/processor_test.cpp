@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,32 +14,13 @@
 #include "core/host_solve.h"
 #include "pillarfield/error.h"
 #include "random_plan.h"
+#include "same_bits.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
-
-void expect_same_bits(std::span<const float> actual, std::span<const float> expected,
-                      const char* plane) {
-  ASSERT_EQ(actual.size(), expected.size());
-  for (std::size_t i = 0; i < actual.size(); ++i) {
-    ASSERT_EQ(std::bit_cast<std::uint32_t>(actual[i]), std::bit_cast<std::uint32_t>(expected[i]))
-        << plane << " of pillar " << i << ": " << actual[i] << " is not " << expected[i];
-  }
-}
-
-void expect_same_bits(const ForceFieldView& actual, const ForceFieldView& expected) {
-  ASSERT_EQ(actual.rows, expected.rows);
-  ASSERT_EQ(actual.cols, expected.cols);
-  expect_same_bits(actual.shear_x, expected.shear_x, "shear_x");
-  expect_same_bits(actual.shear_y, expected.shear_y, "shear_y");
-  expect_same_bits(actual.normal, expected.normal, "normal");
-  for (std::size_t i = 0; i < actual.status.size(); ++i) {
-    ASSERT_EQ(actual.status[i], expected.status[i]) << "status of pillar " << i;
-  }
-}
 
 /// Within so many units in the last place of `scale`, which is at least |expected|.
 void expect_near(float actual, float expected, float scale, float ulps, const char* plane,
