@@ -1,5 +1,5 @@
 // pillarfield_field_page DOCS: measures, and writes DOCS/field.md with its pictures.
-// pillarfield_field_page --table tuning|judging [FILTER [SWEEPS]]: a line for each scene.
+// pillarfield_field_page --table tuning|judging|drawn [FILTER [SWEEPS]]: a line for each scene.
 
 #include <algorithm>
 #include <array>
@@ -44,6 +44,9 @@ constexpr std::array kSections = {field_goals_section, kinds_section,          e
                                   sweeps_section,      field_coverage_section, impossible_section,
                                   residual_section,    sets_section,           contacts_section};
 
+/// Scenes drawn at random for a table.
+constexpr std::size_t kDrawn = 1000;
+
 std::vector<Scene> integrated(std::vector<Scene> scenes) {
   field_study::integrate(scenes);
   return scenes;
@@ -82,7 +85,7 @@ void write_field_page(const std::filesystem::path& docs) {
 int usage() {
   std::fputs(
       "usage: pillarfield_field_page DOCS\n"
-      "       pillarfield_field_page --table tuning|judging [FILTER [SWEEPS]]\n",
+      "       pillarfield_field_page --table tuning|judging|drawn [FILTER [SWEEPS]]\n",
       stderr);
   return 2;
 }
@@ -90,10 +93,17 @@ int usage() {
 int print_table(const std::vector<std::string>& words) {
   const std::string filter = words.size() > 2 ? words[2] : "";
   const int sweeps = words.size() > 3 ? std::stoi(words[3]) : FieldEvidence{}.sweeps;
-  const bool tunes = words[1] == "tuning";
-  if (!tunes && words[1] != "judging") return usage();
-  const auto scenes = tunes ? field_study::tuning(filter) : field_study::judging(filter);
-  std::fputs(scene_lines(integrated(scenes), sweeps).c_str(), stdout);
+  std::vector<Scene> scenes;
+  if (words[1] == "tuning") {
+    scenes = field_study::tuning(filter);
+  } else if (words[1] == "judging") {
+    scenes = field_study::judging(filter);
+  } else if (words[1] == "drawn") {
+    scenes = field_study::drawn(kDrawn, filter);
+  } else {
+    return usage();
+  }
+  std::fputs(scene_lines(integrated(std::move(scenes)), sweeps).c_str(), stdout);
   return 0;
 }
 

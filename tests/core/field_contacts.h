@@ -25,6 +25,7 @@ enum class Shape : std::uint8_t {
   truncated_cone,  ///< acosh(1/r), less acosh(second/r) within the tip's radius, `second`
   punch,           ///< 1/√(1 − r²), at most 100
   rounded_punch,  ///< √(1 − r²), less √(second² − r²) within the flat's radius, `second`
+  blunt,  ///< √(1 − r²) · (1 − second + second · (1 + 2r²)/3): height ∝ r² and r⁴, mixed
 };
 
 /// What the behaviour of a pressure is at the contact's edge and centre.
@@ -52,7 +53,8 @@ enum class Motion : std::uint8_t {
 struct Body {
   Shape shape = Shape::sphere;
   double radius = 30;  ///< pitches
-  double second = 0;   ///< of two spheres, truncated cone and rounded punch; radii
+  double second = 0;   ///< of two spheres, truncated cone and rounded punch, radii; of the blunt
+                       ///< body a share
   double aspect = 1;   ///< of ellipse and cylinder; of two spheres, their distance over the sum of
                        ///< their radii
   double waves = 0;    ///< of the wavy body: radians per radius

@@ -103,7 +103,7 @@ ForceField solve_sequence(const SolverPlan& plan, const std::vector<FrameBuffer>
 }  // namespace
 
 std::string Scene::name() const {
-  return fmt::format("{}, mu {:g}, noise {:g}", contact_name, friction, noise_counts);
+  return fmt::format("{}, mu {:.3g}, noise {:g}", contact_name, friction, noise_counts);
 }
 
 double Score::rms_counts() const {

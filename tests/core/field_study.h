@@ -38,6 +38,10 @@ struct Scene {
 [[nodiscard]] std::vector<Scene> tuning(std::string_view filter = {});
 [[nodiscard]] std::vector<Scene> judging(std::string_view filter = {});
 
+/// Scenes drawn at random, which tune as well: shapes, sizes, loads, motions, directions, frictions
+/// and noises. Their shapes are those of tuning(), and the blunt body.
+[[nodiscard]] std::vector<Scene> drawn(std::size_t count, std::string_view filter = {});
+
 /// Adds the loads to scenes of one set, each contact integrated once; 4 s for all of them.
 void integrate(std::vector<Scene>& scenes);
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <random>
 
 #include "field_study.h"
 
@@ -28,20 +29,20 @@ std::string drive_name(const Drive& drive) {
   std::string name = name_of(drive.motion);
   switch (drive.motion) {
     case Motion::partial_slip:
-      return fmt::format("{} {:g} at {:g}°", name, drive.load_ratio, drive.direction_deg);
+      return fmt::format("{} {:.3g} at {:.4g}°", name, drive.load_ratio, drive.direction_deg);
     case Motion::slide:
-      return fmt::format("{} to {:g}°", name, drive.direction_deg);
+      return fmt::format("{} to {:.4g}°", name, drive.direction_deg);
     case Motion::partial_turn:
     case Motion::roll:
-      return fmt::format("{} {:g}", name, drive.load_ratio);
+      return fmt::format("{} {:.3g}", name, drive.load_ratio);
     default:
       return name;
   }
 }
 
 std::string body_name(const Body& body) {
-  std::string name = fmt::format("{} {:g}", name_of(body.shape), body.radius);
-  return body.waves > 0 ? fmt::format("{} x {:g}", name, body.waves) : name;
+  std::string name = fmt::format("{} {:.3g}", name_of(body.shape), body.radius);
+  return body.waves > 0 ? fmt::format("{} x {:.3g}", name, body.waves) : name;
 }
 
 /// Tells contacts of a set apart: those of a name may lie in two places.
@@ -232,6 +233,103 @@ std::vector<Scene> judging(std::string_view filter) {
   little.spin(sphere, 100);
   const std::vector<Scene> more = little.scenes(filter);
   scenes.insert(scenes.end(), more.begin(), more.end());
+  return scenes;
+}
+
+namespace {
+
+/// Draws what a scene is made of.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : engine_(seed) {}
+
+  double between(double low, double high) {
+    return std::lerp(low, high, static_cast<double>(engine_() >> 11) * 0x1p-53);
+  }
+  template <class Choices>
+  auto one_of(const Choices& choices) {
+    return choices[static_cast<std::size_t>(engine_() % choices.size())];
+  }
+
+  Body body();
+  Drive drive(Shape shape);
+
+ private:
+  double direction();
+
+  std::mt19937_64 engine_;
+};
+
+Body Draw::body() {
+  constexpr std::array kShapes = {Shape::sphere, Shape::paraboloid, Shape::two_spheres,
+                                  Shape::wavy,   Shape::cylinder,   Shape::cone,
+                                  Shape::punch,  Shape::blunt};
+  Body body;
+  body.shape = one_of(kShapes);
+  const bool is_long = body.shape == Shape::cylinder || body.shape == Shape::two_spheres;
+  body.radius = is_long ? between(9, 23) : between(11, 44);
+  body.x = between(-0.5, 0.5);
+  body.y = between(-0.5, 0.5);
+  switch (body.shape) {
+    case Shape::two_spheres:
+      body.second = between(0.5, 1);
+      body.aspect = between(0.55, 1.02);
+      body.angle_deg = between(-90, 90);
+      break;
+    case Shape::wavy:
+      body.waves = between(4, 16);
+      body.ripple = between(0.05, 0.25);
+      break;
+    case Shape::cylinder:
+      body.aspect = between(1, 2.5);
+      body.angle_deg = between(-12, 12);
+      break;
+    case Shape::blunt:
+      body.second = between(0, 1);
+      break;
+    default:
+      break;
+  }
+  return body;
+}
+
+/// Most of them near an axis of the pillars, where region 3 is.
+double Draw::direction() {
+  if (between(0, 1) < 0.25) return between(0, 360);
+  return 90 * one_of(std::array{0.0, 1.0, 2.0, 3.0}) + between(-12, 12);
+}
+
+Drive Draw::drive(Shape shape) {
+  constexpr std::array kMotions = {Motion::partial_slip, Motion::partial_slip, Motion::partial_slip,
+                                   Motion::slide,        Motion::spin,         Motion::turn,
+                                   Motion::partial_turn};
+  const bool rolls = shape == Shape::sphere || shape == Shape::wavy || shape == Shape::cylinder;
+  Drive drive;
+  drive.motion = rolls && between(0, 1) < 0.2 ? Motion::roll : one_of(kMotions);
+  drive.direction_deg = direction();
+  drive.load_ratio = between(0.4, 0.97);
+  drive.pivot_x = between(-0.7, 0.7);
+  drive.pivot_y = between(-0.7, 0.7);
+  return drive;
+}
+
+}  // namespace
+
+std::vector<Scene> drawn(std::size_t count, std::string_view filter) {
+  std::vector<Scene> scenes;
+  Draw draw(20'000);
+  for (std::size_t i = 0; i < count; ++i) {
+    Scene scene;
+    scene.contact.body = draw.body();
+    scene.contact.drive = draw.drive(scene.contact.body.shape);
+    scene.contact.peak_counts = draw.between(40, 200);
+    scene.friction = draw.between(1.3, 3);
+    scene.noise_counts = draw.one_of(kNoises);
+    scene.seed = 100'000 + i;
+    scene.contact_name =
+        fmt::format("{} {}, {}", i, body_name(scene.contact.body), drive_name(scene.contact.drive));
+    if (scene.name().find(filter) != std::string::npos) scenes.push_back(scene);
+  }
   return scenes;
 }
 
