@@ -30,13 +30,18 @@ namespace pillarfield::single_precision {
 // as above
 #include "kernels/field/trend.h"
 // what needs the trend
+#include "kernels/field/normal_equations.h"
 #include "kernels/field/plateau.h"
 #include "kernels/field/residual.h"
 // and what judges by all of these
 #include "kernels/field/verdict.h"
 // by the friction shown, by the pressure's shape
 #include "kernels/field/slip.h"
+// and what a shape implies
+#include "kernels/field/implied.h"
 // as above
+#include "kernels/field/fit.h"
+// the models
 #include "kernels/field/shape.h"
 // and what becomes of it
 #include "kernels/field/judgement.h"

@@ -8,6 +8,13 @@ typedef struct {
   float high;
 } Judgement;
 
+/* The deviation whose band of 95 of 100 holds the judgement's. */
+static inline float deviation_of(Judgement judgement) {
+  const float above = judgement.high - judgement.normal;
+  const float below = judgement.normal - judgement.low;
+  return (above > below ? above : below) * (float)(1.0 / 1.96);
+}
+
 /* What is left open of a pillar that slips at a friction with a relative deviation (F12). */
 static inline Judgement slipping_normal(Segment segment, float low, float friction, float spread) {
   Judgement judgement;
@@ -20,6 +27,28 @@ static inline Judgement slipping_normal(Segment segment, float low, float fricti
   return judgement;
 }
 
+/* The same of a pillar that a model has sticking: whether it does is what is least certain, so the
+ * band reaches from where it would slip to the model's force, and beyond both (F12). */
+static inline Judgement sticking_normal(Segment segment, float bound, Judgement slipping,
+                                        float shaped) {
+  Judgement judgement;
+  judgement.normal = clamped(shaped, slipping.normal, segment.high);
+  const float beyond = PF_BEYOND_STICKING * (judgement.normal - slipping.normal);
+  judgement.low = clamped(slipping.low - beyond, bound, segment.high);
+  judgement.high = clamped(judgement.normal + beyond, slipping.high, segment.high);
+  return judgement;
+}
+
+/* A judgement, weighed against what is known without it: the middle that a bound leaves, of which
+ * the truth lies a part of the segment off (F11a). Whoever is certain stays. */
+static inline Judgement weighed(Judgement judgement, float middle, float high) {
+  const float deviation = deviation_of(judgement);
+  const float prior = PF_DEVIATION_OF_MIDDLE * high;
+  const float weight = prior * prior / (prior * prior + deviation * deviation);
+  if (high > 0.0f) judgement.normal = middle + weight * (judgement.normal - middle);
+  return judgement;
+}
+
 /* The normal force that a verdict has (F6, F11). `shaped` is that of the best model, where there is
  * one. */
 static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSettings settings,
@@ -27,23 +56,26 @@ static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSet
   const float bound = settings.friction > 0.0f
                           ? clamped(normal_at_ratio(segment, settings.friction), 0.0f, segment.high)
                           : 0.0f;
-  if (verdict.way > PF_BY_BOUND) {
-    const Judgement slipping = slipping_normal(segment, bound, verdict.friction, verdict.spread);
-    if (verdict.way != PF_BY_SHAPE || ratio_on_segment(segment, shaped) > 0.9f * verdict.friction) {
-      return slipping;
-    }
-    Judgement judgement;
-    judgement.normal = clamped(shaped, slipping.normal, segment.high);
-    judgement.low = clamped(shaped * (1.0f - 1.96f * verdict.doubt), slipping.low, segment.high);
-    judgement.high = clamped(shaped * (1.0f + 1.96f * verdict.doubt), slipping.low, segment.high);
-    return judgement;
-  }
+  const bool resolved = verdict.way > PF_BY_BOUND;
   Judgement judgement;
-  judgement.normal =
-      between_thetas(segment, bound, segment.high, bound > 0.0f ? PF_TRUST_IN_BOUND : 0.5f);
   judgement.low = bound;
   judgement.high = segment.high;
-  return judgement;
+  judgement.normal = bound;
+  if (resolved) {
+    judgement = slipping_normal(segment, bound, verdict.friction, verdict.spread);
+    if (verdict.may_stick != 0) judgement.high = segment.high;
+  }
+  if (resolved && verdict.way != PF_BY_SHAPE) return judgement;
+  const float middle =
+      between_thetas(segment, bound, segment.high, bound > 0.0f ? PF_TRUST_IN_BOUND : 0.5f);
+  if (!resolved) {
+    judgement.normal = middle;
+    return judgement;
+  }
+  if (ratio_on_segment(segment, shaped) <= PF_SLIPS_FROM * verdict.friction) {
+    judgement = sticking_normal(segment, bound, judgement, shaped);
+  }
+  return weighed(judgement, middle, segment.high);
 }
 
 /* The same by what was known of the pillar a frame before, where that says more than the segment
@@ -94,16 +126,16 @@ static inline void write_ends(Field field, uint index, Force least, Force most) 
 }
 
 /* What neighbours left of the uncertainty: of the component that the readings give, nothing new;
- * of the other two, half the width of the judgement, and the readings' noise on top (F12). */
+ * of the other two, the farther end of the judgement, and the readings' noise on top (F12). */
 static inline void write_deviations(Field field, uint index, Mask vertical, Judgement judgement,
                                     float noise) {
-  const float width = (judgement.high - judgement.low) * (float)(0.5 / 1.96);
-  const float normal = length_2(width, PF_NOISE_OF_NORMAL * noise);
+  const float deviation = deviation_of(judgement);
+  const float normal = length_2(deviation, PF_NOISE_OF_NORMAL * noise);
   field.deviation_normal[index] = normal;
   if (vertical) {
-    field.deviation_y[index] = length_2(1.41421356237309504880f * width, noise);
+    field.deviation_y[index] = length_2(1.41421356237309504880f * deviation, noise);
   } else {
-    field.deviation_x[index] = length_2(1.41421356237309504880f * width, noise);
+    field.deviation_x[index] = length_2(1.41421356237309504880f * deviation, noise);
   }
 }
 
@@ -114,8 +146,7 @@ static inline void write_judgement(Field field, Past past, uint index, Segment s
   const Mask vertical = moves_vertically((Bits)field.status[index]);
   if (!resolved) resolved = recalled_normal(segment, past, index, noise, &judgement);
   if (resolved) {
-    const float width = (judgement.high - judgement.low) * (float)(0.5 / 1.96);
-    keep_for_next(past, index, judgement.normal, width);
+    keep_for_next(past, index, judgement.normal, deviation_of(judgement));
   }
   const Force force = force_on_segment(middle, vertical, judgement.normal);
   field.shear_x[index] = force.shear_x;
@@ -140,7 +171,7 @@ static inline void write_contact(Tile tile, Cells cells, Field field, Past past,
   for (uint row = share.first; row < tile.rows; row += share.step) {
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
-      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
+      if (cells.kind[cell] < PF_CELL_AMBIGUOUS) continue;
       const uint index = (tile.row + row) * field.cols + tile.col + col;
       const Segment segment = segment_of_cell(cells, cell);
       const Judgement judgement = judged_normal(

@@ -12,20 +12,22 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
     return verdict;
   }
   if (resolved < PF_LEAST_RESOLVED) return verdict;
+  float known = 0.0f;
   if (settings.slip != 0) {
-    const float friction = shown_friction(tile, scratch, field, settings, share);
-    if (friction > 0.0f) {
-      verdict.way = PF_BY_SLIP;
-      verdict.friction = friction;
-      verdict.spread = 0.005f;
-      return verdict;
+    const ShownFriction shown = shown_friction(tile, scratch, field, settings, share);
+    if (shown.friction > 0.0f) {
+      verdict = verdict_by(PF_BY_SLIP, shown.friction);
+      verdict.spread = PF_SPREAD_OF_SHOWN;
+      verdict.may_stick = shown.share < PF_ALL_SLIP ? 1 : 0;
+      known = shown.friction;
+      if (verdict.may_stick == 0) return verdict;
     }
   }
   if (settings.shape == 0) return verdict;
   if (resolved < PF_LEAST_RESOLVED_SHARE * scratch.shared[PF_AT_LOADED]) return verdict;
   weigh_lines(tile, scratch.cells, (float)scratch.shared[PF_AT_PEAK], share);
   await_others();
-  return best_shape(tile, scratch, settings, verdict, share);
+  return best_shape(tile, scratch, settings, verdict, known, share);
 }
 
 /* Resolves one contact. Its verdict is the same for every work-item. */

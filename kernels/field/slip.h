@@ -70,13 +70,20 @@ static inline void count_contradictions(Tile tile, Scratch scratch, float noise,
   }
 }
 
-/* The friction that resolved pillars show, and that open ones do not contradict; zero if none. */
-static inline float shown_friction(Tile tile, Scratch scratch, Field field, FieldSettings settings,
-                                   Share share) {
+/* The friction that resolved pillars show, and how many of those that can show it do. */
+typedef struct {
+  float friction; /* zero where none is shown */
+  double share;   /* of their normal force */
+} ShownFriction;
+
+/* The friction that resolved pillars show, and that open ones do not contradict. */
+static inline ShownFriction shown_friction(Tile tile, Scratch scratch, Field field,
+                                           FieldSettings settings, Share share) {
+  ShownFriction shown = {0.0f, 0.0};
   /* Noise spreads the ratios of pillars that bear little. */
   const float width = 1.06f + 4.0f * settings.noise / (float)scratch.shared[PF_AT_PEAK];
   const Plateau first = slopes_plateau(tile, scratch, field, settings.quiet, 0.0f, width, share);
-  if (!(first.share > 0.0)) return 0.0f;
+  if (!(first.share > 0.0)) return shown;
   const Plateau plateau =
       slopes_plateau(tile, scratch, field, settings.quiet, (float)first.ratio, width, share);
   const float friction = (float)plateau.ratio;
@@ -95,5 +102,8 @@ static inline float shown_friction(Tile tile, Scratch scratch, Field field, Fiel
       plateau.above <= 0.05 || (plateau.share >= 0.5 && plateau.above <= 0.3 * plateau.share);
   const bool shows = plateau.share >= 0.1 && ends && telling >= 0.2 * pillars &&
                      contradict <= 0.1 * (agree + contradict);
-  return shows ? friction : 0.0f;
+  if (!shows) return shown;
+  shown.friction = friction;
+  shown.share = plateau.share + plateau.above;
+  return shown;
 }

@@ -27,6 +27,7 @@ typedef struct {
 #define PF_CELL_LOADED 2    /* loaded, and neither of the two that follow */
 #define PF_CELL_RESOLVED 3  /* a force that its own readings determine */
 #define PF_CELL_AMBIGUOUS 4 /* a segment of forces */
+#define PF_CELL_SLIPPING 5  /* the same, and one of them taken, since it slips there */
 
 /* Scratch planes of all tiles. */
 typedef struct {
@@ -34,7 +35,7 @@ typedef struct {
   PF_GLOBAL float* top;      /* N: the normal force where resolved, its upper end where ambiguous */
   PF_GLOBAL float* fixed;    /* Segment::fixed, N */
   PF_GLOBAL float* moving;   /* Segment::moving, N */
-  PF_GLOBAL float* weight;   /* of a resolved pillar in the fit */
+  PF_GLOBAL float* weight;   /* of a pillar in the fit */
   PF_GLOBAL float* residual; /* of the pressure's power from its trend */
   PF_GLOBAL float* shaped;   /* normal force by the pressure's shape, N */
 } Cells;

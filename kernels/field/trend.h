@@ -1,11 +1,17 @@
 /* The trend of a contact's pressure: a polynomial of its square, or of itself, that is fitted to
- * the resolved pillars and to zero at the contact's edge (docs/derivations/field.md, section 3). */
+ * the resolved pillars, to zero at the contact's edge, and, but for a factor, to the pillars that
+ * slip (docs/derivations/field.md, section 3). */
 
 #define PF_TREND_MOST_DEGREE 4
-#define PF_TREND_TERMS 15  /* of a polynomial of degree 4 in two variables */
-#define PF_TREND_MOMENTS 9 /* powers of x in its normal equations */
-#define PF_TREND_RIGHT 5   /* powers of x on their right side */
-#define PF_LINE_SUMS 15    /* doubles of a line's record: moments, right side, square */
+#define PF_TREND_TERMS 15      /* of a polynomial of degree 4 in two variables */
+#define PF_TREND_MOMENTS 9     /* powers of x in its normal equations */
+#define PF_TREND_RIGHT 5       /* powers of x on their right side */
+#define PF_LINE_SUMS 21        /* doubles of a line's record */
+#define PF_LINE_RIGHT 9        /* of which: the moments before, resolved pillars from here on, */
+#define PF_LINE_SQUARE 14      /* the sum of their squares, */
+#define PF_LINE_SLIP 15        /* slipping pillars, */
+#define PF_LINE_SLIP_SQUARE 20 /* and theirs */
+#define PF_SLIPS_FROM 0.9f     /* of the friction: a ratio above it is taken for slip */
 
 /* Coordinates in the box, about -1 to 1. */
 typedef struct {
@@ -23,14 +29,32 @@ static inline Frame frame_of(Tile tile) {
   return frame;
 }
 
-/* Coefficients of x^i y^j in the order of growing i + j, and for the robust weights the inverse
- * square of the residual that halves a weight: zero in the first round. */
+/* A polynomial, and how it came about. */
 typedef struct {
   uint degree;
-  bool squared; /* of the pressure's square */
-  double terms[PF_TREND_TERMS];
-  double inverse_square;
+  bool squared;                 /* of the pressure's square */
+  double terms[PF_TREND_TERMS]; /* of x^i y^j in the order of growing i + j */
+  double inverse_square; /* of the residual that halves a weight; zero before it is known (F8) */
+  float friction;        /* of pillars that slip and join the fit; zero where none do */
+  bool told;             /* that friction is certain */
+  double scale;          /* of what these bear at that friction, as the fit has it */
+  double scale_error;    /* standard deviation of the normal force that it stands for, relative */
+  double unexplained;    /* residuals over values, root mean squares, as of a normal force */
 } Trend;
+
+static inline Trend no_trend(uint degree, bool squared) {
+  Trend trend;
+  trend.degree = degree;
+  trend.squared = squared;
+  for (uint i = 0; i < PF_TREND_TERMS; ++i) trend.terms[i] = 0.0;
+  trend.inverse_square = 0.0;
+  trend.friction = 0.0f;
+  trend.told = false;
+  trend.scale = 1.0;
+  trend.scale_error = 0.0;
+  trend.unexplained = 0.0;
+  return trend;
+}
 
 static inline uint terms_of(uint degree) { return (degree + 1) * (degree + 2) / 2; }
 
@@ -77,8 +101,8 @@ static inline bool is_edge(Cells cells, uint cell, int outwards) {
   return cells.kind[(uint)((int)cell + outwards)] == PF_CELL_OUTSIDE;
 }
 
-/* The weight of a resolved pillar: a pillar on the edge may be covered in part only, and its force
- * then tells less of the pressure (F7). */
+/* The weight of a pillar: one on the edge may be covered in part only, and its force then tells
+ * less of the pressure (F7). */
 static inline float pillar_weight(Cells cells, uint cell, int width, float peak) {
   const int steps[4] = {1, -1, width, -width};
   float weight = 1.0f;
@@ -94,7 +118,7 @@ static inline void weigh_lines(Tile tile, Cells cells, float peak, Share share) 
   for (uint row = share.first; row < tile.rows; row += share.step) {
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
-      if (cells.kind[cell] != PF_CELL_RESOLVED) continue;
+      if (cells.kind[cell] < PF_CELL_RESOLVED) continue;
       cells.weight[cell] = pillar_weight(cells, cell, (int)tile.cols + 2, peak);
     }
   }
@@ -115,6 +139,33 @@ static inline float edge_weights(Cells cells, uint cell, int width, float peak) 
   return weight;
 }
 
+/* A pressure's power at a place, and its weight. */
+typedef struct {
+  double value;
+  double weight;
+} Sample;
+
+/* An ambiguous pillar that slips, by the trend so far: what it bears at the trend's friction. */
+static inline Sample slipping_sample(Cells cells, uint cell, const Trend* trend, double here) {
+  Sample sample = {0.0, 0.0};
+  const Segment segment = segment_of_cell(cells, cell);
+  const float slow = normal_at_ratio(segment, PF_SLIPS_FROM * trend->friction);
+  if (!(here < powered(trend->squared, (double)slow))) return sample;
+  sample.value = powered(trend->squared, (double)normal_at_ratio(segment, trend->friction));
+  sample.weight = (double)cells.weight[cell] * trust(trend, sample.value - here);
+  return sample;
+}
+
+static inline void add_sample(PF_GLOBAL double* right, PF_GLOBAL double* square, Sample sample,
+                              double x) {
+  double power = sample.weight * sample.value;
+  *square += power * sample.value;
+  for (uint i = 0; i < PF_TREND_RIGHT; ++i) {
+    right[i] += power;
+    power *= x;
+  }
+}
+
 /* The sums of one line. The edge of a contact passes somewhere through the pillars that it covers
  * last, in the mean through their middle: there the pressure is taken to vanish (F7). */
 static inline void sum_line(Tile tile, Cells cells, const Trend* trend, float peak, uint row,
@@ -122,26 +173,26 @@ static inline void sum_line(Tile tile, Cells cells, const Trend* trend, float pe
   const Frame frame = frame_of(tile);
   const TrendLine line = trend_line(trend, (frame.row - (double)row) * frame.scale);
   for (uint i = 0; i < PF_LINE_SUMS; ++i) sums[i] = 0.0;
-  PF_GLOBAL double* const right = sums + PF_TREND_MOMENTS;
   for (uint col = 0; col < tile.cols; ++col) {
     const uint cell = cell_at(tile, row, col);
     const uchar kind = cells.kind[cell];
     if (kind < PF_CELL_LOADED) continue;
-    const double x = ((double)col - frame.col) * frame.scale;
     const float edges = edge_weights(cells, cell, (int)tile.cols + 2, peak);
-    if (kind != PF_CELL_RESOLVED && !(edges > 0.0f)) continue;
+    const bool may_slip = kind == PF_CELL_AMBIGUOUS && trend->friction > 0.0f;
+    if (kind != PF_CELL_RESOLVED && !may_slip && !(edges > 0.0f)) continue;
+    const double x = ((double)col - frame.col) * frame.scale;
     const double here = on_line(&line, x);
     double moment = (double)edges * trust(trend, here);
     if (kind == PF_CELL_RESOLVED) {
-      const double value = powered(trend->squared, (double)cells.top[cell]);
-      const double weight = (double)cells.weight[cell] * trust(trend, value - here);
-      moment += weight;
-      double power = weight * value;
-      right[PF_TREND_RIGHT] += power * value;
-      for (uint i = 0; i < PF_TREND_RIGHT; ++i) {
-        right[i] += power;
-        power *= x;
-      }
+      Sample sample;
+      sample.value = powered(trend->squared, (double)cells.top[cell]);
+      sample.weight = (double)cells.weight[cell] * trust(trend, sample.value - here);
+      add_sample(sums + PF_LINE_RIGHT, sums + PF_LINE_SQUARE, sample, x);
+      moment += sample.weight;
+    } else if (may_slip) {
+      const Sample sample = slipping_sample(cells, cell, trend, here);
+      add_sample(sums + PF_LINE_SLIP, sums + PF_LINE_SLIP_SQUARE, sample, x);
+      moment += sample.weight;
     }
     for (uint i = 0; i < PF_TREND_MOMENTS; ++i) {
       sums[i] += moment;
@@ -156,104 +207,4 @@ static inline void sum_lines(Tile tile, Cells cells, const Trend* trend, float p
   for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     sum_line(tile, cells, trend, peak, row, lines + (tile.first_line + row) * PF_LINE_SUMS);
   }
-}
-
-/* The normal equations of a trend. */
-typedef struct {
-  double matrix[PF_TREND_TERMS][PF_TREND_TERMS];
-  double right[PF_TREND_TERMS];
-  double square; /* sum of w u^2 */
-  double weight; /* sum of w */
-} NormalEquations;
-
-/* Moments of x^i y^j, i + j up to twice the degree, and of u x^i y^j. */
-typedef struct {
-  double plain[PF_TREND_MOMENTS][PF_TREND_MOMENTS];
-  double right[PF_TREND_RIGHT][PF_TREND_RIGHT];
-  double square;
-} Moments;
-
-static inline void add_line(Moments* moments, PF_GLOBAL const double* sums, double y) {
-  double power = 1.0;
-  for (uint j = 0; j < PF_TREND_MOMENTS; ++j) {
-    for (uint i = 0; i + j < PF_TREND_MOMENTS; ++i) moments->plain[i][j] += sums[i] * power;
-    for (uint i = 0; i + j < PF_TREND_RIGHT; ++i) {
-      moments->right[i][j] += sums[PF_TREND_MOMENTS + i] * power;
-    }
-    power *= y;
-  }
-  moments->square += sums[PF_TREND_MOMENTS + PF_TREND_RIGHT];
-}
-
-/* Sampled line by sampled line from the top, whatever work-items summed them. */
-static inline NormalEquations normal_equations(Tile tile, uint degree,
-                                               PF_GLOBAL const double* lines) {
-  const Frame frame = frame_of(tile);
-  Moments moments;
-  for (uint i = 0; i < PF_TREND_MOMENTS; ++i) {
-    for (uint j = 0; j < PF_TREND_MOMENTS; ++j) moments.plain[i][j] = 0.0;
-  }
-  for (uint i = 0; i < PF_TREND_RIGHT; ++i) {
-    for (uint j = 0; j < PF_TREND_RIGHT; ++j) moments.right[i][j] = 0.0;
-  }
-  moments.square = 0.0;
-  for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
-    add_line(&moments, lines + (tile.first_line + row) * PF_LINE_SUMS,
-             (frame.row - (double)row) * frame.scale);
-  }
-  NormalEquations equations;
-  uint a = 0;
-  for (uint both = 0; both <= degree; ++both) {
-    for (uint i = 0; i <= both; ++i) {
-      uint b = 0;
-      for (uint other = 0; other <= degree; ++other) {
-        for (uint k = 0; k <= other; ++k) {
-          equations.matrix[a][b++] = moments.plain[i + k][both - i + other - k];
-        }
-      }
-      equations.right[a++] = moments.right[i][both - i];
-    }
-  }
-  equations.square = moments.square;
-  equations.weight = moments.plain[0][0];
-  return equations;
-}
-
-/* Solves them by elimination; a little is added on the diagonal, so that what the samples leave
- * open becomes zero. */
-static inline void solve_trend(NormalEquations equations, Trend* trend) {
-  const uint count = terms_of(trend->degree);
-  double trace = 0.0;
-  for (uint i = 0; i < count; ++i) trace += equations.matrix[i][i];
-  for (uint i = 0; i < count; ++i) equations.matrix[i][i] += 1e-9 * trace;
-  for (uint pivot = 0; pivot < count; ++pivot) {
-    const double inverse =
-        equations.matrix[pivot][pivot] > 0.0 ? 1.0 / equations.matrix[pivot][pivot] : 0.0;
-    for (uint row = pivot + 1; row < count; ++row) {
-      const double factor = equations.matrix[row][pivot] * inverse;
-      for (uint col = pivot; col < count; ++col) {
-        equations.matrix[row][col] -= factor * equations.matrix[pivot][col];
-      }
-      equations.right[row] -= factor * equations.right[pivot];
-    }
-  }
-  for (uint row = count; row-- > 0;) {
-    double rest = equations.right[row];
-    for (uint col = row + 1; col < count; ++col) {
-      rest -= equations.matrix[row][col] * trend->terms[col];
-    }
-    trend->terms[row] = equations.matrix[row][row] > 0.0 ? rest / equations.matrix[row][row] : 0.0;
-  }
-}
-
-/* The mean square of the residuals that a trend leaves, by the equations without robust weights. */
-static inline double mean_square(const NormalEquations* equations, const Trend* trend) {
-  const uint count = terms_of(trend->degree);
-  double sum = equations->square;
-  for (uint i = 0; i < count; ++i) {
-    double image = -2.0 * equations->right[i];
-    for (uint j = 0; j < count; ++j) image += equations->matrix[i][j] * trend->terms[j];
-    sum += trend->terms[i] * image;
-  }
-  return equations->weight > 0.0 && sum > 0.0 ? sum / equations->weight : 0.0;
 }

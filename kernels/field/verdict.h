@@ -26,16 +26,16 @@ typedef struct {
   float score;    /* of the shape */
   float misfit;   /* of the trend where it hands over, relative */
   float spread;   /* standard deviation of the friction, relative */
-  float doubt;    /* of the shape's normal force, relative */
+  uint may_stick; /* what is taken to slip may as well not */
 } Verdict;
 
-#define PF_SHARED_SUMS 36 /* doubles that the work-items of a contact share */
-#define PF_AT_INVERSE_SQUARE 15
-#define PF_AT_PEAK 16
-#define PF_AT_OPEN_PEAK 17
-#define PF_AT_RESOLVED 18 /* pillars of the sampled rows */
-#define PF_AT_LOADED 19
-#define PF_AT_BEST 20 /* the best trend so far, as the one at hand */
+#define PF_SHARED_SUMS 42 /* doubles that the work-items of a contact share */
+#define PF_AT_TREND 0     /* the one at hand */
+#define PF_AT_BEST 19     /* the best so far */
+#define PF_AT_PEAK 38
+#define PF_AT_OPEN_PEAK 39
+#define PF_AT_RESOLVED 40 /* pillars of the sampled rows */
+#define PF_AT_LOADED 41
 
 /* Scratch memory of one contact. */
 typedef struct {
@@ -49,15 +49,24 @@ typedef struct {
  * 6). The values were tuned on scenes of docs/field.md that do not judge. */
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
-#define PF_LEAST_SCORE 0.15
-#define PF_GOOD_SCORE 0.5         /* further models are not tried */
-#define PF_MISFIT_PER_SHARE 0.45  /* most, by the share of resolved pillars */
-#define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
-#define PF_TRUST_IN_BOUND 0.8f    /* 1: an open pillar is at the bound told */
-#define PF_NOISE_OF_NORMAL 0.45f  /* by a reading's, at a given ratio */
-#define PF_NOISE_OF_RESOLVED 0.7f /* by a reading's, of a resolved pillar */
-#define PF_CHANGE_PER_FRAME 0.05f /* of a normal force, relative deviation */
-#define PF_MOST_RECALLED 0.15f    /* deviation, by the length of the segment */
+#define PF_LEAST_SCORE 0.1
+#define PF_GOOD_SCORE 0.5           /* further models are not tried, */
+#define PF_GOOD_UNEXPLAINED 0.01    /* if no more is left unexplained */
+#define PF_MISFIT_PER_SHARE 0.45    /* most, by the share of resolved pillars */
+#define PF_MISFIT_AT_FRICTION 0.1   /* most, where the friction is known */
+#define PF_FRICTION_APART 0.1       /* of a known one and the one a model implies, relative */
+#define PF_ALL_SLIP 0.9             /* of the pillars that can show friction: so do open ones */
+#define PF_LARGEST_FRICTION 4.0     /* that is believed without being told */
+#define PF_TRUST_IN_BOUND 0.8f      /* 1: an open pillar is at the bound told */
+#define PF_SPREAD_OF_SHOWN 0.005f   /* of a friction that resolved pillars show, relative */
+#define PF_SCALE_ERRORS 10.0        /* of a friction, by what the fit says of its own error, */
+#define PF_SPREAD_OF_REST 0.05      /* and by the share that does not bear it out */
+#define PF_DEVIATION_OF_MIDDLE 0.4f /* of the truth from it, by the length of the segment */
+#define PF_BEYOND_STICKING 0.35f    /* of what a model has a pillar bear beyond slip */
+#define PF_NOISE_OF_NORMAL 0.45f    /* by a reading's, at a given ratio */
+#define PF_NOISE_OF_RESOLVED 0.7f   /* by a reading's, of a resolved pillar */
+#define PF_CHANGE_PER_FRAME 0.05f   /* of a normal force, relative deviation */
+#define PF_MOST_RECALLED 0.15f      /* deviation, by the length of the segment */
 
 static inline float clamped(float value, float low, float high) {
   return value < low ? low : (high < value ? high : value);
@@ -71,7 +80,7 @@ static inline Verdict verdict_by(uint way, float friction) {
   verdict.score = 0.0f;
   verdict.misfit = 0.0f;
   verdict.spread = 0.0f;
-  verdict.doubt = 0.0f;
+  verdict.may_stick = 0;
   return verdict;
 }
 

@@ -272,11 +272,16 @@ TEST(Score, FallsByWhatIsFarAboveAndByTheMisfit) {
   counts.at(maths::bin_of_ratio(1.0F)) = 20;
   maths::Scratch scratch{};
   scratch.counts = counts.data();
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, 0).score, 0.8, 1e-6);
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, 0.1).score, 0.7, 1e-6);
+  maths::Trend trend = maths::no_trend(2, true);
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0).score, 0.8, 1e-6);
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0.1).score, 0.7, 1e-6);
+  const float sure = maths::verdict_of_shape(scratch, &trend, 0).spread;
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0.1).spread, sure + 0.1, 1e-6);
+  trend.scale_error = 0.02;
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0).spread, sure + 0.2, 1e-6);
   counts.at(maths::bin_of_ratio(1.0F)) = 0;
   counts.at(maths::bin_of_ratio(4.0F)) = 20;
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, 0).score, 0.5, 1e-6);
+  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0).score, 0.5, 1e-6);
 }
 
 TEST(Edge, WeighsByHowLittleIsBorneBesideIt) {
@@ -326,6 +331,15 @@ TEST_F(OnScenes, SpinIsResolvedWhateverTheShape) {
   for_scenes(", spin", [](const auto& score, const auto& midpoint, const auto& scene) {
     EXPECT_LE(score.rms_counts(), 0.1 * midpoint.rms_counts()) << scene.name();
   });
+}
+
+TEST_F(OnScenes, WhatSlipsInPartIsResolvedWithWhatSticks) {
+  for (const char* filter : {"partial turn", "two spheres 21, partial slip 0.5"}) {
+    for_scenes(filter, [](const auto& score, const auto& midpoint, const auto& scene) {
+      EXPECT_LE(score.rms_counts(), 0.3 * midpoint.rms_counts()) << scene.name();
+      EXPECT_GE(score.coverage(), 0.9) << scene.name();
+    });
+  }
 }
 
 TEST_F(OnScenes, RoundContactsThatStickInTheMiddleAreResolved) {

@@ -58,6 +58,8 @@ double closed_load(Shape shape) {
       return kPi * (1 - std::pow(0.5, 2));
     case Shape::punch:
       return 2 * kPi;
+    case Shape::blunt:
+      return 0.5 * 2 * kPi / 3 + 0.5 * 2 * kPi / 5;
     case Shape::rounded_punch:
       break;
   }
@@ -99,12 +101,13 @@ INSTANTIATE_TEST_SUITE_P(FieldContacts, OfEachShape,
                          testing::Values(Shape::sphere, Shape::ellipse, Shape::paraboloid,
                                          Shape::two_spheres, Shape::merged_spheres, Shape::wavy,
                                          Shape::cylinder, Shape::cone, Shape::truncated_cone,
-                                         Shape::punch, Shape::rounded_punch));
+                                         Shape::punch, Shape::rounded_punch, Shape::blunt));
 
 /// The drag is the share of what friction can bear that the scene names.
 TEST(FieldContacts, DragByTheirLoadRatio) {
-  for (const Shape shape : {Shape::sphere, Shape::ellipse, Shape::paraboloid, Shape::cylinder,
-                            Shape::cone, Shape::truncated_cone, Shape::rounded_punch}) {
+  for (const Shape shape :
+       {Shape::sphere, Shape::ellipse, Shape::paraboloid, Shape::cylinder, Shape::cone,
+        Shape::truncated_cone, Shape::rounded_punch, Shape::blunt}) {
     FieldContact contact = contact_of(shape);
     contact.body.second = 0.3;
     contact.drive = {.motion = Motion::partial_slip, .direction_deg = 20, .load_ratio = 0.8};
