@@ -62,7 +62,7 @@ static inline Trend fit_resolved(Tile tile, Scratch scratch, uint degree, bool s
 
 /* Fits the trend again, together with the pillars that slip by the trend so far: at the friction
  * that it implies, where what they bear is known but for a factor, or at one that is known, where
- * it is known altogether. */
+ * it is known altogether (F14). */
 static inline Trend fit_trend(Tile tile, Scratch scratch, uint degree, bool squared, float known,
                               float noise, Share share) {
   Trend trend = fit_resolved(tile, scratch, degree, squared, share);

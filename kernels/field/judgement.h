@@ -40,7 +40,7 @@ static inline Judgement sticking_normal(Segment segment, float bound, Judgement 
 }
 
 /* A judgement, weighed against what is known without it: the middle that a bound leaves, of which
- * the truth lies a part of the segment off (F11a). Whoever is certain stays. */
+ * the truth lies a part of the segment off (F16). Whoever is certain stays. */
 static inline Judgement weighed(Judgement judgement, float middle, float high) {
   const float deviation = deviation_of(judgement);
   const float prior = PF_DEVIATION_OF_MIDDLE * high;

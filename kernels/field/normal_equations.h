@@ -133,7 +133,7 @@ static inline double solve_trend(NormalEquations equations, Trend* trend) {
   return scales ? equations.matrix[terms][terms] : 0.0;
 }
 
-/* What the fit says of its own error (F9a). `precision` is solve_trend's. */
+/* What the fit says of its own error (F15). `precision` is solve_trend's. */
 static inline void assess_trend(const NormalEquations* equations, double precision, Trend* trend) {
   const uint terms = terms_of(trend->degree);
   const double power = trend->squared ? 0.5 : 1.0; /* from a relative error of u to one of N */
