@@ -40,28 +40,21 @@ inline constexpr auto kMasks = [] {
   return masks;
 }();
 
-/// Negative where one of a block's forces is kMostBlockForceN or more, or NaN.
-PF_INLINE std::int32_t room_of(const float* force_n) {
-  // The bits of the largest magnitude that fits. NaN's are more.
-  constexpr auto kMost = std::bit_cast<std::int32_t>(kMostBlockForceN) - 1;
-  std::int32_t room = 0;
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    room |= kMost - (std::bit_cast<std::int32_t>(force_n[i]) & 0x7fffffff);
-  }
-  return room;
+/// Bits of a force's magnitude, which are in the order of magnitudes.
+PF_INLINE std::int32_t magnitude_bits(float force_n) {
+  return std::bit_cast<std::int32_t>(force_n) & 0x7fffffff;
 }
 
 /// Rounds a block's forces as ForceQuanta does, and sets those outside `mask` to zero.
 PF_INLINE BlockQuanta quantised(const float* force_n, const std::int32_t* mask) {
   constexpr float kQuantaPerNewton = 1 / static_cast<float>(ForceQuanta::kForceQuantum);
+  // With the largest float below a half, sums with less than a half behind the point stay below the
+  // next number, and those with a half are rounded up to it.
+  constexpr float kBelowHalf = 0x1.fffffep-2F;
   BlockQuanta quanta;  // of its own, for the loop to be free to read and write in any order
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const float scaled = force_n[i] * kQuantaPerNewton;  // exact, as is what follows
-    const auto whole = static_cast<std::int32_t>(scaled);
-    const float rest = scaled - static_cast<float>(whole);
-    const std::int32_t up = rest >= 0.5F ? 1 : 0;
-    const std::int32_t down = rest <= -0.5F ? 1 : 0;
-    quanta[i] = (whole + up - down) & mask[i];
+    const float scaled = force_n[i] * kQuantaPerNewton;  // exact
+    quanta[i] = static_cast<std::int32_t>(scaled + std::copysign(kBelowHalf, scaled)) & mask[i];
   }
   return quanta;
 }
@@ -94,17 +87,20 @@ inline PillarForce pillar_at(const ForceFieldView& forces, const ForceQuanta& qu
           forces.status[place]};
 }
 
-/// Whether all blocks of a piece may be read as such: their forces fit, and what is read past the
-/// end, and masked, is there.
-PF_INLINE bool makes_blocks(const ForceFieldView& forces, std::size_t begin, std::size_t pillars) {
-  const std::size_t end = begin + (pillars + kBlock - 1) / kBlock * kBlock;
-  if (end > forces.normal.size()) return false;
-  std::int32_t room = 0;
-  for (std::size_t at = begin; at < end; at += kBlock) {
-    room |= room_of(forces.shear_x.data() + at) | room_of(forces.shear_y.data() + at) |
-            room_of(forces.normal.data() + at);
+/// Whether the block at `begin` may be read as such: its forces fit, and what is read past the end
+/// of a run, and masked, is there.
+PF_INLINE bool makes_block(const ForceFieldView& forces, std::size_t begin) {
+  if (begin + kBlock > forces.normal.size()) return false;
+  const float* const shear_x = forces.shear_x.data() + begin;
+  const float* const shear_y = forces.shear_y.data() + begin;
+  const float* const normal = forces.normal.data() + begin;
+  std::int32_t largest = 0;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    const std::int32_t shear = std::max(magnitude_bits(shear_x[i]), magnitude_bits(shear_y[i]));
+    largest = std::max(largest, std::max(shear, magnitude_bits(normal[i])));
   }
-  return room >= 0;
+  // NaN's bits are more.
+  return largest < std::bit_cast<std::int32_t>(kMostBlockForceN);
 }
 
 }  // namespace pillarfield

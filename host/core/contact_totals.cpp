@@ -11,43 +11,54 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kLanes = 4;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
-/// Runs are taken in pieces of so many, 64 blocks: sums of moments stay below 2^53 and so exact in
-/// double precision, counts of blocks below 2^8.
-constexpr std::uint32_t kPiece = 1024;
+/// So many blocks are summed before they are added to the totals: moments stay below 2^53 and so
+/// exact in double precision, counts in bytes below 2^8.
+constexpr std::uint32_t kMostBlocks = 64;
 
-using LaneSums = std::array<double, kLanes>;
+/// One sum for each pillar of a block: no sum needs its neighbour's before the very end.
+using LaneSums = std::array<double, kBlock>;
 
-/// Adds four pillars to each lane.
-PF_INLINE LaneSums plus(const LaneSums& sums, const BlockQuanta& quanta) {
-  LaneSums more;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    more[i] = sums[i] + ((double{1} * quanta[i] + quanta[i + 4]) +
-                         (double{1} * quanta[i + 8] + quanta[i + 12]));
+PF_INLINE std::int64_t total_of(const LaneSums& sums) {
+  std::int64_t total = 0;
+  for (const double sum : sums) total += static_cast<std::int64_t>(sum);
+  return total;
+}
+
+/// The same, each times twice its place in the block.
+PF_INLINE std::int64_t moment_of(const LaneSums& sums) {
+  std::int64_t total = 0;
+  for (std::size_t i = 0; i < kBlock; ++i) {
+    total += 2 * static_cast<std::int64_t>(i) * static_cast<std::int64_t>(sums[i]);
   }
-  return more;
+  return total;
 }
 
-PF_INLINE std::int64_t value_of(const LaneSums& sums) {
-  return static_cast<std::int64_t>((sums[0] + sums[1]) + (sums[2] + sums[3]));
-}
+/// Forces, and their products with the place of their block, which is that of its first pillar.
+struct ForceLanes {
+  LaneSums shear_x{};
+  LaneSums shear_y{};
+  LaneSums normal{};
+  LaneSums normal_x{};
+  LaneSums normal_y{};
+  LaneSums shear_y_x{};
+  LaneSums shear_x_y{};
 
-/// A force summed over pillars side by side, and its moment about the first of them, in pitches.
-struct MomentLanes {
-  LaneSums force{};
-  LaneSums moment{};
-
-  PF_INLINE void add(const BlockQuanta& quanta, double place) {
-    force = plus(force, quanta);
-    LaneSums more;
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const double at = place + static_cast<double>(static_cast<int>(i));
-      more[i] = moment[i] + ((quanta[i] * at + quanta[i + 4] * (at + 4)) +
-                             (quanta[i + 8] * (at + 8) + quanta[i + 12] * (at + 12)));
+  PF_INLINE void add(const BlockQuanta& quanta_x, const BlockQuanta& quanta_y,
+                     const BlockQuanta& quanta_n, double x, double y) {
+    for (std::size_t i = 0; i < kBlock; ++i) {
+      const double along_x = quanta_x[i];
+      const double along_y = quanta_y[i];
+      const double pressed = quanta_n[i];
+      shear_x[i] += along_x;
+      shear_x_y[i] += along_x * y;
+      shear_y[i] += along_y;
+      shear_y_x[i] += along_y * x;
+      normal[i] += pressed;
+      normal_x[i] += pressed * x;
+      normal_y[i] += pressed * y;
     }
-    moment = more;
   }
 };
 
@@ -85,20 +96,17 @@ struct SlipLanes {
 
   PF_INLINE void add(const BlockQuanta& shear_x, const BlockQuanta& shear_y,
                      const BlockQuanta& normal, const std::uint8_t* status, float least_ratio) {
-    BlockQuanta presses;
-    BlockQuanta is_told;
-    BlockQuanta slips;
     for (std::size_t i = 0; i < kBlock; ++i) {
       const auto x = static_cast<float>(shear_x[i]);
       const auto y = static_cast<float>(shear_y[i]);
       const float least = least_ratio * static_cast<float>(normal[i]);
-      presses[i] = std::max(normal[i], 0);
-      is_told[i] = is_known(status[i]) ? presses[i] : 0;
-      slips[i] = x * x + y * y >= least * least ? is_told[i] : 0;
+      const std::int32_t presses = std::max(normal[i], 0);
+      const std::int32_t is_told = is_known(status[i]) ? presses : 0;
+      const std::int32_t slips = x * x + y * y >= least * least ? is_told : 0;
+      pressing[i] += presses;
+      known[i] += is_told;
+      slipping[i] += slips;
     }
-    pressing = plus(pressing, presses);
-    known = plus(known, is_told);
-    slipping = plus(slipping, slips);
   }
 };
 
@@ -126,73 +134,54 @@ PF_INLINE std::int32_t largest_of(const BlockQuanta& quanta) {
   return largest;
 }
 
-/// A piece of a run, summed.
-struct PieceSum {
-  LaneSums shear_x{};
-  MomentLanes shear_y;
-  MomentLanes normal;
-  BlockQuanta peaks{};
+/// Blocks, summed.
+struct BlockSums {
+  ForceLanes forces;
   StatusCounts counts;
   SlipLanes slip;
+  std::uint32_t blocks = 0;
 };
 
-PF_INLINE PieceSum sum_piece(const ForceFieldView& forces, std::size_t begin, std::uint32_t pillars,
-                             bool with_slip, float least_ratio) {
-  PieceSum sum;
-  for (std::uint32_t first = 0; first < pillars; first += kBlock) {
-    const std::size_t past = kBlock - std::min(kBlock, pillars - first);
-    const std::int32_t* const mask = kMasks<std::int32_t>.data() + past;
-    const std::size_t at = begin + first;
-    const std::uint8_t* const status = forces.status.data() + at;
-    const BlockQuanta shear_x = quantised(forces.shear_x.data() + at, mask);
-    const BlockQuanta shear_y = quantised(forces.shear_y.data() + at, mask);
-    const BlockQuanta normal = quantised(forces.normal.data() + at, mask);
-    sum.shear_x = plus(sum.shear_x, shear_x);
-    sum.shear_y.add(shear_y, first);
-    sum.normal.add(normal, first);
-    sum.peaks = larger_of(sum.peaks, normal);
-    sum.counts.add(status, kMasks<std::uint8_t>.data() + past);
-    if (with_slip) sum.slip.add(shear_x, shear_y, normal, status, least_ratio);
-  }
-  return sum;
-}
-
-/// Adds a piece whose first pillar is at (x, y); all but the peak.
-void add_piece(const PieceSum& piece, std::int64_t pillars, std::int64_t x, std::int64_t y,
-               ContactTotals& totals) {
-  const std::int64_t shear_x = value_of(piece.shear_x);
-  const std::int64_t shear_y = value_of(piece.shear_y.force);
-  const std::int64_t normal = value_of(piece.normal.force);
+/// Adds blocks to totals, all but the peak and what needs no force, and begins anew.
+void empty_into(ContactTotals& totals, BlockSums& sums) {
+  const ForceLanes& forces = sums.forces;
   ContactSum& sum = totals.sum;
-  sum.shear_x += shear_x;
-  sum.shear_y += shear_y;
-  sum.normal += normal;
-  sum.normal_x.add_product(normal * x + 2 * value_of(piece.normal.moment));
-  sum.normal_y.add_product(normal * y);
-  sum.shear_y_x.add_product(shear_y * x + 2 * value_of(piece.shear_y.moment));
-  sum.shear_x_y.add_product(shear_x * y);
-  sum.x += pillars * (x + pillars - 1);
-  sum.y += pillars * y;
-  sum.pillars += pillars;
-  sum.ambiguous += StatusCounts::total(piece.counts.ambiguous);
-  sum.resolved += StatusCounts::total(piece.counts.resolved);
-  totals.slip.add(
-      {value_of(piece.slip.pressing), value_of(piece.slip.known), value_of(piece.slip.slipping)});
+  sum.shear_x += total_of(forces.shear_x);
+  sum.shear_y += total_of(forces.shear_y);
+  sum.normal += total_of(forces.normal);
+  sum.normal_x.add_product(total_of(forces.normal_x) + moment_of(forces.normal));
+  sum.normal_y.add_product(total_of(forces.normal_y));
+  sum.shear_y_x.add_product(total_of(forces.shear_y_x) + moment_of(forces.shear_y));
+  sum.shear_x_y.add_product(total_of(forces.shear_x_y));
+  sum.ambiguous += StatusCounts::total(sums.counts.ambiguous);
+  sum.resolved += StatusCounts::total(sums.counts.resolved);
+  const SlipLanes& slip = sums.slip;
+  totals.slip.add({total_of(slip.pressing), total_of(slip.known), total_of(slip.slipping)});
+  sums = {};
 }
 
-/// Asks for what the next runs need: rows are too far apart for a processor to guess.
-PF_INLINE void ask_for(std::span<const float> plane, const ForceFieldView& forces,
+/// Asks for what the next runs need of a plane: rows are too far apart for a processor to guess.
+template <class Value>
+PF_INLINE void ask_for(std::span<const Value> plane, const ForceFieldView& forces,
                        std::span<const ContactRun> runs, std::size_t run) {
 #if defined(__GNUC__)
-  constexpr std::size_t kAhead = 2;
-  constexpr std::uint32_t kLine = 16;
+  constexpr std::size_t kAhead = 4;
+  constexpr std::uint32_t kLine = 64 / sizeof(Value);
   if (run + kAhead >= runs.size()) return;
   const ContactRun& ahead = runs[run + kAhead];
-  const float* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
+  const Value* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
   for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
     __builtin_prefetch(row + std::min(col, ahead.end - 1));
   }
 #endif
+}
+
+PF_INLINE void ask_for_all(const ForceFieldView& forces, std::span<const ContactRun> runs,
+                           std::size_t run) {
+  ask_for(forces.shear_x, forces, runs, run);
+  ask_for(forces.shear_y, forces, runs, run);
+  ask_for(forces.normal, forces, runs, run);
+  ask_for(forces.status, forces, runs, run);
 }
 
 /// Raises each peak to the normal force beside it, where that is above it and no NaN.
@@ -212,44 +201,79 @@ void add_peak(const ForceFieldView& forces, const ForceQuanta& quanta, const Con
   }
 }
 
+/// How runs are summed.
+struct Summing {
+  const ForceFieldView& forces;
+  ForceQuanta quanta;
+  bool with_slip;
+  float least_ratio;
+};
+
+/// Adds pillars of a row one by one.
+void add_pillars(const Summing& summing, std::uint32_t row, std::uint32_t first, std::uint32_t end,
+                 ContactTotals& totals) {
+  for (std::uint32_t col = first; col < end; ++col) {
+    const PillarForce pillar = pillar_at(summing.forces, summing.quanta, row, col);
+    totals.sum.add(pillar);
+    if (summing.with_slip) add_slip(pillar, summing.least_ratio, totals.slip);
+  }
+}
+
+/// Adds a run, in blocks wherever its forces make such; returns the blocks' largest normal force.
+PF_INLINE std::int32_t add_run(const Summing& summing, const ContactRun& run, BlockSums& sums,
+                               ContactTotals& totals) {
+  const ForceFieldView& forces = summing.forces;
+  const auto y = static_cast<double>(place_y(forces, run.row));
+  BlockQuanta peaks{};
+  for (std::uint32_t first = run.first; first < run.end; first += kBlock) {
+    const std::uint32_t pillars = std::min(kBlock, run.end - first);
+    const std::size_t at = std::size_t{run.row} * forces.cols + first;
+    if (!makes_block(forces, at)) {
+      add_pillars(summing, run.row, first, first + pillars, totals);
+      continue;
+    }
+    const std::size_t past = kBlock - pillars;
+    const std::int32_t* const mask = kMasks<std::int32_t>.data() + past;
+    const std::uint8_t* const status = forces.status.data() + at;
+    const BlockQuanta shear_x = quantised(forces.shear_x.data() + at, mask);
+    const BlockQuanta shear_y = quantised(forces.shear_y.data() + at, mask);
+    const BlockQuanta normal = quantised(forces.normal.data() + at, mask);
+    const std::int64_t x = place_x(forces, first);
+    sums.forces.add(shear_x, shear_y, normal, static_cast<double>(x), y);
+    sums.counts.add(status, kMasks<std::uint8_t>.data() + past);
+    if (summing.with_slip) {
+      sums.slip.add(shear_x, shear_y, normal, status, summing.least_ratio);
+    }
+    peaks = larger_of(peaks, normal);
+    totals.sum.x += pillars * (x + pillars - 1);
+    totals.sum.y += pillars * place_y(forces, run.row);
+    totals.sum.pillars += pillars;
+    if (++sums.blocks == kMostBlocks) empty_into(totals, sums);
+  }
+  return largest_of(peaks);
+}
+
 }  // namespace
 
 PF_WIDE ContactTotals totals_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
                                 std::optional<double> least_ratio) {
-  const bool with_slip = least_ratio.has_value();
-  const auto ratio = static_cast<float>(least_ratio.value_or(0));
-  const ForceQuanta quanta(forces.normal.size());
+  const Summing summing = {forces, ForceQuanta(forces.normal.size()), least_ratio.has_value(),
+                           static_cast<float>(least_ratio.value_or(0))};
   ContactTotals totals;
+  BlockSums sums;
   std::int32_t peak = 0;
   ContactRun with_peak;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const ContactRun& run = runs[i];
-    ask_for(forces.shear_x, forces, runs, i);
-    ask_for(forces.shear_y, forces, runs, i);
-    ask_for(forces.normal, forces, runs, i);
-    for (std::uint32_t first = run.first; first < run.end; first += kPiece) {
-      const std::uint32_t end = std::min(first + kPiece, run.end);
-      const std::size_t begin = std::size_t{run.row} * forces.cols + first;
-      if (!makes_blocks(forces, begin, end - first)) {
-        for (std::uint32_t col = first; col < end; ++col) {
-          const PillarForce pillar = pillar_at(forces, quanta, run.row, col);
-          totals.sum.add(pillar);
-          if (with_slip) add_slip(pillar, ratio, totals.slip);
-        }
-        continue;
-      }
-      const PieceSum piece = sum_piece(forces, begin, end - first, with_slip, ratio);
-      add_piece(piece, end - first, place_x(forces, first), place_y(forces, run.row), totals);
-      const std::int32_t largest = largest_of(piece.peaks);
-      const ContactRun this_piece = {run.row, first, end, 0};
-      // What is masked has no force: less than none is not seen, but it is also rare.
-      if (largest == 0) add_peak(forces, quanta, this_piece, totals.sum);
-      if (largest <= peak) continue;
-      peak = largest;
-      with_peak = this_piece;
-    }
+    ask_for_all(forces, runs, i);
+    const std::int32_t largest = add_run(summing, runs[i], sums, totals);
+    // What is masked has no force: less than none is not seen, but it is also rare.
+    if (largest == 0) add_peak(forces, summing.quanta, runs[i], totals.sum);
+    if (largest <= peak) continue;
+    peak = largest;
+    with_peak = runs[i];
   }
-  add_peak(forces, quanta, with_peak, totals.sum);
+  empty_into(totals, sums);
+  add_peak(forces, summing.quanta, with_peak, totals.sum);
   return totals;
 }
 
