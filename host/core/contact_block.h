@@ -1,10 +1,10 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include "core/contact_sum.h"
 #include "pillarfield/force_field.h"
@@ -27,10 +27,17 @@ namespace pillarfield {
 /// plain arrays, of which compilers make vector instructions.
 inline constexpr std::uint32_t kBlock = 16;
 
-using BlockQuanta = std::array<std::int32_t, kBlock>;
+/// Vectors by name, since of loops that would do compilers make poor ones: eight floats or whole
+/// numbers, four whole numbers or their doubles. Where a processor has shorter ones, each is
+/// several.
+using Floats [[gnu::vector_size(32)]] = float;
+using Wholes [[gnu::vector_size(32)]] = std::int32_t;
+using FourWholes [[gnu::vector_size(16)]] = std::int32_t;
+using FourDoubles [[gnu::vector_size(32)]] = double;
+inline constexpr std::uint32_t kLanes = 8;
 
-/// Forces below this, N, are at most 2^30 quanta.
-inline constexpr float kMostBlockForceN = 64;
+/// Forces of smaller magnitude, N, are less than 2^28 quanta: the sum of six of them fits 31 bits.
+inline constexpr float kMostBlockForceN = 16;
 
 /// All bits set, kBlock times, then none as often.
 template <class Number>
@@ -40,28 +47,37 @@ inline constexpr auto kMasks = [] {
   return masks;
 }();
 
-/// Bits of a force's magnitude, which are in the order of magnitudes.
-PF_INLINE std::int32_t magnitude_bits(float force_n) {
-  return std::bit_cast<std::int32_t>(force_n) & 0x7fffffff;
+/// A vector from any place in memory. Vectors go by reference: how they are returned depends on the
+/// processor.
+template <class Vector, class Value>
+PF_INLINE void load(const Value* from, Vector& vector) {
+  std::memcpy(&vector, from, sizeof(Vector));
 }
 
-/// Rounds a block's forces as ForceQuanta does, and sets those outside `mask` to zero.
-PF_INLINE BlockQuanta quantised(const float* force_n, const std::int32_t* mask) {
+/// Takes those lanes out of a mask whose force is kMostBlockForceN or more, or NaN.
+PF_INLINE void keep_small(const Floats& force_n, Wholes& mask) {
+  constexpr auto kMost = std::bit_cast<std::int32_t>(kMostBlockForceN);
+  mask &= (__builtin_bit_cast(Wholes, force_n) & INT32_MAX) < kMost;
+}
+
+/// Rounds small forces as ForceQuanta does; those outside `mask` may be any and become zero.
+PF_INLINE void quantise(const Floats& force_n, const Wholes& mask, Wholes& quanta) {
   constexpr float kQuantaPerNewton = 1 / static_cast<float>(ForceQuanta::kForceQuantum);
   // With the largest float below a half, sums with less than a half behind the point stay below the
   // next number, and those with a half are rounded up to it.
-  constexpr float kBelowHalf = 0x1.fffffep-2F;
-  BlockQuanta quanta;  // of its own, for the loop to be free to read and write in any order
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    const float scaled = force_n[i] * kQuantaPerNewton;  // exact
-    quanta[i] = static_cast<std::int32_t>(scaled + std::copysign(kBelowHalf, scaled)) & mask[i];
-  }
-  return quanta;
+  constexpr auto kBelowHalf = std::bit_cast<std::int32_t>(0x1.fffffep-2F);
+  const Wholes kept = __builtin_bit_cast(Wholes, force_n) & mask;
+  const Floats scaled = __builtin_bit_cast(Floats, kept) * kQuantaPerNewton;  // exact
+  const Wholes half = (__builtin_bit_cast(Wholes, scaled) & INT32_MIN) | kBelowHalf;
+  quanta = __builtin_convertvector(scaled + __builtin_bit_cast(Floats, half), Wholes);
 }
+
+/// What leaves a force in doubt although enough sensels are usable.
+inline constexpr int kDoubtful =
+    status::kFromNeighbours | status::kSaturated | status::kInconsistent;
 
 /// Whether a pillar is in region 1 or 2 and nothing is wrong with it.
 PF_INLINE bool is_known(std::uint8_t bits) {
-  constexpr int kDoubtful = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
   const int lifted = ~bits & status::kUsable;
   return ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
 }
@@ -85,22 +101,6 @@ inline PillarForce pillar_at(const ForceFieldView& forces, const ForceQuanta& qu
           place_x(forces, col),
           place_y(forces, row),
           forces.status[place]};
-}
-
-/// Whether the block at `begin` may be read as such: its forces fit, and what is read past the end
-/// of a run, and masked, is there.
-PF_INLINE bool makes_block(const ForceFieldView& forces, std::size_t begin) {
-  if (begin + kBlock > forces.normal.size()) return false;
-  const float* const shear_x = forces.shear_x.data() + begin;
-  const float* const shear_y = forces.shear_y.data() + begin;
-  const float* const normal = forces.normal.data() + begin;
-  std::int32_t largest = 0;
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    const std::int32_t shear = std::max(magnitude_bits(shear_x[i]), magnitude_bits(shear_y[i]));
-    largest = std::max(largest, std::max(shear, magnitude_bits(normal[i])));
-  }
-  // NaN's bits are more.
-  return largest < std::bit_cast<std::int32_t>(kMostBlockForceN);
 }
 
 }  // namespace pillarfield

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 
 #include "core/contact_block.h"
@@ -55,9 +56,8 @@ PF_INLINE bool is_asked(const ForceFieldView& forces, std::size_t at, const Dema
 /// The pillars of a block; of what is read past the last of them nothing is added.
 PF_INLINE void add_block(const ForceFieldView& forces, std::size_t at, std::uint32_t pillars,
                          const Demand& demand, FrictionHistogram& histogram) {
-  const BlockRatios ratios =
-      ratios_of(forces.shear_x.data() + at, forces.shear_y.data() + at, forces.normal.data() + at,
-                demand.weight_per_n);
+  const BlockRatios ratios = ratios_of(forces.shear_x.data() + at, forces.shear_y.data() + at,
+                                       forces.normal.data() + at, demand.weight_per_n);
   for (std::size_t i = 0; i < pillars; ++i) {
     if (!is_asked(forces, at + i, demand)) continue;
     histogram.add(ratios.shear_over_normal[i], static_cast<std::uint32_t>(ratios.weight[i]),

@@ -15,50 +15,56 @@ constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 /// So many blocks are summed before they are added to the totals: moments stay below 2^53 and so
 /// exact in double precision, counts in bytes below 2^8.
-constexpr std::uint32_t kMostBlocks = 64;
+constexpr std::uint32_t kMostBlocks = 127;
 
-/// One sum for each pillar of a block: no sum needs its neighbour's before the very end.
-using LaneSums = std::array<double, kBlock>;
+/// A quantity of a block's pillars, in two halves.
+struct BlockWholes {
+  Wholes first;
+  Wholes last;
+};
 
-PF_INLINE std::int64_t total_of(const LaneSums& sums) {
-  std::int64_t total = 0;
-  for (const double sum : sums) total += static_cast<std::int64_t>(sum);
-  return total;
+/// Every fourth pillar of a block.
+PF_INLINE void quarters_of(const Wholes& half, FourWholes& first, FourWholes& last) {
+  first = __builtin_shufflevector(half, half, 0, 1, 2, 3);
+  last = __builtin_shufflevector(half, half, 4, 5, 6, 7);
 }
 
-/// The same, each times twice its place in the block.
-PF_INLINE std::int64_t moment_of(const LaneSums& sums) {
-  std::int64_t total = 0;
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    total += 2 * static_cast<std::int64_t>(i) * static_cast<std::int64_t>(sums[i]);
-  }
-  return total;
-}
-
-/// Forces, and their products with the place of their block, which is that of its first pillar.
+/// A force summed over blocks, a lane for every fourth pillar, and its products with the block's
+/// place, which is that of its first pillar. No sum needs its neighbour's before the very end.
 struct ForceLanes {
-  LaneSums shear_x{};
-  LaneSums shear_y{};
-  LaneSums normal{};
-  LaneSums normal_x{};
-  LaneSums normal_y{};
-  LaneSums shear_y_x{};
-  LaneSums shear_x_y{};
+  FourDoubles force{};
+  FourDoubles within{};  ///< each times the quarter of the block that it is in
+  FourDoubles by_x{};
+  FourDoubles by_y{};
 
-  PF_INLINE void add(const BlockQuanta& quanta_x, const BlockQuanta& quanta_y,
-                     const BlockQuanta& quanta_n, double x, double y) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      const double along_x = quanta_x[i];
-      const double along_y = quanta_y[i];
-      const double pressed = quanta_n[i];
-      shear_x[i] += along_x;
-      shear_x_y[i] += along_x * y;
-      shear_y[i] += along_y;
-      shear_y_x[i] += along_y * x;
-      normal[i] += pressed;
-      normal_x[i] += pressed * x;
-      normal_y[i] += pressed * y;
+  PF_INLINE void add(const BlockWholes& quanta, double x, double y) {
+    FourWholes zeroth;
+    FourWholes first;
+    FourWholes second;
+    FourWholes third;
+    quarters_of(quanta.first, zeroth, first);
+    quarters_of(quanta.last, second, third);
+    const FourWholes odd = first + third;
+    const FourWholes upper = second + third;
+    const FourDoubles sum = __builtin_convertvector(zeroth + second + odd, FourDoubles);
+    force += sum;
+    by_x += sum * x;
+    by_y += sum * y;
+    within += __builtin_convertvector(odd + upper + upper, FourDoubles);
+  }
+
+  [[nodiscard]] std::int64_t moment_x() const {
+    std::int64_t moment = total_of(by_x) + 8 * total_of(within);
+    for (int lane = 1; lane < 4; ++lane) {
+      moment += 2 * lane * static_cast<std::int64_t>(force[lane]);
     }
+    return moment;
+  }
+
+  static std::int64_t total_of(const FourDoubles& sums) {
+    std::int64_t total = 0;
+    for (int lane = 0; lane < 4; ++lane) total += static_cast<std::int64_t>(sums[lane]);
+    return total;
   }
 };
 
@@ -88,25 +94,53 @@ struct StatusCounts {
   }
 };
 
+/// Adds what presses, quanta none of which is below zero, four pillars to a lane.
+PF_INLINE void add_quarters(const BlockWholes& pressing, FourDoubles& sum) {
+  const Wholes both = pressing.first + pressing.last;
+  FourWholes first;
+  FourWholes last;
+  quarters_of(both, first, last);
+  sum += __builtin_convertvector(first + last, FourDoubles);
+}
+
+/// Which pillars are in region 1 or 2 with nothing wrong: is_known() of eight.
+PF_INLINE void known_of(const std::uint8_t* status, Wholes& known) {
+  using Bytes [[gnu::vector_size(8)]] = std::uint8_t;
+  Bytes bytes;
+  load(status, bytes);
+  const Wholes bits = __builtin_convertvector(bytes, Wholes);
+  const Wholes lifted = ~bits & status::kUsable;
+  known = ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
+}
+
+PF_INLINE void slipping_of(const Wholes& shear_x, const Wholes& shear_y, const Wholes& normal,
+                           float least_ratio, Wholes& slipping) {
+  const Floats x = __builtin_convertvector(shear_x, Floats);
+  const Floats y = __builtin_convertvector(shear_y, Floats);
+  const Floats least = least_ratio * __builtin_convertvector(normal, Floats);
+  slipping = x * x + y * y >= least * least;
+}
+
 /// What PressingSum sums.
 struct SlipLanes {
-  LaneSums pressing{};
-  LaneSums known{};
-  LaneSums slipping{};
+  FourDoubles pressing{};
+  FourDoubles known{};
+  FourDoubles slipping{};
 
-  PF_INLINE void add(const BlockQuanta& shear_x, const BlockQuanta& shear_y,
-                     const BlockQuanta& normal, const std::uint8_t* status, float least_ratio) {
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      const auto x = static_cast<float>(shear_x[i]);
-      const auto y = static_cast<float>(shear_y[i]);
-      const float least = least_ratio * static_cast<float>(normal[i]);
-      const std::int32_t presses = std::max(normal[i], 0);
-      const std::int32_t is_told = is_known(status[i]) ? presses : 0;
-      const std::int32_t slips = x * x + y * y >= least * least ? is_told : 0;
-      pressing[i] += presses;
-      known[i] += is_told;
-      slipping[i] += slips;
-    }
+  PF_INLINE void add(const BlockWholes& shear_x, const BlockWholes& shear_y,
+                     const BlockWholes& normal, const std::uint8_t* status, float least_ratio) {
+    const BlockWholes presses = {normal.first & (normal.first > 0),
+                                 normal.last & (normal.last > 0)};
+    BlockWholes told;
+    known_of(status, told.first);
+    known_of(status + kLanes, told.last);
+    told = {told.first & presses.first, told.last & presses.last};
+    BlockWholes slips;
+    slipping_of(shear_x.first, shear_y.first, normal.first, least_ratio, slips.first);
+    slipping_of(shear_x.last, shear_y.last, normal.last, least_ratio, slips.last);
+    add_quarters(presses, pressing);
+    add_quarters(told, known);
+    add_quarters({told.first & slips.first, told.last & slips.last}, slipping);
   }
 };
 
@@ -122,21 +156,11 @@ void add_slip(const PillarForce& pillar, float least_ratio, PressingSum& slip) {
   if (x * x + y * y >= least * least) slip.slipping += pillar.normal;
 }
 
-PF_INLINE BlockQuanta larger_of(const BlockQuanta& a, const BlockQuanta& b) {
-  BlockQuanta larger;
-  for (std::size_t i = 0; i < kBlock; ++i) larger[i] = std::max(a[i], b[i]);
-  return larger;
-}
-
-PF_INLINE std::int32_t largest_of(const BlockQuanta& quanta) {
-  std::int32_t largest = quanta[0];
-  for (std::size_t i = 0; i < kBlock; ++i) largest = std::max(largest, quanta[i]);
-  return largest;
-}
-
 /// Blocks, summed.
 struct BlockSums {
-  ForceLanes forces;
+  ForceLanes shear_x;
+  ForceLanes shear_y;
+  ForceLanes normal;
   StatusCounts counts;
   SlipLanes slip;
   std::uint32_t blocks = 0;
@@ -144,19 +168,18 @@ struct BlockSums {
 
 /// Adds blocks to totals, all but the peak and what needs no force, and begins anew.
 void empty_into(ContactTotals& totals, BlockSums& sums) {
-  const ForceLanes& forces = sums.forces;
+  const auto total = ForceLanes::total_of;
   ContactSum& sum = totals.sum;
-  sum.shear_x += total_of(forces.shear_x);
-  sum.shear_y += total_of(forces.shear_y);
-  sum.normal += total_of(forces.normal);
-  sum.normal_x.add_product(total_of(forces.normal_x) + moment_of(forces.normal));
-  sum.normal_y.add_product(total_of(forces.normal_y));
-  sum.shear_y_x.add_product(total_of(forces.shear_y_x) + moment_of(forces.shear_y));
-  sum.shear_x_y.add_product(total_of(forces.shear_x_y));
+  sum.shear_x += total(sums.shear_x.force);
+  sum.shear_y += total(sums.shear_y.force);
+  sum.normal += total(sums.normal.force);
+  sum.normal_x.add_product(sums.normal.moment_x());
+  sum.normal_y.add_product(total(sums.normal.by_y));
+  sum.shear_y_x.add_product(sums.shear_y.moment_x());
+  sum.shear_x_y.add_product(total(sums.shear_x.by_y));
   sum.ambiguous += StatusCounts::total(sums.counts.ambiguous);
   sum.resolved += StatusCounts::total(sums.counts.resolved);
-  const SlipLanes& slip = sums.slip;
-  totals.slip.add({total_of(slip.pressing), total_of(slip.known), total_of(slip.slipping)});
+  totals.slip.add({total(sums.slip.pressing), total(sums.slip.known), total(sums.slip.slipping)});
   sums = {};
 }
 
@@ -209,7 +232,8 @@ struct Summing {
   float least_ratio;
 };
 
-/// Adds pillars of a row one by one.
+/// Adds pillars of a row one by one: those outside `blocks` wholly, of the others the forces of
+/// those that no block took.
 void add_pillars(const Summing& summing, std::uint32_t row, std::uint32_t first, std::uint32_t end,
                  ContactTotals& totals) {
   for (std::uint32_t col = first; col < end; ++col) {
@@ -219,38 +243,87 @@ void add_pillars(const Summing& summing, std::uint32_t row, std::uint32_t first,
   }
 }
 
+/// What is read of eight pillars.
+struct HalfBlock {
+  Floats shear_x;
+  Floats shear_y;
+  Floats normal;
+
+  PF_INLINE void read(const ForceFieldView& forces, std::size_t at) {
+    load(forces.shear_x.data() + at, shear_x);
+    load(forces.shear_y.data() + at, shear_y);
+    load(forces.normal.data() + at, normal);
+  }
+  PF_INLINE void keep_all_small(Wholes& mask) const {
+    keep_small(shear_x, mask);
+    keep_small(shear_y, mask);
+    keep_small(normal, mask);
+  }
+};
+
+/// Whether a mask has lost lanes.
+PF_INLINE bool differ(const BlockWholes& a, const BlockWholes& b) {
+  using Words [[gnu::vector_size(32)]] = std::uint64_t;
+  const Wholes differences = (a.first ^ b.first) | (a.last ^ b.last);
+  const auto words = __builtin_bit_cast(Words, differences);
+  return (words[0] | words[1] | words[2] | words[3]) != 0;
+}
+
 /// Adds a run, in blocks wherever its forces make such; returns the blocks' largest normal force.
 PF_INLINE std::int32_t add_run(const Summing& summing, const ContactRun& run, BlockSums& sums,
                                ContactTotals& totals) {
   const ForceFieldView& forces = summing.forces;
   const auto y = static_cast<double>(place_y(forces, run.row));
-  BlockQuanta peaks{};
+  Wholes peaks{};
   for (std::uint32_t first = run.first; first < run.end; first += kBlock) {
     const std::uint32_t pillars = std::min(kBlock, run.end - first);
     const std::size_t at = std::size_t{run.row} * forces.cols + first;
-    if (!makes_block(forces, at)) {
+    const std::size_t past = kBlock - pillars;
+    BlockWholes mask;
+    load(kMasks<std::int32_t>.data() + past, mask.first);
+    load(kMasks<std::int32_t>.data() + past + kLanes, mask.last);
+    const bool fits = at + kBlock <= forces.normal.size();
+    HalfBlock head;
+    HalfBlock tail;
+    BlockWholes small = mask;
+    if (fits) {
+      head.read(forces, at);
+      tail.read(forces, at + kLanes);
+      head.keep_all_small(small.first);
+      tail.keep_all_small(small.last);
+    }
+    if (!fits || differ(small, mask)) {
       add_pillars(summing, run.row, first, first + pillars, totals);
       continue;
     }
-    const std::size_t past = kBlock - pillars;
-    const std::int32_t* const mask = kMasks<std::int32_t>.data() + past;
-    const std::uint8_t* const status = forces.status.data() + at;
-    const BlockQuanta shear_x = quantised(forces.shear_x.data() + at, mask);
-    const BlockQuanta shear_y = quantised(forces.shear_y.data() + at, mask);
-    const BlockQuanta normal = quantised(forces.normal.data() + at, mask);
+    BlockWholes shear_x;
+    BlockWholes shear_y;
+    BlockWholes normal;
+    quantise(head.shear_x, mask.first, shear_x.first);
+    quantise(tail.shear_x, mask.last, shear_x.last);
+    quantise(head.shear_y, mask.first, shear_y.first);
+    quantise(tail.shear_y, mask.last, shear_y.last);
+    quantise(head.normal, mask.first, normal.first);
+    quantise(tail.normal, mask.last, normal.last);
     const std::int64_t x = place_x(forces, first);
-    sums.forces.add(shear_x, shear_y, normal, static_cast<double>(x), y);
+    const std::uint8_t* const status = forces.status.data() + at;
+    sums.shear_x.add(shear_x, static_cast<double>(x), y);
+    sums.shear_y.add(shear_y, static_cast<double>(x), y);
+    sums.normal.add(normal, static_cast<double>(x), y);
     sums.counts.add(status, kMasks<std::uint8_t>.data() + past);
     if (summing.with_slip) {
       sums.slip.add(shear_x, shear_y, normal, status, summing.least_ratio);
     }
-    peaks = larger_of(peaks, normal);
+    peaks = normal.first > peaks ? normal.first : peaks;
+    peaks = normal.last > peaks ? normal.last : peaks;
     totals.sum.x += pillars * (x + pillars - 1);
     totals.sum.y += pillars * place_y(forces, run.row);
     totals.sum.pillars += pillars;
     if (++sums.blocks == kMostBlocks) empty_into(totals, sums);
   }
-  return largest_of(peaks);
+  std::int32_t largest = 0;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) largest = std::max(largest, peaks[lane]);
+  return largest;
 }
 
 }  // namespace
