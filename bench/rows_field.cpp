@@ -50,7 +50,15 @@ class ContactFollower {
   }
 
  private:
-  void receive() { tracker_.update(processor_.receive(), static_cast<double>(received_++)); }
+  void receive() {
+    const ForceFieldView forces = processor_.receive();
+    const auto time_s = static_cast<double>(received_++);
+    if (const ContactMap* const contacts = processor_.contacts()) {
+      tracker_.update(forces, *contacts, time_s);
+    } else {
+      tracker_.update(forces, time_s);
+    }
+  }
 
   const Frames* frames_;
   Processor processor_;

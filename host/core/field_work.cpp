@@ -1,8 +1,10 @@
 #include "core/field_work.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
+
+#include "pillarfield/status.h"
 
 namespace pillarfield {
 namespace {
@@ -34,20 +36,33 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
 /// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
 constexpr std::uint32_t kLeastOpenShare = 64;
 
-/// By status byte what to add up, to count open pillars in the lower half of a word and those that
-/// their own readings determine in the upper half.
-using StatusCounts = std::array<std::uint64_t, 256>;
-constexpr int kDeterminedShift = 32;
+/// Counts of the open pillars of a run, and of those that their own readings determine, eight
+/// status bytes at a time: is_open() and is_determined() of each.
+struct RunCounts {
+  static constexpr std::uint64_t kEachByte = 0x0101010101010101u;
+  std::uint64_t open = 0;  ///< byte by byte
+  std::uint64_t determined = 0;
 
-StatusCounts make_counts() {
-  StatusCounts counts{};
-  for (std::size_t bits = 0; bits < counts.size(); ++bits) {
-    const auto status = static_cast<std::uint8_t>(bits);
-    counts.at(bits) = std::uint64_t{maths::is_open(status) ? 1U : 0U} |
-                      std::uint64_t{maths::is_determined(status) ? 1U : 0U} << kDeterminedShift;
+  void add(std::uint64_t bits) {
+    static_assert(status::kUsable == 15 && status::kAmbiguous == 1 << 4 &&
+                  status::kSaturated == 1 << 5 && status::kInconsistent == 1 << 6);
+    const std::uint64_t pairs = (bits & (5 * kEachByte)) + ((bits >> 1) & (5 * kEachByte));
+    const std::uint64_t usable = (pairs & (3 * kEachByte)) + ((pairs >> 2) & (3 * kEachByte));
+    const std::uint64_t are_two = usable >> 1 & ~usable;
+    const std::uint64_t are_three_or_four = (usable + 5 * kEachByte) >> 3;
+    open += are_two & bits >> 4 & ~(bits >> 5) & ~(bits >> 6) & kEachByte;
+    determined += are_three_or_four & ~(bits >> 5) & kEachByte;
   }
-  return counts;
-}
+
+  static std::uint32_t total(std::uint64_t counts) {
+    constexpr std::uint64_t kEven = 0x00ff00ff00ff00ffu;
+    const std::uint64_t pairs = (counts & kEven) + ((counts >> 8) & kEven);
+    return static_cast<std::uint32_t>((pairs * 0x0001000100010001u) >> 48);
+  }
+};
+
+/// So many words fit into the counts.
+constexpr std::size_t kMostWords = 255;
 
 }  // namespace
 
@@ -70,23 +85,34 @@ void FieldWork::find(std::span<const std::uint8_t> status) {
 /// Notes also which runs have open pillars.
 FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
                                         std::span<const std::uint8_t> status) {
-  static const StatusCounts counts_of = make_counts();
   Summary summary;
-  std::uint64_t all = 0;
   open_runs_.clear();
   for (const ContactRun& run : runs) {
-    const std::uint8_t* const row = status.data() + std::size_t{run.row} * cols_;
-    std::uint64_t counts = 0;
-    for (std::uint32_t col = run.first; col < run.end; ++col) counts += counts_of[row[col]];
-    if (static_cast<std::uint32_t>(counts) != 0) open_runs_.push_back(run);
-    all += counts;
+    const std::uint32_t before = summary.open;
+    add_counts(status.subspan(std::size_t{run.row} * cols_ + run.first, run.end - run.first),
+               summary);
+    if (summary.open != before) open_runs_.push_back(run);
     summary.pillars += run.end - run.first;
     summary.first_col = std::min(summary.first_col, run.first);
     summary.end_col = std::max(summary.end_col, run.end);
   }
-  summary.open = static_cast<std::uint32_t>(all);
-  summary.resolved = static_cast<std::uint32_t>(all >> kDeterminedShift);
   return summary;
+}
+
+void FieldWork::add_counts(std::span<const std::uint8_t> status, Summary& summary) {
+  constexpr std::size_t kWord = sizeof(std::uint64_t);
+  while (!status.empty()) {
+    RunCounts counts;
+    const auto piece = status.first(std::min(status.size(), kMostWords * kWord));
+    for (std::size_t at = 0; at < piece.size(); at += kWord) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, piece.data() + at, std::min(kWord, piece.size() - at));
+      counts.add(bits);
+    }
+    summary.open += RunCounts::total(counts.open);
+    summary.resolved += RunCounts::total(counts.determined);
+    status = status.subspan(piece.size());
+  }
 }
 
 void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t> status) {

@@ -39,6 +39,7 @@ class FieldWork {
     std::uint32_t end_col = 0;
   };
 
+  static void add_counts(std::span<const std::uint8_t> status, Summary& summary);
   Summary summarise(std::span<const ContactRun> runs, std::span<const std::uint8_t> status);
   void add_contact(std::uint32_t contact, std::span<const std::uint8_t> status);
 

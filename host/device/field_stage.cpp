@@ -1,6 +1,9 @@
 #include "device/field_stage.h"
 
 #include <algorithm>
+#include <vector>
+
+#include "core/field_work.h"
 
 namespace pillarfield {
 namespace {
@@ -24,17 +27,61 @@ cl::Program build(Device::State& device, bool groups) {
   return device.program(field_kernel_source(groups));
 }
 
-}  // namespace
-
-const cl::Buffer& FieldStage::Growing::of(const cl::Context& context, std::size_t bytes) {
-  if (bytes > bytes_ || bytes_ == 0) {
-    bytes_ = std::max<std::size_t>(bytes + bytes / 2, 1);
-    buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes_);
+/// A buffer that grows with what it has to hold.
+class Growing {
+ public:
+  const cl::Buffer& of(const cl::Context& context, std::size_t bytes) {
+    if (bytes > bytes_ || bytes_ == 0) {
+      bytes_ = std::max<std::size_t>(bytes + bytes / 2, 1);
+      buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes_);
+    }
+    return buffer_;
   }
-  return buffer_;
-}
 
-FieldStage::FieldStage(Device::State& device, const SolverPlan& plan, bool groups)
+ private:
+  cl::Buffer buffer_;
+  std::size_t bytes_ = 0;
+};
+
+class DeviceFieldStage final : public FieldStage {
+ public:
+  DeviceFieldStage(Device::State& device, const SolverPlan& plan, bool groups);
+
+  void resolve(const cl::CommandQueue& queue, SlotMemory& memory) override;
+  [[nodiscard]] const ContactMap& contacts() const override { return work_.map(); }
+
+ private:
+  cl_uint set_field(cl::Kernel& kernel, const SlotMemory& memory) const;
+  void enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory);
+  void enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory);
+  void keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory);
+  const cl::Buffer& send_runs(const cl::CommandQueue& queue);
+
+  cl::Context context_;
+  std::uint32_t rows_;
+  std::uint32_t cols_;
+  FieldWork work_;
+  std::size_t group_ = 1;    ///< work-items of a contact
+  std::size_t workers_ = 1;  ///< work-items for pillars alone
+  cl::Kernel contacts_;
+  cl::Kernel pillars_;
+  cl::Kernel keep_;
+  cl::Buffer past_normal_;  ///< null where frames are not close in time
+  cl::Buffer past_deviation_;
+  cl::Buffer past_frame_;
+  cl_uint now_ = 1;  ///< frames that were seen, and one: pillars begin with frame 0
+  Growing tiles_;
+  Growing runs_;
+  Growing verdicts_;
+  Growing kinds_;
+  Growing planes_;
+  Growing lines_;
+  Growing shared_;
+  Growing counts_;
+  Growing alone_;
+};
+
+DeviceFieldStage::DeviceFieldStage(Device::State& device, const SolverPlan& plan, bool groups)
     : context_(device.context),
       rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
@@ -58,7 +105,7 @@ FieldStage::FieldStage(Device::State& device, const SolverPlan& plan, bool group
   }
 }
 
-cl_uint FieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) const {
+cl_uint DeviceFieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) const {
   cl_uint argument = 0;
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
     kernel.setArg(argument++, memory.buffer(plane));
@@ -80,14 +127,14 @@ cl_uint FieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) cons
   return argument;
 }
 
-const cl::Buffer& FieldStage::send_runs(const cl::CommandQueue& queue) {
+const cl::Buffer& DeviceFieldStage::send_runs(const cl::CommandQueue& queue) {
   const std::span<const ContactRun> runs = work_.map().runs();
   const cl::Buffer& on_device = runs_.of(context_, runs.size_bytes());
   queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, runs.size_bytes(), runs.data());
   return on_device;
 }
 
-void FieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory) {
+void DeviceFieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory) {
   const std::size_t tiles = work_.tiles().size();
   if (tiles == 0) return;
   const std::size_t tile_bytes = tiles * sizeof(single_precision::Tile);
@@ -108,7 +155,7 @@ void FieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemor
                              cl::NDRange(group_));
 }
 
-void FieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory) {
+void DeviceFieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory) {
   const std::vector<std::uint32_t>& alone = work_.alone();
   if (alone.empty()) return;
   const std::size_t bytes = alone.size() * sizeof(std::uint32_t);
@@ -121,7 +168,7 @@ void FieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory
   queue.enqueueNDRangeKernel(pillars_, cl::NullRange, cl::NDRange(workers));
 }
 
-void FieldStage::keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory) {
+void DeviceFieldStage::keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory) {
   const std::size_t runs = work_.map().runs().size();
   if (past_normal_() == nullptr || runs == 0) return;
   cl_uint argument = set_field(keep_, memory);
@@ -130,7 +177,7 @@ void FieldStage::keep_for_next(const cl::CommandQueue& queue, const SlotMemory& 
   queue.enqueueNDRangeKernel(keep_, cl::NullRange, cl::NDRange(std::min(workers_, runs)));
 }
 
-void FieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
+void DeviceFieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
   const auto* const status = reinterpret_cast<const std::uint8_t*>(memory.host(kStatus));
   work_.find({status, std::size_t{rows_} * cols_});
   ++now_;
@@ -141,6 +188,13 @@ void FieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
   keep_for_next(queue, memory);
   memory.fetch(queue);
   queue.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<FieldStage> device_field_stage(Device::State& device, const SolverPlan& plan,
+                                               bool groups) {
+  return std::make_unique<DeviceFieldStage>(device, plan, groups);
 }
 
 }  // namespace pillarfield

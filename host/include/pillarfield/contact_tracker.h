@@ -77,6 +77,11 @@ class ContactTracker {
   /// size of the frame before.
   const FrameContacts& update(const ForceFieldView& forces, double time_s);
 
+  /// The same where the contacts of the frame were found already (Processor::contacts()): `map` is
+  /// of the frame's own status bytes, and copied. Throws Error also where one of its runs lies
+  /// outside the frame.
+  const FrameContacts& update(const ForceFieldView& forces, const ContactMap& map, double time_s);
+
   /// The pillars of the contacts of the frame last taken, small ones included.
   [[nodiscard]] const ContactMap& map() const;
 
