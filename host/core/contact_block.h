@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 #include "core/contact_sum.h"
+#include "pillarfield/contact_map.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/status.h"
 
@@ -101,6 +104,22 @@ inline PillarForce pillar_at(const ForceFieldView& forces, const ForceQuanta& qu
           place_x(forces, col),
           place_y(forces, row),
           forces.status[place]};
+}
+
+/// Asks for what the next runs need of a plane: rows are too far apart for a processor to guess.
+template <class Value>
+PF_INLINE void ask_for(std::span<const Value> plane, const ForceFieldView& forces,
+                       std::span<const ContactRun> runs, std::size_t run) {
+#if defined(__GNUC__)
+  constexpr std::size_t kAhead = 4;
+  constexpr std::uint32_t kLine = 64 / sizeof(Value);
+  if (run + kAhead >= runs.size()) return;
+  const ContactRun& ahead = runs[run + kAhead];
+  const Value* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
+  for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
+    __builtin_prefetch(row + std::min(col, ahead.end - 1));
+  }
+#endif
 }
 
 }  // namespace pillarfield

@@ -81,7 +81,11 @@ PF_WIDE void add_ratios(const ForceFieldView& forces, std::span<const ContactRun
   if (!(peak_n >= std::numeric_limits<float>::min())) return;
   constexpr auto kMost = static_cast<float>(FrictionHistogram::kMostWeight);
   const Demand demand = {peak_n / 4, kMost / peak_n};
-  for (const ContactRun& run : runs) {
+  for (std::size_t at_run = 0; at_run < runs.size(); ++at_run) {
+    const ContactRun& run = runs[at_run];
+    ask_for(forces.shear_x, forces, runs, at_run);
+    ask_for(forces.shear_y, forces, runs, at_run);
+    ask_for(forces.status, forces, runs, at_run);
     for (std::uint32_t first = run.first; first < run.end; first += kBlock) {
       const std::uint32_t pillars = std::min(kBlock, run.end - first);
       const std::size_t at = std::size_t{run.row} * forces.cols + first;

@@ -7,6 +7,9 @@ namespace maths = single_precision;
 
 constexpr std::size_t kFloatPlanes = 6;
 
+/// Threads share pillars that stay alone in such lots; a smaller one is not worth waking them.
+constexpr std::size_t kAlonePiece = 1024;
+
 /// A plane's values; null where it is empty.
 float* values(std::vector<float>& plane) { return plane.empty() ? nullptr : plane.data(); }
 
@@ -58,6 +61,13 @@ single_precision::Scratch HostFieldEstimator::scratch(std::size_t tile) {
           counts_.data() + tile * PF_RATIO_COUNTS};
 }
 
+void HostFieldEstimator::resolve_alone(const maths::Field& field,
+                                       std::span<const std::uint32_t> pillars) {
+  for (const std::uint32_t index : pillars) {
+    maths::resolve_alone(field, past(), index, work_.settings());
+  }
+}
+
 void HostFieldEstimator::make_room() {
   const std::size_t tiles = work_.tiles().size();
   kinds_.resize(work_.cells());
@@ -78,13 +88,18 @@ void HostFieldEstimator::resolve(const maths::Field& field) {
   for (const ContactRun& run : work_.map().runs()) {
     runs_.push_back({run.row, run.first, run.end, run.contact});
   }
-  team_->run(work_.tiles().size(), [&](std::size_t tile) {
-    verdicts_[tile] = maths::resolve_contact(work_.tiles()[tile], scratch(tile), field, past(),
-                                             runs_.data(), work_.settings(), {0, 1});
+  const std::size_t tiles = work_.tiles().size();
+  const std::size_t shared_alone = work_.alone().size() / kAlonePiece;
+  team_->run(tiles + shared_alone, [&](std::size_t piece) {
+    if (piece < tiles) {
+      verdicts_[piece] = maths::resolve_contact(work_.tiles()[piece], scratch(piece), field, past(),
+                                                runs_.data(), work_.settings(), {0, 1});
+    } else {
+      const std::size_t first = (piece - tiles) * kAlonePiece;
+      resolve_alone(field, std::span(work_.alone()).subspan(first, kAlonePiece));
+    }
   });
-  for (const std::uint32_t index : work_.alone()) {
-    maths::resolve_alone(field, past(), index, work_.settings());
-  }
+  resolve_alone(field, std::span(work_.alone()).subspan(shared_alone * kAlonePiece));
   if (past_normal_.empty()) return;
   for (const maths::Run& run : runs_) maths::keep_run(field, past(), run, work_.settings().noise);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/field_work.h"
@@ -31,6 +32,7 @@ class HostFieldEstimator {
   single_precision::Scratch scratch(std::size_t tile);
   single_precision::Past past();
   void make_room();
+  void resolve_alone(const single_precision::Field& field, std::span<const std::uint32_t> pillars);
 
   FieldWork work_;
   std::vector<std::uint8_t> kinds_;

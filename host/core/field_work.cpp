@@ -1,6 +1,7 @@
 #include "core/field_work.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -36,33 +37,73 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
 /// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
 constexpr std::uint32_t kLeastOpenShare = 64;
 
-/// Counts of the open pillars of a run, and of those that their own readings determine, eight
-/// status bytes at a time: is_open() and is_determined() of each.
-struct RunCounts {
-  static constexpr std::uint64_t kEachByte = 0x0101010101010101u;
-  std::uint64_t open = 0;  ///< byte by byte
-  std::uint64_t determined = 0;
+static_assert(std::endian::native == std::endian::little,
+              "words are taken apart from their low end");
+static_assert(status::kUsable == 15 && status::kAmbiguous == 1 << 4 &&
+              status::kSaturated == 1 << 5 && status::kInconsistent == 1 << 6);
 
-  void add(std::uint64_t bits) {
-    static_assert(status::kUsable == 15 && status::kAmbiguous == 1 << 4 &&
-                  status::kSaturated == 1 << 5 && status::kInconsistent == 1 << 6);
-    const std::uint64_t pairs = (bits & (5 * kEachByte)) + ((bits >> 1) & (5 * kEachByte));
-    const std::uint64_t usable = (pairs & (3 * kEachByte)) + ((pairs >> 2) & (3 * kEachByte));
-    const std::uint64_t are_two = usable >> 1 & ~usable;
-    const std::uint64_t are_three_or_four = (usable + 5 * kEachByte) >> 3;
-    open += are_two & bits >> 4 & ~(bits >> 5) & ~(bits >> 6) & kEachByte;
-    determined += are_three_or_four & ~(bits >> 5) & kEachByte;
+constexpr std::size_t kWord = sizeof(std::uint64_t);
+constexpr std::uint64_t kEachByte = 0x0101010101010101u;
+
+/// How many sensels are usable, byte by byte.
+std::uint64_t usable_of(std::uint64_t bits) {
+  const std::uint64_t pairs = (bits & (5 * kEachByte)) + ((bits >> 1) & (5 * kEachByte));
+  return (pairs & (3 * kEachByte)) + ((pairs >> 2) & (3 * kEachByte));
+}
+
+/// maths::is_open() of eight status bytes, in bit 0 of each.
+std::uint64_t open_of(std::uint64_t bits) {
+  const std::uint64_t usable = usable_of(bits);
+  const std::uint64_t two = (usable >> 1) & ~usable;
+  return two & (bits >> 4) & ~(bits >> 5) & ~(bits >> 6) & kEachByte;
+}
+
+/// maths::is_determined() likewise.
+std::uint64_t determined_of(std::uint64_t bits) {
+  const std::uint64_t three_or_four = (usable_of(bits) + 5 * kEachByte) >> 3;
+  return three_or_four & ~(bits >> 5) & kEachByte;
+}
+
+/// Calls `use(word, place)` for eight status bytes after the other; past the end there are zeros.
+template <class Use>
+void for_each_word(std::span<const std::uint8_t> status, const Use& use) {
+  std::uint64_t word = 0;
+  std::size_t at = 0;
+  for (; at + kWord <= status.size(); at += kWord) {
+    std::memcpy(&word, status.data() + at, kWord);
+    use(word, at);
   }
+  if (at == status.size()) return;
+  word = 0;
+  std::memcpy(&word, status.data() + at, status.size() - at);
+  use(word, at);
+}
 
-  static std::uint32_t total(std::uint64_t counts) {
-    constexpr std::uint64_t kEven = 0x00ff00ff00ff00ffu;
-    const std::uint64_t pairs = (counts & kEven) + ((counts >> 8) & kEven);
-    return static_cast<std::uint32_t>((pairs * 0x0001000100010001u) >> 48);
+std::uint32_t total_of(std::uint64_t counts) {
+  constexpr std::uint64_t kEven = 0x00ff00ff00ff00ffu;
+  const std::uint64_t pairs = (counts & kEven) + ((counts >> 8) & kEven);
+  return static_cast<std::uint32_t>((pairs * 0x0001000100010001u) >> 48);
+}
+
+/// So many status bytes can be counted byte by byte.
+constexpr std::size_t kMostCounted = 255 * kWord;
+
+/// How many of `of` there are in a run, eight bytes at a time; words with none of `needed` have
+/// none.
+template <class Of>
+std::uint32_t count_of(std::span<const std::uint8_t> status, std::uint8_t needed, const Of& of) {
+  std::uint32_t count = 0;
+  while (!status.empty()) {
+    const auto piece = status.first(std::min(status.size(), kMostCounted));
+    std::uint64_t counts = 0;
+    for_each_word(piece, [&](std::uint64_t word, std::size_t) {
+      if ((word & needed * kEachByte) != 0) counts += of(word);
+    });
+    count += total_of(counts);
+    status = status.subspan(piece.size());
   }
-};
-
-/// So many words fit into the counts.
-constexpr std::size_t kMostWords = 255;
+  return count;
+}
 
 }  // namespace
 
@@ -88,10 +129,9 @@ FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
   Summary summary;
   open_runs_.clear();
   for (const ContactRun& run : runs) {
-    const std::uint32_t before = summary.open;
-    add_counts(status.subspan(std::size_t{run.row} * cols_ + run.first, run.end - run.first),
-               summary);
-    if (summary.open != before) open_runs_.push_back(run);
+    const std::uint32_t open = count_of(status_of(run, status), status::kAmbiguous, open_of);
+    if (open != 0) open_runs_.push_back(run);
+    summary.open += open;
     summary.pillars += run.end - run.first;
     summary.first_col = std::min(summary.first_col, run.first);
     summary.end_col = std::max(summary.end_col, run.end);
@@ -99,20 +139,28 @@ FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
   return summary;
 }
 
-void FieldWork::add_counts(std::span<const std::uint8_t> status, Summary& summary) {
-  constexpr std::size_t kWord = sizeof(std::uint64_t);
-  while (!status.empty()) {
-    RunCounts counts;
-    const auto piece = status.first(std::min(status.size(), kMostWords * kWord));
-    for (std::size_t at = 0; at < piece.size(); at += kWord) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, piece.data() + at, std::min(kWord, piece.size() - at));
-      counts.add(bits);
-    }
-    summary.open += RunCounts::total(counts.open);
-    summary.resolved += RunCounts::total(counts.determined);
-    status = status.subspan(piece.size());
+bool FieldWork::has_evidence(std::span<const ContactRun> runs,
+                             std::span<const std::uint8_t> status) const {
+  std::uint32_t determined = 0;
+  for (const ContactRun& run : runs) {
+    determined += count_of(status_of(run, status), status::kUsable, determined_of);
+    if (determined >= PF_LEAST_RESOLVED) return true;
   }
+  return false;
+}
+
+std::span<const std::uint8_t> FieldWork::status_of(const ContactRun& run,
+                                                   std::span<const std::uint8_t> status) const {
+  return status.subspan(std::size_t{run.row} * cols_ + run.first, run.end - run.first);
+}
+
+void FieldWork::add_alone(std::span<const std::uint8_t> status, std::size_t first) {
+  for_each_word(status, [&](std::uint64_t word, std::size_t at) {
+    for (std::uint64_t open = open_of(word); open != 0; open &= open - 1) {
+      const std::size_t byte = static_cast<std::size_t>(std::countr_zero(open)) / 8;
+      alone_.push_back(static_cast<std::uint32_t>(first + at + byte));
+    }
+  });
 }
 
 void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t> status) {
@@ -125,7 +173,7 @@ void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t>
   const bool compact = cells <= std::max(kSmallBox, kMostCellsPerPillar * summary.pillars);
   const bool asks = settings_.slips == 0 && (settings_.shape != 0 || settings_.slip != 0);
   const bool matters = kLeastOpenShare * summary.open >= summary.pillars;
-  if (asks && compact && matters && summary.resolved >= PF_LEAST_RESOLVED) {
+  if (asks && compact && matters && has_evidence(runs, status)) {
     tiles_.push_back({runs.front().row, summary.first_col, rows, cols,
                       static_cast<std::uint32_t>(cells_), static_cast<std::uint32_t>(lines_),
                       static_cast<std::uint32_t>(runs.data() - map_.runs().data()),
@@ -135,10 +183,7 @@ void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t>
     return;
   }
   for (const ContactRun& run : open_runs_) {
-    const std::size_t first = std::size_t{run.row} * cols_;
-    for (std::size_t index = first + run.first; index < first + run.end; ++index) {
-      if (maths::is_open(status[index])) alone_.push_back(static_cast<std::uint32_t>(index));
-    }
+    add_alone(status_of(run, status), std::size_t{run.row} * cols_ + run.first);
   }
 }
 
