@@ -52,12 +52,7 @@ class ContactFollower {
  private:
   void receive() {
     const ForceFieldView forces = processor_.receive();
-    const auto time_s = static_cast<double>(received_++);
-    if (const ContactMap* const contacts = processor_.contacts()) {
-      tracker_.update(forces, *contacts, time_s);
-    } else {
-      tracker_.update(forces, time_s);
-    }
+    tracker_.update(forces, static_cast<double>(received_++), processor_.contacts());
   }
 
   const Frames* frames_;

@@ -23,14 +23,29 @@ struct BlockWholes {
   Wholes last;
 };
 
+struct BlockFloats {
+  Floats first;
+  Floats last;
+};
+
 /// Every fourth pillar of a block.
 PF_INLINE void quarters_of(const Wholes& half, FourWholes& first, FourWholes& last) {
   first = __builtin_shufflevector(half, half, 0, 1, 2, 3);
   last = __builtin_shufflevector(half, half, 4, 5, 6, 7);
 }
 
+std::int64_t total_of(const FourDoubles& sums) {
+  std::int64_t total = 0;
+  for (int lane = 0; lane < 4; ++lane) total += static_cast<std::int64_t>(sums[lane]);
+  return total;
+}
+
+/// Which products with a block's place are wanted.
+enum class Moments : std::uint8_t { by_x, by_y, both };
+
 /// A force summed over blocks, a lane for every fourth pillar, and its products with the block's
 /// place, which is that of its first pillar. No sum needs its neighbour's before the very end.
+template <Moments moments>
 struct ForceLanes {
   FourDoubles force{};
   FourDoubles within{};  ///< each times the quarter of the block that it is in
@@ -45,11 +60,12 @@ struct ForceLanes {
     quarters_of(quanta.first, zeroth, first);
     quarters_of(quanta.last, second, third);
     const FourWholes odd = first + third;
-    const FourWholes upper = second + third;
     const FourDoubles sum = __builtin_convertvector(zeroth + second + odd, FourDoubles);
     force += sum;
+    if constexpr (moments != Moments::by_x) by_y += sum * y;
+    if constexpr (moments == Moments::by_y) return;
+    const FourWholes upper = second + third;
     by_x += sum * x;
-    by_y += sum * y;
     within += __builtin_convertvector(odd + upper + upper, FourDoubles);
   }
 
@@ -59,12 +75,6 @@ struct ForceLanes {
       moment += 2 * lane * static_cast<std::int64_t>(force[lane]);
     }
     return moment;
-  }
-
-  static std::int64_t total_of(const FourDoubles& sums) {
-    std::int64_t total = 0;
-    for (int lane = 0; lane < 4; ++lane) total += static_cast<std::int64_t>(sums[lane]);
-    return total;
   }
 };
 
@@ -158,9 +168,9 @@ void add_slip(const PillarForce& pillar, float least_ratio, PressingSum& slip) {
 
 /// Blocks, summed.
 struct BlockSums {
-  ForceLanes shear_x;
-  ForceLanes shear_y;
-  ForceLanes normal;
+  ForceLanes<Moments::by_y> shear_x;
+  ForceLanes<Moments::by_x> shear_y;
+  ForceLanes<Moments::both> normal;
   StatusCounts counts;
   SlipLanes slip;
   std::uint32_t blocks = 0;
@@ -168,18 +178,18 @@ struct BlockSums {
 
 /// Adds blocks to totals, all but the peak and what needs no force, and begins anew.
 void empty_into(ContactTotals& totals, BlockSums& sums) {
-  const auto total = ForceLanes::total_of;
   ContactSum& sum = totals.sum;
-  sum.shear_x += total(sums.shear_x.force);
-  sum.shear_y += total(sums.shear_y.force);
-  sum.normal += total(sums.normal.force);
+  sum.shear_x += total_of(sums.shear_x.force);
+  sum.shear_y += total_of(sums.shear_y.force);
+  sum.normal += total_of(sums.normal.force);
   sum.normal_x.add_product(sums.normal.moment_x());
-  sum.normal_y.add_product(total(sums.normal.by_y));
+  sum.normal_y.add_product(total_of(sums.normal.by_y));
   sum.shear_y_x.add_product(sums.shear_y.moment_x());
-  sum.shear_x_y.add_product(total(sums.shear_x.by_y));
+  sum.shear_x_y.add_product(total_of(sums.shear_x.by_y));
   sum.ambiguous += StatusCounts::total(sums.counts.ambiguous);
   sum.resolved += StatusCounts::total(sums.counts.resolved);
-  totals.slip.add({total(sums.slip.pressing), total(sums.slip.known), total(sums.slip.slipping)});
+  totals.slip.add(
+      {total_of(sums.slip.pressing), total_of(sums.slip.known), total_of(sums.slip.slipping)});
   sums = {};
 }
 
@@ -216,8 +226,7 @@ struct Summing {
   float least_ratio;
 };
 
-/// Adds pillars of a row one by one: those outside `blocks` wholly, of the others the forces of
-/// those that no block took.
+/// Adds pillars of a row one by one.
 void add_pillars(const Summing& summing, std::uint32_t row, std::uint32_t first, std::uint32_t end,
                  ContactTotals& totals) {
   for (std::uint32_t col = first; col < end; ++col) {
@@ -227,24 +236,6 @@ void add_pillars(const Summing& summing, std::uint32_t row, std::uint32_t first,
   }
 }
 
-/// What is read of eight pillars.
-struct HalfBlock {
-  Floats shear_x;
-  Floats shear_y;
-  Floats normal;
-
-  PF_INLINE void read(const ForceFieldView& forces, std::size_t at) {
-    load(forces.shear_x.data() + at, shear_x);
-    load(forces.shear_y.data() + at, shear_y);
-    load(forces.normal.data() + at, normal);
-  }
-  PF_INLINE void keep_all_small(Wholes& mask) const {
-    keep_small(shear_x, mask);
-    keep_small(shear_y, mask);
-    keep_small(normal, mask);
-  }
-};
-
 /// Whether a mask has lost lanes.
 PF_INLINE bool differ(const BlockWholes& a, const BlockWholes& b) {
   using Words [[gnu::vector_size(32)]] = std::uint64_t;
@@ -253,54 +244,81 @@ PF_INLINE bool differ(const BlockWholes& a, const BlockWholes& b) {
   return (words[0] | words[1] | words[2] | words[3]) != 0;
 }
 
+/// Reads a plane's block, and takes lanes out of a mask as keep_small() does.
+PF_INLINE void read_plane(const float* plane, BlockFloats& force_n, BlockWholes& mask) {
+  load(plane, force_n.first);
+  load(plane + kLanes, force_n.last);
+  keep_small(force_n.first, mask.first);
+  keep_small(force_n.last, mask.last);
+}
+
+PF_INLINE void quantise_both(const BlockFloats& force_n, const BlockWholes& mask,
+                             BlockWholes& quanta) {
+  quantise(force_n.first, mask.first, quanta.first);
+  quantise(force_n.last, mask.last, quanta.last);
+}
+
+/// The forces of a block in quanta, zero past its last pillar.
+struct Block {
+  BlockWholes shear_x;
+  BlockWholes shear_y;
+  BlockWholes normal;
+
+  /// False where a force is too large for that, or the planes end.
+  PF_INLINE bool read(const ForceFieldView& forces, std::size_t at, std::uint32_t pillars) {
+    if (at + kBlock > forces.normal.size()) return false;
+    BlockWholes mask;
+    load(kMasks<std::int32_t>.data() + kBlock - pillars, mask.first);
+    load(kMasks<std::int32_t>.data() + kBlock - pillars + kLanes, mask.last);
+    BlockWholes small = mask;
+    BlockFloats x_n;
+    BlockFloats y_n;
+    BlockFloats normal_n;
+    read_plane(forces.shear_x.data() + at, x_n, small);
+    read_plane(forces.shear_y.data() + at, y_n, small);
+    read_plane(forces.normal.data() + at, normal_n, small);
+    if (differ(small, mask)) return false;
+    quantise_both(x_n, mask, shear_x);
+    quantise_both(y_n, mask, shear_y);
+    quantise_both(normal_n, mask, normal);
+    return true;
+  }
+};
+
+/// Adds the block at (row, col).
+PF_INLINE void add_block(const Summing& summing, const Block& block, std::uint32_t row,
+                         std::uint32_t col, std::uint32_t pillars, BlockSums& sums) {
+  const ForceFieldView& forces = summing.forces;
+  const auto x = static_cast<double>(place_x(forces, col));
+  const auto y = static_cast<double>(place_y(forces, row));
+  sums.shear_x.add(block.shear_x, x, y);
+  sums.shear_y.add(block.shear_y, x, y);
+  sums.normal.add(block.normal, x, y);
+  const std::uint8_t* const status = forces.status.data() + std::size_t{row} * forces.cols + col;
+  sums.counts.add(status, kMasks<std::uint8_t>.data() + kBlock - pillars);
+  if (summing.with_slip) {
+    sums.slip.add(block.shear_x, block.shear_y, block.normal, status, summing.least_ratio);
+  }
+}
+
+PF_INLINE void raise(Wholes& peaks, const Wholes& to) { peaks = to > peaks ? to : peaks; }
+
 /// Adds a run, in blocks wherever its forces make such; returns the blocks' largest normal force.
 PF_INLINE std::int32_t add_run(const Summing& summing, const ContactRun& run, BlockSums& sums,
                                ContactTotals& totals) {
   const ForceFieldView& forces = summing.forces;
-  const auto y = static_cast<double>(place_y(forces, run.row));
   Wholes peaks{};
   for (std::uint32_t first = run.first; first < run.end; first += kBlock) {
     const std::uint32_t pillars = std::min(kBlock, run.end - first);
-    const std::size_t at = std::size_t{run.row} * forces.cols + first;
-    const std::size_t past = kBlock - pillars;
-    BlockWholes mask;
-    load(kMasks<std::int32_t>.data() + past, mask.first);
-    load(kMasks<std::int32_t>.data() + past + kLanes, mask.last);
-    const bool fits = at + kBlock <= forces.normal.size();
-    HalfBlock head;
-    HalfBlock tail;
-    BlockWholes small = mask;
-    if (fits) {
-      head.read(forces, at);
-      tail.read(forces, at + kLanes);
-      head.keep_all_small(small.first);
-      tail.keep_all_small(small.last);
-    }
-    if (!fits || differ(small, mask)) {
+    Block block;
+    if (!block.read(forces, std::size_t{run.row} * forces.cols + first, pillars)) {
       add_pillars(summing, run.row, first, first + pillars, totals);
       continue;
     }
-    BlockWholes shear_x;
-    BlockWholes shear_y;
-    BlockWholes normal;
-    quantise(head.shear_x, mask.first, shear_x.first);
-    quantise(tail.shear_x, mask.last, shear_x.last);
-    quantise(head.shear_y, mask.first, shear_y.first);
-    quantise(tail.shear_y, mask.last, shear_y.last);
-    quantise(head.normal, mask.first, normal.first);
-    quantise(tail.normal, mask.last, normal.last);
-    const std::int64_t x = place_x(forces, first);
-    const std::uint8_t* const status = forces.status.data() + at;
-    sums.shear_x.add(shear_x, static_cast<double>(x), y);
-    sums.shear_y.add(shear_y, static_cast<double>(x), y);
-    sums.normal.add(normal, static_cast<double>(x), y);
-    sums.counts.add(status, kMasks<std::uint8_t>.data() + past);
-    if (summing.with_slip) {
-      sums.slip.add(shear_x, shear_y, normal, status, summing.least_ratio);
-    }
-    peaks = normal.first > peaks ? normal.first : peaks;
-    peaks = normal.last > peaks ? normal.last : peaks;
-    totals.sum.x += pillars * (x + pillars - 1);
+    add_block(summing, block, run.row, first, pillars, sums);
+    raise(peaks, block.normal.first);
+    raise(peaks, block.normal.last);
+    totals.sum.x += pillars * (place_x(forces, first) + pillars - 1);
     totals.sum.y += pillars * place_y(forces, run.row);
     totals.sum.pillars += pillars;
     if (++sums.blocks == kMostBlocks) empty_into(totals, sums);

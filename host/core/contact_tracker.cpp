@@ -217,17 +217,15 @@ ContactTracker::~ContactTracker() = default;
 ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;
 ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;
 
-const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s) {
+const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s,
+                                            const ContactMap* found) {
   state_->require_size(forces);
-  state_->map.find(forces.status, forces.rows, forces.cols);
-  return state_->follow(forces, time_s);
-}
-
-const FrameContacts& ContactTracker::update(const ForceFieldView& forces, const ContactMap& map,
-                                            double time_s) {
-  state_->require_size(forces);
-  require_inside(map, forces);
-  state_->map = map;
+  if (found != nullptr) {
+    require_inside(*found, forces);
+    state_->map = *found;
+  } else {
+    state_->map.find(forces.status, forces.rows, forces.cols);
+  }
   return state_->follow(forces, time_s);
 }
 

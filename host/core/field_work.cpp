@@ -129,7 +129,8 @@ FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
   Summary summary;
   open_runs_.clear();
   for (const ContactRun& run : runs) {
-    const std::uint32_t open = count_of(status_of(run, status), status::kAmbiguous, open_of);
+    const std::uint32_t open = count_of(status_of(run, status), status::kAmbiguous,
+                                        [](std::uint64_t word) { return open_of(word); });
     if (open != 0) open_runs_.push_back(run);
     summary.open += open;
     summary.pillars += run.end - run.first;
@@ -143,7 +144,8 @@ bool FieldWork::has_evidence(std::span<const ContactRun> runs,
                              std::span<const std::uint8_t> status) const {
   std::uint32_t determined = 0;
   for (const ContactRun& run : runs) {
-    determined += count_of(status_of(run, status), status::kUsable, determined_of);
+    determined += count_of(status_of(run, status), status::kUsable,
+                           [](std::uint64_t word) { return determined_of(word); });
     if (determined >= PF_LEAST_RESOLVED) return true;
   }
   return false;

@@ -15,6 +15,10 @@ class FieldStage {
  public:
   virtual ~FieldStage() = default;
 
+  /// Lets drivers finish compiling, which the first frame shall not wait for; `memory` holds a
+  /// frame of silence, and still does.
+  virtual void warm_up(const cl::CommandQueue& queue, SlotMemory& memory) = 0;
+
   /// Resolves the open pillars of a frame whose planes lie in `memory`, and waits.
   virtual void resolve(const cl::CommandQueue& queue, SlotMemory& memory) = 0;
 

@@ -13,6 +13,8 @@ class HostFieldStage final : public FieldStage {
   HostFieldStage(const SolverPlan& plan, std::size_t threads)
       : rows_(plan.skin.pillar_rows()), cols_(plan.skin.pillar_cols()), estimator_(plan, threads) {}
 
+  void warm_up(const cl::CommandQueue&, SlotMemory&) override {}
+
   void resolve(const cl::CommandQueue&, SlotMemory& memory) override {
     const auto uncertainty = [&](Uncertainty plane) {
       return floats_of(memory, kUncertainty + static_cast<std::size_t>(plane));

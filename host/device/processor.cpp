@@ -113,6 +113,7 @@ struct Processor::State {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front()->submit(frame.view());
     slots.front()->wait();
+    if (field) slots.front()->warm_up(*field);
   }
 
   Device device;

@@ -301,7 +301,7 @@ TEST(ContactTracker, TakesContactsThatWereFound) {
     const FrameContacts& expected = finds.update(patch.view(), step);
     ContactMap map;  // gone when the frame is taken
     map.find(patch.view().status, 40, 60);
-    const FrameContacts& actual = takes.update(patch.view(), map, step);
+    const FrameContacts& actual = takes.update(patch.view(), step, &map);
     map = {};
     EXPECT_EQ(ids_of(actual), ids_of(expected));
     EXPECT_EQ(ended_ids(actual), ended_ids(expected));
@@ -338,7 +338,7 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
   for (const auto& [rows, cols] : {std::pair{5U, 5U}, {4U, 6U}}) {
     ContactMap map;
     map.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
-    says([&] { tracker.update(same.view(), map, 1); }, "of 4 x 5 pillars");
+    says([&] { tracker.update(same.view(), 1, &map); }, "of 4 x 5 pillars");
   }
 }
 
