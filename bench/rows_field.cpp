@@ -50,7 +50,10 @@ class ContactFollower {
   }
 
  private:
-  void receive() { tracker_.update(processor_.receive(), static_cast<double>(received_++)); }
+  void receive() {
+    const ForceFieldView forces = processor_.receive();
+    tracker_.update(forces, static_cast<double>(received_++), processor_.contacts());
+  }
 
   const Frames* frames_;
   Processor processor_;

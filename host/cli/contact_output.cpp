@@ -80,8 +80,9 @@ ContactOutput::ContactOutput(const ContactOutputOptions& options, const ForceFil
       create_contact_sink(options.file, {forces.pillar_pitch_mm, forces.source, options.contacts});
 }
 
-void ContactOutput::append(const ForceFieldView& forces, double time_s, ForceSink& sink) {
-  const FrameContacts& frame = tracker_.update(forces, time_s);
+void ContactOutput::append(const ForceFieldView& forces, const ContactMap* found, double time_s,
+                           ForceSink& sink) {
+  const FrameContacts& frame = tracker_.update(forces, time_s, found);
   if (in_force_file_) sink.append_contacts(frame);
   if (table_) table_->append(frame);
   most_at_once_ = std::max(most_at_once_, frame.contacts.size());

@@ -37,8 +37,9 @@ class ContactOutput {
   ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
                 const std::string& output);
 
-  /// Takes a frame that `sink` has just taken.
-  void append(const ForceFieldView& forces, double time_s, ForceSink& sink);
+  /// Takes a frame that `sink` has just taken; `found` as ContactTracker::update() has it.
+  void append(const ForceFieldView& forces, const ContactMap* found, double time_s,
+              ForceSink& sink);
   void finish();
 
   [[nodiscard]] std::uint64_t contacts() const { return contacts_; }  ///< different ones

@@ -108,7 +108,7 @@ class Pipeline {
     summary_.regions.add(forces.status);
     const double time_s = times_.at(summary_.frames % frames_.size());
     sink_.append(forces, time_s);
-    if (contacts_ != nullptr) contacts_->append(forces, time_s, sink_);
+    if (contacts_ != nullptr) contacts_->append(forces, processor_.contacts(), time_s, sink_);
     ++summary_.frames;
   }
 

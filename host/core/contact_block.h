@@ -5,8 +5,11 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 
 #include "core/contact_sum.h"
+#include "pillarfield/contact_map.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/status.h"
 
@@ -27,10 +30,17 @@ namespace pillarfield {
 /// plain arrays, of which compilers make vector instructions.
 inline constexpr std::uint32_t kBlock = 16;
 
-using BlockQuanta = std::array<std::int32_t, kBlock>;
+/// Vectors by name, since of loops that would do compilers make poor ones: eight floats or whole
+/// numbers, four whole numbers or their doubles. Where a processor has shorter ones, each is
+/// several.
+using Floats [[gnu::vector_size(32)]] = float;
+using Wholes [[gnu::vector_size(32)]] = std::int32_t;
+using FourWholes [[gnu::vector_size(16)]] = std::int32_t;
+using FourDoubles [[gnu::vector_size(32)]] = double;
+inline constexpr std::uint32_t kLanes = 8;
 
-/// Forces below this, N, are at most 2^30 quanta.
-inline constexpr float kMostBlockForceN = 64;
+/// Forces of smaller magnitude, N, are less than 2^28 quanta: the sum of six of them fits 31 bits.
+inline constexpr float kMostBlockForceN = 16;
 
 /// All bits set, kBlock times, then none as often.
 template <class Number>
@@ -40,35 +50,37 @@ inline constexpr auto kMasks = [] {
   return masks;
 }();
 
-/// Negative where one of a block's forces is kMostBlockForceN or more, or NaN.
-PF_INLINE std::int32_t room_of(const float* force_n) {
-  // The bits of the largest magnitude that fits. NaN's are more.
-  constexpr auto kMost = std::bit_cast<std::int32_t>(kMostBlockForceN) - 1;
-  std::int32_t room = 0;
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    room |= kMost - (std::bit_cast<std::int32_t>(force_n[i]) & 0x7fffffff);
-  }
-  return room;
+/// A vector from any place in memory. Vectors go by reference: how they are returned depends on the
+/// processor.
+template <class Vector, class Value>
+PF_INLINE void load(const Value* from, Vector& vector) {
+  std::memcpy(&vector, from, sizeof(Vector));
 }
 
-/// Rounds a block's forces as ForceQuanta does, and sets those outside `mask` to zero.
-PF_INLINE BlockQuanta quantised(const float* force_n, const std::int32_t* mask) {
-  constexpr float kQuantaPerNewton = 1 / static_cast<float>(ForceQuanta::kForceQuantum);
-  BlockQuanta quanta;  // of its own, for the loop to be free to read and write in any order
-  for (std::size_t i = 0; i < kBlock; ++i) {
-    const float scaled = force_n[i] * kQuantaPerNewton;  // exact, as is what follows
-    const auto whole = static_cast<std::int32_t>(scaled);
-    const float rest = scaled - static_cast<float>(whole);
-    const std::int32_t up = rest >= 0.5F ? 1 : 0;
-    const std::int32_t down = rest <= -0.5F ? 1 : 0;
-    quanta[i] = (whole + up - down) & mask[i];
-  }
-  return quanta;
+/// Takes those lanes out of a mask whose force is kMostBlockForceN or more, or NaN.
+PF_INLINE void keep_small(const Floats& force_n, Wholes& mask) {
+  constexpr auto kMost = std::bit_cast<std::int32_t>(kMostBlockForceN);
+  mask &= (__builtin_bit_cast(Wholes, force_n) & INT32_MAX) < kMost;
 }
+
+/// Rounds small forces as ForceQuanta does; those outside `mask` may be any and become zero.
+PF_INLINE void quantise(const Floats& force_n, const Wholes& mask, Wholes& quanta) {
+  constexpr float kQuantaPerNewton = 1 / static_cast<float>(ForceQuanta::kForceQuantum);
+  // With the largest float below a half, sums with less than a half behind the point stay below the
+  // next number, and those with a half are rounded up to it.
+  constexpr auto kBelowHalf = std::bit_cast<std::int32_t>(0x1.fffffep-2F);
+  const Wholes kept = __builtin_bit_cast(Wholes, force_n) & mask;
+  const Floats scaled = __builtin_bit_cast(Floats, kept) * kQuantaPerNewton;  // exact
+  const Wholes half = (__builtin_bit_cast(Wholes, scaled) & INT32_MIN) | kBelowHalf;
+  quanta = __builtin_convertvector(scaled + __builtin_bit_cast(Floats, half), Wholes);
+}
+
+/// What leaves a force in doubt although enough sensels are usable.
+inline constexpr int kDoubtful =
+    status::kFromNeighbours | status::kSaturated | status::kInconsistent;
 
 /// Whether a pillar is in region 1 or 2 and nothing is wrong with it.
 PF_INLINE bool is_known(std::uint8_t bits) {
-  constexpr int kDoubtful = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
   const int lifted = ~bits & status::kUsable;
   return ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
 }
@@ -94,17 +106,20 @@ inline PillarForce pillar_at(const ForceFieldView& forces, const ForceQuanta& qu
           forces.status[place]};
 }
 
-/// Whether all blocks of a piece may be read as such: their forces fit, and what is read past the
-/// end, and masked, is there.
-PF_INLINE bool makes_blocks(const ForceFieldView& forces, std::size_t begin, std::size_t pillars) {
-  const std::size_t end = begin + (pillars + kBlock - 1) / kBlock * kBlock;
-  if (end > forces.normal.size()) return false;
-  std::int32_t room = 0;
-  for (std::size_t at = begin; at < end; at += kBlock) {
-    room |= room_of(forces.shear_x.data() + at) | room_of(forces.shear_y.data() + at) |
-            room_of(forces.normal.data() + at);
+/// Asks for what the next runs need of a plane: rows are too far apart for a processor to guess.
+template <class Value>
+PF_INLINE void ask_for(std::span<const Value> plane, const ForceFieldView& forces,
+                       std::span<const ContactRun> runs, std::size_t run) {
+#if defined(__GNUC__)
+  constexpr std::size_t kAhead = 4;
+  constexpr std::uint32_t kLine = 64 / sizeof(Value);
+  if (run + kAhead >= runs.size()) return;
+  const ContactRun& ahead = runs[run + kAhead];
+  const Value* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
+  for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
+    __builtin_prefetch(row + std::min(col, ahead.end - 1));
   }
-  return room >= 0;
+#endif
 }
 
 }  // namespace pillarfield

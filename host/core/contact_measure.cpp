@@ -17,7 +17,7 @@ constexpr double kMostOpen = 0.25;
 
 /// Fewer pillars cannot show a friction, and more of a contact need not be asked.
 constexpr std::uint64_t kFewestForFriction = 8;
-constexpr std::uint64_t kSamples = 1000;
+constexpr std::uint64_t kSamples = 500;
 
 constexpr std::uint64_t kFewestRows = 8;
 

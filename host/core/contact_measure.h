@@ -19,7 +19,7 @@ class ContactMeasure {
   ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm, FrictionHistogram& scratch);
 
   /// The friction that the pillars of a contact show. Of one of N pillars every k-th row is
-  /// looked at, k = N / 1000 rounded up, so that 500 to 1000 pillars are; but 8 of its rows if it
+  /// looked at, k = N / 500 rounded up, so that 250 to 500 pillars are; but 8 of its rows if it
   /// has as many. Those that bear a quarter of the largest force there, or more, are asked,
   /// weighted with their normal force: noise moves the ratio of the others.
   [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs) const;

@@ -11,43 +11,70 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kLanes = 4;
 constexpr std::size_t kWord = sizeof(std::uint64_t);
 
-/// Runs are taken in pieces of so many, 64 blocks: sums of moments stay below 2^53 and so exact in
-/// double precision, counts of blocks below 2^8.
-constexpr std::uint32_t kPiece = 1024;
+/// So many blocks are summed before they are added to the totals: moments stay below 2^53 and so
+/// exact in double precision, counts in bytes below 2^8.
+constexpr std::uint32_t kMostBlocks = 127;
 
-using LaneSums = std::array<double, kLanes>;
+/// A quantity of a block's pillars, in two halves.
+struct BlockWholes {
+  Wholes first;
+  Wholes last;
+};
 
-/// Adds four pillars to each lane.
-PF_INLINE LaneSums plus(const LaneSums& sums, const BlockQuanta& quanta) {
-  LaneSums more;
-  for (std::size_t i = 0; i < kLanes; ++i) {
-    more[i] = sums[i] + ((double{1} * quanta[i] + quanta[i + 4]) +
-                         (double{1} * quanta[i + 8] + quanta[i + 12]));
+struct BlockFloats {
+  Floats first;
+  Floats last;
+};
+
+/// Every fourth pillar of a block.
+PF_INLINE void quarters_of(const Wholes& half, FourWholes& first, FourWholes& last) {
+  first = __builtin_shufflevector(half, half, 0, 1, 2, 3);
+  last = __builtin_shufflevector(half, half, 4, 5, 6, 7);
+}
+
+std::int64_t total_of(const FourDoubles& sums) {
+  std::int64_t total = 0;
+  for (int lane = 0; lane < 4; ++lane) total += static_cast<std::int64_t>(sums[lane]);
+  return total;
+}
+
+/// Which products with a block's place are wanted.
+enum class Moments : std::uint8_t { by_x, by_y, both };
+
+/// A force summed over blocks, a lane for every fourth pillar, and its products with the block's
+/// place, which is that of its first pillar. No sum needs its neighbour's before the very end.
+template <Moments moments>
+struct ForceLanes {
+  FourDoubles force{};
+  FourDoubles within{};  ///< each times the quarter of the block that it is in
+  FourDoubles by_x{};
+  FourDoubles by_y{};
+
+  PF_INLINE void add(const BlockWholes& quanta, double x, double y) {
+    FourWholes zeroth;
+    FourWholes first;
+    FourWholes second;
+    FourWholes third;
+    quarters_of(quanta.first, zeroth, first);
+    quarters_of(quanta.last, second, third);
+    const FourWholes odd = first + third;
+    const FourDoubles sum = __builtin_convertvector(zeroth + second + odd, FourDoubles);
+    force += sum;
+    if constexpr (moments != Moments::by_x) by_y += sum * y;
+    if constexpr (moments == Moments::by_y) return;
+    const FourWholes upper = second + third;
+    by_x += sum * x;
+    within += __builtin_convertvector(odd + upper + upper, FourDoubles);
   }
-  return more;
-}
 
-PF_INLINE std::int64_t value_of(const LaneSums& sums) {
-  return static_cast<std::int64_t>((sums[0] + sums[1]) + (sums[2] + sums[3]));
-}
-
-/// A force summed over pillars side by side, and its moment about the first of them, in pitches.
-struct MomentLanes {
-  LaneSums force{};
-  LaneSums moment{};
-
-  PF_INLINE void add(const BlockQuanta& quanta, double place) {
-    force = plus(force, quanta);
-    LaneSums more;
-    for (std::size_t i = 0; i < kLanes; ++i) {
-      const double at = place + static_cast<double>(static_cast<int>(i));
-      more[i] = moment[i] + ((quanta[i] * at + quanta[i + 4] * (at + 4)) +
-                             (quanta[i + 8] * (at + 8) + quanta[i + 12] * (at + 12)));
+  [[nodiscard]] std::int64_t moment_x() const {
+    std::int64_t moment = total_of(by_x) + 8 * total_of(within);
+    for (int lane = 1; lane < 4; ++lane) {
+      moment += 2 * lane * static_cast<std::int64_t>(force[lane]);
     }
-    moment = more;
+    return moment;
   }
 };
 
@@ -77,28 +104,53 @@ struct StatusCounts {
   }
 };
 
+/// Adds what presses, quanta none of which is below zero, four pillars to a lane.
+PF_INLINE void add_quarters(const BlockWholes& pressing, FourDoubles& sum) {
+  const Wholes both = pressing.first + pressing.last;
+  FourWholes first;
+  FourWholes last;
+  quarters_of(both, first, last);
+  sum += __builtin_convertvector(first + last, FourDoubles);
+}
+
+/// Which pillars are in region 1 or 2 with nothing wrong: is_known() of eight.
+PF_INLINE void known_of(const std::uint8_t* status, Wholes& known) {
+  using Bytes [[gnu::vector_size(8)]] = std::uint8_t;
+  Bytes bytes;
+  load(status, bytes);
+  const Wholes bits = __builtin_convertvector(bytes, Wholes);
+  const Wholes lifted = ~bits & status::kUsable;
+  known = ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
+}
+
+PF_INLINE void slipping_of(const Wholes& shear_x, const Wholes& shear_y, const Wholes& normal,
+                           float least_ratio, Wholes& slipping) {
+  const Floats x = __builtin_convertvector(shear_x, Floats);
+  const Floats y = __builtin_convertvector(shear_y, Floats);
+  const Floats least = least_ratio * __builtin_convertvector(normal, Floats);
+  slipping = x * x + y * y >= least * least;
+}
+
 /// What PressingSum sums.
 struct SlipLanes {
-  LaneSums pressing{};
-  LaneSums known{};
-  LaneSums slipping{};
+  FourDoubles pressing{};
+  FourDoubles known{};
+  FourDoubles slipping{};
 
-  PF_INLINE void add(const BlockQuanta& shear_x, const BlockQuanta& shear_y,
-                     const BlockQuanta& normal, const std::uint8_t* status, float least_ratio) {
-    BlockQuanta presses;
-    BlockQuanta is_told;
-    BlockQuanta slips;
-    for (std::size_t i = 0; i < kBlock; ++i) {
-      const auto x = static_cast<float>(shear_x[i]);
-      const auto y = static_cast<float>(shear_y[i]);
-      const float least = least_ratio * static_cast<float>(normal[i]);
-      presses[i] = std::max(normal[i], 0);
-      is_told[i] = is_known(status[i]) ? presses[i] : 0;
-      slips[i] = x * x + y * y >= least * least ? is_told[i] : 0;
-    }
-    pressing = plus(pressing, presses);
-    known = plus(known, is_told);
-    slipping = plus(slipping, slips);
+  PF_INLINE void add(const BlockWholes& shear_x, const BlockWholes& shear_y,
+                     const BlockWholes& normal, const std::uint8_t* status, float least_ratio) {
+    const BlockWholes presses = {normal.first & (normal.first > 0),
+                                 normal.last & (normal.last > 0)};
+    BlockWholes told;
+    known_of(status, told.first);
+    known_of(status + kLanes, told.last);
+    told = {told.first & presses.first, told.last & presses.last};
+    BlockWholes slips;
+    slipping_of(shear_x.first, shear_y.first, normal.first, least_ratio, slips.first);
+    slipping_of(shear_x.last, shear_y.last, normal.last, least_ratio, slips.last);
+    add_quarters(presses, pressing);
+    add_quarters(told, known);
+    add_quarters({told.first & slips.first, told.last & slips.last}, slipping);
   }
 };
 
@@ -114,85 +166,39 @@ void add_slip(const PillarForce& pillar, float least_ratio, PressingSum& slip) {
   if (x * x + y * y >= least * least) slip.slipping += pillar.normal;
 }
 
-PF_INLINE BlockQuanta larger_of(const BlockQuanta& a, const BlockQuanta& b) {
-  BlockQuanta larger;
-  for (std::size_t i = 0; i < kBlock; ++i) larger[i] = std::max(a[i], b[i]);
-  return larger;
-}
-
-PF_INLINE std::int32_t largest_of(const BlockQuanta& quanta) {
-  std::int32_t largest = quanta[0];
-  for (std::size_t i = 0; i < kBlock; ++i) largest = std::max(largest, quanta[i]);
-  return largest;
-}
-
-/// A piece of a run, summed.
-struct PieceSum {
-  LaneSums shear_x{};
-  MomentLanes shear_y;
-  MomentLanes normal;
-  BlockQuanta peaks{};
+/// Blocks, summed.
+struct BlockSums {
+  ForceLanes<Moments::by_y> shear_x;
+  ForceLanes<Moments::by_x> shear_y;
+  ForceLanes<Moments::both> normal;
   StatusCounts counts;
   SlipLanes slip;
+  std::uint32_t blocks = 0;
 };
 
-PF_INLINE PieceSum sum_piece(const ForceFieldView& forces, std::size_t begin, std::uint32_t pillars,
-                             bool with_slip, float least_ratio) {
-  PieceSum sum;
-  for (std::uint32_t first = 0; first < pillars; first += kBlock) {
-    const std::size_t past = kBlock - std::min(kBlock, pillars - first);
-    const std::int32_t* const mask = kMasks<std::int32_t>.data() + past;
-    const std::size_t at = begin + first;
-    const std::uint8_t* const status = forces.status.data() + at;
-    const BlockQuanta shear_x = quantised(forces.shear_x.data() + at, mask);
-    const BlockQuanta shear_y = quantised(forces.shear_y.data() + at, mask);
-    const BlockQuanta normal = quantised(forces.normal.data() + at, mask);
-    sum.shear_x = plus(sum.shear_x, shear_x);
-    sum.shear_y.add(shear_y, first);
-    sum.normal.add(normal, first);
-    sum.peaks = larger_of(sum.peaks, normal);
-    sum.counts.add(status, kMasks<std::uint8_t>.data() + past);
-    if (with_slip) sum.slip.add(shear_x, shear_y, normal, status, least_ratio);
-  }
-  return sum;
-}
-
-/// Adds a piece whose first pillar is at (x, y); all but the peak.
-void add_piece(const PieceSum& piece, std::int64_t pillars, std::int64_t x, std::int64_t y,
-               ContactTotals& totals) {
-  const std::int64_t shear_x = value_of(piece.shear_x);
-  const std::int64_t shear_y = value_of(piece.shear_y.force);
-  const std::int64_t normal = value_of(piece.normal.force);
+/// Adds blocks to totals, all but the peak and what needs no force, and begins anew.
+void empty_into(ContactTotals& totals, BlockSums& sums) {
   ContactSum& sum = totals.sum;
-  sum.shear_x += shear_x;
-  sum.shear_y += shear_y;
-  sum.normal += normal;
-  sum.normal_x.add_product(normal * x + 2 * value_of(piece.normal.moment));
-  sum.normal_y.add_product(normal * y);
-  sum.shear_y_x.add_product(shear_y * x + 2 * value_of(piece.shear_y.moment));
-  sum.shear_x_y.add_product(shear_x * y);
-  sum.x += pillars * (x + pillars - 1);
-  sum.y += pillars * y;
-  sum.pillars += pillars;
-  sum.ambiguous += StatusCounts::total(piece.counts.ambiguous);
-  sum.resolved += StatusCounts::total(piece.counts.resolved);
+  sum.shear_x += total_of(sums.shear_x.force);
+  sum.shear_y += total_of(sums.shear_y.force);
+  sum.normal += total_of(sums.normal.force);
+  sum.normal_x.add_product(sums.normal.moment_x());
+  sum.normal_y.add_product(total_of(sums.normal.by_y));
+  sum.shear_y_x.add_product(sums.shear_y.moment_x());
+  sum.shear_x_y.add_product(total_of(sums.shear_x.by_y));
+  sum.ambiguous += StatusCounts::total(sums.counts.ambiguous);
+  sum.resolved += StatusCounts::total(sums.counts.resolved);
   totals.slip.add(
-      {value_of(piece.slip.pressing), value_of(piece.slip.known), value_of(piece.slip.slipping)});
+      {total_of(sums.slip.pressing), total_of(sums.slip.known), total_of(sums.slip.slipping)});
+  sums = {};
 }
 
-/// Asks for what the next runs need: rows are too far apart for a processor to guess.
-PF_INLINE void ask_for(std::span<const float> plane, const ForceFieldView& forces,
-                       std::span<const ContactRun> runs, std::size_t run) {
-#if defined(__GNUC__)
-  constexpr std::size_t kAhead = 2;
-  constexpr std::uint32_t kLine = 16;
-  if (run + kAhead >= runs.size()) return;
-  const ContactRun& ahead = runs[run + kAhead];
-  const float* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
-  for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
-    __builtin_prefetch(row + std::min(col, ahead.end - 1));
-  }
-#endif
+PF_INLINE void ask_for_all(const ForceFieldView& forces, std::span<const ContactRun> runs,
+                           std::size_t run) {
+  ask_for(forces.shear_x, forces, runs, run);
+  ask_for(forces.shear_y, forces, runs, run);
+  ask_for(forces.normal, forces, runs, run);
+  ask_for(forces.status, forces, runs, run);
 }
 
 /// Raises each peak to the normal force beside it, where that is above it and no NaN.
@@ -212,44 +218,137 @@ void add_peak(const ForceFieldView& forces, const ForceQuanta& quanta, const Con
   }
 }
 
+/// How runs are summed.
+struct Summing {
+  const ForceFieldView& forces;
+  ForceQuanta quanta;
+  bool with_slip;
+  float least_ratio;
+};
+
+/// Adds pillars of a row one by one.
+void add_pillars(const Summing& summing, std::uint32_t row, std::uint32_t first, std::uint32_t end,
+                 ContactTotals& totals) {
+  for (std::uint32_t col = first; col < end; ++col) {
+    const PillarForce pillar = pillar_at(summing.forces, summing.quanta, row, col);
+    totals.sum.add(pillar);
+    if (summing.with_slip) add_slip(pillar, summing.least_ratio, totals.slip);
+  }
+}
+
+/// Whether a mask has lost lanes.
+PF_INLINE bool differ(const BlockWholes& a, const BlockWholes& b) {
+  using Words [[gnu::vector_size(32)]] = std::uint64_t;
+  const Wholes differences = (a.first ^ b.first) | (a.last ^ b.last);
+  const auto words = __builtin_bit_cast(Words, differences);
+  return (words[0] | words[1] | words[2] | words[3]) != 0;
+}
+
+/// Reads a plane's block, and takes lanes out of a mask as keep_small() does.
+PF_INLINE void read_plane(const float* plane, BlockFloats& force_n, BlockWholes& mask) {
+  load(plane, force_n.first);
+  load(plane + kLanes, force_n.last);
+  keep_small(force_n.first, mask.first);
+  keep_small(force_n.last, mask.last);
+}
+
+PF_INLINE void quantise_both(const BlockFloats& force_n, const BlockWholes& mask,
+                             BlockWholes& quanta) {
+  quantise(force_n.first, mask.first, quanta.first);
+  quantise(force_n.last, mask.last, quanta.last);
+}
+
+/// The forces of a block in quanta, zero past its last pillar.
+struct Block {
+  BlockWholes shear_x;
+  BlockWholes shear_y;
+  BlockWholes normal;
+
+  /// False where a force is too large for that, or the planes end.
+  PF_INLINE bool read(const ForceFieldView& forces, std::size_t at, std::uint32_t pillars) {
+    if (at + kBlock > forces.normal.size()) return false;
+    BlockWholes mask;
+    load(kMasks<std::int32_t>.data() + kBlock - pillars, mask.first);
+    load(kMasks<std::int32_t>.data() + kBlock - pillars + kLanes, mask.last);
+    BlockWholes small = mask;
+    BlockFloats x_n;
+    BlockFloats y_n;
+    BlockFloats normal_n;
+    read_plane(forces.shear_x.data() + at, x_n, small);
+    read_plane(forces.shear_y.data() + at, y_n, small);
+    read_plane(forces.normal.data() + at, normal_n, small);
+    if (differ(small, mask)) return false;
+    quantise_both(x_n, mask, shear_x);
+    quantise_both(y_n, mask, shear_y);
+    quantise_both(normal_n, mask, normal);
+    return true;
+  }
+};
+
+/// Adds the block at (row, col).
+PF_INLINE void add_block(const Summing& summing, const Block& block, std::uint32_t row,
+                         std::uint32_t col, std::uint32_t pillars, BlockSums& sums) {
+  const ForceFieldView& forces = summing.forces;
+  const auto x = static_cast<double>(place_x(forces, col));
+  const auto y = static_cast<double>(place_y(forces, row));
+  sums.shear_x.add(block.shear_x, x, y);
+  sums.shear_y.add(block.shear_y, x, y);
+  sums.normal.add(block.normal, x, y);
+  const std::uint8_t* const status = forces.status.data() + std::size_t{row} * forces.cols + col;
+  sums.counts.add(status, kMasks<std::uint8_t>.data() + kBlock - pillars);
+  if (summing.with_slip) {
+    sums.slip.add(block.shear_x, block.shear_y, block.normal, status, summing.least_ratio);
+  }
+}
+
+PF_INLINE void raise(Wholes& peaks, const Wholes& to) { peaks = to > peaks ? to : peaks; }
+
+/// Adds a run, in blocks wherever its forces make such; returns the blocks' largest normal force.
+PF_INLINE std::int32_t add_run(const Summing& summing, const ContactRun& run, BlockSums& sums,
+                               ContactTotals& totals) {
+  const ForceFieldView& forces = summing.forces;
+  Wholes peaks{};
+  for (std::uint32_t first = run.first; first < run.end; first += kBlock) {
+    const std::uint32_t pillars = std::min(kBlock, run.end - first);
+    Block block;
+    if (!block.read(forces, std::size_t{run.row} * forces.cols + first, pillars)) {
+      add_pillars(summing, run.row, first, first + pillars, totals);
+      continue;
+    }
+    add_block(summing, block, run.row, first, pillars, sums);
+    raise(peaks, block.normal.first);
+    raise(peaks, block.normal.last);
+    totals.sum.x += pillars * (place_x(forces, first) + pillars - 1);
+    totals.sum.y += pillars * place_y(forces, run.row);
+    totals.sum.pillars += pillars;
+    if (++sums.blocks == kMostBlocks) empty_into(totals, sums);
+  }
+  std::int32_t largest = 0;
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) largest = std::max(largest, peaks[lane]);
+  return largest;
+}
+
 }  // namespace
 
 PF_WIDE ContactTotals totals_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
                                 std::optional<double> least_ratio) {
-  const bool with_slip = least_ratio.has_value();
-  const auto ratio = static_cast<float>(least_ratio.value_or(0));
-  const ForceQuanta quanta(forces.normal.size());
+  const Summing summing = {forces, ForceQuanta(forces.normal.size()), least_ratio.has_value(),
+                           static_cast<float>(least_ratio.value_or(0))};
   ContactTotals totals;
+  BlockSums sums;
   std::int32_t peak = 0;
   ContactRun with_peak;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    const ContactRun& run = runs[i];
-    ask_for(forces.shear_x, forces, runs, i);
-    ask_for(forces.shear_y, forces, runs, i);
-    ask_for(forces.normal, forces, runs, i);
-    for (std::uint32_t first = run.first; first < run.end; first += kPiece) {
-      const std::uint32_t end = std::min(first + kPiece, run.end);
-      const std::size_t begin = std::size_t{run.row} * forces.cols + first;
-      if (!makes_blocks(forces, begin, end - first)) {
-        for (std::uint32_t col = first; col < end; ++col) {
-          const PillarForce pillar = pillar_at(forces, quanta, run.row, col);
-          totals.sum.add(pillar);
-          if (with_slip) add_slip(pillar, ratio, totals.slip);
-        }
-        continue;
-      }
-      const PieceSum piece = sum_piece(forces, begin, end - first, with_slip, ratio);
-      add_piece(piece, end - first, place_x(forces, first), place_y(forces, run.row), totals);
-      const std::int32_t largest = largest_of(piece.peaks);
-      const ContactRun this_piece = {run.row, first, end, 0};
-      // What is masked has no force: less than none is not seen, but it is also rare.
-      if (largest == 0) add_peak(forces, quanta, this_piece, totals.sum);
-      if (largest <= peak) continue;
-      peak = largest;
-      with_peak = this_piece;
-    }
+    ask_for_all(forces, runs, i);
+    const std::int32_t largest = add_run(summing, runs[i], sums, totals);
+    // What is masked has no force: less than none is not seen, but it is also rare.
+    if (largest == 0) add_peak(forces, summing.quanta, runs[i], totals.sum);
+    if (largest <= peak) continue;
+    peak = largest;
+    with_peak = runs[i];
   }
-  add_peak(forces, quanta, with_peak, totals.sum);
+  empty_into(totals, sums);
+  add_peak(forces, summing.quanta, with_peak, totals.sum);
   return totals;
 }
 

@@ -31,7 +31,7 @@ struct ContactTotals {
 
 /// Sums over the pillars of runs; `least_ratio` is the shear / normal from which on a pillar slips,
 /// unset: not asked. It is compared in single precision: a pillar within 10^-6 of it may fall on
-/// either side, the same way each time. Some 2 ns a pillar.
+/// either side, the same way each time. 1.3 to 2 ns a pillar.
 [[nodiscard]] ContactTotals totals_of(const ForceFieldView& forces,
                                       std::span<const ContactRun> runs,
                                       std::optional<double> least_ratio);

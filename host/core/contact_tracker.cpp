@@ -28,6 +28,16 @@ void require_whole(const ForceFieldView& forces) {
   }
 }
 
+void require_inside(const ContactMap& map, const ForceFieldView& forces) {
+  for (const ContactRun& run : map.runs()) {
+    if (run.row < forces.rows && run.end <= forces.cols) continue;
+    throw Error(kPlace,
+                fmt::format("contacts found in row {} up to column {} of {} x {} pillars", run.row,
+                            run.end, forces.rows, forces.cols),
+                "give the ContactMap of the same frame");
+  }
+}
+
 /// What a contact of the frame shows by itself.
 struct Shown {
   ContactTotals totals;  ///< slip included where the friction is known
@@ -59,6 +69,7 @@ struct ContactTracker::State {
   State(double pillar_pitch_mm, const ContactOptions& contact_options);
 
   void require_size(const ForceFieldView& forces);
+  const FrameContacts& follow(const ForceFieldView& forces, double time_s);
   void measure(const ContactMeasure& measure);
   void identify(double time_s);
   void judge_slip(const ContactMeasure& measure);
@@ -188,24 +199,34 @@ void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
   set_slip(frame.patch, *options.friction, FrictionSource::given, patch_slip);
 }
 
+/// Takes a frame whose contacts are found.
+const FrameContacts& ContactTracker::State::follow(const ForceFieldView& forces, double time_s) {
+  const ContactMeasure contact_measure(forces, pitch_mm, histogram);
+  frame.time_s = time_s;
+  measure(contact_measure);
+  identify(time_s);
+  judge_slip(contact_measure);
+  any_frame = true;
+  last_time_s = time_s;
+  return frame;
+}
+
 ContactTracker::ContactTracker(double pillar_pitch_mm, const ContactOptions& options)
     : state_(std::make_unique<State>(pillar_pitch_mm, options)) {}
 ContactTracker::~ContactTracker() = default;
 ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;
 ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;
 
-const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s) {
-  State& state = *state_;
-  state.require_size(forces);
-  state.map.find(forces.status, forces.rows, forces.cols);
-  const ContactMeasure measure(forces, state.pitch_mm, state.histogram);
-  state.frame.time_s = time_s;
-  state.measure(measure);
-  state.identify(time_s);
-  state.judge_slip(measure);
-  state.any_frame = true;
-  state.last_time_s = time_s;
-  return state.frame;
+const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s,
+                                            const ContactMap* found) {
+  state_->require_size(forces);
+  if (found != nullptr) {
+    require_inside(*found, forces);
+    state_->map = *found;
+  } else {
+    state_->map.find(forces.status, forces.rows, forces.cols);
+  }
+  return state_->follow(forces, time_s);
 }
 
 const ContactMap& ContactTracker::map() const { return state_->map; }

@@ -7,13 +7,8 @@ namespace maths = single_precision;
 
 constexpr std::size_t kFloatPlanes = 6;
 
-/// Runs as the mathematics reads them.
-std::vector<maths::Run> plain_runs(std::span<const ContactRun> runs) {
-  std::vector<maths::Run> plain;
-  plain.reserve(runs.size());
-  for (const ContactRun& run : runs) plain.push_back({run.row, run.first, run.end, run.contact});
-  return plain;
-}
+/// Threads share pillars that stay alone in such lots; a smaller one is not worth waking them.
+constexpr std::size_t kAlonePiece = 1024;
 
 /// A plane's values; null where it is empty.
 float* values(std::vector<float>& plane) { return plane.empty() ? nullptr : plane.data(); }
@@ -42,7 +37,8 @@ maths::Field planes_of(ForceField& field) {
 
 }  // namespace
 
-HostFieldEstimator::HostFieldEstimator(const SolverPlan& plan) : work_(plan) {
+HostFieldEstimator::HostFieldEstimator(const SolverPlan& plan, std::size_t threads)
+    : work_(plan), team_(std::make_unique<WorkTeam>(threads)) {
   if (!plan.field.frames_close) return;
   past_normal_.resize(plan.skin.pillars());
   past_deviation_.resize(plan.skin.pillars());
@@ -65,9 +61,14 @@ single_precision::Scratch HostFieldEstimator::scratch(std::size_t tile) {
           counts_.data() + tile * PF_RATIO_COUNTS};
 }
 
-void HostFieldEstimator::resolve(ForceField& field) {
-  work_.find(field.status);
-  ++now_;
+void HostFieldEstimator::resolve_alone(const maths::Field& field,
+                                       std::span<const std::uint32_t> pillars) {
+  for (const std::uint32_t index : pillars) {
+    maths::resolve_alone(field, past(), index, work_.settings());
+  }
+}
+
+void HostFieldEstimator::make_room() {
   const std::size_t tiles = work_.tiles().size();
   kinds_.resize(work_.cells());
   planes_.resize(kFloatPlanes * work_.cells());
@@ -75,17 +76,32 @@ void HostFieldEstimator::resolve(ForceField& field) {
   shared_.resize(PF_SHARED_SUMS * tiles);
   counts_.resize(PF_RATIO_COUNTS * tiles);
   verdicts_.resize(tiles);
-  const maths::Field planes = planes_of(field);
-  const std::vector<maths::Run> runs = plain_runs(work_.map().runs());
-  for (std::size_t tile = 0; tile < tiles; ++tile) {
-    verdicts_[tile] = maths::resolve_contact(work_.tiles()[tile], scratch(tile), planes, past(),
-                                             runs.data(), work_.settings(), {0, 1});
+}
+
+void HostFieldEstimator::resolve(ForceField& field) { resolve(planes_of(field)); }
+
+void HostFieldEstimator::resolve(const maths::Field& field) {
+  work_.find({field.status, std::size_t{field.rows} * field.cols});
+  ++now_;
+  make_room();
+  runs_.clear();
+  for (const ContactRun& run : work_.map().runs()) {
+    runs_.push_back({run.row, run.first, run.end, run.contact});
   }
-  for (const std::uint32_t index : work_.alone()) {
-    maths::resolve_alone(planes, past(), index, work_.settings());
-  }
+  const std::size_t tiles = work_.tiles().size();
+  const std::size_t shared_alone = work_.alone().size() / kAlonePiece;
+  team_->run(tiles + shared_alone, [&](std::size_t piece) {
+    if (piece < tiles) {
+      verdicts_[piece] = maths::resolve_contact(work_.tiles()[piece], scratch(piece), field, past(),
+                                                runs_.data(), work_.settings(), {0, 1});
+    } else {
+      const std::size_t first = (piece - tiles) * kAlonePiece;
+      resolve_alone(field, std::span(work_.alone()).subspan(first, kAlonePiece));
+    }
+  });
+  resolve_alone(field, std::span(work_.alone()).subspan(shared_alone * kAlonePiece));
   if (past_normal_.empty()) return;
-  for (const maths::Run& run : runs) maths::keep_run(planes, past(), run, work_.settings().noise);
+  for (const maths::Run& run : runs_) maths::keep_run(field, past(), run, work_.settings().noise);
 }
 
 }  // namespace pillarfield

@@ -1,6 +1,11 @@
 #pragma once
 
+#include <memory>
+#include <span>
+#include <vector>
+
 #include "core/field_work.h"
+#include "core/work_team.h"
 #include "pillarfield/force_field.h"
 
 namespace pillarfield {
@@ -9,11 +14,15 @@ namespace pillarfield {
 /// (docs/derivations/field.md).
 class HostFieldEstimator {
  public:
-  explicit HostFieldEstimator(const SolverPlan& plan);
+  /// With several threads, contacts are shared among them: the same bits.
+  explicit HostFieldEstimator(const SolverPlan& plan, std::size_t threads = 1);
 
   /// Resolves what the direct solve of the plan left open in a frame. Where the plan says that
   /// frames are close in time, each call is the next frame.
   void resolve(ForceField& field);
+
+  /// The same of planes of the plan's size; those from magnitude on may be null.
+  void resolve(const single_precision::Field& field);
 
   [[nodiscard]] const FieldWork& work() const { return work_; }
   /// One for each tile of the last frame's work.
@@ -22,6 +31,8 @@ class HostFieldEstimator {
  private:
   single_precision::Scratch scratch(std::size_t tile);
   single_precision::Past past();
+  void make_room();
+  void resolve_alone(const single_precision::Field& field, std::span<const std::uint32_t> pillars);
 
   FieldWork work_;
   std::vector<std::uint8_t> kinds_;
@@ -30,10 +41,12 @@ class HostFieldEstimator {
   std::vector<double> shared_;
   std::vector<std::uint32_t> counts_;
   std::vector<single_precision::Verdict> verdicts_;
+  std::vector<single_precision::Run> runs_;
   std::vector<float> past_normal_;  ///< empty where frames are not close
   std::vector<float> past_deviation_;
   std::vector<std::uint32_t> past_frame_;
   std::uint32_t now_ = 1;  ///< frames that were seen, and one: pillars begin with frame 0
+  std::unique_ptr<WorkTeam> team_;
 };
 
 }  // namespace pillarfield

@@ -1,8 +1,11 @@
 #include "core/field_work.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
+
+#include "pillarfield/status.h"
 
 namespace pillarfield {
 namespace {
@@ -34,19 +37,72 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
 /// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
 constexpr std::uint32_t kLeastOpenShare = 64;
 
-/// By status byte what to add up, to count open pillars in the lower half of a word and those that
-/// their own readings determine in the upper half.
-using StatusCounts = std::array<std::uint64_t, 256>;
-constexpr int kDeterminedShift = 32;
+static_assert(std::endian::native == std::endian::little,
+              "words are taken apart from their low end");
+static_assert(status::kUsable == 15 && status::kAmbiguous == 1 << 4 &&
+              status::kSaturated == 1 << 5 && status::kInconsistent == 1 << 6);
 
-StatusCounts make_counts() {
-  StatusCounts counts{};
-  for (std::size_t bits = 0; bits < counts.size(); ++bits) {
-    const auto status = static_cast<std::uint8_t>(bits);
-    counts.at(bits) = std::uint64_t{maths::is_open(status) ? 1U : 0U} |
-                      std::uint64_t{maths::is_determined(status) ? 1U : 0U} << kDeterminedShift;
+constexpr std::size_t kWord = sizeof(std::uint64_t);
+constexpr std::uint64_t kEachByte = 0x0101010101010101u;
+
+/// How many sensels are usable, byte by byte.
+std::uint64_t usable_of(std::uint64_t bits) {
+  const std::uint64_t pairs = (bits & (5 * kEachByte)) + ((bits >> 1) & (5 * kEachByte));
+  return (pairs & (3 * kEachByte)) + ((pairs >> 2) & (3 * kEachByte));
+}
+
+/// maths::is_open() of eight status bytes, in bit 0 of each.
+std::uint64_t open_of(std::uint64_t bits) {
+  const std::uint64_t usable = usable_of(bits);
+  const std::uint64_t two = (usable >> 1) & ~usable;
+  return two & (bits >> 4) & ~(bits >> 5) & ~(bits >> 6) & kEachByte;
+}
+
+/// maths::is_determined() likewise.
+std::uint64_t determined_of(std::uint64_t bits) {
+  const std::uint64_t three_or_four = (usable_of(bits) + 5 * kEachByte) >> 3;
+  return three_or_four & ~(bits >> 5) & kEachByte;
+}
+
+/// Calls `use(word, place)` for eight status bytes after the other; past the end there are zeros.
+template <class Use>
+void for_each_word(std::span<const std::uint8_t> status, const Use& use) {
+  std::uint64_t word = 0;
+  std::size_t at = 0;
+  for (; at + kWord <= status.size(); at += kWord) {
+    std::memcpy(&word, status.data() + at, kWord);
+    use(word, at);
   }
-  return counts;
+  if (at == status.size()) return;
+  word = 0;
+  std::memcpy(&word, status.data() + at, status.size() - at);
+  use(word, at);
+}
+
+std::uint32_t total_of(std::uint64_t counts) {
+  constexpr std::uint64_t kEven = 0x00ff00ff00ff00ffu;
+  const std::uint64_t pairs = (counts & kEven) + ((counts >> 8) & kEven);
+  return static_cast<std::uint32_t>((pairs * 0x0001000100010001u) >> 48);
+}
+
+/// So many status bytes can be counted byte by byte.
+constexpr std::size_t kMostCounted = 255 * kWord;
+
+/// How many of `of` there are in a run, eight bytes at a time; words with none of `needed` have
+/// none.
+template <class Of>
+std::uint32_t count_of(std::span<const std::uint8_t> status, std::uint8_t needed, const Of& of) {
+  std::uint32_t count = 0;
+  while (!status.empty()) {
+    const auto piece = status.first(std::min(status.size(), kMostCounted));
+    std::uint64_t counts = 0;
+    for_each_word(piece, [&](std::uint64_t word, std::size_t) {
+      if ((word & needed * kEachByte) != 0) counts += of(word);
+    });
+    count += total_of(counts);
+    status = status.subspan(piece.size());
+  }
+  return count;
 }
 
 }  // namespace
@@ -70,23 +126,43 @@ void FieldWork::find(std::span<const std::uint8_t> status) {
 /// Notes also which runs have open pillars.
 FieldWork::Summary FieldWork::summarise(std::span<const ContactRun> runs,
                                         std::span<const std::uint8_t> status) {
-  static const StatusCounts counts_of = make_counts();
   Summary summary;
-  std::uint64_t all = 0;
   open_runs_.clear();
   for (const ContactRun& run : runs) {
-    const std::uint8_t* const row = status.data() + std::size_t{run.row} * cols_;
-    std::uint64_t counts = 0;
-    for (std::uint32_t col = run.first; col < run.end; ++col) counts += counts_of[row[col]];
-    if (static_cast<std::uint32_t>(counts) != 0) open_runs_.push_back(run);
-    all += counts;
+    const std::uint32_t open = count_of(status_of(run, status), status::kAmbiguous,
+                                        [](std::uint64_t word) { return open_of(word); });
+    if (open != 0) open_runs_.push_back(run);
+    summary.open += open;
     summary.pillars += run.end - run.first;
     summary.first_col = std::min(summary.first_col, run.first);
     summary.end_col = std::max(summary.end_col, run.end);
   }
-  summary.open = static_cast<std::uint32_t>(all);
-  summary.resolved = static_cast<std::uint32_t>(all >> kDeterminedShift);
   return summary;
+}
+
+bool FieldWork::has_evidence(std::span<const ContactRun> runs,
+                             std::span<const std::uint8_t> status) const {
+  std::uint32_t determined = 0;
+  for (const ContactRun& run : runs) {
+    determined += count_of(status_of(run, status), status::kUsable,
+                           [](std::uint64_t word) { return determined_of(word); });
+    if (determined >= PF_LEAST_RESOLVED) return true;
+  }
+  return false;
+}
+
+std::span<const std::uint8_t> FieldWork::status_of(const ContactRun& run,
+                                                   std::span<const std::uint8_t> status) const {
+  return status.subspan(std::size_t{run.row} * cols_ + run.first, run.end - run.first);
+}
+
+void FieldWork::add_alone(std::span<const std::uint8_t> status, std::size_t first) {
+  for_each_word(status, [&](std::uint64_t word, std::size_t at) {
+    for (std::uint64_t open = open_of(word); open != 0; open &= open - 1) {
+      const std::size_t byte = static_cast<std::size_t>(std::countr_zero(open)) / 8;
+      alone_.push_back(static_cast<std::uint32_t>(first + at + byte));
+    }
+  });
 }
 
 void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t> status) {
@@ -99,7 +175,7 @@ void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t>
   const bool compact = cells <= std::max(kSmallBox, kMostCellsPerPillar * summary.pillars);
   const bool asks = settings_.slips == 0 && (settings_.shape != 0 || settings_.slip != 0);
   const bool matters = kLeastOpenShare * summary.open >= summary.pillars;
-  if (asks && compact && matters && summary.resolved >= PF_LEAST_RESOLVED) {
+  if (asks && compact && matters && has_evidence(runs, status)) {
     tiles_.push_back({runs.front().row, summary.first_col, rows, cols,
                       static_cast<std::uint32_t>(cells_), static_cast<std::uint32_t>(lines_),
                       static_cast<std::uint32_t>(runs.data() - map_.runs().data()),
@@ -109,10 +185,7 @@ void FieldWork::add_contact(std::uint32_t contact, std::span<const std::uint8_t>
     return;
   }
   for (const ContactRun& run : open_runs_) {
-    const std::size_t first = std::size_t{run.row} * cols_;
-    for (std::size_t index = first + run.first; index < first + run.end; ++index) {
-      if (maths::is_open(status[index])) alone_.push_back(static_cast<std::uint32_t>(index));
-    }
+    add_alone(status_of(run, status), std::size_t{run.row} * cols_ + run.first);
   }
 }
 

@@ -34,12 +34,18 @@ class FieldWork {
   struct Summary {
     std::uint32_t pillars = 0;
     std::uint32_t open = 0;
-    std::uint32_t resolved = 0;
     std::uint32_t first_col = ~std::uint32_t{0};
     std::uint32_t end_col = 0;
   };
 
+  [[nodiscard]] std::span<const std::uint8_t> status_of(const ContactRun& run,
+                                                        std::span<const std::uint8_t> status) const;
+  /// Whether enough pillars of a contact have forces that their own readings determine.
+  [[nodiscard]] bool has_evidence(std::span<const ContactRun> runs,
+                                  std::span<const std::uint8_t> status) const;
   Summary summarise(std::span<const ContactRun> runs, std::span<const std::uint8_t> status);
+  /// Open pillars of a run whose first one has this index.
+  void add_alone(std::span<const std::uint8_t> status, std::size_t first);
   void add_contact(std::uint32_t contact, std::span<const std::uint8_t> status);
 
   std::uint32_t rows_;

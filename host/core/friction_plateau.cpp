@@ -2,48 +2,23 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cmath>
 #include <functional>
 #include <numeric>
 
 namespace pillarfield {
 namespace {
 
-// Bins are the leading bits of a float, so their edges are exact: 32 ratios and 8 ceilings to an
-// octave, the ratios from 2^-5 to 2^5, the ceilings from 1 to 2^5 and all above in the last.
-constexpr int kRatioShift = 23 - 5;
-constexpr int kCeilingShift = 23 - 3;
-constexpr std::uint32_t kFirstRatio = (127 - 5) << 5;
-constexpr std::uint32_t kFirstCeiling = 127 << 3;
-constexpr std::uint32_t kRatios = 10 * 32;
-constexpr std::uint32_t kCeilings = 5 * 8 + 1;
-
 constexpr std::uint32_t kHalfWindow = 3;
 constexpr std::uint32_t kWindow = 2 * kHalfWindow + 1;
-constexpr double kRoomAbove = 1.15;
+constexpr float kRoomAbove = 1.15F;
 constexpr std::int64_t kFewestPillars = 8;
 
-std::uint32_t bits_of(double value) {
-  return std::bit_cast<std::uint32_t>(static_cast<float>(value));
-}
-
-std::uint32_t ratio_bin(double ratio) { return (bits_of(ratio) >> kRatioShift) - kFirstRatio; }
-
-std::uint32_t ceiling_bin(double ceiling) {
-  if (!(ceiling > 1)) return 0;
-  return std::min((bits_of(ceiling) >> kCeilingShift) - kFirstCeiling, kCeilings - 1);
-}
-
-/// The ratio in the middle of a bin.
-double middle_of(std::uint32_t bin) {
-  const std::uint32_t half = 1u << (kRatioShift - 1);
-  return std::bit_cast<float>(((bin + kFirstRatio) << kRatioShift) + half);
-}
+constexpr std::uint32_t kRatios = RatioBins::kRatios;
+constexpr std::uint32_t kCeilings = RatioBins::kCeilings;
 
 /// The lowest bin all of whose ceilings leave room above a ratio.
-std::uint32_t least_ceiling_bin(double ratio) {
-  return std::min(ceiling_bin(kRoomAbove * ratio) + 1, kCeilings - 1);
+std::uint32_t least_ceiling_bin(float ratio) {
+  return std::min(RatioBins::of_ceiling(kRoomAbove * ratio) + 1, kCeilings - 1);
 }
 
 /// Sums over the pillars that could have shown more than the ratios looked at, by ratio.
@@ -72,24 +47,6 @@ bool is_plateau(const Evidence& evidence, std::uint32_t first, std::int64_t with
 
 }  // namespace
 
-void FrictionHistogram::add(double ratio, std::uint32_t weight, double ceiling) {
-  if (weight == 0) return;
-  weight = std::min(weight, kMostWeight);
-  all_weight_ += weight;
-  if (ratio < kLeastRatio) low_weight_ += weight;
-  // Also false for NaN.
-  if (!(ratio >= kLeastRatio && ratio < kMostRatio)) return;
-  if (cells_.empty()) cells_.resize(std::size_t{kCeilings} * kRatios);
-  // The float nearest to a ratio just below the end is the end itself.
-  const std::uint32_t bin = std::min(ratio_bin(ratio), kRatios - 1);
-  const std::uint32_t place = ceiling_bin(ceiling) * kRatios + bin;
-  Cell& cell = cells_[place];
-  if (cell.pillars == 0) touched_.push_back(place);
-  cell.weight += weight;
-  cell.moment += weight * static_cast<std::int64_t>(ratio * 65536);
-  ++cell.pillars;
-}
-
 void FrictionHistogram::clear() {
   for (const std::uint32_t place : touched_) cells_[place] = {};
   touched_.clear();
@@ -113,7 +70,8 @@ std::optional<FrictionPlateau> FrictionHistogram::plateau() const {
   // From the highest ratio down, for then the pillars with room above only grow in number.
   for (std::uint32_t first = std::min(highest, kRatios - kWindow) + 1; first-- > 0;) {
     if (first + kWindow <= lowest) break;
-    const std::uint32_t least = least_ceiling_bin(middle_of(first + kHalfWindow)) * kRatios;
+    const std::uint32_t least =
+        least_ceiling_bin(RatioBins::middle_of(first + kHalfWindow)) * kRatios;
     for (; taken < by_ceiling_.size() && by_ceiling_[taken] >= least; ++taken) {
       const Cell& cell = cells_[by_ceiling_[taken]];
       const std::uint32_t bin = by_ceiling_[taken] % kRatios;

@@ -1,6 +1,10 @@
 #include "device/field_stage.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
+
+#include "core/field_work.h"
 
 namespace pillarfield {
 namespace {
@@ -8,6 +12,9 @@ namespace {
 constexpr std::size_t kGroup = 64;
 constexpr std::size_t kWorkers = 1024;
 constexpr std::size_t kFloatPlanes = 6;
+
+/// A box without pillars, and what is laid around it.
+constexpr std::size_t kEmptyCells = 4;
 
 static_assert(sizeof(ContactRun) == sizeof(single_precision::Run),
               "runs go to the device as they are");
@@ -24,17 +31,73 @@ cl::Program build(Device::State& device, bool groups) {
   return device.program(field_kernel_source(groups));
 }
 
-}  // namespace
+/// What a launch for contacts works on; cells and lines as in FieldWork.
+struct Contacts {
+  std::span<const single_precision::Tile> tiles;
+  std::span<const ContactRun> runs;
+  std::size_t cells;
+  std::size_t lines;
+};
 
-const cl::Buffer& FieldStage::Growing::of(const cl::Context& context, std::size_t bytes) {
-  if (bytes > bytes_ || bytes_ == 0) {
-    bytes_ = std::max<std::size_t>(bytes + bytes / 2, 1);
-    buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes_);
+/// A buffer that grows with what it has to hold.
+class Growing {
+ public:
+  const cl::Buffer& of(const cl::Context& context, std::size_t bytes) {
+    if (bytes > bytes_ || bytes_ == 0) {
+      bytes_ = std::max<std::size_t>(bytes + bytes / 2, 1);
+      buffer_ = cl::Buffer(context, CL_MEM_READ_WRITE, bytes_);
+    }
+    return buffer_;
   }
-  return buffer_;
-}
 
-FieldStage::FieldStage(Device::State& device, const SolverPlan& plan, bool groups)
+ private:
+  cl::Buffer buffer_;
+  std::size_t bytes_ = 0;
+};
+
+class DeviceFieldStage final : public FieldStage {
+ public:
+  DeviceFieldStage(Device::State& device, const SolverPlan& plan, bool groups);
+
+  void warm_up(const cl::CommandQueue& queue, SlotMemory& memory) override;
+  void resolve(const cl::CommandQueue& queue, SlotMemory& memory) override;
+  [[nodiscard]] const ContactMap& contacts() const override { return work_.map(); }
+
+ private:
+  cl_uint set_field(cl::Kernel& kernel, const SlotMemory& memory) const;
+  void enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory,
+                        const Contacts& contacts);
+  void enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory,
+                       std::span<const std::uint32_t> alone);
+  void keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory,
+                     std::span<const ContactRun> runs);
+  const cl::Buffer& send_runs(const cl::CommandQueue& queue, std::span<const ContactRun> runs);
+
+  cl::Context context_;
+  std::uint32_t rows_;
+  std::uint32_t cols_;
+  FieldWork work_;
+  std::size_t group_ = 1;    ///< work-items of a contact
+  std::size_t workers_ = 1;  ///< work-items for pillars alone
+  cl::Kernel contacts_;
+  cl::Kernel pillars_;
+  cl::Kernel keep_;
+  cl::Buffer past_normal_;  ///< null where frames are not close in time
+  cl::Buffer past_deviation_;
+  cl::Buffer past_frame_;
+  cl_uint now_ = 1;  ///< frames that were seen, and one: pillars begin with frame 0
+  Growing tiles_;
+  Growing runs_;
+  Growing verdicts_;
+  Growing kinds_;
+  Growing planes_;
+  Growing lines_;
+  Growing shared_;
+  Growing counts_;
+  Growing alone_;
+};
+
+DeviceFieldStage::DeviceFieldStage(Device::State& device, const SolverPlan& plan, bool groups)
     : context_(device.context),
       rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
@@ -58,7 +121,7 @@ FieldStage::FieldStage(Device::State& device, const SolverPlan& plan, bool group
   }
 }
 
-cl_uint FieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) const {
+cl_uint DeviceFieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) const {
   cl_uint argument = 0;
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
     kernel.setArg(argument++, memory.buffer(plane));
@@ -80,40 +143,38 @@ cl_uint FieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory) cons
   return argument;
 }
 
-const cl::Buffer& FieldStage::send_runs(const cl::CommandQueue& queue) {
-  const std::span<const ContactRun> runs = work_.map().runs();
+const cl::Buffer& DeviceFieldStage::send_runs(const cl::CommandQueue& queue,
+                                              std::span<const ContactRun> runs) {
   const cl::Buffer& on_device = runs_.of(context_, runs.size_bytes());
   queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, runs.size_bytes(), runs.data());
   return on_device;
 }
 
-void FieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory) {
-  const std::size_t tiles = work_.tiles().size();
-  if (tiles == 0) return;
-  const std::size_t tile_bytes = tiles * sizeof(single_precision::Tile);
-  const cl::Buffer& on_device = tiles_.of(context_, tile_bytes);
-  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, tile_bytes, work_.tiles().data());
+void DeviceFieldStage::enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory,
+                                        const Contacts& contacts) {
+  const std::size_t tiles = contacts.tiles.size();
+  const cl::Buffer& on_device = tiles_.of(context_, contacts.tiles.size_bytes());
+  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, contacts.tiles.size_bytes(),
+                           contacts.tiles.data());
   cl_uint argument = set_field(contacts_, memory);
-  const std::size_t cells = work_.cells();
+  const std::size_t cells = contacts.cells;
   contacts_.setArg(argument++, on_device);
-  contacts_.setArg(argument++, send_runs(queue));
+  contacts_.setArg(argument++, send_runs(queue, contacts.runs));
   contacts_.setArg(argument++, verdicts_.of(context_, tiles * sizeof(single_precision::Verdict)));
   contacts_.setArg(argument++, kinds_.of(context_, cells));
   contacts_.setArg(argument++, planes_.of(context_, kFloatPlanes * cells * sizeof(float)));
   contacts_.setArg(argument++, cl_ulong{cells});
-  contacts_.setArg(argument++, lines_.of(context_, PF_LINE_SUMS * work_.lines() * sizeof(double)));
+  contacts_.setArg(argument++, lines_.of(context_, PF_LINE_SUMS * contacts.lines * sizeof(double)));
   contacts_.setArg(argument++, shared_.of(context_, PF_SHARED_SUMS * tiles * sizeof(double)));
   contacts_.setArg(argument++, counts_.of(context_, PF_RATIO_COUNTS * tiles * sizeof(cl_uint)));
   queue.enqueueNDRangeKernel(contacts_, cl::NullRange, cl::NDRange(tiles * group_),
                              cl::NDRange(group_));
 }
 
-void FieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory) {
-  const std::vector<std::uint32_t>& alone = work_.alone();
-  if (alone.empty()) return;
-  const std::size_t bytes = alone.size() * sizeof(std::uint32_t);
-  const cl::Buffer& on_device = alone_.of(context_, bytes);
-  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, bytes, alone.data());
+void DeviceFieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory,
+                                       std::span<const std::uint32_t> alone) {
+  const cl::Buffer& on_device = alone_.of(context_, alone.size_bytes());
+  queue.enqueueWriteBuffer(on_device, CL_FALSE, 0, alone.size_bytes(), alone.data());
   cl_uint argument = set_field(pillars_, memory);
   pillars_.setArg(argument++, on_device);
   pillars_.setArg(argument++, static_cast<cl_uint>(alone.size()));
@@ -121,26 +182,49 @@ void FieldStage::enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory
   queue.enqueueNDRangeKernel(pillars_, cl::NullRange, cl::NDRange(workers));
 }
 
-void FieldStage::keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory) {
-  const std::size_t runs = work_.map().runs().size();
-  if (past_normal_() == nullptr || runs == 0) return;
+void DeviceFieldStage::keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory,
+                                     std::span<const ContactRun> runs) {
   cl_uint argument = set_field(keep_, memory);
-  keep_.setArg(argument++, send_runs(queue));
-  keep_.setArg(argument++, static_cast<cl_uint>(runs));
-  queue.enqueueNDRangeKernel(keep_, cl::NullRange, cl::NDRange(std::min(workers_, runs)));
+  keep_.setArg(argument++, send_runs(queue, runs));
+  keep_.setArg(argument++, static_cast<cl_uint>(runs.size()));
+  queue.enqueueNDRangeKernel(keep_, cl::NullRange, cl::NDRange(std::min(workers_, runs.size())));
 }
 
-void FieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
+void DeviceFieldStage::warm_up(const cl::CommandQueue& queue, SlotMemory& memory) {
+  // A contact without rows, a pillar without a force, a run without pillars.
+  const single_precision::Tile tile = {};
+  const ContactRun run = {};
+  const std::uint32_t pillar = 0;
+  memory.release(queue);
+  enqueue_contacts(queue, memory, {{&tile, 1}, {&run, 1}, kEmptyCells, 1});
+  enqueue_pillars(queue, memory, {&pillar, 1});
+  if (past_normal_() != nullptr) keep_for_next(queue, memory, {&run, 1});
+  memory.fetch(queue);
+  queue.finish();
+}
+
+void DeviceFieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory) {
   const auto* const status = reinterpret_cast<const std::uint8_t*>(memory.host(kStatus));
   work_.find({status, std::size_t{rows_} * cols_});
   ++now_;
-  if (work_.tiles().empty() && work_.alone().empty() && past_normal_() == nullptr) return;
+  const std::span<const ContactRun> runs = work_.map().runs();
+  const bool keeps = past_normal_() != nullptr && !runs.empty();
+  if (work_.tiles().empty() && work_.alone().empty() && !keeps) return;
   memory.release(queue);
-  enqueue_contacts(queue, memory);
-  enqueue_pillars(queue, memory);
-  keep_for_next(queue, memory);
+  if (!work_.tiles().empty()) {
+    enqueue_contacts(queue, memory, {work_.tiles(), runs, work_.cells(), work_.lines()});
+  }
+  if (!work_.alone().empty()) enqueue_pillars(queue, memory, work_.alone());
+  if (keeps) keep_for_next(queue, memory, runs);
   memory.fetch(queue);
   queue.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<FieldStage> device_field_stage(Device::State& device, const SolverPlan& plan,
+                                               bool groups) {
+  return std::make_unique<DeviceFieldStage>(device, plan, groups);
 }
 
 }  // namespace pillarfield

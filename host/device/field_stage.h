@@ -1,64 +1,40 @@
 #pragma once
 
-#include <vector>
+#include <memory>
+#include <string>
 
-#include "core/field_work.h"
 #include "device/device_state.h"
 #include "device/slot_memory.h"
+#include "pillarfield/contact_map.h"
 
 namespace pillarfield {
 
-/// The field estimator on a device: goes over a frame that the direct solve left, contact by
-/// contact. One for all slots of a processor, whose frames come one after the other.
+/// The field estimator: goes over a frame that the direct solve left, contact by contact. One for
+/// all slots of a processor, whose frames come one after the other.
 class FieldStage {
  public:
-  /// `groups`: contacts are shared by work-groups of many work-items, as suits a GPU; else each is
-  /// one work-item's. Throws Error on a device without double precision.
-  FieldStage(Device::State& device, const SolverPlan& plan, bool groups);
+  virtual ~FieldStage() = default;
+
+  /// Lets drivers finish compiling, which the first frame shall not wait for; `memory` holds a
+  /// frame of silence, and still does.
+  virtual void warm_up(const cl::CommandQueue& queue, SlotMemory& memory) = 0;
 
   /// Resolves the open pillars of a frame whose planes lie in `memory`, and waits.
-  void resolve(const cl::CommandQueue& queue, SlotMemory& memory);
+  virtual void resolve(const cl::CommandQueue& queue, SlotMemory& memory) = 0;
 
- private:
-  /// A buffer that grows with what it has to hold.
-  class Growing {
-   public:
-    const cl::Buffer& of(const cl::Context& context, std::size_t bytes);
-
-   private:
-    cl::Buffer buffer_;
-    std::size_t bytes_ = 0;
-  };
-
-  cl_uint set_field(cl::Kernel& kernel, const SlotMemory& memory) const;
-  void enqueue_contacts(const cl::CommandQueue& queue, const SlotMemory& memory);
-  void enqueue_pillars(const cl::CommandQueue& queue, const SlotMemory& memory);
-  void keep_for_next(const cl::CommandQueue& queue, const SlotMemory& memory);
-  const cl::Buffer& send_runs(const cl::CommandQueue& queue);
-
-  cl::Context context_;
-  std::uint32_t rows_;
-  std::uint32_t cols_;
-  FieldWork work_;
-  std::size_t group_ = 1;    ///< work-items of a contact
-  std::size_t workers_ = 1;  ///< work-items for pillars alone
-  cl::Kernel contacts_;
-  cl::Kernel pillars_;
-  cl::Kernel keep_;
-  cl::Buffer past_normal_;  ///< null where frames are not close in time
-  cl::Buffer past_deviation_;
-  cl::Buffer past_frame_;
-  cl_uint now_ = 1;  ///< frames that were seen, and one: pillars begin with frame 0
-  Growing tiles_;
-  Growing runs_;
-  Growing verdicts_;
-  Growing kinds_;
-  Growing planes_;
-  Growing lines_;
-  Growing shared_;
-  Growing counts_;
-  Growing alone_;
+  /// The contacts of that frame.
+  [[nodiscard]] virtual const ContactMap& contacts() const = 0;
 };
+
+/// By kernels; throws Error on a device without double precision. `groups`: contacts are shared by
+/// work-groups of many work-items, as suits a GPU; else each is one work-item's.
+std::unique_ptr<FieldStage> device_field_stage(Device::State& device, const SolverPlan& plan,
+                                               bool groups);
+
+/// By the host, in place, where the device shares its memory and is made of the same cores: the
+/// same mathematics as C++, without a launch. As many threads as the device has compute units share
+/// the contacts.
+std::unique_ptr<FieldStage> host_field_stage(const Device::State& device, const SolverPlan& plan);
 
 /// The OpenCL C of the field estimator, complete; `groups` as above.
 [[nodiscard]] std::string field_kernel_source(bool groups);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -53,6 +54,15 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
+/// A device that solves several pillars at once in the host's memory is the host's own processor:
+/// to launch what is left would take longer than to do it.
+std::unique_ptr<FieldStage> make_field_stage(Device::State& device, const SolverPlan& plan,
+                                             const SlotSettings& settings) {
+  const bool groups = settings.lanes == 1;
+  if (settings.shares_memory && !groups) return host_field_stage(device, plan);
+  return device_field_stage(device, plan, groups);
+}
+
 [[noreturn]] void throw_no_slot(const SlotTurns& turns) {
   if (turns.kept() == 0) {
     throw Error("Processor::submit", fmt::format("all {} frames are in flight", turns.slots()),
@@ -90,7 +100,7 @@ struct Processor::State {
           std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
     if (wanted.estimator == Estimator::field) {
-      field.emplace(device.state(), wanted, settings.lanes == 1);
+      field = make_field_stage(device.state(), wanted, settings);
     }
     warm_up();
     baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
@@ -103,6 +113,7 @@ struct Processor::State {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front()->submit(frame.view());
     slots.front()->wait();
+    if (field) slots.front()->warm_up(*field);
   }
 
   Device device;
@@ -112,9 +123,10 @@ struct Processor::State {
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
-  std::optional<FieldStage> field;
+  std::unique_ptr<FieldStage> field;         ///< null where the estimator is another
   std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
   SlotTurns turns;
+  bool received = false;  ///< a frame, once
 };
 
 struct Processor::Kept::State {
@@ -184,6 +196,7 @@ FieldView<Value> Processor::receive_oldest() {
     if (state_->field) slot.resolve(*state_->field);
   });
   state_->turns.receive();
+  state_->received = true;
   return slot.results<Value>();
 }
 
@@ -209,6 +222,10 @@ Processor::Kept Processor::keep() {
                 "keep() a frame once, after it was received and before its slot is used again");
   }
   return Kept(std::make_unique<Kept::State>(state_->slots[*slot], state_->turns.returned(), *slot));
+}
+
+const ContactMap* Processor::contacts() const {
+  return state_->field && state_->received ? &state_->field->contacts() : nullptr;
 }
 
 int Processor::in_flight() const { return static_cast<int>(state_->turns.in_flight()); }

@@ -35,14 +35,14 @@ class SharedMemory final : public SlotMemory {
   }
 
   void fetch(const cl::CommandQueue& queue) override {
-    queue.enqueueMapBuffer(all_, CL_FALSE, CL_MAP_READ, 0, layout_.bytes);
+    queue.enqueueMapBuffer(all_, CL_FALSE, CL_MAP_READ | CL_MAP_WRITE, 0, layout_.bytes);
     mapped_ = true;
   }
 
   [[nodiscard]] const cl::Buffer& buffer(std::size_t plane) const override {
     return buffers_.at(plane);
   }
-  [[nodiscard]] const std::byte* host(std::size_t plane) const override {
+  [[nodiscard]] std::byte* host(std::size_t plane) const override {
     const cl_buffer_region& region = layout_.planes.at(plane);
     return region.size == 0 ? nullptr : pages_.get() + region.origin;
   }

@@ -59,6 +59,8 @@ class Slot {
   /// Waits for it.
   void wait();
 
+  void warm_up(FieldStage& field) { field.warm_up(queue_, *memory_); }
+
   /// Resolves what the direct solve left open, after wait().
   void resolve(FieldStage& field) { field.resolve(queue_, *memory_); }
 

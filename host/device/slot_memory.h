@@ -72,8 +72,9 @@ class SlotMemory {
   /// The buffer that the kernel writes a plane to; null for a plane without.
   [[nodiscard]] virtual const cl::Buffer& buffer(std::size_t plane) const = 0;
 
-  /// The host's side of a plane, valid from the end of fetch() to the next release().
-  [[nodiscard]] virtual const std::byte* host(std::size_t plane) const = 0;
+  /// The host's side of a plane, valid from the end of fetch() to the next release(). What is
+  /// written there stays; where memory is shared, the device sees it.
+  [[nodiscard]] virtual std::byte* host(std::size_t plane) const = 0;
 
   /// The block that the host's sides of all planes lie in: whole pages, always the same.
   [[nodiscard]] virtual std::span<const std::byte> pages() const = 0;

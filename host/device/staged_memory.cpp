@@ -82,7 +82,7 @@ class StagedMemory final : public SlotMemory {
   [[nodiscard]] const cl::Buffer& buffer(std::size_t plane) const override {
     return planes_.at(plane);
   }
-  [[nodiscard]] const std::byte* host(std::size_t plane) const override {
+  [[nodiscard]] std::byte* host(std::size_t plane) const override {
     const cl_buffer_region& region = layout_.planes.at(plane);
     return region.size == 0 ? nullptr : pages_ + region.origin;
   }

@@ -7,6 +7,8 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pillarfield/status.h"
 #include "tests/core/message.h"
@@ -290,6 +292,26 @@ TEST(ContactTracker, IdsAreNeverGivenTwice) {
   }
 }
 
+TEST(ContactTracker, TakesContactsThatWereFound) {
+  ContactTracker finds(kPitchMm);
+  ContactTracker takes(kPitchMm);
+  for (int step = 0; step < 4; ++step) {
+    Patch patch(40, 60);
+    patch.disc(10 + step, 12, 6).disc(25, 20 + 3 * step, 5).box(33, 40, 4, 9 - step);
+    const FrameContacts& expected = finds.update(patch.view(), step);
+    ContactMap map;  // gone when the frame is taken
+    map.find(patch.view().status, 40, 60);
+    const FrameContacts& actual = takes.update(patch.view(), step, &map);
+    map = {};
+    EXPECT_EQ(ids_of(actual), ids_of(expected));
+    EXPECT_EQ(ended_ids(actual), ended_ids(expected));
+    EXPECT_EQ(actual.patch.pillars, expected.patch.pillars);
+    EXPECT_EQ(actual.patch.torque_nmm, expected.patch.torque_nmm);
+    ASSERT_EQ(takes.map().runs().size(), finds.map().runs().size());
+    EXPECT_EQ(takes.map().contacts(), finds.map().contacts());
+  }
+}
+
 TEST(ContactTracker, RefusesWhatMakesNoSense) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto says = [](auto action, const std::string& words) {
@@ -313,6 +335,11 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
   ForceFieldView cut = same.view();
   cut.normal = {};
   says([&] { tracker.update(cut, 1); }, "0 forces for 4 x 5 pillars");
+  for (const auto& [rows, cols] : {std::pair{5U, 5U}, {4U, 6U}}) {
+    ContactMap map;
+    map.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
+    says([&] { tracker.update(same.view(), 1, &map); }, "of 4 x 5 pillars");
+  }
 }
 
 }  // namespace

@@ -187,6 +187,29 @@ TEST(FieldEstimate, FaultsAndSaturationAreLeftAlone) {
   EXPECT_EQ(faults, 2);
 }
 
+TEST(FieldEstimate, IsTheSameBitsWithAnyThreads) {
+  // Six contacts of their own friction, each half open.
+  Pressed skin(24, 33);
+  for (std::uint32_t i = 0; i < 6 * 100; ++i) {
+    const std::uint32_t contact = i / 100;
+    const double direction = i % 100 < 60 ? std::numbers::pi / 4 : 0;
+    skin.push(i % 100 / 10 + 12 * (contact % 2), i % 10 + 11 * (contact / 2), 50 + i % 7,
+              1.6 + 0.1 * contact, direction);
+  }
+  ForceField expected = skin.direct();
+  HostFieldEstimator(skin.plan).resolve(expected);
+  HostFieldEstimator shared(skin.plan, 3);
+  for (int turn = 0; turn < 20; ++turn) {
+    ForceField field = skin.direct();
+    shared.resolve(field);
+    ASSERT_EQ(shared.work().tiles().size(), 6U);
+    EXPECT_EQ(field.normal, expected.normal);
+    EXPECT_EQ(field.shear_x, expected.shear_x);
+    EXPECT_EQ(field.shear_y, expected.shear_y);
+    EXPECT_EQ(field.status, expected.status);
+  }
+}
+
 TEST(FieldEstimate, MemoryOfThinContactsStaysSmall) {
   // Nested angles, each with a box as large as the skin: their boxes would take 100 times the skin.
   constexpr std::uint32_t kSize = 200;

@@ -16,9 +16,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 struct Sample {
-  double ratio;
+  float ratio;
   std::uint32_t weight;
-  double ceiling;
+  float ceiling;
 };
 
 /// A disc under a Hertz pressure, as pillars see it: those whose ratio exceeds their ceiling are
@@ -63,7 +63,8 @@ class Disc {
     const double ceiling = 1 / std::min(std::abs(std::cos(off)), std::abs(std::sin(off)));
     const double seen = std::hypot(x, y) / normal;
     if (normal <= 0 || seen > ceiling) return;
-    samples_.push_back({seen, static_cast<std::uint32_t>(60000 * pressure), ceiling});
+    samples_.push_back({static_cast<float>(seen), static_cast<std::uint32_t>(4000 * pressure),
+                        static_cast<float>(ceiling)});
   }
 
   std::mt19937_64 random_;
@@ -178,8 +179,8 @@ TEST(FrictionPlateau, IsTheSameBitsInAnyOrder) {
 
 TEST(FrictionPlateau, ShareIsOfAllThatWasAdded) {
   FrictionHistogram histogram;
-  for (int i = 0; i < 30; ++i) histogram.add(0.5, 1000, 2);
-  for (int i = 0; i < 10; ++i) histogram.add(0.01, 1000, 2);
+  for (int i = 0; i < 30; ++i) histogram.add(0.5F, 1000, 2);
+  for (int i = 0; i < 10; ++i) histogram.add(0.01F, 1000, 2);
   const auto plateau = histogram.plateau();
   ASSERT_TRUE(plateau.has_value());
   EXPECT_NEAR(plateau->friction, 0.5, 1e-5);
@@ -189,21 +190,22 @@ TEST(FrictionPlateau, ShareIsOfAllThatWasAdded) {
 TEST(FrictionPlateau, FewPillarsShowNone) {
   FrictionHistogram histogram;
   EXPECT_FALSE(histogram.plateau());
-  for (int i = 0; i < 7; ++i) histogram.add(0.5, 1000, 2);
+  for (int i = 0; i < 7; ++i) histogram.add(0.5F, 1000, 2);
   EXPECT_FALSE(histogram.plateau());
-  histogram.add(0.5, 1000, 2);
+  histogram.add(0.5F, 1000, 2);
   EXPECT_TRUE(histogram.plateau());
   histogram.clear();
   EXPECT_FALSE(histogram.plateau());
 }
 
 TEST(FrictionPlateau, TakesAnyNumber) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   FrictionHistogram histogram;
-  for (const double ratio : {kNan, kInfinity, -kInfinity, -1.0, 0.0, 1e-300, 1e300, 32.0,
-                             std::nextafter(32.0, 0.0), 1.0 / 32, std::nextafter(1.0 / 32, 0.0)}) {
-    for (const double ceiling : {kNan, kInfinity, -kInfinity, -1.0, 0.0, 1.0, 1e300}) {
+  for (const float ratio :
+       {kNan, kInfinity, -kInfinity, -1.0F, 0.0F, 1e-40F, 1e38F, 32.0F, std::nextafter(32.0F, 0.0F),
+        1.0F / 32, std::nextafter(1.0F / 32, 0.0F)}) {
+    for (const float ceiling : {kNan, kInfinity, -kInfinity, -1.0F, 0.0F, 1.0F, 1e38F}) {
       histogram.add(ratio, 0, ceiling);
       histogram.add(ratio, UINT32_MAX, ceiling);
     }

@@ -90,6 +90,16 @@ std::size_t count_of(std::span<const std::uint8_t> status, std::uint8_t bit) {
   return count;
 }
 
+void expect_same_runs(std::span<const ContactRun> actual, std::span<const ContactRun> expected) {
+  ASSERT_EQ(actual.size(), expected.size());
+  for (std::size_t i = 0; i < actual.size(); ++i) {
+    EXPECT_EQ(actual[i].row, expected[i].row);
+    EXPECT_EQ(actual[i].first, expected[i].first);
+    EXPECT_EQ(actual[i].end, expected[i].end);
+    EXPECT_EQ(actual[i].contact, expected[i].contact);
+  }
+}
+
 /// What differs from one way to run it to the next: one lane means work-groups for contacts.
 struct Way {
   const char* name;
@@ -128,6 +138,25 @@ class EveryWay : public testing::TestWithParam<Way> {
 TEST_P(EveryWay, NothingSaidHasTheBitsOfTheHost) {
   const SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
   expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
+  const Simulator simulator(parse_scene(kScene, "scene"));
+  const SolverPlan plan = plan_of(simulator);
+  Processor solver = processor(plan);
+  EXPECT_EQ(solver.contacts(), nullptr);
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  for (std::uint64_t index = 0; index < 2; ++index) {
+    simulator.render(index, raw, truth);
+    solver.submit(raw.view());
+    const ForceFieldView forces = solver.receive();
+    ContactMap found;
+    found.find(forces.status, forces.rows, forces.cols);
+    ASSERT_NE(solver.contacts(), nullptr);
+    EXPECT_GT(found.contacts(), 2U);
+    expect_same_runs(solver.contacts()->runs(), found.runs());
+  }
 }
 
 TEST_P(EveryWay, BoundAndSweepsHaveTheBitsOfTheHost) {
@@ -215,6 +244,15 @@ INSTANTIATE_TEST_SUITE_P(Ways, EveryWay,
                                          Way{"alone_staged", 16, Memory::staged}),
                          [](const auto& way) { return std::string(way.param.name); });
 #endif
+
+TEST(FieldStage, OfOthersNoContactsAreLent) {
+  const SolverPlan plan = bare_plan(20, 20, SenselType::u8);
+  Processor solver(test_device(), plan);
+  const FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  solver.submit(raw.view());
+  (void)solver.receive();
+  EXPECT_EQ(solver.contacts(), nullptr);
+}
 
 TEST(FieldStage, IsNamedAmongTheStages) {
   SolverPlan plan = bare_plan(20, 20, SenselType::u8);

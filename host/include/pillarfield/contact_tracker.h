@@ -73,9 +73,11 @@ class ContactTracker {
 
   /// Takes the next frame; the result stays until the next call. Time goes with the pillars of the
   /// patch for finding contacts and with loaded ones for the rest, n log n in contacts. Forces of
-  /// any value are taken. Throws Error where planes are not of the field's size, or that is not the
-  /// size of the frame before.
-  const FrameContacts& update(const ForceFieldView& forces, double time_s);
+  /// any value are taken. Where the contacts of this frame were found already, `found` has them
+  /// (Processor::contacts()); it is copied. Throws Error where planes are not of the field's size,
+  /// that is not the size of the frame before, or a run of `found` lies outside it.
+  const FrameContacts& update(const ForceFieldView& forces, double time_s,
+                              const ContactMap* found = nullptr);
 
   /// The pillars of the contacts of the frame last taken, small ones included.
   [[nodiscard]] const ContactMap& map() const;

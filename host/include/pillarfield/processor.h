@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pillarfield/contact_map.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/solver_plan.h"
@@ -148,6 +149,11 @@ class Processor {
   /// Keeps the frame last received. Throws Error where none was received, it is kept already, or a
   /// frame that was submitted since took its slot.
   [[nodiscard]] Kept keep();
+
+  /// The contacts of the frame last received, whose pillars the estimator `field` looks for: with
+  /// them ContactTracker need not. They stay until the next frame is received, also where this one
+  /// is kept. Null with other estimators, and before the first frame.
+  [[nodiscard]] const ContactMap* contacts() const;
 
   /// The tare [sensel rows, cols] as the frames submitted so far leave it, in counts; waits for
   /// them. Empty where the plan has none and follows none.
