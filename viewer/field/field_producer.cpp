@@ -31,6 +31,7 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_readings = true;
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
+  info.friction = plan.field.friction;
   info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
                             processor.shares_memory() ? "zero copy" : "staged");
 }
@@ -118,7 +119,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 }  // namespace
 
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
-  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm());
+  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm(), info().friction);
   return watch_->contacts_of(field);
 }
 

@@ -28,7 +28,8 @@ struct SourceInfo {
   bool has_angles = false;    ///< magnitude, theta and phi; true of all sources there are
   bool has_uncertainty = false;
   std::string solver;  ///< "direct on NAME OF DEVICE, zero copy"; for a force file who solved it
-  std::vector<std::string> remarks;  ///< what a user should know, one sentence each
+  std::optional<double> friction = {};  ///< of contacts that are found, where a scene tells it
+  std::vector<std::string> remarks;     ///< what a user should know, one sentence each
 };
 
 /// Makes the fields of a source, one by one and in any order. For one thread.
