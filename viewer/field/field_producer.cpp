@@ -77,7 +77,9 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
     info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
   }
   if (scene.field.frames_close) {
-    info.remarks.emplace_back("Each frame is solved by itself: frames are solved in any order.");
+    info.remarks.emplace_back(
+        "Frames that are played know of the one before, one that is jumped to is solved by "
+        "itself.");
   }
   SolverPlan plan;
   plan.skin = scene.skin;
@@ -89,7 +91,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   return std::make_unique<SolvedProducer>(
-      std::move(info), simulate_frames(simulator, frames, progress), std::move(processor));
+      std::move(info), simulate_frames(simulator, frames, progress), plan, std::move(processor));
 }
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
@@ -113,7 +115,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
-                                          std::move(processor));
+                                          plan, std::move(processor));
 }
 
 }  // namespace
