@@ -93,7 +93,7 @@ void check(const SolverPlan& plan, std::string_view where) {
     check(plan.field, where);
     if (plan.half_output) {
       throw Error(where, "the field estimator has no results of half precision",
-                  "leave out half_output");
+                  "leave out half_output (--half), or take the direct estimator");
     }
   }
   if (!plan.uncertainty) return;

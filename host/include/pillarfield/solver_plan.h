@@ -58,7 +58,8 @@ struct SolverPlan {
   bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, not for `paper`
   /// The planes of a result, status apart, are of half precision (half.h) and come from
   /// Processor::receive_half(): fewer bytes to move, 11 instead of 17 a pillar where 8-bit readings
-  /// become forces. Forces of up to 65504 N, angles within 0.001 rad.
+  /// become forces. Forces of up to 65504 N, angles within 0.001 rad. Not for `field`, which goes
+  /// over planes of single precision once more.
   bool half_output = false;
 };
 
