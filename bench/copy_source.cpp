@@ -2,20 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "device/sensel_macro.h"
+
 namespace pillarfield::bench {
 namespace {
-
-const char* sensel_macro(SenselType type) {
-  switch (type) {
-    case SenselType::u8:
-      return "uchar";
-    case SenselType::u16:
-      return "ushort";
-    case SenselType::f32:
-      break;
-  }
-  return "float";
-}
 
 /// So many bytes ahead of the reading what is next is asked for, as the hand-written loop does.
 constexpr const char* kAskingAhead = R"(

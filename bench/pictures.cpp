@@ -50,7 +50,7 @@ std::unique_ptr<viewer::FieldProducer> make_producer(const Device& solver, std::
   info.has_readings = true;
   info.has_angles = true;
   return std::make_unique<viewer::SolvedProducer>(
-      info, std::make_unique<Supply>(plan, kFields),
+      info, std::make_unique<Supply>(plan, kFields), plan,
       Processor(solver, plan, {.frames_in_flight = viewer::FieldProducer::kMostShown}));
 }
 

@@ -43,13 +43,18 @@ void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
                   "Contacts of fewer pillars are not told of [1]")
       ->needs(file);
   command
-      .add_option("--contact-friction", options.contacts.friction,
-                  "Friction of every contact [what each shows]")
+      .add_option(
+          "--contact-friction", options.contacts.friction,
+          "Friction of every contact [that of --friction or the scene, else what each shows]")
       ->needs(file);
   command
       .add_option("--contact-reach", options.contacts.reach_mm,
                   "How far a contact may jump from frame to frame, mm [10]")
       ->needs(file);
+}
+
+void take_friction(const SolverPlan& plan, ContactOptions& contacts) {
+  if (!contacts.friction) contacts.friction = plan.field.friction;
 }
 
 void check(const ContactOutputOptions& options, const std::string& output) {

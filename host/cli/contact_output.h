@@ -9,6 +9,7 @@
 #include "pillarfield/contact_file.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield::cli {
 
@@ -20,6 +21,10 @@ struct ContactOutputOptions {
 
 /// --contacts and what goes with it.
 void add_contact_options(CLI::App& command, ContactOutputOptions& options);
+
+/// Takes the friction that `plan` was told, by --friction or by a scene, for that of every contact,
+/// unless --contact-friction has said another.
+void take_friction(const SolverPlan& plan, ContactOptions& contacts);
 
 /// Throws Error unless contacts can be written to where `options` says, or nothing is said.
 /// `output` is the file of forces.

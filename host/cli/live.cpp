@@ -217,8 +217,9 @@ void add_run_options(CLI::App& command, LiveOptions& options) {
       .add_option("--memory-limit", options.memory_limit_mib,
                   "Frames are loaded beforehand, into so many MiB at most [1024]")
       ->check(CLI::Range(1U, 1U << 20U));
-  command.add_flag("--half", options.half,
-                   "Forces of half precision, which take fewer bytes to memory");
+  command.add_flag(
+      "--half", options.half,
+      "Forces of half precision, which take fewer bytes to memory; not with --estimator field");
   command.add_flag("--realtime", options.realtime,
                    "Ask for real-time scheduling and locked memory; says so where refused");
   command.add_flag("--strict", options.strict,

@@ -66,8 +66,8 @@ void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s
 void add_evidence_options(CLI::App& command, PlanOptions& options) {
   command
       .add_option("--friction", options.friction,
-                  "--estimator field: no pillar's shear exceeds this many times its normal force "
-                  "[not known]")
+                  "--estimator field: no pillar's shear exceeds this many times its normal force; "
+                  "also the friction of contacts [not known]")
       ->check(CLI::Range(1e-6, 100.0).description("RATIO"));
   command.add_flag("--slips", options.slips,
                    "--estimator field: every pillar slips, at that friction");
@@ -77,7 +77,7 @@ void add_evidence_options(CLI::App& command, PlanOptions& options) {
       .add_option(
           "--sweeps", options.sweeps,
           "--estimator field: sweeps of the pressure's relaxation, more for accuracy, fewer "
-          "for speed [16]")
+          "for speed [8]")
       ->check(CLI::Range(0, 1000).description("NUMBER"));
 }
 

@@ -205,7 +205,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Wrote {}\n", options.output);
 }
 
-void solve(const SolveOptions& options) {
+void solve(SolveOptions options) {
   const Stopwatch watch;
   check(options.contacts, options.output);
   const std::unique_ptr<FrameSource> source = open_frames(options.input);
@@ -213,6 +213,7 @@ void solve(const SolveOptions& options) {
     fmt::print(stderr, "{}: {}\n", options.input, remark);
   }
   const SolverPlan plan = plan_of(options, *source);
+  take_friction(plan, options.contacts.contacts);
   const Device device = open_device(options.device.name);
   Processor processor(
       device, plan,

@@ -45,7 +45,7 @@ class LogHistogram {
   }
 
  private:
-  static constexpr double kLeast = 1e-15;
+  static constexpr double kLeast = 1e-15;  // see comparison.h
   static constexpr double kWidth = 1.02;
   static constexpr std::size_t kClasses = 3490;
 

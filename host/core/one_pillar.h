@@ -71,7 +71,7 @@ PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const Pilla
   const typename PillarMaths<Real>::ForceScale scale = {static_cast<Real>(exact_scale.shear),
                                                         static_cast<Real>(exact_scale.normal)};
   const auto noise = static_cast<Real>(sensor.noise_counts);
-  const auto doubt = static_cast<Real>(5 * std::sqrt(3.0) * sensor.noise_counts);
+  const auto doubt = static_cast<Real>(region_doubt(sensor.noise_counts));
   const auto diagonals = pillar_diagonals(pillar);
   const auto sum = parity_sum(diagonals);
   PillarEstimate<Real> estimate{};

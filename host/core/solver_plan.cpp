@@ -93,7 +93,7 @@ void check(const SolverPlan& plan, std::string_view where) {
     check(plan.field, where);
     if (plan.half_output) {
       throw Error(where, "the field estimator has no results of half precision",
-                  "leave out half_output");
+                  "leave out half_output (--half), or take the direct estimator");
     }
   }
   if (!plan.uncertainty) return;
@@ -124,10 +124,13 @@ double reading_noise(const SolverPlan& plan) {
 }
 
 double region_doubt(const SolverPlan& plan) {
+  if (!plan.calibration.noise.empty()) return region_doubt(mean_noise(plan.calibration));
+  return plan.noise_counts ? region_doubt(reading_noise(plan)) : 0;
+}
+
+double region_doubt(double noise_counts) {
   // Parity leaves V_p + V_q - V_r, three readings, each with its noise.
-  const double deviations = 5 * std::sqrt(3.0);
-  if (!plan.calibration.noise.empty()) return deviations * mean_noise(plan.calibration);
-  return plan.noise_counts ? deviations * reading_noise(plan) : 0;
+  return 5 * std::sqrt(3.0) * noise_counts;
 }
 
 }  // namespace pillarfield

@@ -9,6 +9,7 @@
 #include "device/block_lanes.h"
 #include "device/field_stage.h"
 #include "device/kernel_files.h"
+#include "device/sensel_macro.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield {
@@ -23,18 +24,6 @@ struct Definition {
 
 /// A constant as the device gets it: rounded to single precision, then exact.
 std::string hex_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
-
-const char* sensel_macro(SenselType type) {
-  switch (type) {
-    case SenselType::u8:
-      return "uchar";
-    case SenselType::u16:
-      return "ushort";
-    case SenselType::f32:
-      break;
-  }
-  return "float";
-}
 
 /// Whole numbers stand for quarters of a count: readings are whole counts, a threshold is whole or
 /// a half, and the middle of an interval halves their sum.

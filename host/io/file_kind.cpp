@@ -21,6 +21,13 @@ std::ifstream open_binary(const std::filesystem::path& path) {
   return file;
 }
 
+/// Of the open file: whatever its name stands for by now.
+std::uint64_t size_of(std::ifstream& file) {
+  file.seekg(0, std::ios::end);
+  const std::streamoff end = file.tellg();
+  return end < 0 ? 0 : static_cast<std::uint64_t>(end);
+}
+
 std::string bytes_at(std::ifstream& file, std::uint64_t offset, std::size_t count) {
   std::string bytes(count, '\0');
   file.clear();
@@ -72,16 +79,16 @@ bool looks_like_tekscan(std::string_view head) {
 
 FileKind kind_of(const std::filesystem::path& path) {
   require_regular_file(path);
-  const std::uint64_t size = std::filesystem::file_size(path);
-  if (size == 0) throw Error(path.string(), "is empty", "give a recording or a Tekscan export");
   std::ifstream file = open_binary(path);
+  const std::uint64_t size = size_of(file);
+  if (size == 0) throw Error(path.string(), "is empty", "give a recording or a Tekscan export");
   if (superblock_offset(file, size)) return FileKind::hdf5;
   return looks_like_tekscan(bytes_at(file, 0, 4096)) ? FileKind::tekscan : FileKind::other;
 }
 
 WriterState writer_state(const std::filesystem::path& path) {
   std::ifstream file = open_binary(path);
-  const auto offset = superblock_offset(file, std::filesystem::file_size(path));
+  const auto offset = superblock_offset(file, size_of(file));
   if (!offset) return WriterState::closed;
   const std::string superblock = bytes_at(file, *offset, 12);
   constexpr std::size_t kVersionAt = 8;

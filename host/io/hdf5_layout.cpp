@@ -4,7 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <numeric>
+#include <system_error>
 
 #include "pillarfield/error.h"
 
@@ -134,7 +136,11 @@ std::vector<hsize_t> extent_of(const File& file, const Handle& dataset, const ch
 void require_within_file(const File& file, const Handle& dataset, const char* name) {
   const Storage storage = storage_of(file, dataset, name);
   if (!storage.holds_values()) return;
-  const auto file_bytes = std::filesystem::file_size(file.path);
+  std::error_code failed;
+  const auto file_bytes = std::filesystem::file_size(file.path, failed);
+  if (failed) {
+    throw Error(file.path.string(), failed.message(), "leave it in its place while it is read");
+  }
   if (least_bytes(storage) > static_cast<double>(file_bytes)) {
     throw Error(file.path.string(),
                 fmt::format("{} claims to be {} values, more than the file's {} bytes can hold",

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -23,12 +25,12 @@ over that of the direct solve of the same frame, in which {share:.0f} % of the p
 constexpr const char* kPicture = R"(
 ![Error against time](pictures/field/error_and_time.png)
 
-*The ratio of the RMS errors to the paper's midpoint against time over that of the direct solve. The points of a line are the sweeps of the table.*
+*The ratio of the RMS errors to the paper's midpoint against time over that of the direct solve. Colours are bodies, marks are motions; the points of a line are the sweeps of the table.*
 )";
 
 constexpr const char* kScript = R"(
 set logscale xy
-set xtics (1, 1.5, 2, 3, 5, 10, 20, 50, 100)
+set xtics (1, 1.5, 2, 3, 5, 7, 10, 15, 20, 30, 50, 70, 100)
 set xlabel 'time (direct solve: 1)'
 set ylabel 'RMS error in region 3 (midpoint: 1)'
 set ytics (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)
@@ -62,10 +64,39 @@ std::string sweeps_table(const FieldContext& context) {
   return table.text();
 }
 
+/// Where a name stands in a list, which it joins where it is new.
+std::size_t place_in(std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  const auto place = static_cast<std::size_t>(found - names.begin());
+  if (found == names.end()) names.push_back(name);
+  return place;
+}
+
+/// How lines of kinds are told apart, of which there are more than colours: "rounded, slide" has
+/// the colour of what is rounded and the mark of what slides.
+class LineStyles {
+ public:
+  std::string of(const Kind& kind) {
+    const std::size_t comma = kind.name.find(", ");
+    const std::size_t body = place_in(bodies_, kind.name.substr(0, comma));
+    const std::size_t motion = place_in(motions_, kind.name.substr(comma + 2));
+    return fmt::format("linetype {} pointtype {}", kColours.at(body), kMarks.at(motion));
+  }
+
+ private:
+  // Hollow marks, so that one on another shows both.
+  static constexpr std::array kColours = {1, 4, 7, 6, 2, 8};  // of the style of all our charts
+  static constexpr std::array kMarks = {6, 4, 8, 12, 10, 14};
+
+  std::vector<std::string> bodies_;
+  std::vector<std::string> motions_;
+};
+
 void draw_chart(const FieldContext& context) {
   std::string data = "$points << END\n";
   std::string plot;
   int line = 0;
+  LineStyles styles;
   double least = 0.1;
   for (const Kind& kind : kinds()) {
     if (kind.name == "press, any") continue;
@@ -75,9 +106,8 @@ void draw_chart(const FieldContext& context) {
       data += fmt::format("{:.4f} {:.4f}\n", context.times.over_direct.at(i), pooled.ratio());
     }
     data += "\n\n";
-    plot += fmt::format("{} index {} using 1:2 with linespoints linetype {} dashtype {} title '{}'",
-                        line == 0 ? "plot $points" : ", ''", line, line % 8 + 1, line / 8 + 1,
-                        kind.name);
+    plot += fmt::format("{} index {} using 1:2 with linespoints {} title '{}'",
+                        line == 0 ? "plot $points" : ", ''", line, styles.of(kind), kind.name);
     ++line;
   }
   const auto& times = context.times.over_direct;

@@ -6,6 +6,8 @@ import subprocess
 import time
 import unittest
 
+import h5py
+
 from command import PROGRAM, SCENES, SOURCE, CommandTest, run, run_json
 
 COMMANDS = ["simulate", "solve", "live", "compare", "calibrate", "testbed", "info", "completion"]
@@ -29,6 +31,30 @@ load_n = 20
 position_mm = [0, 0]
 friction = 0.5
 direction_deg = 30
+"""
+
+# Of what is open in one frame, some was resolved in the one before.
+GROWING_SHEAR = """
+[skin]
+size_mm = [30, 30]
+[time]
+frames = 6
+[sensor]
+noise_counts = 0.3
+[[contact]]
+shape = "sphere"
+motion = "press"
+contact_radius_mm = 8
+path = [{ time_s = 0, position_mm = [0, 0], load_n = 30 },
+        { time_s = 0.05, position_mm = [0, 0], load_n = 3 }]
+[[contact]]
+shape = "sphere"
+motion = "slide"
+contact_radius_mm = 8
+friction = 1.9
+direction_deg = 0
+path = [{ time_s = 0, position_mm = [0, 0], load_n = 3 },
+        { time_s = 0.05, position_mm = [0, 0], load_n = 30 }]
 """
 
 
@@ -158,6 +184,19 @@ class Work(CommandTest):
             self.assertEqual("resolve_field" in solved["stages"], estimator == "field")
             self.assertEqual(solved["resolved"] > 0, estimator == "field")
         self.assertLess(errors["field"], 0.3 * errors["direct"])
+
+    def test_frames_that_are_close_know_of_the_one_before(self):
+        self.scene.write_text(GROWING_SHEAR)
+        run("simulate", self.scene, "-o", self.recording)
+        normals = []
+        for more in ((), ("--frames-close",)):
+            run("solve", self.recording, "-o", self.forces, "--estimator", "field", "--noise", 0.3,
+                *more)
+            with h5py.File(self.forces) as file:
+                normals.append(file["force/normal"][:])
+        differ = [index for index in range(6) if (normals[0][index] != normals[1][index]).any()]
+        self.assertTrue(differ)
+        self.assertNotIn(0, differ)
 
     def test_evidence_is_of_use_to_the_field_alone(self):
         run("simulate", self.scene, "-o", self.recording)

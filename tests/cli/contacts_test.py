@@ -134,6 +134,29 @@ class Contacts(CommandTest):
         text = run("solve", self.recording, "-o", self.forces, "--contacts", self.csv).stdout
         self.assertIn("Contacts: ", text)
 
+    def friction_of(self, *arguments):
+        """What the table says of all rows, and what the force file says it was given."""
+        run("solve", self.recording, "-o", self.forces, "--contacts", self.csv, *arguments)
+        with h5py.File(self.forces) as file:
+            given = file["contacts"].attrs.get("given_friction")
+        told = {(row["friction"], row["friction_source"]) for row in self.rows()
+                if row["row"] != "ended"}
+        return told, given
+
+    def test_friction_that_the_solver_is_told_is_that_of_contacts(self):
+        field = ("--estimator", "field", "--noise", 0.5)
+        self.assertEqual(self.friction_of(*field, "--friction", 1.5), ({("1.5", "given")}, 1.5))
+        self.assertEqual(self.friction_of(*field, "--friction", 1.5, "--contact-friction", 2),
+                         ({("2", "given")}, 2))
+        scene = self.folder / "frictional.toml"
+        text = (SCENES / "several_contacts.toml").read_text(encoding="utf-8")
+        scene.write_text(text.replace("[solver]", "[solver]\nestimator = 'field'\nfriction = 1.25"),
+                         encoding="utf-8")
+        self.assertEqual(self.friction_of("--scene", scene), ({("1.25", "given")}, 1.25))
+        told, given = self.friction_of(*field)
+        self.assertIn("shown", {source for _, source in told})
+        self.assertIsNone(given)
+
     def test_wrong_names_end_before_any_work(self):
         before = sorted(path.name for path in self.folder.iterdir())
         cases = {"contacts.txt": ".csv or .json", "contacts": ".csv or .json",

@@ -120,6 +120,10 @@ class Run(LiveTest):
         for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
             self.assertNotIn(stage, plain["stages"])
 
+    def test_the_field_has_no_half_precision(self):
+        self.assert_fails("live", self.scene, "--estimator", "field", "--half",
+                          says=["ball.toml", "half precision", "--half", "direct"])
+
     def test_half_precision_is_another_way_to_store(self):
         arguments = (self.scene, "--rate", 50, "--seconds", 0.1)
         single = self.live(*arguments)

@@ -31,6 +31,7 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_readings = true;
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
+  info.friction = plan.field.friction;
   info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
                             processor.shares_memory() ? "zero copy" : "staged");
 }
@@ -76,7 +77,9 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
     info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
   }
   if (scene.field.frames_close) {
-    info.remarks.emplace_back("Each frame is solved by itself: frames are solved in any order.");
+    info.remarks.emplace_back(
+        "Frames that are played know of the one before, one that is jumped to is solved by "
+        "itself.");
   }
   SolverPlan plan;
   plan.skin = scene.skin;
@@ -88,7 +91,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   return std::make_unique<SolvedProducer>(
-      std::move(info), simulate_frames(simulator, frames, progress), std::move(processor));
+      std::move(info), simulate_frames(simulator, frames, progress), plan, std::move(processor));
 }
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
@@ -112,13 +115,13 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
-                                          std::move(processor));
+                                          plan, std::move(processor));
 }
 
 }  // namespace
 
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
-  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm());
+  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm(), info().friction);
   return watch_->contacts_of(field);
 }
 

@@ -28,7 +28,8 @@ struct SourceInfo {
   bool has_angles = false;    ///< magnitude, theta and phi; true of all sources there are
   bool has_uncertainty = false;
   std::string solver;  ///< "direct on NAME OF DEVICE, zero copy"; for a force file who solved it
-  std::vector<std::string> remarks;  ///< what a user should know, one sentence each
+  std::optional<double> friction = {};  ///< of contacts that are found, where a scene tells it
+  std::vector<std::string> remarks;     ///< what a user should know, one sentence each
 };
 
 /// Makes the fields of a source, one by one and in any order. For one thread.
@@ -70,8 +71,9 @@ struct ProducerOptions {
 
 /// Opens a scene (.toml), a recording, a Tekscan ASCII export or a file of force fields, told apart
 /// by name (scenes) and content (the others). Frames of the first three are solved with angles, and
-/// with uncertainty where the noise is known and the estimator can tell. Neither a scene's baseline
-/// nor what was known of pillars is kept from frame to frame, since frames may come in any order.
+/// with uncertainty where the noise is known and the estimator can tell. A scene's baseline stays,
+/// since frames may come in any order; where its frames are close in time, one that is produced
+/// right after the frame before it knows of that.
 /// `progress` is called with shares 0..1 while a scene is simulated; it may throw to stop. Throws
 /// Error where the source cannot be opened or has no frames.
 [[nodiscard]] std::unique_ptr<FieldProducer> open_producer(

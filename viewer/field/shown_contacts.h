@@ -25,13 +25,16 @@ struct ShownContacts {
 /// comes before the last begins anew, with ids from 1.
 class ContactWatch {
  public:
-  explicit ContactWatch(double pillar_pitch_mm) : pitch_mm_(pillar_pitch_mm) {}
+  /// `friction` as that of ContactOptions.
+  explicit ContactWatch(double pillar_pitch_mm, std::optional<double> friction = {})
+      : pitch_mm_(pillar_pitch_mm), friction_(friction) {}
 
   /// Time as ContactTracker::update().
   [[nodiscard]] ShownContacts contacts_of(const ShownField& field);
 
  private:
   double pitch_mm_;
+  std::optional<double> friction_;
   std::optional<ContactTracker> tracker_;
   std::uint64_t last_index_ = 0;
 };

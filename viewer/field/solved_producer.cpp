@@ -22,16 +22,22 @@ SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   plan.angles = true;
   plan.uncertainty = knows_noise && plan.estimator != Estimator::paper;
-  // Both would depend on which frames were looked at before.
-  plan.baseline_rate.reset();
-  plan.field.frames_close = false;
+  plan.baseline_rate.reset();  // It would depend on which frames were looked at before.
   return plan;
 }
 
 SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> supply,
-                               Processor processor)
+                               const SolverPlan& plan, Processor processor)
     : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
   info_.frames = supply_->frames();
+  if (plan.estimator != Estimator::field || !plan.field.frames_close) return;
+  silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+}
+
+void SolvedProducer::forget_the_frame_before() {
+  // What was known of a pillar is of use in the next frame alone, and of a silent one nothing is.
+  processor_.submit(silence_->view());
+  static_cast<void>(processor_.receive());
 }
 
 ShownField SolvedProducer::produce(std::uint64_t index) {
@@ -41,9 +47,11 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
   }
   if (processor_.kept() == kMostShown) throw_too_many_shown();
   SuppliedFrame frame = supply_->frame(index);
+  if (silence_ && index != next_) forget_the_frame_before();
   const FrameView raw = frame.readings->view();
   processor_.submit(raw);
   const ForceFieldView forces = processor_.receive();
+  next_ = index + 1;
   const auto held = std::make_shared<Held>(Held{processor_.keep(), std::move(frame.readings)});
   return {.forces = forces,
           .raw = raw,

@@ -22,7 +22,9 @@ struct RegionErrors {
 };
 
 /// Accumulates the comparison of frames. The 95 % figures come from a logarithmic histogram and
-/// are exact to 2 %.
+/// are exact to 2 % between 1e-15 and 1e15, below which they are 0 and beyond which infinite.
+/// Nothing is lost by it: single precision rounds a force of 1e-8 N, a millionth of a count where a
+/// newton gives 100, by as little as 1e-15 N.
 class Comparison {
  public:
   Comparison();

@@ -58,7 +58,8 @@ struct SolverPlan {
   bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, not for `paper`
   /// The planes of a result, status apart, are of half precision (half.h) and come from
   /// Processor::receive_half(): fewer bytes to move, 11 instead of 17 a pillar where 8-bit readings
-  /// become forces. Forces of up to 65504 N, angles within 0.001 rad.
+  /// become forces. Forces of up to 65504 N, angles within 0.001 rad. Not for `field`, which goes
+  /// over planes of single precision once more.
   bool half_output = false;
 };
 
@@ -79,7 +80,13 @@ void check(const SolverPlan& plan, std::string_view where);
 [[nodiscard]] double reading_noise(const SolverPlan& plan);
 
 /// By how many counts noise may shift what parity leaves for a silent sensel, five standard
-/// deviations: what direct_status takes as doubt. Zero where the noise is not known.
+/// deviations: what direct_status takes as doubt. Zero where the noise is not known. One number for
+/// all pillars, by the root mean square of the noise of the sensels and with gains taken as 1: in a
+/// pillar whose gains are all g it is 5 / g deviations instead, 4 to 6 of them where g is 0.83 to
+/// 1.25.
 [[nodiscard]] double region_doubt(const SolverPlan& plan);
+
+/// The same of sensels that all have this standard deviation, counts.
+[[nodiscard]] double region_doubt(double noise_counts);
 
 }  // namespace pillarfield

@@ -39,6 +39,7 @@ class Export : public testing::Test {
     return names;
   }
 
+ protected:
   fs::path folder_;
 };
 

@@ -75,6 +75,7 @@ class PillarPanel : public testing::Test {
     return found;
   }
 
+ protected:
   static constexpr float kWidth = 340;
   ImGuiContext* context_;
   float side_ = 0;

@@ -52,13 +52,13 @@ class Video : public testing::Test {
   }
 
   /// From now on `ffmpeg` is this shell script; `$out` is the file that it is to write.
-  void stand_in(const std::string& script) {
+  void stand_in(const std::string& script) const {
     const fs::path name = folder_ / "bin" / "ffmpeg";
     std::ofstream(name) << "#!/bin/sh\nfor out; do :; done; out=${out#file:}\n" << script << "\n";
     fs::permissions(name, fs::perms::owner_all);
     setenv("PATH", (folder_ / "bin").string().append(":").append(path_).c_str(), 1);
   }
-  void no_ffmpeg() { setenv("PATH", (folder_ / "bin").c_str(), 1); }
+  void no_ffmpeg() const { setenv("PATH", (folder_ / "bin").c_str(), 1); }
 
   [[nodiscard]] bool is_alone(const std::string& name) const {
     std::size_t others = 0;
@@ -68,6 +68,7 @@ class Video : public testing::Test {
     return others == 0;
   }
 
+ protected:
   std::string path_;
   fs::path folder_;
 };

@@ -47,7 +47,9 @@ Shape shape_of(const Pixels& pixels) {
     shape.x += point.x / static_cast<double>(points.size());
     shape.y += point.y / static_cast<double>(points.size());
   }
-  double xx = 0, xy = 0, yy = 0;
+  double xx = 0;
+  double xy = 0;
+  double yy = 0;
   for (const Point& point : points) {
     const double dx = point.x - shape.x;
     const double dy = shape.y - point.y;
@@ -58,7 +60,8 @@ Shape shape_of(const Pixels& pixels) {
   shape.direction = 0.5 * std::atan2(2 * xy, xx - yy);
   const double c = std::cos(shape.direction);
   const double s = std::sin(shape.direction);
-  double least = 0, most = 0;
+  double least = 0;
+  double most = 0;
   for (const Point& point : points) {
     const double along = c * (point.x - shape.x) + s * (shape.y - point.y);
     least = std::min(least, along);

@@ -28,7 +28,8 @@ struct GoldenPicture {
   Options options;
 };
 
-/// What GoogleTest says of a parameter.
+/// What GoogleTest says of a parameter, by the name that it looks for.
+// NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const GoldenPicture& picture, std::ostream* stream) { *stream << picture.name; }
 
 Options look_at(Quantity quantity) {

@@ -15,6 +15,7 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "tests/io/sample_files.h"
+#include "tests/viewer/field/solved_scene.h"
 #include "tests/viewer/field/touched_field.h"
 #include "viewer/field/direction.h"
 #include "viewer/field/field_producer.h"
@@ -31,20 +32,6 @@ using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
 const std::filesystem::path kDemo = std::filesystem::path(PILLARFIELD_SCENES) / "demo.toml";
-
-template <class Value>
-bool same_bytes(std::span<const Value> left, std::span<const Value> right) {
-  return std::ranges::equal(std::as_bytes(left), std::as_bytes(right));
-}
-
-void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected) {
-  ASSERT_EQ(actual.rows, expected.rows);
-  ASSERT_EQ(actual.cols, expected.cols);
-  EXPECT_TRUE(same_bytes(actual.shear_x, expected.shear_x));
-  EXPECT_TRUE(same_bytes(actual.shear_y, expected.shear_y));
-  EXPECT_TRUE(same_bytes(actual.normal, expected.normal));
-  EXPECT_TRUE(same_bytes(actual.status, expected.status));
-}
 
 /// Magnitude, theta and phi are those of the forces beside them.
 void expect_angles(const ForceFieldView& forces) {
@@ -75,25 +62,6 @@ void expect_pages(const ShownField& field) {
     EXPECT_GE(plane.data(), field.pages.data());
     EXPECT_LE(plane.data() + plane.size(), field.pages.data() + field.pages.size());
   }
-}
-
-ForceField copy_of(const ForceFieldView& forces) {
-  ForceField copy(forces.rows, forces.cols);
-  std::ranges::copy(forces.shear_x, copy.shear_x.begin());
-  std::ranges::copy(forces.shear_y, copy.shear_y.begin());
-  std::ranges::copy(forces.normal, copy.normal.begin());
-  std::ranges::copy(forces.status, copy.status.begin());
-  return copy;
-}
-
-SolverPlan plan_of(const Simulator& simulator) {
-  SolverPlan plan;
-  plan.skin = simulator.scene().skin;
-  plan.sensel_type = simulator.sensel_type();
-  plan.calibration = simulator.calibration();
-  set_solver(plan, simulator.scene());
-  plan.uncertainty = true;
-  return plan;
 }
 
 TEST(SceneProducer, SolvesTheFramesOfTheSceneInAnyOrder) {
@@ -349,46 +317,6 @@ TEST(ForceFileProducer, ShowsWhatTheFileHasAndAngles) {
       EXPECT_EQ(field.forces.uncertainty[Uncertainty::magnitude_high][7], 0.25F);
     }
   }
-}
-
-TEST(SceneProducer, SolvesWithTheFieldEstimatorAndItsUncertainty) {
-  const auto path = std::filesystem::path(PILLARFIELD_SCENES) / "ambiguous_contacts.toml";
-  const Simulator simulator(load_scene(path));
-  const SolverPlan plan = plan_of(simulator);
-  ASSERT_EQ(plan.estimator, Estimator::field);
-  FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  const auto producer = open_producer(path, {.most_frames = 2});
-  EXPECT_TRUE(has_all(producer->info().solver, {"field on "}));
-  EXPECT_TRUE(producer->info().has_uncertainty);
-  const ShownField field = producer->produce(1);
-  simulator.render(1, frame, truth);
-  expect_same_forces(field.forces, solve_on_host(plan, frame.view()).view());
-  EXPECT_FALSE(field.forces.uncertainty[Uncertainty::theta_low].empty());
-  const auto resolved = std::ranges::count_if(
-      field.forces.status, [](std::uint8_t s) { return (s & status::kFromNeighbours) != 0; });
-  EXPECT_GT(resolved, 100);
-  const ShownContacts contacts = producer->contacts_of(field);
-  ASSERT_EQ(contacts.found.contacts.size(), 3U);
-  std::uint64_t told = 0;
-  for (const auto& contact : contacts.found.contacts) told += contact.quantities.resolved;
-  EXPECT_EQ(told, static_cast<std::uint64_t>(resolved));
-}
-
-TEST(SceneProducer, FramesThatWouldKnowOfTheOneBeforeAreSolvedByThemselves) {
-  const TemporaryDirectory directory;
-  const auto path = directory / "close.toml";
-  write_bytes(path,
-              "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"field\"\nframes_close = true\n"
-              "[sensor]\nnoise_counts = 0.5\n[time]\nframes = 3\n"
-              "[[contact]]\nshape = \"sphere\"\nmotion = \"slide\"\ncontact_radius_mm = 8\n"
-              "friction = 1.8\ndirection_deg = 0\nposition_mm = [0, 0]\nload_n = 30\n");
-  const auto producer = open_producer(path, {});
-  ASSERT_EQ(producer->info().remarks.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().remarks[0], {"Each frame is solved by itself"}));
-  const ForceField first = copy_of(producer->produce(2).forces);
-  static_cast<void>(producer->produce(1));
-  expect_same_forces(producer->produce(2).forces, first.view());
 }
 
 /// Two bodies that pass from frame to frame; in frame 2 the left one is away.

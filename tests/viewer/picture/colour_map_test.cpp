@@ -14,6 +14,16 @@
 namespace pillarfield::viewer {
 namespace {
 
+using status::kAmbiguous;
+using status::kFromNeighbours;
+using status::kInconsistent;
+using status::kSaturated;
+using status::kSensel1;
+using status::kSensel2;
+using status::kSensel3;
+using status::kSensel4;
+using status::kUsable;
+
 constexpr Theme kThemes[] = {Theme::dark, Theme::light};
 
 /// What one legend can hold.
@@ -95,7 +105,6 @@ TEST(DefaultMap, FollowsTheScale) {
 }
 
 TEST(SpecialOf, MapsGiveColoursToSoundAndAmbiguousPillarsOnly) {
-  using namespace status;
   EXPECT_EQ(special_of(Quantity::normal, kUsable), std::nullopt);
   EXPECT_EQ(special_of(Quantity::shear_x, kSensel1 | kSensel2 | kAmbiguous), std::nullopt);
   EXPECT_EQ(special_of(Quantity::normal, 0), Special::idle);
@@ -105,7 +114,6 @@ TEST(SpecialOf, MapsGiveColoursToSoundAndAmbiguousPillarsOnly) {
 }
 
 TEST(SpecialOf, RegionAndStatusAreClasses) {
-  using namespace status;
   EXPECT_EQ(special_of(Quantity::region, kUsable), Special::region_1);
   EXPECT_EQ(special_of(Quantity::region, kUsable | kInconsistent), Special::region_1);
   EXPECT_EQ(special_of(Quantity::region, kSensel1 | kSensel2 | kSensel4), Special::region_2);

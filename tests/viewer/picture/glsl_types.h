@@ -5,9 +5,9 @@
 /// As much of GLSL as surface.glsl needs to be C++.
 namespace glsl {
 
-using uint = unsigned;
+using uint = unsigned;  // NOLINT(readability-identifier-naming): GLSL's name, as those below
 
-struct vec2 {  // NOLINT(readability-identifier-naming): GLSL's name, as those below
+struct vec2 {  // NOLINT(readability-identifier-naming)
   float x, y;
 };
 

@@ -15,7 +15,15 @@
 namespace pillarfield::viewer {
 namespace {
 
-using namespace status;
+using status::kAmbiguous;
+using status::kFromNeighbours;
+using status::kInconsistent;
+using status::kSaturated;
+using status::kSensel1;
+using status::kSensel2;
+using status::kSensel3;
+using status::kSensel4;
+using status::kUsable;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -194,7 +202,7 @@ void expect_parity(SenselType type, std::size_t stride) {
   std::vector<Reading> readings(4 * stride, Reading{99});
   for (std::uint32_t r = 0; r < 2; ++r) {
     for (std::uint32_t c = 0; c < 3; ++c) {
-      const std::size_t upper_left = 2 * r * stride + std::size_t{2} * c;
+      const std::size_t upper_left = std::size_t{2} * r * stride + std::size_t{2} * c;
       readings[upper_left] = reading_at<Reading>(r, c, 2);
       readings[upper_left + 1] = reading_at<Reading>(r, c, 1);
       readings[upper_left + stride] = reading_at<Reading>(r, c, 3);

@@ -100,6 +100,7 @@ std::vector<Pair> random_pairs() {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> logarithm(-2, 4);
   std::vector<Pair> pairs;
+  pairs.reserve(400);
   for (int i = 0; i < 400; ++i) {
     pairs.push_back({1 + i % 4, std::pow(10, logarithm(random)), std::pow(10, logarithm(random))});
   }
@@ -149,7 +150,8 @@ TEST(AmbiguityContour, LiesAboutTheMiddleOfItsRegion) {
 TEST(AmbiguityContour, HasTheHalfWidthsOfTheDesign) {
   double widest_theta = 0;
   double widest_phi = 0;
-  for (double ratio = 0.1; ratio < 10; ratio *= 1.001) {
+  for (int step = -2304; step <= 2304; ++step) {
+    const double ratio = std::pow(1.001, step);  // 0.1 to 10
     const auto contour = ambiguity_contour(3, ratio, 1, 2);
     widest_theta = std::max(widest_theta, (contour[0].y - contour[1].y) / 2);
     widest_phi = std::max(widest_phi, std::abs(contour[0].x - contour[1].x) / 2);

@@ -125,7 +125,8 @@ TEST(NiceCeiling, KeepsNiceNumbersAsTheyAreWritten) {
 }
 
 TEST(RoundCeiling, IsNearAndKeepsItsOwn) {
-  for (double value = 1e-7; value < 1e7; value *= 1.0371) {
+  for (int step = -442; step <= 442; ++step) {
+    const double value = std::pow(1.0371, step);  // 1e-7 to 1e7
     const double round = round_ceiling(value);
     EXPECT_GE(round, value);
     EXPECT_LE(round, 1.3334 * value);

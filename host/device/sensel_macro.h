@@ -1,0 +1,20 @@
+#pragma once
+
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+/// What OpenCL C calls a reading of this type.
+constexpr const char* sensel_macro(SenselType type) {
+  switch (type) {
+    case SenselType::u8:
+      return "uchar";
+    case SenselType::u16:
+      return "ushort";
+    case SenselType::f32:
+      break;
+  }
+  return "float";
+}
+
+}  // namespace pillarfield

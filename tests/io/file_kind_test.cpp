@@ -1,0 +1,76 @@
+// What a file is, by its content, whatever happens to its name meanwhile.
+
+#include "io/file_kind.h"
+
+#include <gtest/gtest.h>
+
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::error_of;
+using io_test::has_all;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+const std::string kSignature = "\x89HDF\r\n\x1a\n";
+
+TEST(FileKind, IsToldByTheContent) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "a", kSignature + std::string(100, 'x'));
+  write_bytes(directory / "b", std::string(1024, 'u') + kSignature);  // behind a user block
+  write_bytes(directory / "c", std::string(1000, 'u') + kSignature);  // where none may begin
+  write_bytes(directory / "d",
+              "\xef\xbb\xbf"
+              "DATA_TYPE MOVIE\r\n");
+  write_bytes(directory / "e", "ROWS 2\nASCII_DATA @@\n");
+  write_bytes(directory / "f", "MY DATA_TYPE\n");
+  EXPECT_EQ(kind_of(directory / "a"), FileKind::hdf5);
+  EXPECT_EQ(kind_of(directory / "b"), FileKind::hdf5);
+  EXPECT_EQ(kind_of(directory / "c"), FileKind::other);
+  EXPECT_EQ(kind_of(directory / "d"), FileKind::tekscan);
+  EXPECT_EQ(kind_of(directory / "e"), FileKind::tekscan);
+  EXPECT_EQ(kind_of(directory / "f"), FileKind::other);
+}
+
+TEST(FileKind, SaysWhatIsWrong) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "empty", "");
+  const auto error = [](const std::filesystem::path& path) {
+    return error_of([&] { static_cast<void>(kind_of(path)); });
+  };
+  EXPECT_TRUE(has_all(error(directory / "empty"), {"empty", "is empty"}));
+  EXPECT_TRUE(has_all(error(directory / "absent"), {"absent", "check its name"}));
+  EXPECT_TRUE(has_all(error(directory / "."), {"is a directory"}));
+}
+
+TEST(FileKind, AFileThatIsRenamedMeanwhileGivesNoOtherErrorThanOurs) {
+  const TemporaryDirectory directory;
+  const auto here = directory / "here";
+  const auto there = directory / "there";
+  write_bytes(here, kSignature);
+  const std::jthread renaming([&](const std::stop_token& stop) {  // stops when it goes
+    while (!stop.stop_requested()) {
+      std::filesystem::rename(here, there);
+      std::filesystem::rename(there, here);
+    }
+  });
+  int found = 0;
+  for (int i = 0; i < 20000; ++i) {
+    try {
+      found += kind_of(here) == FileKind::hdf5 ? 1 : 0;
+      static_cast<void>(writer_state(here));
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {"here"}));
+    }
+  }
+  EXPECT_GT(found, 0);
+}
+
+}  // namespace
+}  // namespace pillarfield
