@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 namespace pillarfield::report {
@@ -112,8 +113,16 @@ CoverageGoal coverage_goal(const std::vector<SceneResult>& judging) {
     const double share = result.field().coverage();
     ++goal.scenes;
     goal.most = std::max(goal.most, share);
-    if (share < 0.93) ++goal.below;
-    if (share > 0.99) ++goal.above;
+    const field_study::Score& score = result.field();
+    if (share < 0.93) {
+      ++goal.below;
+      const double chance = std::sqrt(0.95 * 0.05 / static_cast<double>(score.open));
+      if (share >= 0.95 - 1.96 * chance) ++goal.by_chance;
+    }
+    if (share > 0.99) {
+      ++goal.above;
+      if (2 * score.resolved < score.open) ++goal.whole;
+    }
     if (share >= goal.least) continue;
     goal.least = share;
     goal.least_scene = result.scene.name();

@@ -36,6 +36,8 @@ struct CoverageGoal {
   double most = 0;
   std::size_t below = 0;
   std::size_t above = 0;
+  std::size_t by_chance = 0;  ///< of those below: independent errors of 95 % could do as much
+  std::size_t whole = 0;      ///< of those above: most pillars are not resolved
 };
 [[nodiscard]] CoverageGoal coverage_goal(const std::vector<SceneResult>& judging);
 

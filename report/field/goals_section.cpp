@@ -55,12 +55,16 @@ std::string text_of_coverage(const CoverageGoal& goal) {
   const bool met = goal.below == 0 && goal.above == 0;
   return fmt::format(
       "\nThe truth shall lie in the stated 95 % band for 93 to 99 % of the pillars of region 3, in "
-      "every judging scene: {}. Of {} scenes {} are below and {} above; "
-      "the least is {:.1f} % ({}), the largest {:.1f} %. Where nothing is resolved the band is the "
-      "whole segment, which holds nearly all truths "
-      "([coverage](#coverage)).\n",
+      "every judging scene: {}. Of {} scenes {} are below and {} above; the least is {:.1f} % "
+      "({}), "
+      "the largest {:.1f} %. Two things stop it. An error is *common* to a contact, that of its "
+      "friction or of its model, and the band is one factor for all pillars: it holds nearly all "
+      "of them or few, so that 95 % can be true of contacts, not of each. And where nothing "
+      "resolves a pillar, the whole segment is all that can be said, and holds nearly every truth: "
+      "{} of those above. Of those below, {} are within two standard deviations of 95 %, for they "
+      "have few pillars ([coverage](#coverage)).\n",
       verdict_of(met), goal.scenes, goal.below, goal.above, 100 * goal.least, goal.least_scene,
-      100 * goal.most);
+      100 * goal.most, goal.whole, goal.by_chance);
 }
 
 std::string text_of_rest(const FieldContext& context) {

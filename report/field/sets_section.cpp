@@ -18,7 +18,7 @@ using field_study::Scene;
 
 constexpr const char* kIntroduction = R"(## Tuning and judging
 
-Weights and limits of the estimator were chosen on the tuning scenes, {tuning} of them; all else on this page is of the judging scenes, {judging}, on which nothing was chosen but one: how near to a friction that is told an open pillar is put, 0.8, was set after a judging scene, a sliding cone that was told its friction, had come out worse than the midpoint; what is said of "friction told" has therefore seen a judge. The sets share no contact, radius, place between the pillars, friction,
+Weights and limits of the estimator were chosen on the tuning scenes, {tuning} of them, and on a thousand that are drawn at random (`pillarfield_field_page --table drawn` lists them; shapes of the tuning scenes, and a blunt body whose height grows by r² and r⁴); all else on this page is of the judging scenes, {judging}, on which nothing was chosen but one: how near to a friction that is told an open pillar is put, 0.8, was set after a judging scene, a sliding cone that was told its friction, had come out worse than the midpoint; what is said of "friction told" has therefore seen a judge. The sets share no contact, radius, place between the pillars, friction,
 direction, load ratio or seed, and the judging scenes have shapes that tuning has not: ellipse, merged spheres, wavy bodies of other waves, truncated cone and rounded punch.
 
 Each contact is seen at each friction with noise of 0.25, 0.5 and 1 counts (normal; float32 readings by equation (2), k = 320 counts per newton, threshold four times the noise), a press at one friction. Frictions of tuning: {tuning_frictions}; of judging: {judging_frictions}.

@@ -40,7 +40,7 @@ double seconds_of(Processor& processor, const FrameBuffer& frame,
   const auto begin = std::chrono::steady_clock::now();
   processor.submit(frame.view());
   const ForceFieldView forces = processor.receive();
-  if (tracker != nullptr) tracker->update(forces, 0);
+  if (tracker != nullptr) tracker->update(forces, 0, processor.contacts());
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
