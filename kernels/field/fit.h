@@ -5,7 +5,7 @@
 #define PF_TREND_FRICTION 16
 #define PF_TREND_SCALE_ERROR 17
 #define PF_TREND_UNEXPLAINED 18
-#define PF_SHARED_TREND 19
+#define PF_TREND_MISFIT 19 /* the model's, F9 */
 
 #define PF_ROBUST_ROUNDS 2u
 #define PF_SLIP_ROUNDS 2u
@@ -30,10 +30,27 @@ static inline Trend shared_trend(PF_GLOBAL const double* shared, uint degree, bo
   return trend;
 }
 
+/* A model of the pressure's shape. */
+typedef struct {
+  uint degree;  /* of its trend */
+  bool squared; /* which is of the pressure's square */
+  uint shared;  /* where in Scratch::shared it lies */
+} Model;
+
+#define PF_MODELS 4u
+
+static inline Model model_of(uint number) {
+  const Model model = {number < 2 ? 2u : 4u, (number & 1u) == 0,
+                       PF_AT_TRENDS + number * PF_SHARED_TREND};
+  return model;
+}
+
 /* Fits the trend to resolved pillars and edges: once with plain weights, then with robust ones
  * (F8). */
-static inline Trend fit_resolved(Tile tile, Scratch scratch, uint degree, bool squared,
-                                 Share share) {
+static inline Trend fit_resolved(Tile tile, Scratch scratch, Model model, Share share) {
+  const uint degree = model.degree;
+  const bool squared = model.squared;
+  PF_GLOBAL double* const shared = scratch.shared + model.shared;
   Trend trend = no_trend(degree, squared);
   const float peak = (float)scratch.shared[PF_AT_PEAK];
   const double unit = powered(squared, (double)peak);
@@ -52,10 +69,10 @@ static inline Trend fit_resolved(Tile tile, Scratch scratch, uint degree, bool s
       const double square =
           plain.weight > 0.0 ? residual_square(&plain, &trend) / plain.weight : 0.0;
       trend.inverse_square = 1.0 / (square > floor_square ? square : floor_square);
-      share_trend(&trend, scratch.shared + PF_AT_TREND);
+      share_trend(&trend, shared);
     }
     await_others();
-    trend = shared_trend(scratch.shared + PF_AT_TREND, degree, squared);
+    trend = shared_trend(shared, degree, squared);
   }
   return trend;
 }
@@ -63,9 +80,10 @@ static inline Trend fit_resolved(Tile tile, Scratch scratch, uint degree, bool s
 /* Fits the trend again, together with the pillars that slip by the trend so far: at the friction
  * that it implies, where what they bear is known but for a factor, or at one that is known, where
  * it is known altogether (F14). */
-static inline Trend fit_trend(Tile tile, Scratch scratch, uint degree, bool squared, float known,
-                              float noise, Share share) {
-  Trend trend = fit_resolved(tile, scratch, degree, squared, share);
+static inline Trend fit_trend(Tile tile, Scratch scratch, Model model, float known, float noise,
+                              Share share) {
+  Trend trend = fit_resolved(tile, scratch, model, share);
+  PF_GLOBAL double* const shared = scratch.shared + model.shared;
   const float peak = (float)scratch.shared[PF_AT_PEAK];
   for (uint round = 0; round < PF_SLIP_ROUNDS; ++round) {
     const Plateau plateau = implied_plateau(tile, scratch, &trend, noise, share);
@@ -75,13 +93,13 @@ static inline Trend fit_trend(Tile tile, Scratch scratch, uint degree, bool squa
     sum_lines(tile, scratch.cells, &trend, peak, scratch.lines, share);
     await_others();
     if (share.first == 0) {
-      const NormalEquations equations = normal_equations(tile, degree, scratch.lines);
+      const NormalEquations equations = normal_equations(tile, model.degree, scratch.lines);
       const double precision = solve_trend(equations, &trend);
       assess_trend(&equations, precision, &trend);
-      share_trend(&trend, scratch.shared + PF_AT_TREND);
+      share_trend(&trend, shared);
     }
     await_others();
-    trend = shared_trend(scratch.shared + PF_AT_TREND, degree, squared);
+    trend = shared_trend(shared, model.degree, model.squared);
   }
   return trend;
 }

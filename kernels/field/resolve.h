@@ -20,7 +20,8 @@ static inline Verdict judge_contact(Tile tile, Scratch scratch, Field field, Fie
       verdict.spread = PF_SPREAD_OF_SHOWN;
       verdict.may_stick = shown.share < PF_ALL_SLIP ? 1 : 0;
       known = shown.friction;
-      if (verdict.may_stick == 0) return verdict;
+      const bool few = scratch.shared[PF_AT_OPEN] < PF_FEW_OPEN * scratch.shared[PF_AT_LOADED];
+      if (verdict.may_stick == 0 || few) return verdict;
     }
   }
   if (settings.shape == 0) return verdict;

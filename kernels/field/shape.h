@@ -37,29 +37,29 @@ static inline void relax_shape(Tile tile, Scratch scratch, FieldSettings setting
   await_others();
 }
 
-/* A model of the pressure's shape. */
-typedef struct {
-  uint degree;
-  bool squared;
-  bool relaxed; /* judged with its membrane, in all rows; else by its trend, in sampled ones */
-} Model;
-
-/* One model, judged; its trend is the one that is shared. `known` is the friction, or zero. */
-static inline Verdict try_model(Tile tile, Scratch scratch, FieldSettings settings, Model model,
-                                float known, Share share) {
-  const Trend trend =
-      fit_trend(tile, scratch, model.degree, model.squared, known, settings.noise, share);
+/* A model, fitted, and judged by its trend in sampled rows. `known` is the friction, or zero. */
+static inline Verdict judge_trend(Tile tile, Scratch scratch, FieldSettings settings, Model model,
+                                  float known, Share share) {
+  const Trend trend = fit_trend(tile, scratch, model, known, settings.noise, share);
   sum_border(tile, scratch.cells, &trend, scratch.lines, share);
   clear_counts(scratch.counts, share);
   await_others();
   const double misfit = border_misfit(tile, scratch.lines);
-  if (model.relaxed) {
-    relax_shape(tile, scratch, settings, &trend, share);
-  } else {
-    evaluate_shape(tile, scratch, &trend, false, settings.noise, share);
-    await_others();
-  }
+  if (share.first == 0) scratch.shared[model.shared + PF_TREND_MISFIT] = misfit;
+  evaluate_shape(tile, scratch, &trend, false, settings.noise, share);
+  await_others();
   const Verdict verdict = verdict_of_shape(scratch, &trend, misfit);
+  await_others();
+  return verdict;
+}
+
+/* A model that was fitted, judged with its membrane in all rows. */
+static inline Verdict judge_relaxed(Tile tile, Scratch scratch, FieldSettings settings, Model model,
+                                    Share share) {
+  PF_GLOBAL const double* const shared = scratch.shared + model.shared;
+  const Trend trend = shared_trend(shared, model.degree, model.squared);
+  relax_shape(tile, scratch, settings, &trend, share);
+  const Verdict verdict = verdict_of_shape(scratch, &trend, shared[PF_TREND_MISFIT]);
   await_others();
   return verdict;
 }
@@ -79,17 +79,15 @@ static inline bool is_believed(Verdict verdict, Scratch scratch, float known) {
 /* What the chosen model gives: the normal forces of its membrane, which hangs on resolved pillars
  * and then, at the friction that it implies or that is known, on those that slip as well. */
 static inline Verdict use_model(Tile tile, Scratch scratch, FieldSettings settings, Model model,
-                                Verdict best, float known, Share share) {
-  const Trend trend = shared_trend(scratch.shared + PF_AT_BEST, model.degree, model.squared);
-  relax_shape(tile, scratch, settings, &trend, share);
-  Verdict verdict = verdict_of_shape(scratch, &trend, (double)best.misfit);
-  await_others();
+                                float known, Share share) {
+  Verdict verdict = judge_relaxed(tile, scratch, settings, model, share);
   if (known > 0.0f) {
     verdict.friction = known;
     verdict.spread = PF_SPREAD_OF_SHOWN;
   }
   hold_slipping(tile, scratch.cells, verdict.friction, share);
   await_others();
+  const Trend trend = shared_trend(scratch.shared + model.shared, model.degree, model.squared);
   relax_shape(tile, scratch, settings, &trend, share);
   return verdict;
 }
@@ -99,28 +97,24 @@ static inline Verdict use_model(Tile tile, Scratch scratch, FieldSettings settin
  * models are relaxed only where no trend by itself is good enough; and the one that is chosen. */
 static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings settings,
                                  Verdict otherwise, float known, Share share) {
-  Verdict best = otherwise;
-  Model chosen = {0, false, false};
-  for (uint number = 0; number < 8; ++number) {
-    const Model model = {(number & 2u) == 0 ? 2u : 4u, (number & 1u) == 0, number >= 4};
+  float best_score = 0.0f;
+  uint chosen = PF_MODELS;
+  const uint tries = known > 0.0f ? PF_MODELS : 2 * PF_MODELS;
+  for (uint at = 0; at < tries; ++at) {
+    if (at == PF_MODELS && chosen != PF_MODELS) break;
+    const bool relaxed = at >= PF_MODELS;
+    const uint number = relaxed ? at - PF_MODELS : at;
+    const Model model = model_of(number);
     if (scratch.shared[PF_AT_RESOLVED] < 4.0 * (double)terms_of(model.degree)) continue;
-    if (number == 4 && chosen.degree != 0) break;
-    const Verdict verdict = try_model(tile, scratch, settings, model, known, share);
+    const Verdict verdict = relaxed ? judge_relaxed(tile, scratch, settings, model, share)
+                                    : judge_trend(tile, scratch, settings, model, known, share);
     if (!is_believed(verdict, scratch, known)) continue;
-    if (chosen.degree != 0 && !(verdict.score > best.score)) continue;
-    best = verdict;
-    chosen = model;
-    const bool good = best.score > (float)PF_GOOD_SCORE &&
-                      scratch.shared[PF_AT_TREND + PF_TREND_UNEXPLAINED] < PF_GOOD_UNEXPLAINED;
-    await_others();
-    if (share.first == 0) {
-      for (uint i = 0; i < PF_SHARED_TREND; ++i) {
-        scratch.shared[PF_AT_BEST + i] = scratch.shared[PF_AT_TREND + i];
-      }
-    }
-    await_others();
-    if (good) break;
+    if (chosen != PF_MODELS && !(verdict.score > best_score)) continue;
+    best_score = verdict.score;
+    chosen = number;
+    const double unexplained = scratch.shared[model.shared + PF_TREND_UNEXPLAINED];
+    if (best_score > (float)PF_GOOD_SCORE && unexplained < PF_GOOD_UNEXPLAINED) break;
   }
-  if (chosen.degree == 0) return otherwise;
-  return use_model(tile, scratch, settings, chosen, best, known, share);
+  if (chosen == PF_MODELS) return otherwise;
+  return use_model(tile, scratch, settings, model_of(chosen), known, share);
 }

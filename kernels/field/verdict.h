@@ -29,13 +29,14 @@ typedef struct {
   uint may_stick; /* what is taken to slip may as well not */
 } Verdict;
 
-#define PF_SHARED_SUMS 42 /* doubles that the work-items of a contact share */
-#define PF_AT_TREND 0     /* the one at hand */
-#define PF_AT_BEST 19     /* the best so far */
-#define PF_AT_PEAK 38
-#define PF_AT_OPEN_PEAK 39
-#define PF_AT_RESOLVED 40 /* pillars of the sampled rows */
-#define PF_AT_LOADED 41
+#define PF_SHARED_SUMS 85 /* doubles that the work-items of a contact share */
+#define PF_AT_TRENDS 0    /* those of four models, PF_SHARED_TREND each */
+#define PF_SHARED_TREND 20
+#define PF_AT_PEAK 80
+#define PF_AT_OPEN_PEAK 81
+#define PF_AT_RESOLVED 82 /* pillars of the sampled rows */
+#define PF_AT_OPEN 83
+#define PF_AT_LOADED 84
 
 /* Scratch memory of one contact. */
 typedef struct {
@@ -50,17 +51,18 @@ typedef struct {
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
 #define PF_LEAST_SCORE 0.1
-#define PF_GOOD_SCORE 0.5           /* further models are not tried, */
-#define PF_GOOD_UNEXPLAINED 0.01    /* if no more is left unexplained */
-#define PF_MISFIT_PER_SHARE 0.45    /* most, by the share of resolved pillars */
-#define PF_MISFIT_AT_FRICTION 0.1   /* most, where the friction is known */
-#define PF_FRICTION_APART 0.1       /* of a known one and the one a model implies, relative */
-#define PF_ALL_SLIP 0.9             /* of the pillars that can show friction: so do open ones */
-#define PF_LARGEST_FRICTION 4.0     /* that is believed without being told */
-#define PF_TRUST_IN_BOUND 0.8f      /* 1: an open pillar is at the bound told */
-#define PF_SPREAD_OF_SHOWN 0.005f   /* of a friction that resolved pillars show, relative */
-#define PF_SCALE_ERRORS 10.0        /* of a friction, by what the fit says of its own error, */
-#define PF_SPREAD_OF_REST 0.05      /* and by the share that does not bear it out */
+#define PF_GOOD_SCORE 0.5         /* further models are not tried, */
+#define PF_GOOD_UNEXPLAINED 0.01  /* if no more is left unexplained */
+#define PF_MISFIT_PER_SHARE 0.45  /* most, by the share of resolved pillars */
+#define PF_MISFIT_AT_FRICTION 0.1 /* most, where the friction is known */
+#define PF_FRICTION_APART 0.1     /* of a known one and the one a model implies, relative */
+#define PF_FEW_OPEN 0.1           /* of a contact's pillars: no model is asked whether they stick */
+#define PF_ALL_SLIP 0.9           /* of the pillars that can show friction: so do open ones */
+#define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
+#define PF_TRUST_IN_BOUND 0.8f    /* 1: an open pillar is at the bound told */
+#define PF_SPREAD_OF_SHOWN 0.005f /* of a friction that resolved pillars show, relative */
+#define PF_SCALE_ERRORS 10.0      /* of a friction, by what the fit says of its own error, */
+#define PF_SPREAD_OF_REST 0.05    /* and by the share that does not bear it out */
 #define PF_DEVIATION_OF_MIDDLE 0.4f /* of the truth from it, by the length of the segment */
 #define PF_BEYOND_STICKING 0.35f    /* of what a model has a pillar bear beyond slip */
 #define PF_NOISE_OF_NORMAL 0.45f    /* by a reading's, at a given ratio */
@@ -90,6 +92,7 @@ static inline void summarise_lines(Tile tile, Cells cells, PF_GLOBAL double* lin
     float peak = 0.0f;
     float open_peak = 0.0f;
     double resolved = 0.0;
+    double open = 0.0;
     double loaded = 0.0;
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
@@ -99,13 +102,16 @@ static inline void summarise_lines(Tile tile, Cells cells, PF_GLOBAL double* lin
       loaded += 1.0;
       if (kind == PF_CELL_RESOLVED) resolved += 1.0;
       if (peak < top) peak = top;
-      if (kind == PF_CELL_AMBIGUOUS && open_peak < top) open_peak = top;
+      if (kind != PF_CELL_AMBIGUOUS) continue;
+      open += 1.0;
+      if (open_peak < top) open_peak = top;
     }
     PF_GLOBAL double* const sums = lines + (tile.first_line + row) * PF_LINE_SUMS;
     sums[0] = (double)peak;
     sums[1] = (double)open_peak;
     sums[2] = resolved;
-    sums[3] = loaded;
+    sums[3] = open;
+    sums[4] = loaded;
   }
 }
 
@@ -114,16 +120,19 @@ static inline void share_summary(Tile tile, Scratch scratch) {
   double peak = 0.0;
   double open_peak = 0.0;
   double resolved = 0.0;
+  double open = 0.0;
   double loaded = 0.0;
   for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
     PF_GLOBAL const double* const sums = scratch.lines + (tile.first_line + row) * PF_LINE_SUMS;
     if (peak < sums[0]) peak = sums[0];
     if (open_peak < sums[1]) open_peak = sums[1];
     resolved += sums[2];
-    loaded += sums[3];
+    open += sums[3];
+    loaded += sums[4];
   }
   scratch.shared[PF_AT_PEAK] = peak;
   scratch.shared[PF_AT_OPEN_PEAK] = open_peak;
   scratch.shared[PF_AT_RESOLVED] = resolved;
+  scratch.shared[PF_AT_OPEN] = open;
   scratch.shared[PF_AT_LOADED] = loaded;
 }
