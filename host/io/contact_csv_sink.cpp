@@ -34,7 +34,7 @@ CsvSink::CsvSink(const std::filesystem::path& path) : path_(path), file_(path) {
 
 void CsvSink::add_quantities(const ContactQuantities& quantities) {
   for (const auto& column : quantity_columns()) {
-    file_.write("," + text_of(column, quantities, ""));
+    file_.write(fmt::format(",{}", text_of(column, quantities, "")));
   }
   file_.write("\n");
 }
