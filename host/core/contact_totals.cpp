@@ -29,9 +29,9 @@ struct BlockFloats {
 };
 
 /// Every fourth pillar of a block.
-PF_INLINE void quarters_of(const Wholes& half, FourWholes& first, FourWholes& last) {
-  first = __builtin_shufflevector(half, half, 0, 1, 2, 3);
-  last = __builtin_shufflevector(half, half, 4, 5, 6, 7);
+PF_INLINE void quarters_of(const Wholes& half, FourWholes& lower, FourWholes& upper) {
+  lower = __builtin_shufflevector(half, half, 0, 1, 2, 3);
+  upper = __builtin_shufflevector(half, half, 4, 5, 6, 7);
 }
 
 std::int64_t total_of(const FourDoubles& sums) {
@@ -72,7 +72,7 @@ struct ForceLanes {
   [[nodiscard]] std::int64_t moment_x() const {
     std::int64_t moment = total_of(by_x) + 8 * total_of(within);
     for (int lane = 1; lane < 4; ++lane) {
-      moment += 2 * lane * static_cast<std::int64_t>(force[lane]);
+      moment += std::int64_t{2} * lane * static_cast<std::int64_t>(force[lane]);
     }
     return moment;
   }
@@ -141,11 +141,11 @@ struct SlipLanes {
                      const BlockWholes& normal, const std::uint8_t* status, float least_ratio) {
     const BlockWholes presses = {normal.first & (normal.first > 0),
                                  normal.last & (normal.last > 0)};
-    BlockWholes told;
+    BlockWholes told{};
     known_of(status, told.first);
     known_of(status + kLanes, told.last);
     told = {told.first & presses.first, told.last & presses.last};
-    BlockWholes slips;
+    BlockWholes slips{};
     slipping_of(shear_x.first, shear_y.first, normal.first, least_ratio, slips.first);
     slipping_of(shear_x.last, shear_y.last, normal.last, least_ratio, slips.last);
     add_quarters(presses, pressing);
@@ -168,11 +168,11 @@ void add_slip(const PillarForce& pillar, float least_ratio, PressingSum& slip) {
 
 /// Blocks, summed.
 struct BlockSums {
+  SlipLanes slip;
   ForceLanes<Moments::by_y> shear_x;
   ForceLanes<Moments::by_x> shear_y;
   ForceLanes<Moments::both> normal;
   StatusCounts counts;
-  SlipLanes slip;
   std::uint32_t blocks = 0;
 };
 
@@ -221,9 +221,9 @@ void add_peak(const ForceFieldView& forces, const ForceQuanta& quanta, const Con
 /// How runs are summed.
 struct Summing {
   const ForceFieldView& forces;
-  ForceQuanta quanta;
-  bool with_slip;
-  float least_ratio;
+  ForceQuanta quanta{1};
+  bool with_slip = false;
+  float least_ratio = 0;
 };
 
 /// Adds pillars of a row one by one.
@@ -267,13 +267,13 @@ struct Block {
   /// False where a force is too large for that, or the planes end.
   PF_INLINE bool read(const ForceFieldView& forces, std::size_t at, std::uint32_t pillars) {
     if (at + kBlock > forces.normal.size()) return false;
-    BlockWholes mask;
+    BlockWholes mask{};
     load(kMasks<std::int32_t>.data() + kBlock - pillars, mask.first);
     load(kMasks<std::int32_t>.data() + kBlock - pillars + kLanes, mask.last);
     BlockWholes small = mask;
-    BlockFloats x_n;
-    BlockFloats y_n;
-    BlockFloats normal_n;
+    BlockFloats x_n{};
+    BlockFloats y_n{};
+    BlockFloats normal_n{};
     read_plane(forces.shear_x.data() + at, x_n, small);
     read_plane(forces.shear_y.data() + at, y_n, small);
     read_plane(forces.normal.data() + at, normal_n, small);
@@ -310,7 +310,7 @@ PF_INLINE std::int32_t add_run(const Summing& summing, const ContactRun& run, Bl
   Wholes peaks{};
   for (std::uint32_t first = run.first; first < run.end; first += kBlock) {
     const std::uint32_t pillars = std::min(kBlock, run.end - first);
-    Block block;
+    Block block{};
     if (!block.read(forces, std::size_t{run.row} * forces.cols + first, pillars)) {
       add_pillars(summing, run.row, first, first + pillars, totals);
       continue;

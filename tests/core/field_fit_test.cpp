@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -53,7 +54,7 @@ class RoundContact {
 
 RoundContact::RoundContact(double core, double flatness)
     : flatness_(flatness),
-      kind_((kSide + 2) * (kSide + 2), PF_CELL_BEYOND),
+      kind_(std::size_t{kSide + 2} * (kSide + 2), PF_CELL_BEYOND),
       planes_(6, std::vector<float>(kind_.size())),
       lines_(std::size_t{PF_LINE_SUMS} * kSide) {
   cells = {kind_.data(),      planes_[0].data(), planes_[1].data(), planes_[2].data(),
