@@ -190,7 +190,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
 
 std::string field_source(const SolverPlan& plan, int device_lanes) {
   if (plan.estimator != Estimator::field) return {};
-  return field_kernel_source(block_lanes(device_lanes, plan.skin.pillar_cols()) == 1);
+  return field_kernel_source(device_lanes == 1);
 }
 
 std::string field_kernel_source(bool groups) {

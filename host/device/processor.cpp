@@ -55,11 +55,12 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
 }
 
 /// A device that solves several pillars at once in the host's memory is the host's own processor:
-/// to launch what is left would take longer than to do it.
+/// to launch what is left would take longer than to do it. `lanes` are the device's, however narrow
+/// the skin is.
 std::unique_ptr<FieldStage> make_field_stage(Device::State& device, const SolverPlan& plan,
-                                             const SlotSettings& settings) {
-  const bool groups = settings.lanes == 1;
-  if (settings.shares_memory && !groups) return host_field_stage(device, plan);
+                                             int lanes, bool shares_memory) {
+  const bool groups = lanes == 1;
+  if (shares_memory && !groups) return host_field_stage(device, plan);
   return device_field_stage(device, plan, groups);
 }
 
@@ -88,8 +89,8 @@ struct Processor::State {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
-    settings.lanes =
-        block_lanes(options.lanes != 0 ? options.lanes : device.info().lanes, skin.pillar_cols());
+    const int lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
+    settings.lanes = block_lanes(lanes, skin.pillar_cols());
     settings.paths = decide_paths(device, wanted, options);
     settings.program =
         device.state().program(kernel_source(wanted, settings.lanes, settings.paths));
@@ -100,7 +101,7 @@ struct Processor::State {
           std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
     if (wanted.estimator == Estimator::field) {
-      field = make_field_stage(device.state(), wanted, settings);
+      field = make_field_stage(device.state(), wanted, lanes, shares_memory);
     }
     warm_up();
     baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
