@@ -24,7 +24,7 @@ typedef struct {
 /* What stands on a cell. */
 #define PF_CELL_OUTSIDE 0   /* nothing of this contact */
 #define PF_CELL_BEYOND 1    /* no skin: nothing is known */
-#define PF_CELL_LOADED 2    /* loaded, and neither of the two that follow */
+#define PF_CELL_LOADED 2    /* loaded, and none of those that follow */
 #define PF_CELL_RESOLVED 3  /* a force that its own readings determine */
 #define PF_CELL_AMBIGUOUS 4 /* a segment of forces */
 #define PF_CELL_SLIPPING 5  /* the same, and one of them taken, since it slips there */

@@ -236,6 +236,40 @@ TEST(Judgement, TheBandOfAPillarThatSticksReachesToWhereItWouldSlip) {
   EXPECT_GE(judged.normal + 1.96F * deviation, 11.8F);
 }
 
+/// Whether a judgement is within its band, and the band within the segment, whatever the model has
+/// the pillar bear.
+void expect_within_band(const maths::Segment& of, const maths::Verdict& verdict,
+                        const maths::FieldSettings& settings) {
+  for (int step = 1; step <= 100; ++step) {
+    const float shaped = of.high * static_cast<float>(step) / 100;
+    const maths::Judgement judged = maths::judged_normal(of, verdict, settings, shaped);
+    ASSERT_LE(judged.low, judged.normal) << shaped;
+    ASSERT_GE(judged.high, judged.normal) << shaped;
+    ASSERT_LE(judged.high, of.high) << shaped;
+    ASSERT_GE(judged.low, 0) << shaped;
+  }
+}
+
+TEST(Judgement, AnEstimateLiesInItsBandWhateverTheModelSays) {
+  for (const float fixed : {0.0F, 0.3F, 1.0F, 3.0F}) {
+    maths::Segment of = segment();
+    of.fixed = fixed * of.moving;
+    for (const float bound : {0.0F, 1.5F, 2.0F, 6.0F}) {
+      maths::FieldSettings settings{};
+      settings.friction = bound;
+      for (const float spread : {0.0F, 0.01F, 0.1F, 0.2F, 0.5F}) {
+        for (const float friction : {1.0F, 1.5F, 2.0F, 3.0F, 6.0F}) {
+          SCOPED_TRACE(testing::Message() << "fixed " << fixed << ", bound " << bound << ", spread "
+                                          << spread << ", friction " << friction);
+          maths::Verdict verdict = verdict_of(spread);
+          verdict.friction = friction;
+          expect_within_band(of, verdict, settings);
+        }
+      }
+    }
+  }
+}
+
 TEST(Judgement, WhereOpenPillarsMayStickNothingAboveSlipIsRuledOut) {
   const maths::FieldSettings settings{};
   maths::Verdict verdict = maths::verdict_by(PF_BY_SLIP, 2);
