@@ -43,8 +43,10 @@ namespace pillarfield::single_precision {
 #include "kernels/field/fit.h"
 // the models
 #include "kernels/field/shape.h"
-// and what becomes of it
+// what becomes of it, in which steps
 #include "kernels/field/judgement.h"
+#include "kernels/field/course.h"
+#include "kernels/field/step.h"
 // and all of it
 #include "kernels/field/resolve.h"
 #pragma GCC diagnostic pop

@@ -7,8 +7,8 @@
 #define PF_TREND_UNEXPLAINED 18
 #define PF_TREND_MISFIT 19 /* the model's, F9 */
 
-#define PF_ROBUST_ROUNDS 2u
-#define PF_SLIP_ROUNDS 2u
+#define PF_FIT_ROUNDS 3u   /* to resolved pillars: one with plain weights, the others robust (F8) */
+#define PF_SLIP_ROUNDS 2u  /* on top, with pillars that slip (F14) */
 #define PF_LEAST_SLIP 0.05 /* share of a plateau whose pillars may join the fit */
 
 static inline void share_trend(const Trend* trend, PF_GLOBAL double* shared) {
@@ -45,61 +45,41 @@ static inline Model model_of(uint number) {
   return model;
 }
 
-/* Fits the trend to resolved pillars and edges: once with plain weights, then with robust ones
- * (F8). */
-static inline Trend fit_resolved(Tile tile, Scratch scratch, Model model, Share share) {
-  const uint degree = model.degree;
-  const bool squared = model.squared;
-  PF_GLOBAL double* const shared = scratch.shared + model.shared;
-  Trend trend = no_trend(degree, squared);
-  const float peak = (float)scratch.shared[PF_AT_PEAK];
-  const double unit = powered(squared, (double)peak);
-  const double floor_square = 1e-6 * unit * unit;
-  NormalEquations plain;
-  plain.square = 0.0;
-  plain.weight = 0.0;
-  for (uint round = 0; round <= PF_ROBUST_ROUNDS; ++round) {
-    sum_lines(tile, scratch.cells, &trend, peak, scratch.lines, share);
-    await_others();
-    if (share.first == 0) {
-      const NormalEquations equations = normal_equations(tile, degree, scratch.lines);
-      if (round == 0) plain = equations;
-      const double precision = solve_trend(equations, &trend);
-      assess_trend(&equations, precision, &trend);
-      const double square =
-          plain.weight > 0.0 ? residual_square(&plain, &trend) / plain.weight : 0.0;
-      trend.inverse_square = 1.0 / (square > floor_square ? square : floor_square);
-      share_trend(&trend, shared);
-    }
-    await_others();
-    trend = shared_trend(shared, degree, squared);
-  }
-  return trend;
+/* A fit on its way. */
+typedef struct {
+  Trend trend;           /* so far */
+  NormalEquations plain; /* of the first round; for the work-item that solves them */
+} Fit;
+
+static inline void begin_fit(Model model, Fit* fit) {
+  fit->trend = no_trend(model.degree, model.squared);
 }
 
-/* Fits the trend again, together with the pillars that slip by the trend so far: at the friction
- * that it implies, where what they bear is known but for a factor, or at one that is known, where
- * it is known altogether (F14). */
-static inline Trend fit_trend(Tile tile, Scratch scratch, Model model, float known, float noise,
-                              Share share) {
-  Trend trend = fit_resolved(tile, scratch, model, share);
-  PF_GLOBAL double* const shared = scratch.shared + model.shared;
-  const float peak = (float)scratch.shared[PF_AT_PEAK];
-  for (uint round = 0; round < PF_SLIP_ROUNDS; ++round) {
-    const Plateau plateau = implied_plateau(tile, scratch, &trend, noise, share);
-    if (!(known > 0.0f) && !(plateau.share > PF_LEAST_SLIP)) break;
-    trend.friction = known > 0.0f ? known : (float)plateau.ratio;
-    trend.told = known > 0.0f;
-    sum_lines(tile, scratch.cells, &trend, peak, scratch.lines, share);
-    await_others();
-    if (share.first == 0) {
-      const NormalEquations equations = normal_equations(tile, model.degree, scratch.lines);
-      const double precision = solve_trend(equations, &trend);
-      assess_trend(&equations, precision, &trend);
-      share_trend(&trend, shared);
-    }
-    await_others();
-    trend = shared_trend(shared, model.degree, model.squared);
+static inline Trend shared_trend_of(Scratch scratch, Model model) {
+  return shared_trend(scratch.shared + model.shared, model.degree, model.squared);
+}
+
+/* What halves a weight in the rounds that follow: the residual that the trend leaves of the first
+ * (F8). */
+static inline double inverse_square_of(const Fit* fit, double peak) {
+  const double unit = powered(fit->trend.squared, (double)(float)peak);
+  const double least = 1e-6 * unit * unit;
+  const double square =
+      fit->plain.weight > 0.0 ? residual_square(&fit->plain, &fit->trend) / fit->plain.weight : 0.0;
+  return 1.0 / (square > least ? square : least);
+}
+
+/* From the sums of lines to the trend of a round, shared; for one work-item. In the first rounds to
+ * resolved pillars and edges; then together with the pillars that slip by the trend so far, at the
+ * friction that it implies, where what they bear is known but for a factor, or at one that is
+ * known, where it is known altogether (F14). */
+static inline void fit_round(Tile tile, Scratch scratch, Model model, uint round, Fit* fit) {
+  const NormalEquations equations = normal_equations(tile, model.degree, scratch.lines);
+  if (round == 0) fit->plain = equations;
+  const double precision = solve_trend(equations, &fit->trend);
+  assess_trend(&equations, precision, &fit->trend);
+  if (round < PF_FIT_ROUNDS) {
+    fit->trend.inverse_square = inverse_square_of(fit, scratch.shared[PF_AT_PEAK]);
   }
-  return trend;
+  share_trend(&fit->trend, scratch.shared + model.shared);
 }

@@ -50,18 +50,6 @@ static inline void evaluate_shape(Tile tile, Scratch scratch, const Trend* trend
   }
 }
 
-/* The plateau of the ratios that a trend by itself implies in sampled rows. */
-static inline Plateau implied_plateau(Tile tile, Scratch scratch, const Trend* trend, float noise,
-                                      Share share) {
-  clear_counts(scratch.counts, share);
-  await_others();
-  evaluate_shape(tile, scratch, trend, false, noise, share);
-  await_others();
-  const Plateau plateau = find_plateau(scratch.counts, PF_IMPLIED_WINDOW);
-  await_others();
-  return plateau;
-}
-
 /* Takes those ambiguous pillars for slipping that a model has bear less than they would in slip,
  * or little more. */
 static inline void hold_slipping(Tile tile, Cells cells, float friction, Share share) {

@@ -12,55 +12,18 @@ static inline double border_misfit(Tile tile, PF_GLOBAL const double* lines) {
   return values > 0.0 ? fabs(residuals) / values : 1.0;
 }
 
-/* What the counts, the fit and the border say of a model. */
-static inline Verdict verdict_of_shape(Scratch scratch, const Trend* trend, double misfit) {
-  const Plateau plateau = find_plateau(scratch.counts, PF_IMPLIED_WINDOW);
+/* For one work-item. */
+static inline void share_misfit(Tile tile, Scratch scratch, Model model) {
+  scratch.shared[model.shared + PF_TREND_MISFIT] = border_misfit(tile, scratch.lines);
+}
+
+/* What the plateau of the ratios that it implies, the fit and the border say of a model. */
+static inline Verdict verdict_of_shape(Plateau plateau, const Trend* trend, double misfit) {
   Verdict verdict = verdict_by(PF_BY_SHAPE, (float)plateau.ratio);
   verdict.misfit = (float)misfit;
   verdict.score = (float)(plateau.share - 1.5 * plateau.far - misfit);
   verdict.spread = (float)(PF_SCALE_ERRORS * trend->scale_error + misfit +
                            PF_SPREAD_OF_REST * (1.0 - plateau.share));
-  return verdict;
-}
-
-/* Lets the membrane hold up the trend, and counts what that implies. */
-static inline void relax_shape(Tile tile, Scratch scratch, FieldSettings settings,
-                               const Trend* trend, Share share) {
-  begin_residuals(tile, scratch.cells, trend, (float)scratch.shared[PF_AT_PEAK], share);
-  clear_counts(scratch.counts, share);
-  await_others();
-  for (uint sweep = 0; sweep < 2 * settings.sweeps; ++sweep) {
-    relax_colour(tile, scratch.cells, sweep & 1u, share);
-    await_others();
-  }
-  evaluate_shape(tile, scratch, trend, true, settings.noise, share);
-  await_others();
-}
-
-/* A model, fitted, and judged by its trend in sampled rows. `known` is the friction, or zero. */
-static inline Verdict judge_trend(Tile tile, Scratch scratch, FieldSettings settings, Model model,
-                                  float known, Share share) {
-  const Trend trend = fit_trend(tile, scratch, model, known, settings.noise, share);
-  sum_border(tile, scratch.cells, &trend, scratch.lines, share);
-  clear_counts(scratch.counts, share);
-  await_others();
-  const double misfit = border_misfit(tile, scratch.lines);
-  if (share.first == 0) scratch.shared[model.shared + PF_TREND_MISFIT] = misfit;
-  evaluate_shape(tile, scratch, &trend, false, settings.noise, share);
-  await_others();
-  const Verdict verdict = verdict_of_shape(scratch, &trend, misfit);
-  await_others();
-  return verdict;
-}
-
-/* A model that was fitted, judged with its membrane in all rows. */
-static inline Verdict judge_relaxed(Tile tile, Scratch scratch, FieldSettings settings, Model model,
-                                    Share share) {
-  PF_GLOBAL const double* const shared = scratch.shared + model.shared;
-  const Trend trend = shared_trend(shared, model.degree, model.squared);
-  relax_shape(tile, scratch, settings, &trend, share);
-  const Verdict verdict = verdict_of_shape(scratch, &trend, shared[PF_TREND_MISFIT]);
-  await_others();
   return verdict;
 }
 
@@ -76,45 +39,52 @@ static inline bool is_believed(Verdict verdict, Scratch scratch, float known) {
          (double)verdict.misfit <= PF_MISFIT_PER_SHARE * share;
 }
 
-/* What the chosen model gives: the normal forces of its membrane, which hangs on resolved pillars
+/* Attempts, in their order: each model, judged by its trend in sampled rows; each again, with its
+ * membrane in all rows; and what is made of the best one: its membrane hangs on resolved pillars,
  * and then, at the friction that it implies or that is known, on those that slip as well. */
-static inline Verdict use_model(Tile tile, Scratch scratch, FieldSettings settings, Model model,
-                                float known, Share share) {
-  Verdict verdict = judge_relaxed(tile, scratch, settings, model, share);
-  if (known > 0.0f) {
-    verdict.friction = known;
-    verdict.spread = PF_SPREAD_OF_SHOWN;
-  }
-  hold_slipping(tile, scratch.cells, verdict.friction, share);
-  await_others();
-  const Trend trend = shared_trend(scratch.shared + model.shared, model.degree, model.squared);
-  relax_shape(tile, scratch, settings, &trend, share);
-  return verdict;
+#define PF_FIRST_RELAXED PF_MODELS
+#define PF_USE_BEST (2u * PF_MODELS)
+#define PF_USE_HELD (PF_USE_BEST + 1u)
+
+/* The model that is tried, and the best so far whose evidence is good enough. */
+typedef struct {
+  uint attempt;
+  uint best;   /* PF_MODELS where there is none */
+  float score; /* the best one's */
+} Choice;
+
+static inline bool is_relaxed(Choice choice) { return choice.attempt >= PF_FIRST_RELAXED; }
+
+static inline uint tried_number(Choice choice) {
+  return choice.attempt < PF_USE_BEST ? choice.attempt % PF_MODELS : choice.best;
 }
 
-/* The best model whose evidence is good enough: of the pressure and its square, with trends of the
- * second and, where there are pillars enough for it, of the fourth degree. Relaxing costs most, so
- * models are relaxed only where no trend by itself is good enough; and the one that is chosen. */
-static inline Verdict best_shape(Tile tile, Scratch scratch, FieldSettings settings,
-                                 Verdict otherwise, float known, Share share) {
-  float best_score = 0.0f;
-  uint chosen = PF_MODELS;
-  const uint tries = known > 0.0f ? PF_MODELS : 2 * PF_MODELS;
-  for (uint at = 0; at < tries; ++at) {
-    if (at == PF_MODELS && chosen != PF_MODELS) break;
-    const bool relaxed = at >= PF_MODELS;
-    const uint number = relaxed ? at - PF_MODELS : at;
-    const Model model = model_of(number);
-    if (scratch.shared[PF_AT_RESOLVED] < 4.0 * (double)terms_of(model.degree)) continue;
-    const Verdict verdict = relaxed ? judge_relaxed(tile, scratch, settings, model, share)
-                                    : judge_trend(tile, scratch, settings, model, known, share);
-    if (!is_believed(verdict, scratch, known)) continue;
-    if (chosen != PF_MODELS && !(verdict.score > best_score)) continue;
-    best_score = verdict.score;
-    chosen = number;
-    const double unexplained = scratch.shared[model.shared + PF_TREND_UNEXPLAINED];
-    if (best_score > (float)PF_GOOD_SCORE && unexplained < PF_GOOD_UNEXPLAINED) break;
+static inline Model tried_model(Choice choice) { return model_of(tried_number(choice)); }
+
+/* The first attempt from `from` on that there are pillars enough for. Relaxing costs most, so
+ * models are relaxed only where no trend by itself is good enough and no friction is known; and the
+ * one that is chosen. */
+static inline uint attempt_from(uint from, Choice choice, Scratch scratch, float known) {
+  const bool relaxes = choice.best == PF_MODELS && !(known > 0.0f);
+  const uint end = from <= PF_FIRST_RELAXED && !relaxes ? PF_FIRST_RELAXED : PF_USE_BEST;
+  for (uint attempt = from; attempt < end; ++attempt) {
+    const uint degree = model_of(attempt % PF_MODELS).degree;
+    if (!(scratch.shared[PF_AT_RESOLVED] < 4.0 * (double)terms_of(degree))) return attempt;
   }
-  if (chosen == PF_MODELS) return otherwise;
-  return use_model(tile, scratch, settings, model_of(chosen), known, share);
+  return PF_USE_BEST;
+}
+
+/* Takes note of the verdict on the model that was tried, and returns what to try next. */
+static inline uint attempt_after(Verdict verdict, Scratch scratch, float known, Choice* choice) {
+  const bool better = choice->best == PF_MODELS || verdict.score > choice->score;
+  if (better && is_believed(verdict, scratch, known)) {
+    choice->best = tried_number(*choice);
+    choice->score = verdict.score;
+    const Model model = tried_model(*choice);
+    const double unexplained = scratch.shared[model.shared + PF_TREND_UNEXPLAINED];
+    if (verdict.score > (float)PF_GOOD_SCORE && unexplained < PF_GOOD_UNEXPLAINED) {
+      return PF_USE_BEST;
+    }
+  }
+  return attempt_from(choice->attempt + 1, *choice, scratch, known);
 }

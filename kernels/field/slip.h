@@ -40,23 +40,18 @@ static inline void count_slopes(Tile tile, Scratch scratch, Field field, float q
   }
 }
 
-static inline Plateau slopes_plateau(Tile tile, Scratch scratch, Field field, float quiet,
-                                     float from, float width, Share share) {
-  clear_counts(scratch.counts, share);
-  await_others();
-  count_slopes(tile, scratch, field, quiet, from, share);
-  await_others();
-  const Plateau plateau = find_plateau(scratch.counts, width);
-  await_others();
-  return plateau;
+/* The width of a plateau of such ratios: noise spreads those of pillars that bear little. */
+static inline float slopes_window(Scratch scratch, float noise) {
+  return 1.06f + 4.0f * noise / (float)scratch.shared[PF_AT_PEAK];
 }
 
-/* The part of the open pillars, by the square of what they may bear, that could not slip at a
- * friction: their least ratio is above it. */
+/* Counts the open pillars, by the square of what they may bear, and behind them those that could
+ * not slip at a friction: their least ratio is above it. */
 static inline void count_contradictions(Tile tile, Scratch scratch, float noise, float friction,
-                                        float peak, Share share) {
+                                        Share share) {
   const uint sampling = sampling_of(tile);
   const Cells cells = scratch.cells;
+  const float peak = (float)scratch.shared[PF_AT_OPEN_PEAK];
   for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     for (uint col = 0; col < tile.cols; ++col) {
       const uint cell = cell_at(tile, row, col);
@@ -76,34 +71,25 @@ typedef struct {
   double share;   /* of their normal force */
 } ShownFriction;
 
-/* The friction that resolved pillars show, and that open ones do not contradict. */
-static inline ShownFriction shown_friction(Tile tile, Scratch scratch, Field field,
-                                           FieldSettings settings, Share share) {
-  ShownFriction shown = {0.0f, 0.0};
-  /* Noise spreads the ratios of pillars that bear little. */
-  const float width = 1.06f + 4.0f * settings.noise / (float)scratch.shared[PF_AT_PEAK];
-  const Plateau first = slopes_plateau(tile, scratch, field, settings.quiet, 0.0f, width, share);
-  if (!(first.share > 0.0)) return shown;
-  const Plateau plateau =
-      slopes_plateau(tile, scratch, field, settings.quiet, (float)first.ratio, width, share);
-  const float friction = (float)plateau.ratio;
-  const double telling = (double)scratch.counts[PF_RATIO_PILLARS];
-  const double pillars = scratch.shared[PF_AT_LOADED];
-  await_others();
-  clear_counts(scratch.counts, share);
-  await_others();
-  count_contradictions(tile, scratch, settings.noise, friction,
-                       (float)scratch.shared[PF_AT_OPEN_PEAK], share);
-  await_others();
-  const double agree = (double)scratch.counts[0];
-  const double contradict = (double)scratch.counts[1];
-  await_others();
+/* What was counted to find it. */
+typedef struct {
+  Plateau plateau;   /* of the slopes */
+  double telling;    /* pillars that make it up and those beside it */
+  double agree;      /* open pillars that may slip at that friction */
+  double contradict; /* and that may not */
+} SlipEvidence;
+
+/* The friction that resolved pillars show, and that open ones do not contradict, of a contact with
+ * so many loaded pillars. */
+static inline ShownFriction shown_friction(const SlipEvidence* evidence, double loaded) {
+  const Plateau plateau = evidence->plateau;
   const bool ends =
       plateau.above <= 0.05 || (plateau.share >= 0.5 && plateau.above <= 0.3 * plateau.share);
-  const bool shows = plateau.share >= 0.1 && ends && telling >= 0.2 * pillars &&
-                     contradict <= 0.1 * (agree + contradict);
+  const bool shows = plateau.share >= 0.1 && ends && evidence->telling >= 0.2 * loaded &&
+                     evidence->contradict <= 0.1 * (evidence->agree + evidence->contradict);
+  ShownFriction shown = {0.0f, 0.0};
   if (!shows) return shown;
-  shown.friction = friction;
+  shown.friction = (float)plateau.ratio;
   shown.share = plateau.share + plateau.above;
   return shown;
 }
