@@ -222,6 +222,11 @@ void DeviceFieldStage::resolve(const cl::CommandQueue& queue, SlotMemory& memory
 
 }  // namespace
 
+bool shares_by_groups(const DeviceInfo& device, ContactSharing sharing) {
+  if (sharing == ContactSharing::automatic) return device.type != "CPU";
+  return sharing == ContactSharing::work_group;
+}
+
 std::unique_ptr<FieldStage> device_field_stage(Device::State& device, const SolverPlan& plan,
                                                bool groups) {
   return std::make_unique<DeviceFieldStage>(device, plan, groups);

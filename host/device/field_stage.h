@@ -6,6 +6,7 @@
 #include "device/device_state.h"
 #include "device/slot_memory.h"
 #include "pillarfield/contact_map.h"
+#include "pillarfield/processor.h"
 
 namespace pillarfield {
 
@@ -26,8 +27,10 @@ class FieldStage {
   [[nodiscard]] virtual const ContactMap& contacts() const = 0;
 };
 
-/// By kernels; throws Error on a device without double precision. `groups`: contacts are shared by
-/// work-groups of many work-items, as suits a GPU; else each is one work-item's.
+/// Whether contacts are shared by work-groups of many work-items; else each is one work-item's.
+[[nodiscard]] bool shares_by_groups(const DeviceInfo& device, ContactSharing sharing);
+
+/// By kernels; throws Error on a device without double precision. `groups` as above.
 std::unique_ptr<FieldStage> device_field_stage(Device::State& device, const SolverPlan& plan,
                                                bool groups);
 

@@ -188,16 +188,16 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   return source;
 }
 
-std::string field_source(const SolverPlan& plan, int device_lanes) {
+std::string field_source(const SolverPlan& plan, const DeviceInfo& device, ContactSharing sharing) {
   if (plan.estimator != Estimator::field) return {};
-  return field_kernel_source(device_lanes == 1);
+  return field_kernel_source(shares_by_groups(device, sharing));
 }
 
 std::string field_kernel_source(bool groups) {
   std::string source =
       "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
       "#define PF_LANES 1\n";
-  if (!groups) source += "#define PF_ALONE\n";
+  if (!groups) source += "#define PF_ALONE 1\n";
   for (const KernelFile& file : kernel_files()) {
     if (is_of_field(file.name) || is_shared_with_field(file.name)) append(source, file);
   }

@@ -54,13 +54,14 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
-/// A device that solves several pillars at once in the host's memory is the host's own processor:
-/// to launch what is left would take longer than to do it. `lanes` are the device's, however narrow
-/// the skin is.
+/// A CPU that shares the host's memory is the host's own processor: to launch what is left would
+/// take longer than to do it.
 std::unique_ptr<FieldStage> make_field_stage(Device::State& device, const SolverPlan& plan,
-                                             int lanes, bool shares_memory) {
-  const bool groups = lanes == 1;
-  if (shares_memory && !groups) return host_field_stage(device, plan);
+                                             ContactSharing sharing, bool shares_memory) {
+  const bool groups = shares_by_groups(device.info, sharing);
+  if (sharing == ContactSharing::automatic && shares_memory && !groups) {
+    return host_field_stage(device, plan);
+  }
   return device_field_stage(device, plan, groups);
 }
 
@@ -101,7 +102,7 @@ struct Processor::State {
           std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
     if (wanted.estimator == Estimator::field) {
-      field = make_field_stage(device.state(), wanted, lanes, shares_memory);
+      field = make_field_stage(device.state(), wanted, options.contacts, shares_memory);
     }
     warm_up();
     baseline.rate = static_cast<float>(baseline_turn_rate(wanted));

@@ -61,8 +61,8 @@ static inline Trend shared_trend_of(Scratch scratch, Model model) {
 
 /* What halves a weight in the rounds that follow: the residual that the trend leaves of the first
  * (F8). */
-static inline double inverse_square_of(const Fit* fit, double peak) {
-  const double unit = powered(fit->trend.squared, (double)(float)peak);
+static inline double inverse_square_of(const Fit* fit, float peak) {
+  const double unit = powered(fit->trend.squared, (double)peak);
   const double least = 1e-6 * unit * unit;
   const double square =
       fit->plain.weight > 0.0 ? residual_square(&fit->plain, &fit->trend) / fit->plain.weight : 0.0;
@@ -79,7 +79,7 @@ static inline void fit_round(Tile tile, Scratch scratch, Model model, uint round
   const double precision = solve_trend(equations, &fit->trend);
   assess_trend(&equations, precision, &fit->trend);
   if (round < PF_FIT_ROUNDS) {
-    fit->trend.inverse_square = inverse_square_of(fit, scratch.shared[PF_AT_PEAK]);
+    fit->trend.inverse_square = inverse_square_of(fit, peak_of(scratch));
   }
   share_trend(&fit->trend, scratch.shared + model.shared);
 }

@@ -24,7 +24,7 @@ static inline Slope slope_of(Force force) {
 static inline void count_slopes(Tile tile, Scratch scratch, Field field, float quiet, float plateau,
                                 Share share) {
   const uint sampling = sampling_of(tile);
-  const float peak = (float)scratch.shared[PF_AT_PEAK];
+  const float peak = peak_of(scratch);
   for (uint row = share.first * sampling; row < tile.rows; row += share.step * sampling) {
     for (uint col = 0; col < tile.cols; ++col) {
       if (scratch.cells.kind[cell_at(tile, row, col)] != PF_CELL_RESOLVED) continue;
@@ -42,7 +42,7 @@ static inline void count_slopes(Tile tile, Scratch scratch, Field field, float q
 
 /* The width of a plateau of such ratios: noise spreads those of pillars that bear little. */
 static inline float slopes_window(Scratch scratch, float noise) {
-  return 1.06f + 4.0f * noise / (float)scratch.shared[PF_AT_PEAK];
+  return 1.06f + 4.0f * noise / peak_of(scratch);
 }
 
 /* Counts the open pillars, by the square of what they may bear, and behind them those that could

@@ -32,8 +32,7 @@ static inline void take_step(const Contact* contact, Course* course) {
   const Cells cells = scratch.cells;
   const FieldSettings settings = contact->settings;
   const Share share = contact->share;
-  const Trend* const trend = &course->fit.trend;
-  const float peak = (float)scratch.shared[PF_AT_PEAK];
+  const Trend trend = course->fit.trend; /* a copy, which no sum that is written can change */
   switch (course->step) {
     case PF_CLEAR_BOX:
       clear_tile(tile, cells, contact->field, share);
@@ -58,7 +57,7 @@ static inline void take_step(const Contact* contact, Course* course) {
       count_contradictions(tile, scratch, settings.noise, (float)course->slip.plateau.ratio, share);
       break;
     case PF_COUNT_IMPLIED:
-      evaluate_shape(tile, scratch, trend, is_relaxed(course->choice), settings.noise, share);
+      evaluate_shape(tile, scratch, &trend, is_relaxed(course->choice), settings.noise, share);
       break;
     case PF_FIND_PLATEAU:
       see_plateau(contact, course);
@@ -68,10 +67,10 @@ static inline void take_step(const Contact* contact, Course* course) {
       course->slip.contradict = (double)scratch.counts[1];
       break;
     case PF_WEIGH_LINES:
-      weigh_lines(tile, cells, peak, share);
+      weigh_lines(tile, cells, peak_of(scratch), share);
       break;
     case PF_SUM_LINES:
-      sum_lines(tile, cells, trend, peak, scratch.lines, share);
+      sum_lines(tile, cells, &trend, peak_of(scratch), scratch.lines, share);
       break;
     case PF_FIT_TREND:
       if (share.first == 0) {
@@ -79,13 +78,13 @@ static inline void take_step(const Contact* contact, Course* course) {
       }
       break;
     case PF_SUM_BORDER:
-      sum_border(tile, cells, trend, scratch.lines, share);
+      sum_border(tile, cells, &trend, scratch.lines, share);
       break;
     case PF_SHARE_MISFIT:
       if (share.first == 0) share_misfit(tile, scratch, tried_model(course->choice));
       break;
     case PF_BEGIN_MEMBRANE:
-      begin_residuals(tile, cells, trend, peak, share);
+      begin_residuals(tile, cells, &trend, peak_of(scratch), share);
       break;
     case PF_RELAX_MEMBRANE:
       relax_colour(tile, cells, course->round & 1u, share);

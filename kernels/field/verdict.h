@@ -70,6 +70,9 @@ typedef struct {
 #define PF_CHANGE_PER_FRAME 0.05f   /* of a normal force, relative deviation */
 #define PF_MOST_RECALLED 0.15f      /* deviation, by the length of the segment */
 
+/* The most that a pillar of the contact may bear, once it is summarised, N. */
+static inline float peak_of(Scratch scratch) { return (float)scratch.shared[PF_AT_PEAK]; }
+
 static inline float clamped(float value, float low, float high) {
   return value < low ? low : (high < value ? high : value);
 }

@@ -293,18 +293,20 @@ TEST(Score, FallsByWhatIsFarAboveAndByTheMisfit) {
   std::array<std::uint32_t, PF_RATIO_COUNTS> counts{};
   counts.at(maths::bin_of_ratio(1.8F)) = 80;
   counts.at(maths::bin_of_ratio(1.0F)) = 20;
-  maths::Scratch scratch{};
-  scratch.counts = counts.data();
   maths::Trend trend = maths::no_trend(2, true);
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0).score, 0.8, 1e-6);
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0.1).score, 0.7, 1e-6);
-  const float sure = maths::verdict_of_shape(scratch, &trend, 0).spread;
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0.1).spread, sure + 0.1, 1e-6);
+  const auto verdict = [&](double misfit) {
+    const maths::Plateau plateau = maths::find_plateau(counts.data(), PF_IMPLIED_WINDOW);
+    return maths::verdict_of_shape(plateau, &trend, misfit);
+  };
+  EXPECT_NEAR(verdict(0).score, 0.8, 1e-6);
+  EXPECT_NEAR(verdict(0.1).score, 0.7, 1e-6);
+  const float sure = verdict(0).spread;
+  EXPECT_NEAR(verdict(0.1).spread, sure + 0.1, 1e-6);
   trend.scale_error = 0.02;
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0).spread, sure + 0.2, 1e-6);
+  EXPECT_NEAR(verdict(0).spread, sure + 0.2, 1e-6);
   counts.at(maths::bin_of_ratio(1.0F)) = 0;
   counts.at(maths::bin_of_ratio(4.0F)) = 20;
-  EXPECT_NEAR(maths::verdict_of_shape(scratch, &trend, 0).score, 0.5, 1e-6);
+  EXPECT_NEAR(verdict(0).score, 0.5, 1e-6);
 }
 
 TEST(Edge, WeighsByHowLittleIsBorneBesideIt) {

@@ -100,10 +100,10 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
   }
 }
 
-/// What differs from one way to run it to the next: one lane means work-groups for contacts.
+/// What differs from one way to run it to the next.
 struct Way {
   const char* name;
-  int lanes;
+  ContactSharing contacts;
   Memory memory;
 };
 
@@ -116,7 +116,7 @@ class EveryWay : public testing::TestWithParam<Way> {
   }
 
   [[nodiscard]] static Processor processor(const SolverPlan& plan) {
-    return {test_device(), plan, {.memory = GetParam().memory, .lanes = GetParam().lanes}};
+    return {test_device(), plan, {.memory = GetParam().memory, .contacts = GetParam().contacts}};
   }
 
   /// Solves all frames of the scene, and expects the bits of the C++ loop.
@@ -232,18 +232,16 @@ TEST_P(EveryWay, AnglesAreThoseOfTheForces) {
   EXPECT_GT(resolved, 500U);
 }
 
-// Work-groups are what GPUs take; drivers for processors need long to compile them.
 #ifdef PILLARFIELD_FIELD_GROUPS
-INSTANTIATE_TEST_SUITE_P(Ways, EveryWay,
-                         testing::Values(Way{"groups_shared", 1, Memory::shared},
-                                         Way{"groups_staged", 1, Memory::staged}),
-                         [](const auto& way) { return std::string(way.param.name); });
+constexpr Way kWays[] = {{"groups_shared", ContactSharing::work_group, Memory::shared},
+                         {"groups_staged", ContactSharing::work_group, Memory::staged}};
 #else
-INSTANTIATE_TEST_SUITE_P(Ways, EveryWay,
-                         testing::Values(Way{"alone_shared", 16, Memory::shared},
-                                         Way{"alone_staged", 16, Memory::staged}),
-                         [](const auto& way) { return std::string(way.param.name); });
+constexpr Way kWays[] = {{"automatic_shared", ContactSharing::automatic, Memory::shared},
+                         {"alone_shared", ContactSharing::work_item, Memory::shared},
+                         {"alone_staged", ContactSharing::work_item, Memory::staged}};
 #endif
+INSTANTIATE_TEST_SUITE_P(Ways, EveryWay, testing::ValuesIn(kWays),
+                         [](const auto& way) { return std::string(way.param.name); });
 
 TEST(FieldStage, OfOthersNoContactsAreLent) {
   const SolverPlan plan = bare_plan(20, 20, SenselType::u8);

@@ -71,6 +71,15 @@ struct SpeedPaths {
   Stores stores = Stores::automatic;
 };
 
+/// How work-items of the device share the contacts that the estimator `field` resolves: the same
+/// bits.
+enum class ContactSharing : std::uint8_t {
+  automatic,   ///< work_group, or on a CPU work_item; where that shares the host's memory neither,
+               ///< but threads of the host
+  work_item,   ///< a contact is one work-item's
+  work_group,  ///< a contact is a group's, as suits a GPU
+};
+
 /// The OpenCL C that is compiled for a plan on a device with so many lanes, complete. Stores are
 /// streaming only where `paths` says so.
 [[nodiscard]] std::string kernel_source(const SolverPlan& plan, int device_lanes,
@@ -78,7 +87,8 @@ struct SpeedPaths {
 
 /// The OpenCL C that resolves what the direct solve left open, a program of its own; empty where
 /// the estimator is not that of the field.
-[[nodiscard]] std::string field_source(const SolverPlan& plan, int device_lanes);
+[[nodiscard]] std::string field_source(const SolverPlan& plan, const DeviceInfo& device,
+                                       ContactSharing sharing = ContactSharing::automatic);
 
 /// The stages that kernel_source and field_source hold, in their order, one name each.
 [[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
@@ -103,6 +113,7 @@ class Processor {
     int lanes = 0;  ///< pillars that a work-item solves at once: 1, 2, 4, 8 or 16; 0: DeviceInfo's;
                     ///< fewer where a row of the skin is shorter
     SpeedPaths paths = {};
+    ContactSharing contacts = ContactSharing::automatic;
   };
 
   /// A result that was kept. Its spans and its pages stay as they are until it is destroyed, which
