@@ -43,8 +43,9 @@ namespace pillarfield::single_precision {
 #include "kernels/field/fit.h"
 // the models
 #include "kernels/field/shape.h"
-// what becomes of it, in which steps
+// and what becomes of it
 #include "kernels/field/judgement.h"
+// in which steps
 #include "kernels/field/course.h"
 #include "kernels/field/step.h"
 // and all of it

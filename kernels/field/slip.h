@@ -74,7 +74,7 @@ typedef struct {
 /* What was counted to find it. */
 typedef struct {
   Plateau plateau;   /* of the slopes */
-  double telling;    /* pillars that make it up and those beside it */
+  double telling;    /* pillars whose slopes were counted */
   double agree;      /* open pillars that may slip at that friction */
   double contradict; /* and that may not */
 } SlipEvidence;

@@ -113,7 +113,7 @@ class Processor {
     int lanes = 0;  ///< pillars that a work-item solves at once: 1, 2, 4, 8 or 16; 0: DeviceInfo's;
                     ///< fewer where a row of the skin is shorter
     SpeedPaths paths = {};
-    ContactSharing contacts = ContactSharing::automatic;
+    ContactSharing contacts = ContactSharing::automatic;  ///< of the estimator `field`
   };
 
   /// A result that was kept. Its spans and its pages stay as they are until it is destroyed, which
