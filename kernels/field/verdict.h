@@ -59,7 +59,7 @@ typedef struct {
 #define PF_FEW_OPEN 0.1           /* of a contact's pillars: no model is asked whether they stick */
 #define PF_ALL_SLIP 0.9           /* of the pillars that can show friction: so do open ones */
 #define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
-#define PF_TRUST_IN_BOUND 0.8f    /* 1: an open pillar is at the bound told */
+#define PF_TRUST_IN_BOUND 0.9f    /* 1: an open pillar is at the bound told */
 #define PF_SPREAD_OF_SHOWN 0.005f /* of a friction that resolved pillars show, relative */
 #define PF_SCALE_ERRORS 10.0      /* of a friction, by what the fit says of its own error, */
 #define PF_SPREAD_OF_REST 0.05    /* and by the share that does not bear it out */
