@@ -20,8 +20,7 @@
 #define PF_SHARE_MISFIT 14u
 #define PF_BEGIN_MEMBRANE 15u
 #define PF_RELAX_MEMBRANE 16u
-#define PF_HOLD_SLIPPING 17u
-#define PF_END_OF_COURSE 18u
+#define PF_END_OF_COURSE 17u
 
 /* Where a contact's course has come to. */
 typedef struct {
@@ -46,7 +45,7 @@ static inline void begin_course(Course* course) {
   course->slip.plateau = none;
   course->choice.attempt = 0;
   course->choice.best = PF_MODELS;
-  course->choice.score = 0.0f;
+  course->choice.merit = 0.0f;
   course->implied = none;
 }
 
@@ -146,7 +145,7 @@ static inline void after_attempt(Course* course, Scratch scratch) {
     verdict.spread = PF_SPREAD_OF_SHOWN;
   }
   course->verdict = verdict;
-  course->step = PF_HOLD_SLIPPING;
+  course->step = PF_END_OF_COURSE;
 }
 
 /* A trend implies a friction: unless few pillars share it, those that slip join the fit. */
@@ -181,13 +180,11 @@ static inline void next_step(Course* course, Scratch scratch, FieldSettings sett
       course->step = course->counts;
       break;
     case PF_COUNT_SLOPES:
+    case PF_COUNT_IMPLIED:
       course->step = PF_FIND_PLATEAU;
       break;
     case PF_COUNT_CONTRADICTIONS:
       course->step = PF_SEE_CONTRADICTIONS;
-      break;
-    case PF_COUNT_IMPLIED:
-      course->step = course->choice.attempt == PF_USE_HELD ? PF_END_OF_COURSE : PF_FIND_PLATEAU;
       break;
     case PF_FIND_PLATEAU:
       if (course->counts == PF_COUNT_SLOPES) {
@@ -213,9 +210,6 @@ static inline void next_step(Course* course, Scratch scratch, FieldSettings sett
       break;
     case PF_RELAX_MEMBRANE:
       relax_next(course, course->round + 1, settings);
-      break;
-    case PF_HOLD_SLIPPING:
-      begin_attempt(course, scratch, PF_USE_HELD);
       break;
     default: /* the others come one after the other */
       ++course->step;

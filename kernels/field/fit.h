@@ -1,11 +1,11 @@
 /* Fitting a trend (docs/derivations/field.md, section 3). */
 
 /* A trend as work-items share it: its terms, and behind them */
-#define PF_TREND_INVERSE_SQUARE 15
-#define PF_TREND_FRICTION 16
-#define PF_TREND_SCALE_ERROR 17
-#define PF_TREND_UNEXPLAINED 18
-#define PF_TREND_MISFIT 19 /* the model's, F9 */
+#define PF_TREND_INVERSE_SQUARE PF_TREND_TERMS
+#define PF_TREND_FRICTION (PF_TREND_TERMS + 1)
+#define PF_TREND_SCALE_ERROR (PF_TREND_TERMS + 2)
+#define PF_TREND_UNEXPLAINED (PF_TREND_TERMS + 3)
+#define PF_TREND_MISFIT (PF_TREND_TERMS + 4) /* the model's, F9 */
 
 #define PF_FIT_ROUNDS 3u   /* to resolved pillars: one with plain weights, the others robust (F8) */
 #define PF_SLIP_ROUNDS 2u  /* on top, with pillars that slip (F14) */
@@ -37,10 +37,9 @@ typedef struct {
   uint shared;  /* where in Scratch::shared it lies */
 } Model;
 
-#define PF_MODELS 4u
-
+/* Of the pressure's square and of itself, degree 2; the same, degree 4; of its square, degree 6. */
 static inline Model model_of(uint number) {
-  const Model model = {number < 2 ? 2u : 4u, (number & 1u) == 0,
+  const Model model = {2 * (number / 2) + 2, (number & 1u) == 0,
                        PF_AT_TRENDS + number * PF_SHARED_TREND};
   return model;
 }

@@ -49,18 +49,3 @@ static inline void evaluate_shape(Tile tile, Scratch scratch, const Trend* trend
     }
   }
 }
-
-/* Takes those ambiguous pillars for slipping that a model has bear less than they would in slip,
- * or little more. */
-static inline void hold_slipping(Tile tile, Cells cells, float friction, Share share) {
-  for (uint row = share.first; row < tile.rows; row += share.step) {
-    for (uint col = 0; col < tile.cols; ++col) {
-      const uint cell = cell_at(tile, row, col);
-      if (cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
-      const Segment segment = segment_of_cell(cells, cell);
-      if (!(cells.shaped[cell] < normal_at_ratio(segment, PF_SLIPS_FROM * friction))) continue;
-      cells.kind[cell] = PF_CELL_SLIPPING;
-      cells.shaped[cell] = clamped(normal_at_ratio(segment, friction), 0.0f, segment.high);
-    }
-  }
-}

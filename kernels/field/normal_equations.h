@@ -1,6 +1,6 @@
 /* From the sums of lines to the trend (docs/derivations/field.md, section 3). */
 
-#define PF_UNKNOWNS 16 /* terms, and the scale of what slips */
+#define PF_UNKNOWNS (PF_TREND_TERMS + 1) /* terms, and the scale of what slips */
 
 /* Normal equations of the terms, and behind them of the scale. */
 typedef struct {

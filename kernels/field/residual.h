@@ -8,17 +8,6 @@ static inline bool is_anchor(Cells cells, uint cell) {
   return cells.kind[cell] == PF_CELL_RESOLVED && cells.weight[cell] > PF_ANCHOR_WEIGHT;
 }
 
-/* Whether the membrane is held at a pillar. */
-static inline bool is_held(Cells cells, uint cell) {
-  return cells.kind[cell] == PF_CELL_SLIPPING ? cells.weight[cell] > PF_ANCHOR_WEIGHT
-                                              : is_anchor(cells, cell);
-}
-
-/* The normal force where it is held. */
-static inline float held_normal(Cells cells, uint cell) {
-  return cells.kind[cell] == PF_CELL_SLIPPING ? cells.shaped[cell] : cells.top[cell];
-}
-
 /* The weight of the strongest edge beside a cell outside. */
 static inline float weight_outside(Cells cells, uint cell, int width, float peak) {
   const int steps[4] = {1, -1, width, -width};
@@ -32,7 +21,7 @@ static inline float weight_outside(Cells cells, uint cell, int width, float peak
   return weight;
 }
 
-/* Residuals where they are known: where it is held, and outside, where a pressure that vanishes
+/* Residuals where they are known: at anchors, and outside, where a pressure that vanishes
  * there leaves nothing of a positive trend. Zero elsewhere. */
 static inline void begin_residuals(Tile tile, Cells cells, const Trend* trend, float peak,
                                    Share share) {
@@ -46,11 +35,11 @@ static inline void begin_residuals(Tile tile, Cells cells, const Trend* trend, f
       const uchar kind = cells.kind[cell];
       const bool inside = line >= 1 && line <= tile.rows && at >= 1 && at <= tile.cols;
       double residual = 0.0;
-      const bool held = inside && is_held(cells, cell);
+      const bool held = inside && is_anchor(cells, cell);
       if (held || kind == PF_CELL_OUTSIDE) {
         const double value = on_line(&polynomial, ((double)at - 1.0 - frame.col) * frame.scale);
         if (held) {
-          residual = powered(trend->squared, (double)held_normal(cells, cell)) - value;
+          residual = powered(trend->squared, (double)cells.top[cell]) - value;
         } else if (value > 0.0) {
           /* A cell on the rim has one neighbour in the box, of which alone an edge can be. */
           const bool corner =
@@ -84,7 +73,7 @@ static inline void relax_colour(Tile tile, Cells cells, uint colour, Share share
   for (uint row = share.first; row < tile.rows; row += share.step) {
     for (uint col = (row + colour) & 1u; col < tile.cols; col += 2) {
       const uint cell = cell_at(tile, row, col);
-      if (cells.kind[cell] < PF_CELL_LOADED || is_held(cells, cell)) continue;
+      if (cells.kind[cell] < PF_CELL_LOADED || is_anchor(cells, cell)) continue;
       const float own = cells.residual[cell];
       const float across =
           neighbour_or_own(cells, cell - 1, own) + neighbour_or_own(cells, cell + 1, own);

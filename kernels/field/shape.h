@@ -28,8 +28,10 @@ static inline Verdict verdict_of_shape(Plateau plateau, const Trend* trend, doub
 }
 
 /* Whether a model's evidence is good enough. */
-static inline bool is_believed(Verdict verdict, Scratch scratch, float known) {
+static inline bool is_believed(Verdict verdict, Scratch scratch, Model model, float known) {
   if (!(verdict.score > (float)PF_LEAST_SCORE)) return false;
+  const double unexplained = scratch.shared[model.shared + PF_TREND_UNEXPLAINED];
+  if (model.degree > 4 && !(unexplained < PF_UNEXPLAINED_AT_SIX)) return false;
   if (known > 0.0f) {
     return fabs(verdict.friction - known) <= (float)PF_FRICTION_APART * known &&
            verdict.misfit <= (float)PF_MISFIT_AT_FRICTION;
@@ -40,17 +42,15 @@ static inline bool is_believed(Verdict verdict, Scratch scratch, float known) {
 }
 
 /* Attempts, in their order: each model, judged by its trend in sampled rows; each again, with its
- * membrane in all rows; and what is made of the best one: its membrane hangs on resolved pillars,
- * and then, at the friction that it implies or that is known, on those that slip as well. */
+ * membrane in all rows; and the best one, whose membrane gives the normal forces. */
 #define PF_FIRST_RELAXED PF_MODELS
 #define PF_USE_BEST (2u * PF_MODELS)
-#define PF_USE_HELD (PF_USE_BEST + 1u)
 
 /* The model that is tried, and the best so far whose evidence is good enough. */
 typedef struct {
   uint attempt;
   uint best;   /* PF_MODELS where there is none */
-  float score; /* the best one's */
+  float merit; /* the best one's */
 } Choice;
 
 static inline bool is_relaxed(Choice choice) { return choice.attempt >= PF_FIRST_RELAXED; }
@@ -76,13 +76,15 @@ static inline uint attempt_from(uint from, Choice choice, Scratch scratch, float
 
 /* Takes note of the verdict on the model that was tried, and returns what to try next. */
 static inline uint attempt_after(Verdict verdict, Scratch scratch, float known, Choice* choice) {
-  const bool better = choice->best == PF_MODELS || verdict.score > choice->score;
-  if (better && is_believed(verdict, scratch, known)) {
+  const Model model = tried_model(*choice);
+  PF_GLOBAL const double* const shared = scratch.shared + model.shared;
+  const float merit = verdict.score - (float)(PF_MERIT_OF_ERROR * shared[PF_TREND_SCALE_ERROR]);
+  const bool better = choice->best == PF_MODELS || merit > choice->merit;
+  if (better && is_believed(verdict, scratch, model, known)) {
     choice->best = tried_number(*choice);
-    choice->score = verdict.score;
-    const Model model = tried_model(*choice);
-    const double unexplained = scratch.shared[model.shared + PF_TREND_UNEXPLAINED];
-    if (verdict.score > (float)PF_GOOD_SCORE && unexplained < PF_GOOD_UNEXPLAINED) {
+    choice->merit = merit;
+    if (verdict.score > (float)PF_GOOD_SCORE &&
+        shared[PF_TREND_UNEXPLAINED] < PF_GOOD_UNEXPLAINED) {
       return PF_USE_BEST;
     }
   }

@@ -89,9 +89,6 @@ static inline void take_step(const Contact* contact, Course* course) {
     case PF_RELAX_MEMBRANE:
       relax_colour(tile, cells, course->round & 1u, share);
       break;
-    case PF_HOLD_SLIPPING:
-      hold_slipping(tile, cells, course->verdict.friction, share);
-      break;
     default:
       break;
   }

@@ -27,7 +27,6 @@ typedef struct {
 #define PF_CELL_LOADED 2    /* loaded, and none of those that follow */
 #define PF_CELL_RESOLVED 3  /* a force that its own readings determine */
 #define PF_CELL_AMBIGUOUS 4 /* a segment of forces */
-#define PF_CELL_SLIPPING 5  /* the same, and one of them taken, since it slips there */
 
 /* Scratch planes of all tiles. */
 typedef struct {

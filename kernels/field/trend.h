@@ -2,16 +2,18 @@
  * the resolved pillars, to zero at the contact's edge, and, but for a factor, to the pillars that
  * slip (docs/derivations/field.md, section 3). */
 
-#define PF_TREND_MOST_DEGREE 4
-#define PF_TREND_TERMS 15      /* of a polynomial of degree 4 in two variables */
-#define PF_TREND_MOMENTS 9     /* powers of x in its normal equations */
-#define PF_TREND_RIGHT 5       /* powers of x on their right side */
-#define PF_LINE_SUMS 21        /* doubles of a line's record */
-#define PF_LINE_RIGHT 9        /* of which: the moments before, resolved pillars from here on, */
-#define PF_LINE_SQUARE 14      /* the sum of their squares, */
-#define PF_LINE_SLIP 15        /* slipping pillars, */
-#define PF_LINE_SLIP_SQUARE 20 /* and theirs */
-#define PF_SLIPS_FROM 0.9f     /* of the friction: a ratio above it is taken for slip */
+#define PF_TREND_TERMS 28   /* of a polynomial of degree 6, the highest, in two variables */
+#define PF_TREND_MOMENTS 13 /* powers of x in its normal equations */
+#define PF_TREND_RIGHT 7    /* powers of x on their right side */
+
+/* A line's record of doubles: the moments, */
+#define PF_LINE_RIGHT PF_TREND_MOMENTS                      /* resolved pillars, */
+#define PF_LINE_SQUARE (PF_LINE_RIGHT + PF_TREND_RIGHT)     /* the sum of their squares, */
+#define PF_LINE_SLIP (PF_LINE_SQUARE + 1)                   /* slipping pillars, */
+#define PF_LINE_SLIP_SQUARE (PF_LINE_SLIP + PF_TREND_RIGHT) /* and theirs */
+#define PF_LINE_SUMS (PF_LINE_SLIP_SQUARE + 1)
+
+#define PF_SLIPS_FROM 0.9f /* of the friction: a ratio above it is taken for slip */
 
 /* Coordinates in the box, about -1 to 1. */
 typedef struct {

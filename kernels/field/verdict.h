@@ -29,14 +29,17 @@ typedef struct {
   uint may_stick; /* what is taken to slip may as well not */
 } Verdict;
 
-#define PF_SHARED_SUMS 85 /* doubles that the work-items of a contact share */
-#define PF_AT_TRENDS 0    /* those of four models, PF_SHARED_TREND each */
-#define PF_SHARED_TREND 20
-#define PF_AT_PEAK 80
-#define PF_AT_OPEN_PEAK 81
-#define PF_AT_RESOLVED 82 /* pillars of the sampled rows */
-#define PF_AT_OPEN 83
-#define PF_AT_LOADED 84
+#define PF_MODELS 5u /* of the pressure's shape */
+
+/* Doubles that the work-items of a contact share: a trend of each model, and behind them */
+#define PF_AT_TRENDS 0
+#define PF_SHARED_TREND (PF_TREND_TERMS + 5)
+#define PF_AT_PEAK (PF_AT_TRENDS + PF_MODELS * PF_SHARED_TREND)
+#define PF_AT_OPEN_PEAK (PF_AT_PEAK + 1)
+#define PF_AT_RESOLVED (PF_AT_PEAK + 2) /* pillars of the sampled rows */
+#define PF_AT_OPEN (PF_AT_PEAK + 3)
+#define PF_AT_LOADED (PF_AT_PEAK + 4)
+#define PF_SHARED_SUMS (PF_AT_PEAK + 5)
 
 /* Scratch memory of one contact. */
 typedef struct {
@@ -51,11 +54,13 @@ typedef struct {
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
 #define PF_LEAST_SCORE 0.1
-#define PF_GOOD_SCORE 0.5         /* further models are not tried, */
-#define PF_GOOD_UNEXPLAINED 0.01  /* if no more is left unexplained */
-#define PF_MISFIT_PER_SHARE 0.45  /* most, by the share of resolved pillars */
-#define PF_MISFIT_AT_FRICTION 0.1 /* most, where the friction is known */
-#define PF_FRICTION_APART 0.1     /* of a known one and the one a model implies, relative */
+#define PF_GOOD_SCORE 0.5          /* further models are not tried, */
+#define PF_GOOD_UNEXPLAINED 0.01   /* if no more is left unexplained */
+#define PF_UNEXPLAINED_AT_SIX 0.03 /* most, of a trend of degree 6 */
+#define PF_MERIT_OF_ERROR 50.0     /* what a model loses against others by its scale's error */
+#define PF_MISFIT_PER_SHARE 0.45   /* most, by the share of resolved pillars */
+#define PF_MISFIT_AT_FRICTION 0.1  /* most, where the friction is known */
+#define PF_FRICTION_APART 0.1      /* of a known one and the one a model implies, relative */
 #define PF_FEW_OPEN 0.1           /* of a contact's pillars: no model is asked whether they stick */
 #define PF_ALL_SLIP 0.9           /* of the pillars that can show friction: so do open ones */
 #define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
@@ -64,7 +69,7 @@ typedef struct {
 #define PF_SCALE_ERRORS 10.0      /* of a friction, by what the fit says of its own error, */
 #define PF_SPREAD_OF_REST 0.05    /* and by the share that does not bear it out */
 #define PF_DEVIATION_OF_MIDDLE 0.4f /* of the truth from it, by the length of the segment */
-#define PF_BEYOND_STICKING 0.35f    /* of what a model has a pillar bear beyond slip */
+#define PF_BEYOND_STICKING 0.1f     /* of what a model has a pillar bear beyond slip */
 #define PF_NOISE_OF_NORMAL 0.45f    /* by a reading's, at a given ratio */
 #define PF_NOISE_OF_RESOLVED 0.7f   /* by a reading's, of a resolved pillar */
 #define PF_CHANGE_PER_FRAME 0.05f   /* of a normal force, relative deviation */
