@@ -32,11 +32,11 @@ static inline Moments no_moments(void) {
   return moments;
 }
 
-static inline void add_line(Moments* moments, PF_GLOBAL const double* sums, double y) {
+static inline void add_line(Moments* moments, PF_GLOBAL const double* sums, double y, uint degree) {
   double power = 1.0;
-  for (uint j = 0; j < PF_TREND_MOMENTS; ++j) {
-    for (uint i = 0; i + j < PF_TREND_MOMENTS; ++i) moments->plain[i][j] += sums[i] * power;
-    for (uint i = 0; i + j < PF_TREND_RIGHT; ++i) {
+  for (uint j = 0; j <= 2 * degree; ++j) {
+    for (uint i = 0; i + j <= 2 * degree; ++i) moments->plain[i][j] += sums[i] * power;
+    for (uint i = 0; i + j <= degree; ++i) {
       moments->right[i][j] += sums[PF_LINE_RIGHT + i] * power;
       moments->slip[i][j] += sums[PF_LINE_SLIP + i] * power;
     }
@@ -53,7 +53,7 @@ static inline NormalEquations normal_equations(Tile tile, uint degree,
   Moments moments = no_moments();
   for (uint row = 0; row < tile.rows; row += sampling_of(tile)) {
     add_line(&moments, lines + (tile.first_line + row) * PF_LINE_SUMS,
-             (frame.row - (double)row) * frame.scale);
+             (frame.row - (double)row) * frame.scale, degree);
   }
   NormalEquations equations;
   const uint scale = terms_of(degree);

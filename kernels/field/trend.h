@@ -62,15 +62,17 @@ static inline uint terms_of(uint degree) { return (degree + 1) * (degree + 2) / 
 
 /* A line of the trend: a polynomial in x. */
 typedef struct {
+  uint degree;
   double powers[PF_TREND_RIGHT];
 } TrendLine;
 
 static inline TrendLine trend_line(const Trend* trend, double y) {
   TrendLine line;
-  for (uint i = 0; i < PF_TREND_RIGHT; ++i) line.powers[i] = 0.0;
+  line.degree = trend->degree;
   double y_power[PF_TREND_RIGHT];
   y_power[0] = 1.0;
-  for (uint j = 1; j < PF_TREND_RIGHT; ++j) y_power[j] = y_power[j - 1] * y;
+  for (uint j = 1; j <= trend->degree; ++j) y_power[j] = y_power[j - 1] * y;
+  for (uint i = 0; i <= trend->degree; ++i) line.powers[i] = 0.0;
   uint term = 0;
   for (uint both = 0; both <= trend->degree; ++both) {
     for (uint i = 0; i <= both; ++i) line.powers[i] += trend->terms[term++] * y_power[both - i];
@@ -79,8 +81,8 @@ static inline TrendLine trend_line(const Trend* trend, double y) {
 }
 
 static inline double on_line(const TrendLine* line, double x) {
-  double sum = line->powers[PF_TREND_RIGHT - 1];
-  for (uint i = PF_TREND_RIGHT - 1; i-- > 0;) sum = sum * x + line->powers[i];
+  double sum = line->powers[line->degree];
+  for (uint i = line->degree; i-- > 0;) sum = sum * x + line->powers[i];
   return sum;
 }
 
@@ -159,10 +161,10 @@ static inline Sample slipping_sample(Cells cells, uint cell, const Trend* trend,
 }
 
 static inline void add_sample(PF_GLOBAL double* right, PF_GLOBAL double* square, Sample sample,
-                              double x) {
+                              double x, uint degree) {
   double power = sample.weight * sample.value;
   *square += power * sample.value;
-  for (uint i = 0; i < PF_TREND_RIGHT; ++i) {
+  for (uint i = 0; i <= degree; ++i) {
     right[i] += power;
     power *= x;
   }
@@ -189,14 +191,14 @@ static inline void sum_line(Tile tile, Cells cells, const Trend* trend, float pe
       Sample sample;
       sample.value = powered(trend->squared, (double)cells.top[cell]);
       sample.weight = (double)cells.weight[cell] * trust(trend, sample.value - here);
-      add_sample(sums + PF_LINE_RIGHT, sums + PF_LINE_SQUARE, sample, x);
+      add_sample(sums + PF_LINE_RIGHT, sums + PF_LINE_SQUARE, sample, x, trend->degree);
       moment += sample.weight;
     } else if (may_slip) {
       const Sample sample = slipping_sample(cells, cell, trend, here);
-      add_sample(sums + PF_LINE_SLIP, sums + PF_LINE_SLIP_SQUARE, sample, x);
+      add_sample(sums + PF_LINE_SLIP, sums + PF_LINE_SLIP_SQUARE, sample, x, trend->degree);
       moment += sample.weight;
     }
-    for (uint i = 0; i < PF_TREND_MOMENTS; ++i) {
+    for (uint i = 0; i <= 2 * trend->degree; ++i) {
       sums[i] += moment;
       moment *= x;
     }
