@@ -7,6 +7,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/silent_blocks.h"
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
 
@@ -36,6 +37,10 @@ unsigned loaded_of(std::uint64_t word) {
 /// Eight pillars from column `col`, those past the row's end not loaded.
 unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
   if (col + kWord <= row.size()) return loaded_of(word_at(row.data() + col));
+  if (row.size() >= kWord) {
+    const std::uint64_t last = word_at(row.data() + row.size() - kWord);
+    return loaded_of(last >> (8 * (col + kWord - row.size())));
+  }
   std::uint64_t word = 0;
   std::memcpy(&word, row.data() + col, row.size() - col);
   return loaded_of(word);
@@ -62,11 +67,11 @@ std::size_t skip_silence(std::span<const std::uint8_t> row, std::size_t col) {
   return col;
 }
 
-/// Appends the runs of one row.
-void append_runs(std::span<const std::uint8_t> row, std::uint32_t row_index,
+/// Appends the runs of one row from column `first` on.
+void append_runs(std::span<const std::uint8_t> row, std::size_t first, std::uint32_t row_index,
                  std::vector<ContactRun>& runs) {
   bool inside = false;
-  for (std::size_t col = 0; col < row.size(); col += kWord) {
+  for (std::size_t col = first; col < row.size(); col += kWord) {
     if (!inside) col = skip_silence(row, col);
     if (col >= row.size()) break;
     const unsigned loaded = loaded_at(row, col);
@@ -84,6 +89,34 @@ void append_runs(std::span<const std::uint8_t> row, std::uint32_t row_index,
     }
   }
   if (inside) runs.back().end = static_cast<std::uint32_t>(row.size());
+}
+
+/// The first block from `at` on that is not marked, or as many as there are.
+std::size_t next_awake(std::span<const std::uint8_t> marks, std::size_t at) {
+  while (at + kWord <= marks.size() && word_at(marks.data() + at) == kEachByte) at += kWord;
+  while (at < marks.size() && marks[at] != 0) ++at;
+  return at;
+}
+
+std::size_t next_silent(std::span<const std::uint8_t> marks, std::size_t at) {
+  while (at < marks.size() && marks[at] == 0) ++at;
+  return at;
+}
+
+/// Appends the runs of one row, which lie in blocks without marks: what is between two such
+/// stretches separates runs too.
+void append_awake(std::span<const std::uint8_t> row, std::uint32_t row_index,
+                  const SilentBlocks& silent, std::vector<ContactRun>& runs) {
+  const std::size_t size = silent.pillars;
+  const std::size_t skew = row_index * row.size() % size;  // of the first block, in the row above
+  const std::size_t blocks = (skew + row.size() + size - 1) / size;
+  const auto marks = silent.marks.subspan(row_index * silent.stride, blocks);
+  for (std::size_t at = next_awake(marks, 0); at < blocks;) {
+    const std::size_t end = next_silent(marks, at);
+    append_runs(row.first(std::min(end * size - skew, row.size())),
+                std::max(at * size, skew) - skew, row_index, runs);
+    at = next_awake(marks, end);
+  }
 }
 
 /// The first run of the set that `run` is in. Halves the way there for those who ask later.
@@ -118,6 +151,11 @@ void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t 
 
 void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows,
                       std::uint32_t cols) {
+  find(status, rows, cols, {});
+}
+
+void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols,
+                      const SilentBlocks& silent) {
   if (status.size() != std::size_t{rows} * cols) {
     throw Error("ContactMap::find",
                 fmt::format("{} status bytes for {} x {} pillars", status.size(), rows, cols),
@@ -128,7 +166,12 @@ void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows,
   std::size_t above = 0;  // where the runs of the row above begin
   for (std::uint32_t row = 0; row < rows; ++row) {
     const std::size_t begin = found_.size();
-    append_runs(status.subspan(std::size_t{row} * cols, cols), row, found_);
+    const auto of_row = status.subspan(std::size_t{row} * cols, cols);
+    if (silent.marks.empty()) {
+      append_runs(of_row, 0, row, found_);
+    } else {
+      append_awake(of_row, row, silent, found_);
+    }
     for (std::size_t run = begin; run < found_.size(); ++run) {
       parents_.push_back(static_cast<std::uint32_t>(run));
     }

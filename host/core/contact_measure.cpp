@@ -36,11 +36,11 @@ std::uint64_t step_of(std::span<const ContactRun> runs, std::uint64_t pillars) {
 
 }  // namespace
 
-ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm,
-                               FrictionHistogram& scratch)
-    : forces_(forces), pitch_mm_(pillar_pitch_mm), histogram_(scratch) {}
+ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm)
+    : forces_(forces), pitch_mm_(pillar_pitch_mm) {}
 
-std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs) const {
+std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs,
+                                               FrictionHistogram& scratch) const {
   const std::uint64_t pillars = pillars_of(runs);
   if (pillars < kFewestForFriction) return std::nullopt;
   const std::uint64_t step = step_of(runs, pillars);
@@ -48,9 +48,9 @@ std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs)
   for (const ContactRun& run : runs) {
     if ((run.row - runs.front().row) % step == step / 2) asked.push_back(run);
   }
-  histogram_.clear();
-  add_ratios(forces_, asked, peak_of(forces_, asked), histogram_);
-  const std::optional<FrictionPlateau> plateau = histogram_.plateau();
+  scratch.clear();
+  add_ratios(forces_, asked, peak_of(forces_, asked), scratch);
+  const std::optional<FrictionPlateau> plateau = scratch.plateau();
   if (!plateau) return std::nullopt;
   return plateau->friction;
 }

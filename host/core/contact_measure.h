@@ -15,14 +15,15 @@ namespace pillarfield {
 /// Reads a field as whole numbers, contact by contact.
 class ContactMeasure {
  public:
-  /// `scratch` is cleared whenever it is used; it is kept from frame to frame for its memory.
-  ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm, FrictionHistogram& scratch);
+  ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm);
 
   /// The friction that the pillars of a contact show. Of one of N pillars every k-th row is
   /// looked at, k = N / 500 rounded up, so that 250 to 500 pillars are; but 8 of its rows if it
   /// has as many. Those that bear a quarter of the largest force there, or more, are asked,
-  /// weighted with their normal force: noise moves the ratio of the others.
-  [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs) const;
+  /// weighted with their normal force: noise moves the ratio of the others. `scratch` is cleared
+  /// first; who keeps it saves its memory.
+  [[nodiscard]] std::optional<double> friction(std::span<const ContactRun> runs,
+                                               FrictionHistogram& scratch) const;
 
   /// What a contact's pillars sum to, and with a friction their slip.
   [[nodiscard]] ContactTotals totals(std::span<const ContactRun> runs,
@@ -34,7 +35,6 @@ class ContactMeasure {
  private:
   ForceFieldView forces_;
   double pitch_mm_;
-  FrictionHistogram& histogram_;
 };
 
 /// Adds what a friction says of a contact's slip. `slip` is of ContactMeasure::totals with it.

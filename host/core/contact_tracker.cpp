@@ -8,6 +8,7 @@
 
 #include "core/contact_identity.h"
 #include "core/contact_measure.h"
+#include "core/contact_survey.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -16,6 +17,7 @@ namespace {
 constexpr const char* kPlace = "ContactTracker";
 constexpr double kMostFriction = 100;
 constexpr double kMostReachMm = 1000;
+constexpr std::uint32_t kMostThreads = 1024;
 
 void require_whole(const ForceFieldView& forces) {
   const std::size_t pillars = std::size_t{forces.rows} * forces.cols;
@@ -38,11 +40,10 @@ void require_inside(const ContactMap& map, const ForceFieldView& forces) {
   }
 }
 
-/// What a contact of the frame shows by itself.
-struct Shown {
-  ContactTotals totals;  ///< slip included where the friction is known
-  std::optional<double> friction;
-};
+ContactOptions checked(const ContactOptions& options) {
+  check(options, kPlace);
+  return options;
+}
 
 /// What is remembered of a contact.
 struct Known {
@@ -62,6 +63,10 @@ void check(const ContactOptions& options, const std::string& where) {
   if (!(options.reach_mm >= 0 && options.reach_mm <= kMostReachMm)) {
     throw Error(where, fmt::format("contacts that jump by {} mm", options.reach_mm),
                 fmt::format("it must be 0 to {}", kMostReachMm));
+  }
+  if (options.threads > kMostThreads) {
+    throw Error(where, fmt::format("{} threads", options.threads),
+                fmt::format("it must be 0 to {}", kMostThreads));
   }
 }
 
@@ -83,21 +88,20 @@ struct ContactTracker::State {
   std::uint64_t next_id = 1;
   ContactMap map;
   FrameContacts frame;
-  std::vector<Known> known;            // of frame.contacts
-  std::vector<Shown> shown;            // of the contacts of the map
-  PressingSum patch_slip;              // where a friction was given
-  std::vector<std::uint32_t> indices;  // of these, the place in frame.contacts, or kNoContact
+  std::vector<Known> known;  // of frame.contacts
+  ContactSurvey survey;
+  std::span<const ShownContact> shown;  // the survey's, of the contacts of the map
+  PressingSum patch_slip;               // where a friction was given
+  std::vector<std::uint32_t> indices;   // of these, the place in frame.contacts, or kNoContact
   ContactTraces traces;
   ContactTraces traces_before;
-  FrictionHistogram histogram;
 };
 
 ContactTracker::State::State(double pillar_pitch_mm, const ContactOptions& contact_options)
-    : pitch_mm(pillar_pitch_mm), options(contact_options) {
+    : pitch_mm(pillar_pitch_mm), options(checked(contact_options)), survey(options.threads) {
   if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
     throw Error(kPlace, fmt::format("a pillar pitch of {} mm", pitch_mm), "it must be above zero");
   }
-  check(options, kPlace);
 }
 
 void ContactTracker::State::require_size(const ForceFieldView& forces) {
@@ -114,15 +118,13 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
 
 /// Lists the contacts that are large enough and what they exert, and the patch.
 void ContactTracker::State::measure(const ContactMeasure& measure) {
-  shown.clear();
+  shown = survey.measure(measure, map, options.friction);
   indices.clear();
   frame.contacts.clear();
   ContactSum patch;
   patch_slip = {};
   for (std::uint32_t number = 0; number < map.contacts(); ++number) {
-    const auto runs = map.runs(number);
-    const auto friction = options.friction ? options.friction : measure.friction(runs);
-    const Shown& each = shown.emplace_back(Shown{measure.totals(runs, friction), friction});
+    const ShownContact& each = shown[number];
     patch.add(each.totals.sum);
     patch_slip.add(each.totals.slip);
     indices.push_back(kNoContact);
@@ -183,17 +185,24 @@ void ContactTracker::State::identify(double time_s) {
 
 /// Which friction goes for each contact, and what slips at it.
 void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
+  std::vector<std::size_t> remembering;
+  std::vector<AssumedFriction> assumed;
   for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
     TrackedContact& contact = frame.contacts[i];
-    const Shown& now = shown[contact.number];
+    const ShownContact& now = shown[contact.number];
     if (now.friction) {
       const auto source = options.friction ? FrictionSource::given : FrictionSource::shown;
       set_slip(contact.quantities, *now.friction, source, now.totals.slip);
       known[i].friction = now.friction;
     } else if (const auto& before = known[i].friction) {
-      set_slip(contact.quantities, *before, FrictionSource::remembered,
-               measure.totals(map.runs(contact.number), before).slip);
+      remembering.push_back(i);
+      assumed.push_back({contact.number, *before});
     }
+  }
+  const std::vector<PressingSum> slips = survey.slip(measure, map, assumed);
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    set_slip(frame.contacts[remembering[i]].quantities, assumed[i].friction,
+             FrictionSource::remembered, slips[i]);
   }
   if (!options.friction || frame.patch.pillars == 0) return;
   set_slip(frame.patch, *options.friction, FrictionSource::given, patch_slip);
@@ -201,7 +210,7 @@ void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
 
 /// Takes a frame whose contacts are found.
 const FrameContacts& ContactTracker::State::follow(const ForceFieldView& forces, double time_s) {
-  const ContactMeasure contact_measure(forces, pitch_mm, histogram);
+  const ContactMeasure contact_measure(forces, pitch_mm);
   frame.time_s = time_s;
   measure(contact_measure);
   identify(time_s);

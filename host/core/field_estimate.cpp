@@ -80,8 +80,8 @@ void HostFieldEstimator::make_room() {
 
 void HostFieldEstimator::resolve(ForceField& field) { resolve(planes_of(field)); }
 
-void HostFieldEstimator::resolve(const maths::Field& field) {
-  work_.find({field.status, std::size_t{field.rows} * field.cols});
+void HostFieldEstimator::resolve(const maths::Field& field, const SilentBlocks& silent) {
+  work_.find({field.status, std::size_t{field.rows} * field.cols}, silent);
   ++now_;
   make_room();
   runs_.clear();
@@ -90,7 +90,7 @@ void HostFieldEstimator::resolve(const maths::Field& field) {
   }
   const std::size_t tiles = work_.tiles().size();
   const std::size_t shared_alone = work_.alone().size() / kAlonePiece;
-  team_->run(tiles + shared_alone, [&](std::size_t piece) {
+  team_->run(tiles + shared_alone, [&](std::size_t piece, std::size_t) {
     if (piece < tiles) {
       verdicts_[piece] = maths::resolve_contact(work_.tiles()[piece], scratch(piece), field, past(),
                                                 runs_.data(), work_.settings(), {0, 1});

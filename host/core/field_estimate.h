@@ -21,8 +21,9 @@ class HostFieldEstimator {
   /// frames are close in time, each call is the next frame.
   void resolve(ForceField& field);
 
-  /// The same of planes of the plan's size; those from magnitude on may be null.
-  void resolve(const single_precision::Field& field);
+  /// The same of planes of the plan's size; those from magnitude on may be null. Of silent blocks
+  /// nothing is read.
+  void resolve(const single_precision::Field& field, const SilentBlocks& silent = {});
 
   [[nodiscard]] const FieldWork& work() const { return work_; }
   /// One for each tile of the last frame's work.

@@ -73,9 +73,16 @@ void for_each_word(std::span<const std::uint8_t> status, const Use& use) {
     std::memcpy(&word, status.data() + at, kWord);
     use(word, at);
   }
-  if (at == status.size()) return;
-  word = 0;
-  std::memcpy(&word, status.data() + at, status.size() - at);
+  const std::size_t left = status.size() - at;
+  if (left == 0) return;
+  if (at == 0) {
+    word = 0;
+    std::memcpy(&word, status.data(), left);
+  } else {
+    // Not so few bytes by themselves: to copy a number that is not known takes a call.
+    std::memcpy(&word, status.data() + status.size() - kWord, kWord);
+    word >>= 8 * (kWord - left);
+  }
   use(word, at);
 }
 
@@ -112,8 +119,8 @@ FieldWork::FieldWork(const SolverPlan& plan)
       cols_(plan.skin.pillar_cols()),
       settings_(settings_of(plan)) {}
 
-void FieldWork::find(std::span<const std::uint8_t> status) {
-  map_.find(status, rows_, cols_);
+void FieldWork::find(std::span<const std::uint8_t> status, const SilentBlocks& silent) {
+  map_.find(status, rows_, cols_, silent);
   tiles_.clear();
   alone_.clear();
   cells_ = 0;

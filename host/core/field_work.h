@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/pillar_maths.h"
+#include "core/silent_blocks.h"
 #include "pillarfield/contact_map.h"
 #include "pillarfield/solver_plan.h"
 
@@ -17,8 +18,9 @@ class FieldWork {
  public:
   explicit FieldWork(const SolverPlan& plan);
 
-  /// Looks at the status bytes [rows, cols] that the direct solve left.
-  void find(std::span<const std::uint8_t> status);
+  /// Looks at the status bytes [rows, cols] that the direct solve left, but for those of blocks
+  /// that are known to be silent.
+  void find(std::span<const std::uint8_t> status, const SilentBlocks& silent = {});
 
   [[nodiscard]] const single_precision::FieldSettings& settings() const { return settings_; }
   [[nodiscard]] const ContactMap& map() const { return map_; }

@@ -19,15 +19,25 @@ class HostFieldStage final : public FieldStage {
     const auto uncertainty = [&](Uncertainty plane) {
       return floats_of(memory, kUncertainty + static_cast<std::size_t>(plane));
     };
-    estimator_.resolve(single_precision::Field{
-        floats_of(memory, kShearX), floats_of(memory, kShearY), floats_of(memory, kNormal),
-        reinterpret_cast<std::uint8_t*>(memory.host(kStatus)), floats_of(memory, kMagnitude),
-        floats_of(memory, kTheta), floats_of(memory, kPhi), uncertainty(Uncertainty::shear_x),
-        uncertainty(Uncertainty::shear_y), uncertainty(Uncertainty::normal),
-        uncertainty(Uncertainty::theta_low), uncertainty(Uncertainty::theta_high),
-        uncertainty(Uncertainty::phi_low), uncertainty(Uncertainty::phi_high),
-        uncertainty(Uncertainty::magnitude_low), uncertainty(Uncertainty::magnitude_high), rows_,
-        cols_});
+    const single_precision::Field field = {floats_of(memory, kShearX),
+                                           floats_of(memory, kShearY),
+                                           floats_of(memory, kNormal),
+                                           reinterpret_cast<std::uint8_t*>(memory.host(kStatus)),
+                                           floats_of(memory, kMagnitude),
+                                           floats_of(memory, kTheta),
+                                           floats_of(memory, kPhi),
+                                           uncertainty(Uncertainty::shear_x),
+                                           uncertainty(Uncertainty::shear_y),
+                                           uncertainty(Uncertainty::normal),
+                                           uncertainty(Uncertainty::theta_low),
+                                           uncertainty(Uncertainty::theta_high),
+                                           uncertainty(Uncertainty::phi_low),
+                                           uncertainty(Uncertainty::phi_high),
+                                           uncertainty(Uncertainty::magnitude_low),
+                                           uncertainty(Uncertainty::magnitude_high),
+                                           rows_,
+                                           cols_};
+    estimator_.resolve(field, memory.silence());
   }
 
   [[nodiscard]] const ContactMap& contacts() const override { return estimator_.work().map(); }

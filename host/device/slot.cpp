@@ -53,12 +53,6 @@ cl::Buffer wake_buffer(const cl::Context& context, const SolverPlan& plan,
   return large_plane_buffer(context, levels, memory);
 }
 
-/// Marks of blocks, none of them silent.
-cl::Buffer silent_buffer(const cl::Context& context, const SolverPlan& plan, int lanes) {
-  const std::size_t blocks = plan.skin.pillar_cols() / static_cast<std::size_t>(lanes) + 2;
-  return plane_buffer(context, std::vector<std::uint8_t>(plan.skin.pillar_rows() * blocks));
-}
-
 /// Work-items, and their grouping. Where a work-item solves several pillars at once it takes a band
 /// of rows; there are a few bands for each compute unit, so that none waits long for the last, and
 /// they are work-groups of their own, since drivers have other ideas (PoCL makes a single group of
@@ -110,9 +104,10 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
                       device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = launch.global;
   local_ = launch.local;
-  memory_ = settings.shares_memory ? shared_memory(device.context, plan)
-                                   : staged_memory(device.context, queue_, plan);
-  if (settings.paths.skip_silent) silent_ = silent_buffer(device.context, plan, settings.lanes);
+  const MarkLayout marks =
+      settings.paths.skip_silent ? MarkLayout(plan, settings.lanes) : MarkLayout();
+  memory_ = settings.shares_memory ? shared_memory(device.context, plan, marks)
+                                   : staged_memory(device.context, queue_, plan, marks);
   cl_uint argument = kStrideArgument + 1;
   kernel_.setArg(argument++, cl_uint{rows_});
   kernel_.setArg(argument++, cl_uint{cols_});
@@ -121,7 +116,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
     kernel_.setArg(argument++, *plane);
   }
   kernel_.setArg(argument++, cl_ulong{plan.skin.cols});
-  kernel_.setArg(argument++, silent_);
+  kernel_.setArg(argument++, memory_->marks());
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
     kernel_.setArg(argument++, memory_->buffer(plane));
   }

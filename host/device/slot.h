@@ -83,8 +83,7 @@ class Slot {
   cl::Kernel kernel_;
   cl::Kernel follow_;  ///< null where the baseline stays
   Baseline* baseline_;
-  cl::Buffer silent_;  ///< blocks whose results are those of silence; null where none is skipped
-  cl::Buffer frame_;   ///< keeps the frame in flight alive
+  cl::Buffer frame_;  ///< keeps the frame in flight alive
   cl_ulong row_stride_ = 0;
   std::unique_ptr<SlotMemory> memory_;
 };

@@ -10,4 +10,10 @@ ResultLayout::ResultLayout(const SolverPlan& plan) {
   }
 }
 
+MarkLayout::MarkLayout(const SolverPlan& plan, int lanes)
+    : stride(plan.skin.pillar_cols() / static_cast<std::size_t>(lanes) + 2),
+      pillars(static_cast<std::uint32_t>(lanes)) {
+  bytes = plan.skin.pillar_rows() * stride;
+}
+
 }  // namespace pillarfield

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "core/silent_blocks.h"
 #include "device/opencl.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/processor.h"
@@ -78,13 +79,31 @@ class SlotMemory {
 
   /// The block that the host's sides of all planes lie in: whole pages, always the same.
   [[nodiscard]] virtual std::span<const std::byte> pages() const = 0;
+
+  /// Where the kernel marks the blocks whose results are those of silence, none at first; null
+  /// where none is to be skipped.
+  [[nodiscard]] virtual const cl::Buffer& marks() const = 0;
+
+  /// The same for the host, valid as host(); empty where it cannot read them.
+  [[nodiscard]] virtual SilentBlocks silence() const { return {}; }
+};
+
+/// How many marks there are, and what of. None: no block is skipped.
+struct MarkLayout {
+  MarkLayout() = default;
+  MarkLayout(const SolverPlan& plan, int lanes);
+
+  std::size_t bytes = 0;
+  std::size_t stride = 0;     ///< marks of a pillar row
+  std::uint32_t pillars = 1;  ///< of a block
 };
 
 /// Zero copy: the kernel reads the caller's memory and writes the memory the caller reads.
-std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const SolverPlan& plan);
+std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const SolverPlan& plan,
+                                          const MarkLayout& marks);
 
 /// Through pinned memory of the driver: one copy by the host, one by the device, each way one.
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan);
+                                          const SolverPlan& plan, const MarkLayout& marks);
 
 }  // namespace pillarfield

@@ -1,5 +1,6 @@
 #include <cstring>
 #include <memory>
+#include <vector>
 
 #include "device/slot_memory.h"
 
@@ -43,7 +44,8 @@ class PinnedMemory {
 
 class StagedMemory final : public SlotMemory {
  public:
-  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan)
+  StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan,
+               const MarkLayout& marks)
       : frame_bytes_(plan.skin.sensels() * size_of(plan.sensel_type)),
         frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
         frame_on_host_(context, queue, frame_bytes_),
@@ -55,6 +57,10 @@ class StagedMemory final : public SlotMemory {
       if (layout_.planes.at(plane).size == 0) continue;
       planes_.at(plane) = cl::Buffer(context, CL_MEM_READ_WRITE, layout_.planes.at(plane).size);
     }
+    if (marks.bytes == 0) return;
+    std::vector<std::uint8_t> none(marks.bytes);
+    marks_ =
+        cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, none.size(), none.data());
   }
 
   DeviceFrame take(const cl::CommandQueue& queue, const FrameView& frame) override {
@@ -89,6 +95,7 @@ class StagedMemory final : public SlotMemory {
   [[nodiscard]] std::span<const std::byte> pages() const override {
     return {pages_, layout_.bytes};
   }
+  [[nodiscard]] const cl::Buffer& marks() const override { return marks_; }
 
  private:
   std::size_t frame_bytes_;
@@ -96,6 +103,7 @@ class StagedMemory final : public SlotMemory {
   PinnedMemory frame_on_host_;
   ResultLayout layout_;
   std::array<cl::Buffer, kAllPlanes> planes_;
+  cl::Buffer marks_;
   PinnedMemory results_on_host_;
   std::byte* pages_;
 };
@@ -103,8 +111,8 @@ class StagedMemory final : public SlotMemory {
 }  // namespace
 
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan) {
-  return std::make_unique<StagedMemory>(context, queue, plan);
+                                          const SolverPlan& plan, const MarkLayout& marks) {
+  return std::make_unique<StagedMemory>(context, queue, plan, marks);
 }
 
 }  // namespace pillarfield

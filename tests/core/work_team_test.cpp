@@ -14,7 +14,7 @@ TEST(WorkTeam, DoesEachPieceOnce) {
     WorkTeam team(members);
     for (std::size_t pieces = 0; pieces < 40; ++pieces) {
       std::vector<std::atomic<int>> done(pieces);
-      team.run(pieces, [&](std::size_t piece) { ++done.at(piece); });
+      team.run(pieces, [&](std::size_t piece, std::size_t) { ++done.at(piece); });
       for (const auto& times : done) EXPECT_EQ(times, 1);
     }
   }
@@ -24,7 +24,7 @@ TEST(WorkTeam, SharesPieces) {
   WorkTeam team(2);
   std::atomic<int> inside = 0;
   // Each piece waits until another thread has the other.
-  team.run(2, [&](std::size_t) {
+  team.run(2, [&](std::size_t, std::size_t) {
     ++inside;
     while (inside < 2) std::this_thread::yield();
   });
@@ -35,7 +35,7 @@ TEST(WorkTeam, LeavesASinglePieceToTheCaller) {
   WorkTeam team(4);
   for (int turn = 0; turn < 100; ++turn) {
     std::thread::id worker;
-    team.run(1, [&](std::size_t) { worker = std::this_thread::get_id(); });
+    team.run(1, [&](std::size_t, std::size_t) { worker = std::this_thread::get_id(); });
     ASSERT_EQ(worker, std::this_thread::get_id());
   }
 }
@@ -44,7 +44,7 @@ TEST(WorkTeam, WaitsForWhatOthersDo) {
   WorkTeam team(3);
   for (int turn = 0; turn < 20; ++turn) {
     std::atomic<int> done = 0;
-    team.run(3, [&](std::size_t piece) {
+    team.run(3, [&](std::size_t piece, std::size_t) {
       if (piece > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
       ++done;
     });

@@ -7,6 +7,8 @@
 
 namespace pillarfield {
 
+struct SilentBlocks;  // core/silent_blocks.h
+
 /// Loaded pillars of one row, side by side.
 struct ContactRun {
   std::uint32_t row = 0;
@@ -25,6 +27,10 @@ class ContactMap {
   /// Finds the contacts of a frame's status bytes [rows, cols]. Linear in its pillars. Throws Error
   /// where the span has another size.
   void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols);
+
+  /// The same where it is known which blocks have no loaded pillar: their status is not read.
+  void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols,
+            const SilentBlocks& silent);
 
   [[nodiscard]] std::uint32_t contacts() const {
     return static_cast<std::uint32_t>(starts_.empty() ? 0 : starts_.size() - 1);

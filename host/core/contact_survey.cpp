@@ -1,0 +1,132 @@
+#include "core/contact_survey.h"
+
+#include <algorithm>
+#include <limits>
+#include <thread>
+
+namespace pillarfield {
+namespace {
+
+/// So many lots to a thread: none waits long for the last.
+constexpr std::uint64_t kLotsPerThread = 8;
+
+/// Fewer pillars, some microseconds, are not worth waking a thread.
+constexpr std::uint64_t kLeastShare = 2048;
+
+std::uint64_t pillars_of(std::span<const ContactRun> runs) {
+  std::uint64_t pillars = 0;
+  for (const ContactRun& run : runs) pillars += run.end - run.first;
+  return pillars;
+}
+
+std::size_t threads_for(std::uint32_t wanted) {
+  return wanted != 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
+}
+
+}  // namespace
+
+ContactSurvey::ContactSurvey(std::uint32_t threads)
+    : threads_(threads_for(threads)), histograms_(threads_) {}
+
+/// Shares of pillars, and from them lots of contacts.
+void ContactSurvey::share_out(const ContactMap& map) {
+  share_ = threads_ == 1
+               ? std::numeric_limits<std::uint64_t>::max() / 2
+               : std::max(kLeastShare, pillars_of(map.runs()) / (kLotsPerThread * threads_));
+  lots_.clear();
+  Lot lot;
+  std::uint64_t pillars = 0;
+  const auto close = [&](std::uint32_t next) {
+    if (lot.first < lot.end) lots_.push_back(lot);
+    lot = {next, next, false};
+    pillars = 0;
+  };
+  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
+    const std::uint64_t more = pillars_of(map.runs(contact));
+    const bool large = more > 2 * share_;
+    if (large) close(contact);
+    lot.end = contact + 1;
+    lot.large = large;
+    pillars += more;
+    if (pillars >= share_) close(contact + 1);
+  }
+  close(map.contacts());
+}
+
+void ContactSurvey::measure_lot(const Lot& lot, const ContactMeasure& measure,
+                                const ContactMap& map, const std::optional<double>& given,
+                                std::size_t member) {
+  std::unique_ptr<FrictionHistogram>& histogram = histograms_[member];
+  if (!histogram) histogram = std::make_unique<FrictionHistogram>();
+  for (std::uint32_t contact = lot.first; contact < lot.end; ++contact) {
+    const auto runs = map.runs(contact);
+    ShownContact& shown = shown_[contact];
+    shown.friction = given ? given : measure.friction(runs, *histogram);
+    if (!lot.large) shown.totals = measure.totals(runs, shown.friction);
+  }
+}
+
+const std::vector<ShownContact>& ContactSurvey::measure(const ContactMeasure& measure,
+                                                        const ContactMap& map,
+                                                        const std::optional<double>& given) {
+  shown_.assign(map.contacts(), {});
+  share_out(map);
+  run(lots_.size(), [&](std::size_t piece, std::size_t member) {
+    measure_lot(lots_[piece], measure, map, given, member);
+  });
+  parts_.clear();
+  for (const Lot& lot : lots_) {
+    if (lot.large) add_parts(lot.first, map.runs(lot.first), shown_[lot.first].friction);
+  }
+  sum_parts(measure);
+  for (const Part& part : parts_) {
+    shown_[part.place].totals.sum.add(part.totals.sum);
+    shown_[part.place].totals.slip.add(part.totals.slip);
+  }
+  return shown_;
+}
+
+std::vector<PressingSum> ContactSurvey::slip(const ContactMeasure& measure, const ContactMap& map,
+                                             std::span<const AssumedFriction> assumed) {
+  parts_.clear();
+  for (std::size_t i = 0; i < assumed.size(); ++i) {
+    add_parts(i, map.runs(assumed[i].contact), assumed[i].friction);
+  }
+  sum_parts(measure);
+  std::vector<PressingSum> slips(assumed.size());
+  for (const Part& part : parts_) slips[part.place].add(part.totals.slip);
+  return slips;
+}
+
+/// Cuts the runs of a contact into parts of a share each, or some more.
+void ContactSurvey::add_parts(std::size_t place, std::span<const ContactRun> runs,
+                              const std::optional<double>& friction) {
+  std::size_t first = 0;
+  std::uint64_t pillars = 0;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    pillars += runs[i].end - runs[i].first;
+    if (pillars < share_ && i + 1 < runs.size()) continue;
+    parts_.push_back({place, runs.subspan(first, i + 1 - first), friction, {}});
+    first = i + 1;
+    pillars = 0;
+  }
+}
+
+void ContactSurvey::sum_parts(const ContactMeasure& measure) {
+  run(parts_.size(), [&](std::size_t piece, std::size_t) {
+    Part& part = parts_[piece];
+    part.totals = measure.totals(part.runs, part.friction);
+  });
+}
+
+/// Does all pieces, with the others' help if there are several.
+void ContactSurvey::run(std::size_t pieces, const WorkTeam::Work& work) {
+  if (pieces > 1 && threads_ > 1 && !team_) team_ = std::make_unique<WorkTeam>(threads_);
+  if (team_ && pieces > 1) {
+    team_->run(pieces, work);
+    return;
+  }
+  for (std::size_t piece = 0; piece < pieces; ++piece) work(piece, 0);
+}
+
+}  // namespace pillarfield
