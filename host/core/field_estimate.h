@@ -30,17 +30,26 @@ class HostFieldEstimator {
   [[nodiscard]] const std::vector<single_precision::Verdict>& verdicts() const { return verdicts_; }
 
  private:
-  single_precision::Scratch scratch(std::size_t tile);
+  /// Memory for one contact at a time: a thread's own, so that it stays in its cache.
+  struct Room {
+    std::vector<std::uint8_t> kinds;
+    std::vector<float> planes;
+    std::vector<double> lines;
+    std::vector<double> shared;
+    std::vector<std::uint32_t> counts;
+
+    /// For a tile whose cells and lines are counted from 0.
+    single_precision::Scratch scratch(const single_precision::Tile& tile);
+  };
+
   single_precision::Past past();
-  void make_room();
+  void ask_for(const single_precision::Field& field, std::span<const single_precision::Run> runs);
+  single_precision::Verdict resolve_tile(const single_precision::Field& field,
+                                         single_precision::Tile tile, Room& room);
   void resolve_alone(const single_precision::Field& field, std::span<const std::uint32_t> pillars);
 
   FieldWork work_;
-  std::vector<std::uint8_t> kinds_;
-  std::vector<float> planes_;
-  std::vector<double> lines_;
-  std::vector<double> shared_;
-  std::vector<std::uint32_t> counts_;
+  std::vector<Room> rooms_;  ///< of each thread
   std::vector<single_precision::Verdict> verdicts_;
   std::vector<single_precision::Run> runs_;
   std::vector<float> past_normal_;  ///< empty where frames are not close
