@@ -113,14 +113,17 @@ PF_INLINE void add_quarters(const BlockWholes& pressing, FourDoubles& sum) {
   sum += __builtin_convertvector(first + last, FourDoubles);
 }
 
-/// Which pillars are in region 1 or 2 with nothing wrong: is_known() of eight.
-PF_INLINE void known_of(const std::uint8_t* status, Wholes& known) {
-  using Bytes [[gnu::vector_size(8)]] = std::uint8_t;
-  Bytes bytes;
-  load(status, bytes);
-  const Wholes bits = __builtin_convertvector(bytes, Wholes);
-  const Wholes lifted = ~bits & status::kUsable;
-  known = ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
+/// Which of a block's pillars are in region 1 or 2 with nothing wrong: is_known() of each.
+PF_INLINE void known_of(const std::uint8_t* status, BlockWholes& known) {
+  using Bytes [[gnu::vector_size(kBlock)]] = std::uint8_t;
+  Bytes bits;
+  load(status, bits);
+  const Bytes lifted = ~bits & status::kUsable;
+  const auto told = ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
+  known.first = __builtin_convertvector(
+      __builtin_shufflevector(told, told, 0, 1, 2, 3, 4, 5, 6, 7), Wholes);
+  known.last = __builtin_convertvector(
+      __builtin_shufflevector(told, told, 8, 9, 10, 11, 12, 13, 14, 15), Wholes);
 }
 
 PF_INLINE void slipping_of(const Wholes& shear_x, const Wholes& shear_y, const Wholes& normal,
@@ -139,11 +142,10 @@ struct SlipLanes {
 
   PF_INLINE void add(const BlockWholes& shear_x, const BlockWholes& shear_y,
                      const BlockWholes& normal, const std::uint8_t* status, float least_ratio) {
-    const BlockWholes presses = {normal.first & (normal.first > 0),
-                                 normal.last & (normal.last > 0)};
+    const BlockWholes presses = {normal.first > 0 ? normal.first : Wholes{},
+                                 normal.last > 0 ? normal.last : Wholes{}};
     BlockWholes told{};
-    known_of(status, told.first);
-    known_of(status + kLanes, told.last);
+    known_of(status, told);
     told = {told.first & presses.first, told.last & presses.last};
     BlockWholes slips{};
     slipping_of(shear_x.first, shear_y.first, normal.first, least_ratio, slips.first);
