@@ -67,56 +67,90 @@ std::size_t skip_silence(std::span<const std::uint8_t> row, std::size_t col) {
   return col;
 }
 
-/// Appends the runs of one row from column `first` on.
-void append_runs(std::span<const std::uint8_t> row, std::size_t first, std::uint32_t row_index,
-                 std::vector<ContactRun>& runs) {
+/// Calls `use(first, end)` for each run of places that have what is looked for. `skip(at)` is a
+/// place at or after `at` before which none has, and `bits(at)` tells of the eight from there; past
+/// the last place none has.
+template <class Skip, class Bits, class Use>
+void for_each_run(std::size_t first, std::size_t places, const Skip& skip, const Bits& bits,
+                  const Use& use) {
   bool inside = false;
-  for (std::size_t col = first; col < row.size(); col += kWord) {
-    if (!inside) col = skip_silence(row, col);
-    if (col >= row.size()) break;
-    const unsigned loaded = loaded_at(row, col);
-    // A bit where a pillar differs from the one before it.
-    unsigned changes = (loaded ^ (loaded << 1 | (inside ? 1u : 0u))) & 0xffu;
+  std::size_t begin = 0;
+  for (std::size_t at = first; at < places; at += kWord) {
+    if (!inside) at = skip(at);
+    if (at >= places) break;
+    const unsigned found = bits(at);
+    // A bit where a place differs from the one before it.
+    unsigned changes = (found ^ (found << 1 | (inside ? 1u : 0u))) & 0xffu;
     for (; changes != 0; changes &= changes - 1) {
-      const auto at =
-          static_cast<std::uint32_t>(col) + static_cast<std::uint32_t>(std::countr_zero(changes));
+      const std::size_t change = at + static_cast<std::size_t>(std::countr_zero(changes));
       if (inside) {
-        runs.back().end = at;
+        use(begin, change);
       } else {
-        runs.push_back({row_index, at, 0, 0});
+        begin = change;
       }
       inside = !inside;
     }
   }
-  if (inside) runs.back().end = static_cast<std::uint32_t>(row.size());
+  if (inside) use(begin, places);
 }
 
-/// The first block from `at` on that is not marked, or as many as there are.
-std::size_t next_awake(std::span<const std::uint8_t> marks, std::size_t at) {
-  while (at + kWord <= marks.size() && word_at(marks.data() + at) == kEachByte) at += kWord;
-  while (at < marks.size() && marks[at] != 0) ++at;
-  return at;
+ContactRun run_of(std::size_t row, std::size_t first, std::size_t end) {
+  return {static_cast<std::uint32_t>(row), static_cast<std::uint32_t>(first),
+          static_cast<std::uint32_t>(end), 0};
 }
 
-std::size_t next_silent(std::span<const std::uint8_t> marks, std::size_t at) {
-  while (at < marks.size() && marks[at] == 0) ++at;
-  return at;
+/// Appends the runs of loaded pillars within a stretch of a row.
+void append_runs(std::span<const std::uint8_t> row, const ContactRun& awake,
+                 std::vector<ContactRun>& runs) {
+  const auto loaded = row.first(awake.end);
+  for_each_run(
+      awake.first, loaded.size(), [&](std::size_t col) { return skip_silence(loaded, col); },
+      [&](std::size_t col) { return loaded_at(loaded, col); },
+      [&](std::size_t first, std::size_t end) { runs.push_back(run_of(awake.row, first, end)); });
 }
 
-/// Appends the runs of one row, which lie in blocks without marks: what is between two such
-/// stretches separates runs too.
-void append_awake(std::span<const std::uint8_t> row, std::uint32_t row_index,
-                  const SilentBlocks& silent, std::vector<ContactRun>& runs) {
-  const std::size_t size = silent.pillars;
-  const std::size_t skew = row_index * row.size() % size;  // of the first block, in the row above
-  const std::size_t blocks = (skew + row.size() + size - 1) / size;
-  const auto marks = silent.marks.subspan(row_index * silent.stride, blocks);
-  for (std::size_t at = next_awake(marks, 0); at < blocks;) {
-    const std::size_t end = next_silent(marks, at);
-    append_runs(row.first(std::min(end * size - skew, row.size())),
-                std::max(at * size, skew) - skew, row_index, runs);
-    at = next_awake(marks, end);
+/// Bit n says whether block n of eight, from `at` on, has no mark.
+unsigned awake_at(std::span<const std::uint8_t> marks, std::size_t at) {
+  std::uint64_t word = kEachByte;  // past the last there is silence
+  if (at + kWord <= marks.size()) {
+    word = word_at(marks.data() + at);
+  } else {
+    std::memcpy(&word, marks.data() + at, marks.size() - at);
   }
+  return static_cast<unsigned>((~word & kEachByte) * 0x0102040810204080u >> 56);
+}
+
+/// Appends the stretches of a row of `cols` pillars whose blocks have no marks.
+void append_awake(std::uint32_t row, std::uint32_t cols, const SilentBlocks& silent,
+                  std::vector<ContactRun>& stretches) {
+  const std::size_t size = silent.pillars;
+  const std::size_t skew = std::size_t{row} * cols % size;  // of the first block, in the row above
+  const std::size_t blocks = (skew + cols + size - 1) / size;
+  const auto marks = silent.marks.subspan(row * silent.stride, blocks);
+  const auto skip = [&](std::size_t at) {
+    while (at + kWord <= blocks && word_at(marks.data() + at) == kEachByte) at += kWord;
+    return at;
+  };
+  for_each_run(
+      0, blocks, skip, [&](std::size_t at) { return awake_at(marks, at); },
+      [&](std::size_t first, std::size_t end) {
+        stretches.push_back(run_of(row, std::max(first * size, skew) - skew,
+                                   std::min<std::size_t>(end * size - skew, cols)));
+      });
+}
+
+/// Asks for the status of stretches: they are too far apart for a processor to guess.
+void ask_for(std::span<const std::uint8_t> status, std::uint32_t cols,
+             std::span<const ContactRun> stretches) {
+#if defined(__GNUC__)
+  constexpr std::uint32_t kLine = 64;
+  for (const ContactRun& stretch : stretches) {
+    const std::uint8_t* const row = status.data() + std::size_t{stretch.row} * cols;
+    for (std::uint32_t col = stretch.first; col < stretch.end + kLine - 1; col += kLine) {
+      __builtin_prefetch(row + std::min(col, stretch.end - 1));
+    }
+  }
+#endif
 }
 
 /// The first run of the set that `run` is in. Halves the way there for those who ask later.
@@ -161,25 +195,40 @@ void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows, 
                 fmt::format("{} status bytes for {} x {} pillars", status.size(), rows, cols),
                 "give one for each pillar");
   }
+  awake_.clear();
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    if (silent.marks.empty()) {
+      awake_.push_back({row, 0, cols, 0});
+    } else {
+      append_awake(row, cols, silent, awake_);
+    }
+  }
+  if (!silent.marks.empty()) ask_for(status, cols, awake_);
+  find_runs(status, cols);
+  number_contacts();
+  sort_runs();
+}
+
+/// Finds the runs in what is awake, and joins those that touch.
+void ContactMap::find_runs(std::span<const std::uint8_t> status, std::uint32_t cols) {
   found_.clear();
   parents_.clear();
   std::size_t above = 0;  // where the runs of the row above begin
-  for (std::uint32_t row = 0; row < rows; ++row) {
+  std::uint32_t next_row = 0;
+  for (std::size_t stretch = 0; stretch < awake_.size();) {
+    const std::uint32_t row = awake_[stretch].row;
     const std::size_t begin = found_.size();
-    const auto of_row = status.subspan(std::size_t{row} * cols, cols);
-    if (silent.marks.empty()) {
-      append_runs(of_row, 0, row, found_);
-    } else {
-      append_awake(of_row, row, silent, found_);
+    if (row != next_row) above = begin;
+    for (; stretch < awake_.size() && awake_[stretch].row == row; ++stretch) {
+      append_runs(status.subspan(std::size_t{row} * cols, cols), awake_[stretch], found_);
     }
     for (std::size_t run = begin; run < found_.size(); ++run) {
       parents_.push_back(static_cast<std::uint32_t>(run));
     }
     join_rows(found_, above, begin, found_.size(), parents_);
     above = begin;
+    next_row = row + 1;
   }
-  number_contacts();
-  sort_runs();
 }
 
 /// First runs come in the order of the contacts' numbers, and before the others of their contact.

@@ -45,9 +45,11 @@ class ContactMap {
   [[nodiscard]] std::span<const ContactRun> runs_by_row() const { return found_; }
 
  private:
+  void find_runs(std::span<const std::uint8_t> status, std::uint32_t cols);
   void number_contacts();
   void sort_runs();
 
+  std::vector<ContactRun> awake_;  ///< where there may be loaded pillars, row by row
   std::vector<ContactRun> runs_;
   std::vector<std::size_t> starts_;     ///< first run of each contact, and one past the last
   std::vector<ContactRun> found_;       ///< row by row
