@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "core/silent_blocks.h"
 #include "pillarfield/status.h"
 #include "tests/core/message.h"
 
@@ -182,6 +183,68 @@ TEST(ContactMap, EveryStatusByteCountsByItsUsableBits) {
       for (const ContactRun& run : map.runs()) ASSERT_EQ(run.first, col);
     }
   }
+}
+
+/// Marks of those blocks of so many pillars that have no loaded one.
+struct Marks {
+  Marks(const Mask& mask, std::uint32_t pillars)
+      : stride(mask.cols / pillars + 2), size(pillars), marks(mask.rows * stride) {
+    for (std::uint32_t row = 0; row < mask.rows; ++row) {
+      const std::size_t first = std::size_t{row} * mask.cols;
+      const std::size_t blocks = (first + mask.cols - 1) / size - first / size + 1;
+      std::fill_n(marks.begin() + static_cast<std::ptrdiff_t>(row * stride), blocks,
+                  std::uint8_t{1});
+      for (std::uint32_t col = 0; col < mask.cols; ++col) {
+        if (mask.loaded(row, col)) marks[row * stride + (first + col) / size - first / size] = 0;
+      }
+    }
+  }
+
+  [[nodiscard]] SilentBlocks view() const { return {marks, stride, size}; }
+
+  std::size_t stride;
+  std::uint32_t size;
+  std::vector<std::uint8_t> marks;
+};
+
+TEST(ContactMap, IsTheSameWhereSilentBlocksAreKnown) {
+  std::uint64_t random = 1;
+  for (const std::uint32_t cols : {1U, 3U, 7U, 8U, 15U, 16U, 17U, 50U, 200U, 1100U}) {
+    for (const std::uint32_t pillars : {1U, 2U, 8U, 16U}) {
+      for (const std::uint32_t one_in : {2U, 20U, 400U}) {
+        Mask mask(23, cols);
+        for (std::uint32_t row = 0; row < mask.rows; ++row) {
+          for (std::uint32_t col = 0; col < cols; ++col) {
+            random = random * 6364136223846793005U + 1442695040888963407U;
+            mask.set(row, col, (random >> 33) % one_in == 0);
+          }
+        }
+        ContactMap expected;
+        expected.find(mask.status, mask.rows, mask.cols);
+        ContactMap actual;
+        actual.find(mask.status, mask.rows, mask.cols, Marks(mask, pillars).view());
+        ASSERT_EQ(actual.contacts(), expected.contacts()) << cols << " in blocks of " << pillars;
+        ASSERT_TRUE(std::ranges::equal(actual.runs(), expected.runs(),
+                                       [](const ContactRun& a, const ContactRun& b) {
+                                         return a.row == b.row && a.first == b.first &&
+                                                a.end == b.end && a.contact == b.contact;
+                                       }));
+      }
+    }
+  }
+}
+
+TEST(ContactMap, DoesNotLookIntoSilentBlocks) {
+  Mask mask(3, 40);
+  Marks marks(mask, 16);
+  for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);
+  marks.marks[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
+  ContactMap map;
+  map.find(mask.status, 3, 40, marks.view());
+  ASSERT_EQ(map.runs().size(), 1U);
+  EXPECT_EQ(map.runs()[0].row, 1U);
+  EXPECT_EQ(map.runs()[0].first, 8U);
+  EXPECT_EQ(map.runs()[0].end, 24U);
 }
 
 TEST(ContactMap, OfNothingIsEmpty) {

@@ -312,6 +312,86 @@ TEST(ContactTracker, TakesContactsThatWereFound) {
   }
 }
 
+/// Discs that slide, stick, slip in part, or show nothing, and specks: one of nearly all pillars of
+/// the frame, some of a thousand, hundreds of a few.
+ForceField many_contacts(int step) {
+  ForceField field(220, 260);
+  const auto load = [&](std::size_t row, std::size_t col, float ratio) {
+    const std::size_t place = row * field.cols + col;
+    const std::size_t hash = place * 2654435761U % 1009;
+    field.normal[place] = 0.01F + 0.0001F * static_cast<float>(hash);
+    field.shear_x[place] = ratio * field.normal[place] * 0.6F;
+    field.shear_y[place] = ratio * field.normal[place] * 0.8F;
+    field.status[place] =
+        hash % 11 == 0 ? status::kAmbiguous | status::kSensel1 | status::kSensel2 : status::kUsable;
+  };
+  const auto disc = [&](int row, int col, int radius, float ratio) {
+    for (int r = row - radius; r <= row + radius; ++r) {
+      for (int c = col - radius; c <= col + radius; ++c) {
+        if ((r - row) * (r - row) + (c - col) * (c - col) > radius * radius) continue;
+        load(static_cast<std::size_t>(r), static_cast<std::size_t>(c),
+             ratio * (c > col ? 1.0F : 0.9F + 0.01F * static_cast<float>(r % 3)));
+      }
+    }
+  };
+  disc(85, 85 + step, 80, step % 2 == 0 ? 0.7F : 0.0F);  // its friction is remembered
+  for (int i = 0; i < 4; ++i) disc(25 + 45 * i, 220, 18, 0.3F * static_cast<float>(i));
+  for (std::size_t col = 0; col < field.cols; col += 3) {
+    for (std::size_t row = 180; row < field.rows; row += 4) {
+      if (row > 210 || col < 180) load(row, col, 0.2F);
+    }
+  }
+  return field;
+}
+
+void expect_same_bits(const ContactQuantities& actual, const ContactQuantities& expected) {
+  const auto numbers = [](const ContactQuantities& of) {
+    return std::vector<double>{of.shear_x_n,
+                               of.shear_y_n,
+                               of.normal_n,
+                               of.centre.x_mm,
+                               of.centre.y_mm,
+                               of.centre_of_pressure.x_mm,
+                               of.centre_of_pressure.y_mm,
+                               of.torque_nmm,
+                               of.peak_n,
+                               of.peak.x_mm,
+                               of.peak.y_mm,
+                               of.friction.value_or(-1),
+                               of.slipping_share.value_or(-1),
+                               of.slip_margin.value_or(-1)};
+  };
+  EXPECT_EQ(numbers(actual), numbers(expected));
+  EXPECT_EQ(actual.pillars, expected.pillars);
+  EXPECT_EQ(actual.ambiguous, expected.ambiguous);
+  EXPECT_EQ(actual.friction_source, expected.friction_source);
+  EXPECT_EQ(actual.slip, expected.slip);
+}
+
+TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
+  for (const std::optional<double> friction : {std::optional<double>(), {0.6}}) {
+    for (const std::uint32_t threads : {2U, 7U, 0U}) {
+      ContactTracker alone(kPitchMm, {.friction = friction, .threads = 1});
+      ContactTracker shared(kPitchMm, {.friction = friction, .threads = threads});
+      bool remembered = false;
+      for (int step = 0; step < 4; ++step) {
+        const ForceField field = many_contacts(step);
+        const FrameContacts& expected = alone.update(field.view(), step);
+        const FrameContacts& actual = shared.update(field.view(), step);
+        ASSERT_GT(expected.contacts.size(), 400U);
+        ASSERT_EQ(ids_of(actual), ids_of(expected));
+        for (std::size_t i = 0; i < expected.contacts.size(); ++i) {
+          expect_same_bits(actual.contacts[i].quantities, expected.contacts[i].quantities);
+        }
+        expect_same_bits(actual.patch, expected.patch);
+        const FrictionSource source = expected.contacts[0].quantities.friction_source;
+        remembered = remembered || source == FrictionSource::remembered;
+      }
+      EXPECT_EQ(remembered, !friction);
+    }
+  }
+}
+
 TEST(ContactTracker, RefusesWhatMakesNoSense) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto says = [](auto action, const std::string& words) {
@@ -327,6 +407,7 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
   for (const double reach_mm : {-1.0, 1001.0, kNan}) {
     says([&] { const ContactTracker tracker(1, {.reach_mm = reach_mm}); }, "jump");
   }
+  says([] { const ContactTracker tracker(1, {.threads = 1025}); }, "1025 threads");
   ContactTracker tracker(kPitchMm);
   tracker.update(Patch(4, 5).view(), 0);
   const Patch other(5, 4);

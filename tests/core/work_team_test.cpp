@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <vector>
@@ -29,6 +30,21 @@ TEST(WorkTeam, SharesPieces) {
     while (inside < 2) std::this_thread::yield();
   });
   EXPECT_EQ(inside, 2);
+}
+
+TEST(WorkTeam, TellsWhoDoesAPiece) {
+  WorkTeam team(3);
+  std::array<std::thread::id, 3> threads;
+  std::mutex mutex;
+  for (int turn = 0; turn < 200; ++turn) {
+    team.run(9, [&](std::size_t, std::size_t member) {
+      const std::scoped_lock lock(mutex);
+      std::thread::id& thread = threads.at(member);
+      if (thread == std::thread::id()) thread = std::this_thread::get_id();
+      EXPECT_EQ(thread, std::this_thread::get_id()) << member;
+    });
+  }
+  EXPECT_EQ(threads[0], std::this_thread::get_id());
 }
 
 TEST(WorkTeam, LeavesASinglePieceToTheCaller) {
