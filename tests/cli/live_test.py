@@ -120,6 +120,18 @@ class Run(LiveTest):
         for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
             self.assertNotIn(stage, plain["stages"])
 
+    def test_frames_that_are_close(self):
+        close = ("--estimator", "field", "--frames-close")
+        report = self.live(self.scene, "--rate", 50, "--seconds", 0.3, *close)
+        self.assertEqual(report["estimator"], "field")
+        self.assertIn("resolve_field", report["stages"])
+        self.assertEqual(report["solved"], 15)  # the six frames come again
+        self.scene.write_text(SCENE + '[solver]\nestimator = "field"\nframes_close = true\n')
+        told = self.live(self.scene, "--rate", 50, "--seconds", 0.1)
+        self.assertEqual(told["stages"], report["stages"])
+        self.assert_fails("live", self.scene, "--estimator", "direct", "--frames-close",
+                          says=["--frames-close", "--estimator field"])
+
     def test_the_field_has_no_half_precision(self):
         self.assert_fails("live", self.scene, "--estimator", "field", "--half",
                           says=["ball.toml", "half precision", "--half", "direct"])
