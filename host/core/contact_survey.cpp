@@ -30,9 +30,10 @@ ContactSurvey::ContactSurvey(std::uint32_t threads)
 
 /// Shares of pillars, and from them lots of contacts.
 void ContactSurvey::share_out(const ContactMap& map) {
-  share_ = threads_ == 1
-               ? std::numeric_limits<std::uint64_t>::max() / 2
-               : std::max(kLeastShare, pillars_of(map.runs()) / (kLotsPerThread * threads_));
+  const std::uint64_t all = pillars_of(map.runs());
+  const bool one_lot = threads_ == 1 || all < 2 * kLeastShare;
+  share_ = one_lot ? std::numeric_limits<std::uint64_t>::max() / 2
+                   : std::max(kLeastShare, all / (kLotsPerThread * threads_));
   lots_.clear();
   Lot lot;
   std::uint64_t pillars = 0;

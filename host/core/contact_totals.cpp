@@ -120,8 +120,8 @@ PF_INLINE void known_of(const std::uint8_t* status, BlockWholes& known) {
   load(status, bits);
   const Bytes lifted = ~bits & status::kUsable;
   const auto told = ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
-  known.first = __builtin_convertvector(
-      __builtin_shufflevector(told, told, 0, 1, 2, 3, 4, 5, 6, 7), Wholes);
+  known.first =
+      __builtin_convertvector(__builtin_shufflevector(told, told, 0, 1, 2, 3, 4, 5, 6, 7), Wholes);
   known.last = __builtin_convertvector(
       __builtin_shufflevector(told, told, 8, 9, 10, 11, 12, 13, 14, 15), Wholes);
 }
