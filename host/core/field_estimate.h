@@ -43,7 +43,8 @@ class HostFieldEstimator {
   };
 
   single_precision::Past past();
-  void ask_for(const single_precision::Field& field, std::span<const single_precision::Run> runs);
+  static void ask_for(const single_precision::Field& field,
+                      std::span<const single_precision::Run> runs);
   single_precision::Verdict resolve_tile(const single_precision::Field& field,
                                          single_precision::Tile tile, Room& room);
   void resolve_alone(const single_precision::Field& field, std::span<const std::uint32_t> pillars);
