@@ -21,12 +21,6 @@ constexpr std::uint64_t kSamples = 500;
 
 constexpr std::uint64_t kFewestRows = 8;
 
-std::uint64_t pillars_of(std::span<const ContactRun> runs) {
-  std::uint64_t pillars = 0;
-  for (const ContactRun& run : runs) pillars += run.end - run.first;
-  return pillars;
-}
-
 /// One of so many rows of a contact is asked for its friction.
 std::uint64_t step_of(std::span<const ContactRun> runs, std::uint64_t pillars) {
   const std::uint64_t rows = runs.back().row - runs.front().row + 1;
@@ -35,6 +29,12 @@ std::uint64_t step_of(std::span<const ContactRun> runs, std::uint64_t pillars) {
 }
 
 }  // namespace
+
+std::uint64_t pillars_of(std::span<const ContactRun> runs) {
+  std::uint64_t pillars = 0;
+  for (const ContactRun& run : runs) pillars += run.end - run.first;
+  return pillars;
+}
 
 ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm)
     : forces_(forces), pitch_mm_(pillar_pitch_mm) {}

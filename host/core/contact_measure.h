@@ -12,6 +12,9 @@
 
 namespace pillarfield {
 
+/// How many pillars runs hold.
+std::uint64_t pillars_of(std::span<const ContactRun> runs);
+
 /// Reads a field as whole numbers, contact by contact.
 class ContactMeasure {
  public:

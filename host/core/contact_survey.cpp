@@ -13,12 +13,6 @@ constexpr std::uint64_t kLotsPerThread = 8;
 /// Fewer pillars, some microseconds, are not worth waking a thread.
 constexpr std::uint64_t kLeastShare = 2048;
 
-std::uint64_t pillars_of(std::span<const ContactRun> runs) {
-  std::uint64_t pillars = 0;
-  for (const ContactRun& run : runs) pillars += run.end - run.first;
-  return pillars;
-}
-
 std::size_t threads_for(std::uint32_t wanted) {
   return wanted != 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
 }
