@@ -26,8 +26,9 @@ class Race {
   /// Seconds since some moment.
   using Clock = std::function<double()>;
 
+  /// By the time that passes, and the processor time that all threads of the program take.
   Race();
-  explicit Race(Clock clock);
+  Race(Clock clock, Clock processor_clock);
 
   /// Returns the contestant's number, from 0 on.
   std::size_t add(Work work);
@@ -45,6 +46,11 @@ class Race {
   /// The median over the rounds of one contestant's time over another's in the same round.
   [[nodiscard]] double ratio(std::size_t numerator, std::size_t denominator) const;
 
+  /// Processor time of a frame, the median over the rounds, seconds; and ratio() of such times.
+  /// What others run on the machine changes them less.
+  [[nodiscard]] double processor_median(std::size_t contestant) const;
+  [[nodiscard]] double processor_ratio(std::size_t numerator, std::size_t denominator) const;
+
   /// The one of the least median.
   [[nodiscard]] std::size_t fastest(std::span<const std::size_t> contestants) const;
 
@@ -53,6 +59,7 @@ class Race {
     Work work;
     int frames = 0;  ///< of a turn
     std::vector<double> times;
+    std::vector<double> processor_times;
   };
 
   [[nodiscard]] double time(const Contestant& contestant, int frames) const;
@@ -60,6 +67,7 @@ class Race {
   void take_turn(Contestant& contestant) const;
 
   Clock clock_;
+  Clock processor_clock_;
   std::vector<Contestant> contestants_;
 };
 

@@ -108,6 +108,7 @@ Measurement race_field(const Session& session, const What& what, const BodyFrame
   race.run(session.length);
   Measurement measured = measurement_of(race, entry, plan);
   measured.counters["over_direct"] = race.ratio(entry, direct_entry);
+  measured.counters["processor_over_direct"] = race.processor_ratio(entry, direct_entry);
   tell_pillars(direct.solve(frames[0]), measured);
   measured.label = fmt::format("{} frames", frames.size());
   return measured;

@@ -1,7 +1,6 @@
 // How fast the viewer draws.
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include "bench/measurement.h"
 #include "bench/pictures.h"
@@ -25,35 +24,17 @@ constexpr NamedPicture kPictures[] = {{"heat", false, false, true},
                                       {"all", true, true, true},
                                       {"all_copied", true, true, false}};
 
-/// Processor time of this program's threads so far. A graphics device that is a program draws in
-/// them.
-double processor_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 /// Races work on pictures with clearing and reading back as many.
 Measurement race_pictures(const Session& session, Pictures& pictures, const Work& work) {
-  double processor = 0;
-  int worked = 0;
   Race race;
-  const std::size_t contestant = race.add([&](int count) {
-    const double start = processor_seconds();
-    work(count);
-    processor += processor_seconds() - start;
-    worked += count;
-  });
+  const std::size_t contestant = race.add(work);
   const std::size_t clear = race.add([&](int count) { pictures.clear_and_read(count); });
-  work(2);  // Pays for compiling, which the processor time would hold.
   race.run(session.length);
   Measurement measured;
   measured.seconds = race.median(contestant);
   measured.counters["ms"] = measured.seconds * 1e3;
-  measured.counters["processor_ms"] = processor / worked * 1e3;
+  // A graphics device that is a program draws in this one's threads.
+  measured.counters["processor_ms"] = race.processor_median(contestant) * 1e3;
   measured.counters["ns_per_pixel"] =
       measured.seconds * 1e9 / (double{Pictures::kWidth} * Pictures::kHeight);
   measured.counters["clear_and_read_ms"] = race.median(clear) * 1e3;

@@ -10,11 +10,12 @@
 namespace pillarfield::bench {
 namespace {
 
-/// A machine whose speed the test sets, with a clock that contestants move.
+/// A machine whose speed the test sets, with clocks that contestants move: that of the processor
+/// by a quarter as much, however slow the machine is.
 class Machine {
  public:
-  [[nodiscard]] Race::Clock clock() {
-    return [this] { return now_; };
+  [[nodiscard]] Race race() {
+    return {[this] { return now_; }, [this] { return processor_; }};
   }
 
   /// A contestant that takes `seconds` a frame on the machine as it was at first.
@@ -23,6 +24,7 @@ class Machine {
       turns_ += name;
       frames_ += frames;
       now_ += frames * seconds * slowness_;
+      processor_ += frames * seconds / 4;
     };
   }
 
@@ -32,6 +34,7 @@ class Machine {
 
  private:
   double now_ = 100;
+  double processor_ = 7;
   double slowness_ = 1;
   std::string turns_;
   int frames_ = 0;
@@ -41,7 +44,7 @@ constexpr RaceLength kFiveRounds = {.seconds = 0, .rounds = 5, .turn_seconds = 0
 
 TEST(Race, TimesAreThoseOfAFrame) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   const auto a = race.add(machine.contestant("a", 2));
   const auto b = race.add(machine.contestant("b", 6));
   race.run(kFiveRounds);
@@ -52,9 +55,26 @@ TEST(Race, TimesAreThoseOfAFrame) {
   EXPECT_DOUBLE_EQ(race.ratio(a, b), 1.0 / 3);
 }
 
+TEST(Race, ProcessorTimeIsThatOfAFrameTooAndDoesNotDrift) {
+  Machine machine;
+  Race race = machine.race();
+  const Work steady = machine.contestant("a", 2);
+  double slowness = 1;
+  const auto a = race.add([&](int frames) {
+    machine.set_slowness(slowness *= 3);
+    steady(frames);
+  });
+  const auto b = race.add(machine.contestant("b", 6));
+  race.run(kFiveRounds);
+  EXPECT_GT(race.median(a), 2) << "the machine did not drift";
+  EXPECT_DOUBLE_EQ(race.processor_median(a), 0.5);
+  EXPECT_DOUBLE_EQ(race.processor_median(b), 1.5);
+  EXPECT_DOUBLE_EQ(race.processor_ratio(b, a), 3);
+}
+
 TEST(Race, OrderIsReversedFromRoundToRound) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   for (const char* const name : {"a", "b", "c"}) race.add(machine.contestant(name, 1));
   race.run(kFiveRounds);
   // Twice each to warm up.
@@ -63,7 +83,7 @@ TEST(Race, OrderIsReversedFromRoundToRound) {
 
 TEST(Race, DriftLeavesPairedRatiosAsTheyAre) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   double slowness = 1;
   int turn = 0;
   // The machine slows down in every round, for both contestants alike.
@@ -82,7 +102,7 @@ TEST(Race, DriftLeavesPairedRatiosAsTheyAre) {
 
 TEST(Race, OneBadRoundDoesNotCount) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   int turn = 0;
   const Work steady = machine.contestant("a", 1);
   const auto a = race.add([&](int frames) {
@@ -99,7 +119,7 @@ TEST(Race, OneBadRoundDoesNotCount) {
 
 TEST(Race, LastsAsLongAsItIsTold) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   const auto a = race.add(machine.contestant("a", 0.5));
   race.run({.seconds = 60, .rounds = 2, .turn_seconds = 0, .turn_frames = 1});
   EXPECT_EQ(race.times(a).size(), 120U);
@@ -107,7 +127,7 @@ TEST(Race, LastsAsLongAsItIsTold) {
 
 TEST(Race, TurnsHaveFramesEnough) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   race.add(machine.contestant("a", 0.25));
   race.run({.seconds = 0, .rounds = 1, .turn_seconds = 2, .turn_frames = 1});
   // 1 and then 1, 2, 4, 8 frames to warm up, the last for two seconds; so many in the race.
@@ -116,7 +136,7 @@ TEST(Race, TurnsHaveFramesEnough) {
 
 TEST(Race, FastestHasTheLeastMedian) {
   Machine machine;
-  Race race(machine.clock());
+  Race race = machine.race();
   const auto a = race.add(machine.contestant("a", 3));
   const auto b = race.add(machine.contestant("b", 2));
   const auto c = race.add(machine.contestant("c", 1));
