@@ -106,18 +106,21 @@ inline PillarForce pillar_at(const ForceFieldView& forces, const ForceQuanta& qu
           forces.status[place]};
 }
 
-/// Asks for what the next runs need of a plane: rows are too far apart for a processor to guess.
+/// Asks for what the next runs need of a plane, at the first one for all of them up to there: rows
+/// are too far apart for a processor to guess.
 template <class Value>
 PF_INLINE void ask_for(std::span<const Value> plane, const ForceFieldView& forces,
                        std::span<const ContactRun> runs, std::size_t run) {
 #if defined(__GNUC__)
   constexpr std::size_t kAhead = 4;
   constexpr std::uint32_t kLine = 64 / sizeof(Value);
-  if (run + kAhead >= runs.size()) return;
-  const ContactRun& ahead = runs[run + kAhead];
-  const Value* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
-  for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
-    __builtin_prefetch(row + std::min(col, ahead.end - 1));
+  const std::size_t end = std::min(run + kAhead + 1, runs.size());
+  for (std::size_t at = run == 0 ? 0 : run + kAhead; at < end; ++at) {
+    const ContactRun& ahead = runs[at];
+    const Value* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
+    for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
+      __builtin_prefetch(row + std::min(col, ahead.end - 1));
+    }
   }
 #endif
 }

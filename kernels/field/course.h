@@ -92,7 +92,7 @@ static inline void after_contradictions(Course* course, Scratch scratch, FieldSe
   if (!(shown.friction > 0.0f)) return;
   course->known = shown.friction;
   course->verdict = verdict_by(PF_BY_SLIP, shown.friction);
-  course->verdict.spread = PF_SPREAD_OF_SHOWN;
+  course->verdict.spread = shown.spread;
   course->verdict.may_stick = shown.share < PF_ALL_SLIP ? 1 : 0;
   if (course->verdict.may_stick == 0 || few) course->step = PF_END_OF_COURSE;
 }
@@ -142,7 +142,8 @@ static inline void after_attempt(Course* course, Scratch scratch) {
   }
   if (course->known > 0.0f) {
     verdict.friction = course->known;
-    verdict.spread = PF_SPREAD_OF_SHOWN;
+    verdict.spread = course->verdict.spread;
+    verdict.may_stick = 1;
   }
   course->verdict = verdict;
   course->step = PF_END_OF_COURSE;

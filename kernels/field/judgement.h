@@ -15,6 +15,15 @@ static inline float deviation_of(Judgement judgement) {
   return (above > below ? above : below) * (float)(1.0 / 1.96);
 }
 
+/* The noise of a normal force at a given ratio, by that of a reading (F17). */
+static inline float noise_at_ratio(Segment segment, float normal) {
+  const float moving = segment.moving - 1.41421356237309504880f * normal;
+  const float shear = length_2(segment.fixed, moving);
+  if (!(shear > 0.0f && normal > 0.0f)) return 0.0f;
+  const float slope = shear / normal + 1.41421356237309504880f * (moving / shear);
+  return PF_NOISE_AT_RATIO / clamped(slope, 1.0f, 1e30f);
+}
+
 /* What is left open of a pillar that slips at a friction with a relative deviation (F12). */
 static inline Judgement slipping_normal(Segment segment, float low, float friction, float spread) {
   Judgement judgement;
@@ -29,12 +38,11 @@ static inline Judgement slipping_normal(Segment segment, float low, float fricti
 
 /* The same of a pillar that a model has sticking: whether it does is what is least certain, so the
  * band reaches from where it would slip to the model's force, and beyond both (F12). */
-static inline Judgement sticking_normal(Segment segment, float bound, Judgement slipping,
-                                        float shaped) {
+static inline Judgement sticking_normal(Segment segment, Judgement slipping, float shaped) {
   Judgement judgement;
   judgement.normal = clamped(shaped, slipping.normal, segment.high);
   const float beyond = PF_BEYOND_STICKING * (judgement.normal - slipping.normal);
-  judgement.low = clamped(slipping.low - beyond, bound, segment.high);
+  judgement.low = clamped(slipping.low - beyond, 0.0f, segment.high);
   judgement.high = clamped(judgement.normal + beyond, slipping.high, segment.high);
   return judgement;
 }
@@ -49,6 +57,27 @@ static inline Judgement weighed(Judgement judgement, float middle, float high) {
   return judgement;
 }
 
+/* What a friction tells by itself: a pillar slips at it, or, where some of its contact sticks, may
+ * bear more (F12). */
+static inline Judgement judged_by_friction(Segment segment, Judgement slipping, Verdict verdict) {
+  Judgement judgement = slipping;
+  if (verdict.may_stick != 0) {
+    const float rest = PF_REACH_OF_STICKING * (segment.high - slipping.normal);
+    judgement.high = clamped(slipping.normal + rest, slipping.high, segment.high);
+  }
+  return judgement;
+}
+
+/* What a model tells besides: that the pillar slips, or that it sticks with the force it has. */
+static inline Judgement judged_by_shape(Segment segment, Judgement slipping, Verdict verdict,
+                                        float shaped) {
+  const bool sticks = ratio_on_segment(segment, shaped) <= PF_SLIPS_FROM * verdict.friction;
+  if (!sticks && verdict.may_stick == 0) return slipping;
+  Judgement judgement = sticking_normal(segment, slipping, shaped);
+  if (!sticks) judgement.normal = slipping.normal;
+  return judgement;
+}
+
 /* The normal force that a verdict has (F6, F11). `shaped` is that of the best model, where there is
  * one. */
 static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSettings settings,
@@ -56,26 +85,19 @@ static inline Judgement judged_normal(Segment segment, Verdict verdict, FieldSet
   const float bound = settings.friction > 0.0f
                           ? clamped(normal_at_ratio(segment, settings.friction), 0.0f, segment.high)
                           : 0.0f;
-  const bool resolved = verdict.way > PF_BY_BOUND;
-  Judgement judgement;
-  judgement.low = bound;
-  judgement.high = segment.high;
-  judgement.normal = bound;
-  if (resolved) {
-    judgement = slipping_normal(segment, bound, verdict.friction, verdict.spread);
-    if (verdict.may_stick != 0) judgement.high = segment.high;
+  const float part = bound > 0.0f ? PF_TRUST_IN_BOUND : 0.5f;
+  if (verdict.way <= PF_BY_BOUND) {
+    const Judgement open = {between_thetas(segment, bound, segment.high, part), bound,
+                            segment.high};
+    return open;
   }
-  if (resolved && verdict.way != PF_BY_SHAPE) return judgement;
-  const float middle =
-      between_thetas(segment, bound, segment.high, bound > 0.0f ? PF_TRUST_IN_BOUND : 0.5f);
-  if (!resolved) {
-    judgement.normal = middle;
-    return judgement;
-  }
-  if (ratio_on_segment(segment, shaped) <= PF_SLIPS_FROM * verdict.friction) {
-    judgement = sticking_normal(segment, bound, judgement, shaped);
-  }
-  return weighed(judgement, middle, segment.high);
+  const bool by_shape = verdict.way == PF_BY_SHAPE;
+  Segment reach = segment; /* and beyond it as far as noise may hide readings */
+  if (by_shape || verdict.may_stick == 0) reach.high += PF_BEYOND_END * settings.noise;
+  const Judgement slipping = slipping_normal(reach, bound, verdict.friction, verdict.spread);
+  if (!by_shape) return judged_by_friction(segment, slipping, verdict);
+  return weighed(judged_by_shape(reach, slipping, verdict, shaped),
+                 between_thetas(segment, bound, segment.high, part), segment.high);
 }
 
 /* The same by what was known of the pillar a frame before, where that says more than the segment
@@ -85,7 +107,8 @@ static inline bool recalled_normal(Segment segment, Past past, uint index, float
   if (past.normal == 0 || past.frame[index] + 1 != past.now) return false;
   const float normal = past.normal[index];
   const float change = PF_CHANGE_PER_FRAME * normal;
-  const float deviation = length_3(past.deviation[index], change, PF_NOISE_OF_NORMAL * noise);
+  const float deviation =
+      length_3(past.deviation[index], change, noise_at_ratio(segment, normal) * noise);
   if (deviation > PF_MOST_RECALLED * (judgement->high - judgement->low)) return false;
   const float low = judgement->low;
   judgement->normal = clamped(normal, low, segment.high);
@@ -127,11 +150,11 @@ static inline void write_ends(Field field, uint index, Force least, Force most) 
 
 /* What neighbours left of the uncertainty: of the component that the readings give, nothing new;
  * of the other two, the farther end of the judgement, and the readings' noise on top (F12). */
-static inline void write_deviations(Field field, uint index, Mask vertical, Judgement judgement,
-                                    float noise) {
+static inline void write_deviations(Field field, uint index, Segment segment, Mask vertical,
+                                    Judgement judgement, float noise) {
   const float deviation = deviation_of(judgement);
-  const float normal = length_2(deviation, PF_NOISE_OF_NORMAL * noise);
-  field.deviation_normal[index] = normal;
+  field.deviation_normal[index] =
+      length_2(deviation, noise_at_ratio(segment, judgement.normal) * noise);
   if (vertical) {
     field.deviation_y[index] = length_2(1.41421356237309504880f * deviation, noise);
   } else {
@@ -162,7 +185,7 @@ static inline void write_judgement(Field field, Past past, uint index, Segment s
   if (field.deviation_normal == 0) return;
   write_ends(field, index, force_on_segment(middle, vertical, judgement.low),
              force_on_segment(middle, vertical, judgement.high));
-  if (resolved) write_deviations(field, index, vertical, judgement, noise);
+  if (resolved) write_deviations(field, index, segment, vertical, judgement, noise);
 }
 
 /* Writes the forces of a contact's ambiguous pillars. */

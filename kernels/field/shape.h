@@ -22,8 +22,9 @@ static inline Verdict verdict_of_shape(Plateau plateau, const Trend* trend, doub
   Verdict verdict = verdict_by(PF_BY_SHAPE, (float)plateau.ratio);
   verdict.misfit = (float)misfit;
   verdict.score = (float)(plateau.share - 1.5 * plateau.far - misfit);
-  verdict.spread = (float)(PF_SCALE_ERRORS * trend->scale_error + misfit +
-                           PF_SPREAD_OF_REST * (1.0 - plateau.share));
+  verdict.spread =
+      (float)(PF_SCALE_ERRORS * trend->scale_error + misfit + PF_PLATEAU_SPREADS * plateau.spread +
+              PF_SPREAD_OF_REST * (1.0 - plateau.share));
   return verdict;
 }
 

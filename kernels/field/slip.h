@@ -68,6 +68,7 @@ static inline void count_contradictions(Tile tile, Scratch scratch, float noise,
 /* The friction that resolved pillars show, and how many of those that can show it do. */
 typedef struct {
   float friction; /* zero where none is shown */
+  float spread;   /* its standard deviation, relative (F12) */
   double share;   /* of their normal force */
 } ShownFriction;
 
@@ -87,9 +88,10 @@ static inline ShownFriction shown_friction(const SlipEvidence* evidence, double 
       plateau.above <= 0.05 || (plateau.share >= 0.5 && plateau.above <= 0.3 * plateau.share);
   const bool shows = plateau.share >= 0.1 && ends && evidence->telling >= 0.2 * loaded &&
                      evidence->contradict <= 0.1 * (evidence->agree + evidence->contradict);
-  ShownFriction shown = {0.0f, 0.0};
+  ShownFriction shown = {0.0f, 0.0f, 0.0};
   if (!shows) return shown;
   shown.friction = (float)plateau.ratio;
+  shown.spread = (float)(PF_SPREAD_OF_SHOWN + plateau.spread / sqrt(evidence->telling));
   shown.share = plateau.share + plateau.above;
   return shown;
 }

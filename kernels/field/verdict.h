@@ -65,15 +65,18 @@ typedef struct {
 #define PF_ALL_SLIP 0.9           /* of the pillars that can show friction: so do open ones */
 #define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */
 #define PF_TRUST_IN_BOUND 0.9f    /* 1: an open pillar is at the bound told */
-#define PF_SPREAD_OF_SHOWN 0.005f /* of a friction that resolved pillars show, relative */
+#define PF_SPREAD_OF_SHOWN 0.0015 /* of a friction however many pillars show it, relative */
 #define PF_SCALE_ERRORS 10.0      /* of a friction, by what the fit says of its own error, */
-#define PF_SPREAD_OF_REST 0.05    /* and by the share that does not bear it out */
+#define PF_PLATEAU_SPREADS 0.2    /* by how far the ratios that bear it out are from it, */
+#define PF_SPREAD_OF_REST 0.03    /* and by the share that does not */
 #define PF_DEVIATION_OF_MIDDLE 0.4f /* of the truth from it, by the length of the segment */
 #define PF_BEYOND_STICKING 0.1f     /* of what a model has a pillar bear beyond slip */
-#define PF_NOISE_OF_NORMAL 0.45f    /* by a reading's, at a given ratio */
-#define PF_NOISE_OF_RESOLVED 0.7f   /* by a reading's, of a resolved pillar */
-#define PF_CHANGE_PER_FRAME 0.05f   /* of a normal force, relative deviation */
-#define PF_MOST_RECALLED 0.15f      /* deviation, by the length of the segment */
+#define PF_REACH_OF_STICKING 0.9f   /* of the segment beyond slip, where no model tells */
+#define PF_BEYOND_END 2.0f        /* of a segment, by a reading's noise: what slips may lie there */
+#define PF_NOISE_AT_RATIO 1.15f   /* in the normal force at a ratio, by what readings alone give */
+#define PF_NOISE_OF_RESOLVED 0.7f /* by a reading's, of a resolved pillar */
+#define PF_CHANGE_PER_FRAME 0.05f /* of a normal force, relative deviation */
+#define PF_MOST_RECALLED 0.15f    /* deviation, by the length of the segment */
 
 /* The most that a pillar of the contact may bear, once it is summarised, N. */
 static inline float peak_of(Scratch scratch) { return (float)scratch.shared[PF_AT_PEAK]; }

@@ -309,6 +309,17 @@ TEST(Score, FallsByWhatIsFarAboveAndByTheMisfit) {
   EXPECT_NEAR(verdict(0).score, 0.5, 1e-6);
 }
 
+TEST(Score, AModelsFrictionIsWiderByTheRatiosAboutItAndByThoseThatDoNotShareIt) {
+  const maths::Trend trend = maths::no_trend(2, true);
+  const auto spread = [&](double share, double about) {
+    const maths::Plateau plateau = {1.8, share, 0, 0, about};
+    return maths::verdict_of_shape(plateau, &trend, 0).spread;
+  };
+  EXPECT_EQ(spread(1, 0), 0);
+  EXPECT_NEAR(spread(1, 0.1), 0.1 * PF_PLATEAU_SPREADS, 1e-7);
+  EXPECT_NEAR(spread(0.4, 0.1), 0.1 * PF_PLATEAU_SPREADS + 0.6 * PF_SPREAD_OF_REST, 1e-7);
+}
+
 TEST(Edge, WeighsByHowLittleIsBorneBesideIt) {
   std::array<float, 3> top = {0, 0, 0};
   maths::Cells cells{};

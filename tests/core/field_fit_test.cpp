@@ -264,21 +264,101 @@ TEST(Judgement, AnEstimateLiesInItsBandWhateverTheModelSays) {
           maths::Verdict verdict = verdict_of(spread);
           verdict.friction = friction;
           expect_within_band(of, verdict, settings);
+          verdict.may_stick = 1;
+          expect_within_band(of, verdict, settings);
         }
       }
     }
   }
 }
 
-TEST(Judgement, WhereOpenPillarsMayStickNothingAboveSlipIsRuledOut) {
+TEST(Judgement, WhereOpenPillarsMayStickLittleAboveSlipIsRuledOut) {
   const maths::FieldSettings settings{};
   maths::Verdict verdict = maths::verdict_by(PF_BY_SLIP, 2);
-  verdict.spread = PF_SPREAD_OF_SHOWN;
+  verdict.spread = 0.005F;
   EXPECT_LT(maths::judged_normal(segment(), verdict, settings, 0).high, 10.2F);
   verdict.may_stick = 1;
   const maths::Judgement judged = maths::judged_normal(segment(), verdict, settings, 0);
   EXPECT_NEAR(judged.normal, 10, 1e-4);
-  EXPECT_EQ(judged.high, segment().high);
+  EXPECT_NEAR(judged.high, 10 + 0.9 * (segment().high - 10), 1e-4);
+}
+
+TEST(Judgement, WhereOpenPillarsMayStickTheBandReachesTheModelsForceThoughTheySlip) {
+  const maths::FieldSettings settings{};
+  maths::Verdict verdict = verdict_of(0.002F);
+  EXPECT_LT(maths::judged_normal(segment(), verdict, settings, 10.4F).high, 10.1F);
+  verdict.may_stick = 1;
+  const maths::Judgement judged = maths::judged_normal(segment(), verdict, settings, 10.4F);
+  EXPECT_NEAR(judged.normal, 10, 0.01);
+  EXPECT_GT(judged.high, 10.4F);
+}
+
+TEST(Judgement, APillarThatSlipsMayLieBeyondItsSegmentByTheNoise) {
+  maths::FieldSettings settings{};
+  const maths::Segment of = segment();
+  for (const float noise : {0.0F, 0.1F, 10.0F}) {
+    settings.noise = noise;
+    maths::Verdict verdict = maths::verdict_by(PF_BY_SLIP, 1.38F);  // beyond the end, at 1.41
+    const float slips = maths::normal_at_ratio(of, verdict.friction);
+    ASSERT_GT(slips, of.high);
+    EXPECT_FLOAT_EQ(maths::judged_normal(of, verdict, settings, 0).normal,
+                    std::min(slips, of.high + 2 * noise));
+    verdict.may_stick = 1;
+    EXPECT_EQ(maths::judged_normal(of, verdict, settings, 0).normal, of.high);
+    EXPECT_LE(maths::judged_normal(of, maths::verdict_by(PF_BY_NOTHING, 0), settings, 0).normal,
+              of.high);
+  }
+}
+
+TEST(Judgement, ABoundThatWasToldLeavesTheBandOfAPillarThatSticksAsWide) {
+  maths::FieldSettings settings{};
+  const maths::Verdict verdict = verdict_of(0.01F);
+  const maths::Judgement free = maths::judged_normal(segment(), verdict, settings, 11.8F);
+  settings.friction = 2;
+  const maths::Judgement bounded = maths::judged_normal(segment(), verdict, settings, 11.8F);
+  EXPECT_LT(bounded.low, 9.9F);
+  EXPECT_EQ(bounded.high, free.high);
+}
+
+/// A segment by two readings, of sensels 1 and 2, N.
+maths::Segment segment_by(double first, double second) {
+  const double moving = (first + second) / std::numbers::sqrt2;
+  return {static_cast<float>(std::abs(first - second) / std::numbers::sqrt2),
+          static_cast<float>(moving), static_cast<float>(std::min(first, second) / 2)};
+}
+
+TEST(Judgement, NoiseAtARatioIsThatOfTheReadingsPassedOn) {
+  for (const double second : {34.0, 30.0, 24.0}) {
+    for (const float ratio : {1.5F, 2.0F, 3.0F}) {
+      SCOPED_TRACE(testing::Message() << second << ", " << ratio);
+      const auto normal = [&](double first, double other) {
+        return double{maths::normal_at_ratio(segment_by(first, other), ratio)};
+      };
+      const double by_first = (normal(34.1, second) - normal(33.9, second)) / 0.2;
+      const double by_second = (normal(34, second + 0.1) - normal(34, second - 0.1)) / 0.2;
+      const maths::Segment of = segment_by(34, second);
+      const double noise = maths::noise_at_ratio(of, maths::normal_at_ratio(of, ratio));
+      EXPECT_NEAR(noise, double{PF_NOISE_AT_RATIO} * std::hypot(by_first, by_second), 1e-3);
+    }
+  }
+  EXPECT_EQ(maths::noise_at_ratio({0, 0, 0}, 0), 0);
+  EXPECT_EQ(maths::noise_at_ratio(segment(), 0), 0);
+}
+
+/// What a contact of 1000 pillars shows, of which so many tell a friction of 2.
+maths::ShownFriction shown_by(double telling, double spread) {
+  const maths::SlipEvidence evidence = {
+      .plateau = {2, 1, 0, 0, spread}, .telling = telling, .agree = 1, .contradict = 0};
+  return maths::shown_friction(&evidence, 1000);
+}
+
+TEST(ShownFriction, IsKnownBetterByTheNumberOfThoseThatShowIt) {
+  EXPECT_FLOAT_EQ(shown_by(400, 0.02).friction, 2);
+  EXPECT_NEAR(shown_by(400, 0.02).spread, PF_SPREAD_OF_SHOWN + 0.001, 1e-7);
+  EXPECT_LT(shown_by(900, 0.02).spread, shown_by(400, 0.02).spread);
+  EXPECT_LT(shown_by(400, 0.01).spread, shown_by(400, 0.02).spread);
+  EXPECT_NEAR(shown_by(400, 0).spread, PF_SPREAD_OF_SHOWN, 1e-7);
+  EXPECT_EQ(shown_by(100, 0.02).friction, 0);
 }
 
 }  // namespace

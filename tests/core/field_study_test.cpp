@@ -268,6 +268,30 @@ TEST(FieldStudy, BandOfResolvedPillarsIsThatOfTheirDeviation) {
   EXPECT_EQ(observed.score(off_by(observed, 1.97)).resolved_covered, 0);
 }
 
+/// Where all slips at a friction that resolved pillars show, little but noise is left, and the band
+/// is hardly wider.
+TEST(FieldStudy, BandOfPillarsThatSlipHoldsNeitherTooFewNorAll) {
+  for (const char* const name : {"sphere 31, spin, mu 1.8", "two spheres 21, spin, mu 2.3"}) {
+    std::vector<Scene> scenes = tuning(name);
+    integrate(scenes);
+    double before = 0;
+    for (const Scene& scene : scenes) {  // from the least noise on
+      const Observed observed(scene);
+      const ForceField solved = *solve(scene, observed, methods().front());
+      const double coverage = observed.score(solved).coverage();
+      EXPECT_GT(coverage, 0.93) << scene.name();
+      EXPECT_LT(coverage, 0.99) << scene.name();
+      double deviations = 0;
+      for (const std::size_t i : observed.open()) {
+        deviations += solved.uncertainty[Uncertainty::normal][i];
+      }
+      const double mean = deviations / static_cast<double>(observed.open().size());
+      EXPECT_GT(mean, 1.3 * before) << scene.name();
+      before = mean;
+    }
+  }
+}
+
 /// The upper end of a segment is off by the noise of one reading, over 2 k.
 TEST(FieldStudy, BandOfOtherPillarsIsTheirSegment) {
   std::vector<Scene> scenes = tuning("punch 26, partial slip 0.75");
