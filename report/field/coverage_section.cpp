@@ -15,7 +15,8 @@ namespace {
 constexpr const char* kIntroduction = R"(## Coverage
 
 The share of the pillars of region 3 whose true normal force lies in the stated band: for those that neighbours resolved (status bit 7) the estimate ± 1.96 of its standard deviation, for
-the others the whole segment, from nothing to twice the middle, and 1.96 standard deviations of that end. The least is that of scenes with {enough} such pillars or more. Nothing is said by the scenes.
+the others the whole segment, from nothing to twice the middle, and 1.96 standard deviations of that end. Nothing is said by the scenes. The last columns are of scenes with {enough} such pillars or more: how many are held
+by less than 93 %, by 93 to 99 %, by more where most pillars are resolved, and by more where they are not; and the least share.
 
 )";
 
@@ -24,28 +25,52 @@ std::string percent(std::size_t part, std::size_t whole) {
   return fmt::format("{:.1f}", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
 }
 
-std::string least_of(const std::vector<SceneResult>& results, const Kind& kind) {
+/// Scenes by the share that their bands hold.
+struct Shares {
+  int below = 0;
+  int within = 0;
+  int above = 0;       ///< of which most pillars are resolved
+  int unresolved = 0;  ///< above, and most are not
   double least = 1;
-  bool any = false;
-  for (const SceneResult& result : results) {
-    if (!result.counts() || !kind.holds(result.scene)) continue;
-    any = true;
-    least = std::min(least, result.field().coverage());
+
+  void add(const field_study::Score& score) {
+    const double share = score.coverage();
+    least = std::min(least, share);
+    if (share < 0.93) {
+      ++below;
+    } else if (share <= 0.99) {
+      ++within;
+    } else {
+      ++(2 * score.resolved < score.open ? unresolved : above);
+    }
   }
-  return any ? fmt::format("{:.1f}", 100 * least) : "–";
+  [[nodiscard]] int scenes() const { return below + within + above + unresolved; }
+};
+
+Shares shares_of(const std::vector<SceneResult>& results, const Kind& kind) {
+  Shares shares;
+  for (const SceneResult& result : results) {
+    if (result.counts() && kind.holds(result.scene)) shares.add(result.field());
+  }
+  return shares;
 }
 
 }  // namespace
 
 std::string field_coverage_section(const FieldContext& context) {
-  Table table("lrrrrr", {"", "resolved, % of region 3", "held, %: resolved", "not resolved", "all",
-                         "least scene"});
+  Table table("lrrrrrrrrr",
+              {"", "resolved, % of region 3", "held, %: resolved", "not resolved", "all",
+               "scenes < 93 %", "93 to 99 %", "more, resolved", "more, not", "least, %"});
   for (const Kind& kind : kinds()) {
     const auto score = pool_method(context.judging, kind, 0).solved;
+    const Shares shares = shares_of(context.judging, kind);
     table.add({kind.name, percent(score.resolved, score.open),
                percent(score.resolved_covered, score.resolved),
                percent(score.covered - score.resolved_covered, score.open - score.resolved),
-               percent(score.covered, score.open), least_of(context.judging, kind)});
+               percent(score.covered, score.open), fmt::format("{}", shares.below),
+               fmt::format("{}", shares.within), fmt::format("{}", shares.above),
+               fmt::format("{}", shares.unresolved),
+               shares.scenes() > 0 ? fmt::format("{:.1f}", 100 * shares.least) : "–"});
   }
   return fmt::format(kIntroduction, fmt::arg("enough", kEnoughPillars)) + table.text();
 }

@@ -61,8 +61,10 @@ std::string text_of_coverage(const CoverageGoal& goal) {
       "friction or of its model, and the band is one factor for all pillars: it holds nearly all "
       "of them or few, so that 95 % can be true of contacts, not of each. And where nothing "
       "resolves a pillar, the whole segment is all that can be said, and holds nearly every truth: "
-      "{} of those above. Of those below, {} are within two standard deviations of 95 %, for they "
-      "have few pillars ([coverage](#coverage)).\n",
+      "{} of those above. A narrower band could not be true there, since bodies that read the same "
+      "reach from one end of it to the other ([below](#what-cannot-be-known)). Of those below, {} "
+      "are within two standard deviations of 95 %, for they have few pillars "
+      "([coverage](#coverage)).\n",
       verdict_of(met), goal.scenes, goal.below, goal.above, 100 * goal.least, goal.least_scene,
       100 * goal.most, goal.whole, goal.by_chance);
 }
@@ -75,9 +77,12 @@ std::string text_of_rest(const FieldContext& context) {
       "metre ([square_metre.toml](../scenes/square_metre.toml), {:.1f} % of the pillars in "
       "contact) the "
       "field solve at its default takes {:.2f} times as long as the direct one, and {:.2f} times "
-      "with its contacts found and followed (wanted: ≤ 2), both in turns with it.\n",
-      touched, 100 * context.times.square_metre_share, context.times.square_metre,
-      context.times.square_metre_with_contacts);
+      "with its contacts found and followed (wanted: ≤ 2), both in turns with it; in processor "
+      "time, all threads together, {:.2f} and {:.2f} times. What bounds it is in "
+      "[performance_decisions.md](performance_decisions.md#not-tried-or-not-done).\n",
+      touched, 100 * context.times.square_metre_share, context.times.square_metre.time,
+      context.times.square_metre_with_contacts.time, context.times.square_metre.processor,
+      context.times.square_metre_with_contacts.processor);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <numeric>
 
 #include "pillarfield/contact_tracker.h"
@@ -34,14 +35,26 @@ void paste(const FrameBuffer& frame, const Skin& skin, FrameBuffer& into, std::u
   }
 }
 
+/// What solving a frame took, round by round.
+struct Costs {
+  std::vector<double> seconds;
+  std::vector<double> clocks;  ///< of the processor
+
+  void add(const Costs& others) {
+    seconds.insert(seconds.end(), others.seconds.begin(), others.seconds.end());
+    clocks.insert(clocks.end(), others.clocks.begin(), others.clocks.end());
+  }
+};
+
 /// Follows the contacts of the result too, where there is a tracker.
-double seconds_of(Processor& processor, const FrameBuffer& frame,
-                  ContactTracker* tracker = nullptr) {
+Costs cost_of(Processor& processor, const FrameBuffer& frame, ContactTracker* tracker = nullptr) {
+  const std::clock_t clock = std::clock();
   const auto begin = std::chrono::steady_clock::now();
   processor.submit(frame.view());
   const ForceFieldView forces = processor.receive();
   if (tracker != nullptr) tracker->update(forces, 0, processor.contacts());
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  return {{taken.count()}, {static_cast<double>(std::clock() - clock)}};
 }
 
 /// The two orders of a round have different times: a median would fall between them.
@@ -52,28 +65,30 @@ double mean_of_middle_half(std::vector<double> times) {
   return sum / static_cast<double>(times.end() - times.begin() - 2 * quarter);
 }
 
-/// Time of `plan`, with its contacts if so wished, over that of its direct solve.
-double measure(const Device& device, const SolverPlan& plan, const FrameBuffer& frame,
-               bool contacts = false) {
+/// Of `plan`, with its contacts if so wished, over its direct solve.
+OverDirect measure(const Device& device, const SolverPlan& plan, const FrameBuffer& frame,
+                   bool contacts = false) {
   ContactTracker contact_tracker(plan.skin.pillar_pitch_mm());
   ContactTracker* const tracker = contacts ? &contact_tracker : nullptr;
   SolverPlan direct_plan = plan;
   direct_plan.estimator = Estimator::direct;
   Processor field(device, plan);
   Processor direct(device, direct_plan);
-  std::vector<double> field_times;
-  std::vector<double> direct_times;
+  Costs field_costs;
+  Costs direct_costs;
   for (int round = -4; round < kRounds; ++round) {
     // Who comes second finds the frame in the caches.
     const bool field_first = round % 2 == 0;
-    const double before = field_first ? seconds_of(field, frame, tracker) : 0;
-    const double direct_s = seconds_of(direct, frame);
-    const double field_s = field_first ? before : seconds_of(field, frame, tracker);
+    Costs by_field;
+    if (field_first) by_field = cost_of(field, frame, tracker);
+    const Costs by_direct = cost_of(direct, frame);
+    if (!field_first) by_field = cost_of(field, frame, tracker);
     if (round < 0) continue;
-    field_times.push_back(field_s);
-    direct_times.push_back(direct_s);
+    field_costs.add(by_field);
+    direct_costs.add(by_direct);
   }
-  return mean_of_middle_half(field_times) / mean_of_middle_half(direct_times);
+  return {mean_of_middle_half(field_costs.seconds) / mean_of_middle_half(direct_costs.seconds),
+          mean_of_middle_half(field_costs.clocks) / mean_of_middle_half(direct_costs.clocks)};
 }
 
 /// The plan's sensor in one frame of 16 contacts.

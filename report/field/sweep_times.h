@@ -8,14 +8,20 @@
 
 namespace pillarfield::report {
 
-/// How long the field estimator takes on a device, beside the direct solve of the same frame.
+/// What solving a frame costs, over what the direct solve of it does.
+struct OverDirect {
+  double time = 0;
+  double processor = 0;  ///< time of all threads together, which depends less on where they run
+};
+
+/// What the field estimator costs on a device.
 struct SweepTimes {
   std::string device;
-  double contact_share = 0;                          ///< of the frame's pillars
-  std::array<double, kSweeps.size()> over_direct{};  ///< time over that of `direct`; 0: not solved
-  double without_shape = 0;                          ///< the same, of slip's evidence alone
-  double square_metre = 0;  ///< by default, of scenes/square_metre.toml; without contacts
-  double square_metre_with_contacts = 0;  ///< the same, contacts found and followed
+  double contact_share = 0;  ///< of the frame's pillars
+  std::array<OverDirect, kSweeps.size()> over_direct{};
+  OverDirect without_shape;  ///< of slip's evidence alone
+  OverDirect square_metre;   ///< by default, of scenes/square_metre.toml; without contacts
+  OverDirect square_metre_with_contacts;  ///< the same, contacts found and followed
   double square_metre_share = 0;          ///< of its pillars in contact
 };
 
