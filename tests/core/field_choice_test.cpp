@@ -96,5 +96,38 @@ TEST_F(ModelChoice, FewPillarsAreNotAskedForManyTerms) {
   EXPECT_EQ(taken({0.2F, 0.3F, 0.4F, 0.5F, 0.6F}), 1U);
 }
 
+/// The verdict on a contact once the model that was chosen is relaxed, whose ratios share
+/// `implied`; `known` is the friction that resolved pillars show, zero where they show none.
+class LastVerdict : public ModelChoice {
+ protected:
+  [[nodiscard]] maths::Verdict of(double implied, float known, float shown_spread) const {
+    maths::Course course{};
+    maths::begin_course(&course);
+    course.choice = {PF_USE_BEST, 0, 0.5F};
+    course.implied.ratio = implied;
+    course.implied.share = 0.9;
+    course.known = known;
+    course.verdict.spread = shown_spread;
+    maths::after_attempt(&course, scratch_);
+    EXPECT_EQ(course.step, PF_END_OF_COURSE);
+    return course.verdict;
+  }
+};
+
+TEST_F(LastVerdict, IsTheModelsWhereNothingElseShowsTheFriction) {
+  const maths::Verdict verdict = of(1.9, 0, 0);
+  EXPECT_EQ(verdict.way, PF_BY_SHAPE);
+  EXPECT_FLOAT_EQ(verdict.friction, 1.9F);
+  EXPECT_EQ(verdict.may_stick, 0U);
+}
+
+TEST_F(LastVerdict, KeepsTheFrictionThatIsShownAndThatWhatSlipsMayStick) {
+  const maths::Verdict verdict = of(1.9, 2, 0.004F);
+  EXPECT_EQ(verdict.way, PF_BY_SHAPE);
+  EXPECT_FLOAT_EQ(verdict.friction, 2);
+  EXPECT_FLOAT_EQ(verdict.spread, 0.004F);
+  EXPECT_EQ(verdict.may_stick, 1U);
+}
+
 }  // namespace
 }  // namespace pillarfield
