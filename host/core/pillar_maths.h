@@ -35,6 +35,10 @@ namespace pillarfield::single_precision {
 #include "kernels/field/residual.h"
 // and what judges by all of these
 #include "kernels/field/verdict.h"
+// and the scale of what slips, line by line
+#include "kernels/field/flank.h"
+// of all lines
+#include "kernels/field/flanks.h"
 // by the friction shown, by the pressure's shape
 #include "kernels/field/slip.h"
 // and what a shape implies

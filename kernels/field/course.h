@@ -20,7 +20,11 @@
 #define PF_SHARE_MISFIT 14u
 #define PF_BEGIN_MEMBRANE 15u
 #define PF_RELAX_MEMBRANE 16u
-#define PF_END_OF_COURSE 17u
+#define PF_SUM_FLANKS 17u
+#define PF_JUDGE_FLANKS 18u
+#define PF_SHAPE_ROWS 19u
+#define PF_SHAPE_COLUMNS 20u
+#define PF_END_OF_COURSE 21u
 
 /* Where a contact's course has come to. */
 typedef struct {
@@ -30,6 +34,7 @@ typedef struct {
   Verdict verdict;   /* so far */
   float known;       /* friction that resolved pillars show; zero where they show none */
   SlipEvidence slip; /* for it */
+  float flanked;     /* friction of flanks */
   Choice choice;     /* of a model, */
   Fit fit;           /* its trend, */
   Plateau implied;   /* and the plateau of the ratios that it implies */
@@ -43,9 +48,11 @@ static inline void begin_course(Course* course) {
   course->verdict = verdict_by(PF_BY_NOTHING, 0.0f);
   course->known = 0.0f;
   course->slip.plateau = none;
+  course->flanked = 0.0f;
   course->choice.attempt = 0;
-  course->choice.best = PF_MODELS;
+  course->choice.best = PF_NO_MODEL;
   course->choice.merit = 0.0f;
+  course->choice.spread = 0.0f;
   course->implied = none;
 }
 
@@ -55,11 +62,9 @@ static inline void count_next(Course* course, uint counts) {
   course->step = PF_CLEAR_COUNTS;
 }
 
-/* The pressure's shape comes next, where it may be used and there is enough of it. */
-static inline void begin_shape(Course* course, Scratch scratch, FieldSettings settings) {
-  const double least = PF_LEAST_RESOLVED_SHARE * scratch.shared[PF_AT_LOADED];
-  const bool told = settings.shape != 0 && !(scratch.shared[PF_AT_RESOLVED] < least);
-  course->step = told ? PF_WEIGH_LINES : PF_END_OF_COURSE;
+/* The pressure's shape comes next, where it may be used. */
+static inline void begin_shape(Course* course, FieldSettings settings) {
+  course->step = settings.shape != 0 ? PF_WEIGH_LINES : PF_END_OF_COURSE;
 }
 
 static inline void after_summary(Course* course, Scratch scratch, FieldSettings settings) {
@@ -70,15 +75,15 @@ static inline void after_summary(Course* course, Scratch scratch, FieldSettings 
   } else if (settings.slip != 0) {
     count_next(course, PF_COUNT_SLOPES);
   } else {
-    begin_shape(course, scratch, settings);
+    begin_shape(course, settings);
   }
 }
 
 /* Slopes are counted twice, the second time by what the first told. */
-static inline void after_slopes(Course* course, Scratch scratch, FieldSettings settings) {
+static inline void after_slopes(Course* course, FieldSettings settings) {
   const bool first = course->round++ == 0;
   if (first && !(course->slip.plateau.share > 0.0)) {
-    begin_shape(course, scratch, settings);
+    begin_shape(course, settings);
   } else {
     count_next(course, first ? PF_COUNT_SLOPES : PF_COUNT_CONTRADICTIONS);
   }
@@ -88,7 +93,7 @@ static inline void after_contradictions(Course* course, Scratch scratch, FieldSe
   const double loaded = scratch.shared[PF_AT_LOADED];
   const ShownFriction shown = shown_friction(&course->slip, loaded);
   const bool few = scratch.shared[PF_AT_OPEN] < PF_FEW_OPEN * loaded;
-  begin_shape(course, scratch, settings);
+  begin_shape(course, settings);
   if (!(shown.friction > 0.0f)) return;
   course->known = shown.friction;
   course->verdict = verdict_by(PF_BY_SLIP, shown.friction);
@@ -101,8 +106,13 @@ static inline void after_contradictions(Course* course, Scratch scratch, FieldSe
 static inline void begin_attempt(Course* course, Scratch scratch, uint attempt) {
   course->choice.attempt = attempt;
   course->round = 0;
-  if (attempt == PF_USE_BEST && course->choice.best == PF_MODELS) {
+  if (attempt == PF_USE_BEST && course->choice.best == PF_NO_MODEL) {
     course->step = PF_END_OF_COURSE;
+  } else if (asks_flanks(course->choice)) {
+    course->flanked = PF_FLANK_FRICTION;
+    course->step = PF_SUM_FLANKS;
+  } else if (attempt == PF_USE_BEST && course->choice.best == PF_FLANKS) {
+    course->step = PF_SHAPE_ROWS;
   } else if (is_relaxed(course->choice)) {
     course->fit.trend = shared_trend_of(scratch, tried_model(course->choice));
     course->step = PF_BEGIN_MEMBRANE;
@@ -129,6 +139,32 @@ static inline void after_fit(Course* course, Scratch scratch) {
   } else {
     count_next(course, PF_COUNT_IMPLIED);
   }
+}
+
+/* Flanks tell a friction: they are asked again at it, and at last open pillars, too. */
+static inline void after_flanks(Course* course, Scratch scratch) {
+  course->flanked = (float)shared_flanks(scratch).friction;
+  ++course->round;
+  if (course->round < PF_FLANK_ROUNDS) {
+    course->step = PF_SUM_FLANKS;
+  } else {
+    count_next(course, PF_COUNT_CONTRADICTIONS);
+  }
+}
+
+/* A verdict on what flanks say. */
+static inline void judge_flanks(Course* course, Scratch scratch) {
+  const double all = course->slip.agree + course->slip.contradict;
+  const Verdict verdict =
+      verdict_by_flanks(shared_flanks(scratch), all > 0.0 ? course->slip.contradict / all : 0.0);
+  begin_attempt(course, scratch, attempt_after_flanks(verdict, scratch, &course->choice));
+}
+
+/* Flanks were the best. */
+static inline void end_with_flanks(Course* course) {
+  course->verdict = verdict_by(PF_BY_SHAPE, course->flanked);
+  course->verdict.spread = course->choice.spread;
+  course->step = PF_END_OF_COURSE;
 }
 
 /* A verdict on the model that was tried. */
@@ -189,19 +225,29 @@ static inline void next_step(Course* course, Scratch scratch, FieldSettings sett
       break;
     case PF_FIND_PLATEAU:
       if (course->counts == PF_COUNT_SLOPES) {
-        after_slopes(course, scratch, settings);
+        after_slopes(course, settings);
       } else {
         after_implied(course, scratch);
       }
       break;
     case PF_SEE_CONTRADICTIONS:
-      after_contradictions(course, scratch, settings);
+      if (asks_flanks(course->choice)) {
+        judge_flanks(course, scratch);
+      } else {
+        after_contradictions(course, scratch, settings);
+      }
       break;
     case PF_WEIGH_LINES:
       begin_attempt(course, scratch, attempt_from(0, course->choice, scratch, course->known));
       break;
     case PF_FIT_TREND:
       after_fit(course, scratch);
+      break;
+    case PF_JUDGE_FLANKS:
+      after_flanks(course, scratch);
+      break;
+    case PF_SHAPE_COLUMNS:
+      end_with_flanks(course);
       break;
     case PF_SHARE_MISFIT:
       after_attempt(course, scratch);

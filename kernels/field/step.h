@@ -25,6 +25,16 @@ static inline void see_plateau(const Contact* contact, Course* course) {
   }
 }
 
+/* The friction that open pillars may contradict: that of slopes, later that of flanks. */
+static inline float doubted_friction(const Course* course) {
+  return asks_flanks(course->choice) ? course->flanked : (float)course->slip.plateau.ratio;
+}
+
+static inline FlankScale flank_scale_of(const Contact* contact, const Course* course) {
+  const FlankScale scale = {course->flanked, contact->settings.noise, peak_of(contact->scratch)};
+  return scale;
+}
+
 /* Takes the work-item's share of the step at hand. */
 static inline void take_step(const Contact* contact, Course* course) {
   const Tile tile = contact->tile;
@@ -54,7 +64,7 @@ static inline void take_step(const Contact* contact, Course* course) {
                    share);
       break;
     case PF_COUNT_CONTRADICTIONS:
-      count_contradictions(tile, scratch, settings.noise, (float)course->slip.plateau.ratio, share);
+      count_contradictions(tile, scratch, settings.noise, doubted_friction(course), share);
       break;
     case PF_COUNT_IMPLIED:
       evaluate_shape(tile, scratch, &trend, is_relaxed(course->choice), settings.noise, share);
@@ -82,6 +92,18 @@ static inline void take_step(const Contact* contact, Course* course) {
       break;
     case PF_SHARE_MISFIT:
       if (share.first == 0) share_misfit(tile, scratch, tried_model(course->choice));
+      break;
+    case PF_SUM_FLANKS:
+      sum_flanks(tile, cells, flank_scale_of(contact, course), scratch.lines, share);
+      break;
+    case PF_JUDGE_FLANKS:
+      if (share.first == 0) share_flanks(tile, scratch, course->flanked);
+      break;
+    case PF_SHAPE_ROWS:
+      shape_rows(tile, cells, flank_scale_of(contact, course), share);
+      break;
+    case PF_SHAPE_COLUMNS:
+      shape_columns(tile, cells, flank_scale_of(contact, course), share);
       break;
     case PF_BEGIN_MEMBRANE:
       begin_residuals(tile, cells, &trend, peak_of(scratch), share);

@@ -29,12 +29,14 @@ typedef struct {
   uint may_stick; /* what is taken to slip may as well not */
 } Verdict;
 
-#define PF_MODELS 5u /* of the pressure's shape */
+#define PF_MODELS 5u /* trends of the pressure's shape, */
+#define PF_FLANKS 5u /* and behind them, as a model, what its flanks say */
 
 /* Doubles that the work-items of a contact share: a trend of each model, and behind them */
 #define PF_AT_TRENDS 0
 #define PF_SHARED_TREND (PF_TREND_TERMS + 5)
-#define PF_AT_PEAK (PF_AT_TRENDS + PF_MODELS * PF_SHARED_TREND)
+#define PF_AT_FLANKS (PF_AT_TRENDS + PF_MODELS * PF_SHARED_TREND) /* a FlankVerdict, */
+#define PF_AT_PEAK (PF_AT_FLANKS + 3)
 #define PF_AT_OPEN_PEAK (PF_AT_PEAK + 1)
 #define PF_AT_RESOLVED (PF_AT_PEAK + 2) /* pillars of the sampled rows */
 #define PF_AT_OPEN (PF_AT_PEAK + 3)
@@ -58,6 +60,10 @@ typedef struct {
 #define PF_GOOD_UNEXPLAINED 0.01   /* if no more is left unexplained */
 #define PF_UNEXPLAINED_AT_SIX 0.03 /* most, of a trend of degree 6 */
 #define PF_MERIT_OF_ERROR 50.0     /* what a model loses against others by its scale's error */
+#define PF_LEAST_FLANKS 6.0        /* that may tell a friction, */
+#define PF_FLANK_ERROR 0.02        /* with an error up to this, */
+#define PF_FLANK_FRICTION_FROM 1.5 /* from here: where segments end, none contradicts it, */
+#define PF_FLANK_CONTRADICTED 0.1  /* which so many open pillars may contradict */
 #define PF_MISFIT_PER_SHARE 0.45   /* most, by the share of resolved pillars */
 #define PF_MISFIT_AT_FRICTION 0.1  /* most, where the friction is known */
 #define PF_FRICTION_APART 0.1      /* of a known one and the one a model implies, relative */
@@ -67,6 +73,7 @@ typedef struct {
 #define PF_TRUST_IN_BOUND 0.9f    /* 1: an open pillar is at the bound told */
 #define PF_SPREAD_OF_SHOWN 0.0015 /* of a friction however many pillars show it, relative */
 #define PF_SCALE_ERRORS 10.0      /* of a friction, by what the fit says of its own error, */
+#define PF_FLANK_ERRORS 6.0       /* by what flanks say of theirs, */
 #define PF_PLATEAU_SPREADS 0.2    /* by how far the ratios that bear it out are from it, */
 #define PF_SPREAD_OF_REST 0.03    /* and by the share that does not */
 #define PF_DEVIATION_OF_MIDDLE 0.4f /* of the truth from it, by the length of the segment */

@@ -38,14 +38,22 @@ class ModelChoice : public testing::Test {
     return maths::is_believed(verdict(score), scratch_, maths::model_of(model), 0);
   }
 
-  /// The model that is taken where each has a score; PF_MODELS where none is.
-  [[nodiscard]] std::uint32_t taken(const std::vector<float>& scores) {
-    maths::Choice choice{maths::attempt_from(0, {0, PF_MODELS, 0}, scratch_, 0), PF_MODELS, 0};
+  /// The model that is taken where each has a score, and their frictions a relative deviation of a
+  /// tenth; PF_NO_MODEL where none is.
+  [[nodiscard]] std::uint32_t taken(const std::vector<float>& scores, float known = 0) {
+    maths::Choice choice{0, PF_NO_MODEL, 0, 0};
+    choice.attempt = maths::attempt_from(0, choice, scratch_, known);
     tried_.clear();
     while (choice.attempt != PF_USE_BEST) {
       tried_.push_back(choice.attempt);
-      choice.attempt = maths::attempt_after(verdict(scores.at(choice.attempt % PF_MODELS)),
-                                            scratch_, 0, &choice);
+      if (maths::asks_flanks(choice)) {
+        choice.attempt = maths::attempt_after_flanks(
+            maths::verdict_by_flanks(flanks_, contradicted_), scratch_, &choice);
+        continue;
+      }
+      maths::Verdict said = verdict(scores.at(maths::tried_number(choice)));
+      said.spread = 0.1F;
+      choice.attempt = maths::attempt_after(said, scratch_, known, &choice);
     }
     return choice.best;
   }
@@ -53,11 +61,13 @@ class ModelChoice : public testing::Test {
   std::vector<double> shared_;
   maths::Scratch scratch_{};
   std::vector<std::uint32_t> tried_;
+  maths::FlankVerdict flanks_{2, 1, 0};  ///< nothing
+  double contradicted_ = 0;
 };
 
 TEST_F(ModelChoice, TheBestScoreIsTakenOfAllThatAreTried) {
   EXPECT_EQ(taken({0.2F, 0.4F, 0.6F, 0.3F, 0.5F}), 2U);
-  EXPECT_EQ(tried_, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(tried_, (std::vector<std::uint32_t>{0, 1, 2, 3, 4, PF_FLANKS}));
 }
 
 TEST_F(ModelChoice, OneThatLeavesNothingOpenEndsTheSearch) {
@@ -67,8 +77,49 @@ TEST_F(ModelChoice, OneThatLeavesNothingOpenEndsTheSearch) {
 }
 
 TEST_F(ModelChoice, WhereNoTrendIsBelievedAllAreTriedWithTheirMembranes) {
-  EXPECT_EQ(taken({0, 0, 0, 0, 0}), PF_MODELS);
-  EXPECT_EQ(tried_.size(), 2 * PF_MODELS);
+  EXPECT_EQ(taken({0, 0, 0, 0, 0}), PF_NO_MODEL);
+  EXPECT_EQ(tried_.size(), 2 * PF_MODELS + 1);
+}
+
+TEST_F(ModelChoice, FlanksAreTakenWhereNoTrendIsBelievedAndSpareTheMembranes) {
+  flanks_ = {2, 0.005, 50};
+  EXPECT_EQ(taken({0, 0, 0, 0, 0}), PF_FLANKS);
+  EXPECT_EQ(tried_.size(), PF_MODELS + 1);
+}
+
+TEST_F(ModelChoice, OfFlanksAndATrendTheSurerIsTaken) {
+  flanks_ = {2, 0.09 / PF_FLANK_ERRORS, 50};
+  EXPECT_EQ(taken({0.6F, 0, 0, 0, 0}), PF_FLANKS);
+  flanks_.error = 0.11 / PF_FLANK_ERRORS;
+  EXPECT_EQ(taken({0.6F, 0, 0, 0, 0}), 0U);
+}
+
+TEST_F(ModelChoice, FlanksThatAreNotGoodEnoughAreNot) {
+  const maths::FlankVerdict good{2, 0.005, 50};
+  const std::vector<maths::FlankVerdict> bad = {
+      {2, 0.021, 50}, {1.49, 0.005, 50}, {4.1, 0.005, 50}, {2, 0.005, 5}};
+  for (const maths::FlankVerdict& said : bad) {
+    flanks_ = said;
+    EXPECT_EQ(taken({0, 0, 0, 0, 0}), PF_NO_MODEL);
+  }
+  flanks_ = good;
+  contradicted_ = 0.11;
+  EXPECT_EQ(taken({0, 0, 0, 0, 0}), PF_NO_MODEL);
+}
+
+TEST_F(ModelChoice, FlanksAreNotAskedWhereAFrictionIsKnownOrATrendLeavesNothingOpen) {
+  flanks_ = {2, 0.001, 50};
+  EXPECT_EQ(taken({0, 0, 0, 0, 0}, 2), PF_NO_MODEL);
+  EXPECT_EQ(tried_.size(), PF_MODELS);
+  leave(0, 0.005, 0);
+  EXPECT_EQ(taken({0.6F, 0, 0, 0, 0}), 0U);
+}
+
+TEST_F(ModelChoice, OfFewResolvedPillarsFlanksAloneAreAsked) {
+  shared_[PF_AT_RESOLVED] = 59;
+  flanks_ = {2, 0.005, 50};
+  EXPECT_EQ(taken({1, 1, 1, 1, 1}), PF_FLANKS);
+  EXPECT_EQ(tried_, (std::vector<std::uint32_t>{PF_FLANKS}));
 }
 
 TEST_F(ModelChoice, AModelWhoseScaleIsSurerIsPreferred) {

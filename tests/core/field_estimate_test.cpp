@@ -388,5 +388,17 @@ TEST_F(OnScenes, RoundContactsThatStickInTheMiddleAreResolved) {
   }
 }
 
+/// Where trends of the whole contact find a wrong friction, or none.
+TEST_F(OnScenes, WhatNoTrendFollowsIsReadAlongItsFlanks) {
+  for (const char* filter : {"sphere 31, partial slip 0.93 at 175°, mu 2.3",
+                             "wavy 33 x 9, partial slip 0.93 at 86.5°, mu 1.8",
+                             "cone 29, partial slip 0.75 at 269.5°, mu 2.3"}) {
+    for_scenes(filter, [](const auto& score, const auto& midpoint, const auto& scene) {
+      EXPECT_LE(score.rms_counts(), 0.15 * midpoint.rms_counts()) << scene.name();
+      EXPECT_GE(score.coverage(), 0.93) << scene.name();
+    });
+  }
+}
+
 }  // namespace
 }  // namespace pillarfield

@@ -64,6 +64,26 @@ position_mm = [-10, -38]
 load_n = 220
 )";
 
+/// A sphere whose middle is resolved, but too little of it for a trend.
+constexpr const char* kFlankedScene = R"(
+[skin]
+pillars = [70, 72]
+threshold_counts = 2
+[sensor]
+noise_counts = 0.5
+adc_bits = 10
+[time]
+frames = 1
+[[contact]]
+shape = "sphere"
+motion = "partial_slip"
+contact_radius_mm = 32
+friction = 2.3
+tangential_ratio = 0.93
+position_mm = [1, -2]
+load_n = 800
+)";
+
 SolverPlan plan_of(const Simulator& simulator) {
   SolverPlan plan;
   plan.skin = simulator.scene().skin;
@@ -120,8 +140,8 @@ class EveryWay : public testing::TestWithParam<Way> {
   }
 
   /// Solves all frames of the scene, and expects the bits of the C++ loop.
-  static void expect_host_bits(const SolverPlan& plan) {
-    const Simulator simulator(parse_scene(kScene, "scene"));
+  static void expect_host_bits(const SolverPlan& plan, const char* scene = kScene) {
+    const Simulator simulator(parse_scene(scene, "scene"));
     Processor solver = processor(plan);
     FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
     ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
@@ -138,6 +158,23 @@ class EveryWay : public testing::TestWithParam<Way> {
 TEST_P(EveryWay, NothingSaidHasTheBitsOfTheHost) {
   const SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
   expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, WhatFlanksTellHasTheBitsOfTheHost) {
+  const Simulator simulator(parse_scene(kFlankedScene, "scene"));
+  const SolverPlan plan = plan_of(simulator);
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  simulator.render(0, raw, truth);
+  SolverPlan direct = plan;
+  direct.estimator = Estimator::direct;
+  ForceField field = solve_on_host(direct, raw.view());
+  HostFieldEstimator estimator(plan);
+  estimator.resolve(field);
+  ASSERT_EQ(estimator.verdicts().size(), 1U);
+  ASSERT_EQ(estimator.verdicts()[0].way, PF_BY_SHAPE);
+  ASSERT_EQ(estimator.verdicts()[0].score, 0);  // which a trend's is not
+  expect_host_bits(plan, kFlankedScene);
 }
 
 TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
