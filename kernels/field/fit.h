@@ -37,7 +37,7 @@ typedef struct {
   uint shared;  /* where in Scratch::shared it lies */
 } Model;
 
-/* Of the pressure's square and of itself, degree 2; the same, degree 4; of its square, degree 6. */
+/* Of the pressure's square and of itself, degree 2; the same, degree 4. */
 static inline Model model_of(uint number) {
   const Model model = {2 * (number / 2) + 2, (number & 1u) == 0,
                        PF_AT_TRENDS + number * PF_SHARED_TREND};

@@ -29,10 +29,8 @@ static inline Verdict verdict_of_shape(Plateau plateau, const Trend* trend, doub
 }
 
 /* Whether a model's evidence is good enough. */
-static inline bool is_believed(Verdict verdict, Scratch scratch, Model model, float known) {
+static inline bool is_believed(Verdict verdict, Scratch scratch, float known) {
   if (!(verdict.score > (float)PF_LEAST_SCORE)) return false;
-  const double unexplained = scratch.shared[model.shared + PF_TREND_UNEXPLAINED];
-  if (model.degree > 4 && !(unexplained < PF_UNEXPLAINED_AT_SIX)) return false;
   if (known > 0.0f) {
     return fabs(verdict.friction - known) <= (float)PF_FRICTION_APART * known &&
            verdict.misfit <= (float)PF_MISFIT_AT_FRICTION;
@@ -92,11 +90,10 @@ static inline uint attempt_from(uint from, Choice choice, Scratch scratch, float
 
 /* Takes note of the verdict on the model that was tried, and returns what to try next. */
 static inline uint attempt_after(Verdict verdict, Scratch scratch, float known, Choice* choice) {
-  const Model model = tried_model(*choice);
-  PF_GLOBAL const double* const shared = scratch.shared + model.shared;
+  PF_GLOBAL const double* const shared = scratch.shared + tried_model(*choice).shared;
   const float merit = verdict.score - (float)(PF_MERIT_OF_ERROR * shared[PF_TREND_SCALE_ERROR]);
   const bool better = choice->best == PF_NO_MODEL || merit > choice->merit;
-  if (better && is_believed(verdict, scratch, model, known)) {
+  if (better && is_believed(verdict, scratch, known)) {
     choice->best = tried_number(*choice);
     choice->merit = merit;
     choice->spread = verdict.spread;

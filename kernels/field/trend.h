@@ -2,9 +2,9 @@
  * the resolved pillars, to zero at the contact's edge, and, but for a factor, to the pillars that
  * slip (docs/derivations/field.md, section 3). */
 
-#define PF_TREND_TERMS 28   /* of a polynomial of degree 6, the highest, in two variables */
-#define PF_TREND_MOMENTS 13 /* powers of x in its normal equations */
-#define PF_TREND_RIGHT 7    /* powers of x on their right side */
+#define PF_TREND_TERMS 15  /* of a polynomial of degree 4, the highest, in two variables */
+#define PF_TREND_MOMENTS 9 /* powers of x in its normal equations */
+#define PF_TREND_RIGHT 5   /* powers of x on their right side */
 
 /* A line's record of doubles: the moments, */
 #define PF_LINE_RIGHT PF_TREND_MOMENTS                      /* resolved pillars, */

@@ -29,8 +29,8 @@ typedef struct {
   uint may_stick; /* what is taken to slip may as well not */
 } Verdict;
 
-#define PF_MODELS 5u /* trends of the pressure's shape, */
-#define PF_FLANKS 5u /* and behind them, as a model, what its flanks say */
+#define PF_MODELS 4u /* trends of the pressure's shape, */
+#define PF_FLANKS 4u /* and behind them, as a model, what its flanks say */
 
 /* Doubles that the work-items of a contact share: a trend of each model, and behind them */
 #define PF_AT_TRENDS 0
@@ -58,7 +58,6 @@ typedef struct {
 #define PF_LEAST_SCORE 0.1
 #define PF_GOOD_SCORE 0.5          /* further models are not tried, */
 #define PF_GOOD_UNEXPLAINED 0.01   /* if no more is left unexplained */
-#define PF_UNEXPLAINED_AT_SIX 0.03 /* most, of a trend of degree 6 */
 #define PF_MERIT_OF_ERROR 50.0     /* what a model loses against others by its scale's error */
 #define PF_LEAST_FLANKS 6.0        /* that may tell a friction, */
 #define PF_FLANK_ERROR 0.02        /* with an error up to this, */
