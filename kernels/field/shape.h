@@ -108,11 +108,13 @@ static inline uint attempt_after(Verdict verdict, Scratch scratch, float known, 
 /* What flanks, if they are good enough, say of the friction, which so many open pillars contradict;
  * how far it is off is told as of a trend's (F12). */
 static inline Verdict verdict_by_flanks(FlankVerdict flanks, double contradicted) {
+  const double spread = PF_FLANK_ERRORS * flanks.error;
+  const double least = flanks.friction * (1.0 - PF_FLANK_DEVIATIONS * spread);
   const bool good = flanks.flanks >= PF_LEAST_FLANKS && flanks.error <= PF_FLANK_ERROR &&
-                    flanks.friction >= PF_FLANK_FRICTION_FROM &&
-                    flanks.friction <= PF_LARGEST_FRICTION && contradicted <= PF_FLANK_CONTRADICTED;
+                    least >= PF_FLANK_FRICTION_FROM && flanks.friction <= PF_LARGEST_FRICTION &&
+                    contradicted <= PF_FLANK_CONTRADICTED;
   Verdict verdict = verdict_by(good ? PF_BY_SHAPE : PF_BY_NOTHING, (float)flanks.friction);
-  verdict.spread = (float)(PF_FLANK_ERRORS * flanks.error);
+  verdict.spread = (float)spread;
   return verdict;
 }
 

@@ -56,16 +56,17 @@ typedef struct {
 #define PF_LEAST_RESOLVED 12.0 /* pillars */
 #define PF_LEAST_RESOLVED_SHARE 0.06
 #define PF_LEAST_SCORE 0.1
-#define PF_GOOD_SCORE 0.5          /* further models are not tried, */
-#define PF_GOOD_UNEXPLAINED 0.01   /* if no more is left unexplained */
-#define PF_MERIT_OF_ERROR 50.0     /* what a model loses against others by its scale's error */
-#define PF_LEAST_FLANKS 6.0        /* that may tell a friction, */
-#define PF_FLANK_ERROR 0.02        /* with an error up to this, */
-#define PF_FLANK_FRICTION_FROM 1.5 /* from here: where segments end, none contradicts it, */
-#define PF_FLANK_CONTRADICTED 0.1  /* which so many open pillars may contradict */
-#define PF_MISFIT_PER_SHARE 0.45   /* most, by the share of resolved pillars */
-#define PF_MISFIT_AT_FRICTION 0.1  /* most, where the friction is known */
-#define PF_FRICTION_APART 0.1      /* of a known one and the one a model implies, relative */
+#define PF_GOOD_SCORE 0.5        /* further models are not tried, */
+#define PF_GOOD_UNEXPLAINED 0.01 /* if no more is left unexplained */
+#define PF_MERIT_OF_ERROR 50.0   /* what a model loses against others by its scale's error */
+#define PF_LEAST_FLANKS 6.0      /* that may tell a friction, */
+#define PF_FLANK_ERROR 0.02      /* with an error up to this, */
+#define PF_FLANK_FRICTION_FROM 1.41421356 /* above it, for the rest none contradicts, */
+#define PF_FLANK_DEVIATIONS 2.0           /* by so many standard deviations of it, */
+#define PF_FLANK_CONTRADICTED 0.1         /* which so many open pillars may contradict */
+#define PF_MISFIT_PER_SHARE 0.45          /* most, by the share of resolved pillars */
+#define PF_MISFIT_AT_FRICTION 0.1         /* most, where the friction is known */
+#define PF_FRICTION_APART 0.1             /* of a known one and the one a model implies, relative */
 #define PF_FEW_OPEN 0.1           /* of a contact's pillars: no model is asked whether they stick */
 #define PF_ALL_SLIP 0.9           /* of the pillars that can show friction: so do open ones */
 #define PF_LARGEST_FRICTION 4.0   /* that is believed without being told */

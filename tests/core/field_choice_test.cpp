@@ -94,8 +94,7 @@ TEST_F(ModelChoice, OfFlanksAndATrendTheSurerIsTaken) {
 
 TEST_F(ModelChoice, FlanksThatAreNotGoodEnoughAreNot) {
   const maths::FlankVerdict good{2, 0.005, 50};
-  const std::vector<maths::FlankVerdict> bad = {
-      {2, 0.021, 50}, {1.49, 0.005, 50}, {4.1, 0.005, 50}, {2, 0.005, 5}};
+  const std::vector<maths::FlankVerdict> bad = {{2, 0.021, 50}, {4.1, 0.005, 50}, {2, 0.005, 5}};
   for (const maths::FlankVerdict& said : bad) {
     flanks_ = said;
     EXPECT_EQ(taken({0, 0, 0, 0}), PF_NO_MODEL);
@@ -103,6 +102,17 @@ TEST_F(ModelChoice, FlanksThatAreNotGoodEnoughAreNot) {
   flanks_ = good;
   contradicted_ = 0.11;
   EXPECT_EQ(taken({0, 0, 0, 0}), PF_NO_MODEL);
+}
+
+TEST_F(ModelChoice, AFrictionOfFlanksMustBeAboveWhatNoPillarContradicts) {
+  const auto is_taken = [&](double friction, double deviation) {
+    flanks_ = {friction, deviation / PF_FLANK_ERRORS, 50};
+    return taken({0, 0, 0, 0}) == PF_FLANKS;
+  };
+  EXPECT_TRUE(is_taken(1.45, 0.01));
+  EXPECT_FALSE(is_taken(1.40, 0.001));
+  EXPECT_FALSE(is_taken(1.6, 0.08));
+  EXPECT_TRUE(is_taken(2, 0.08));
 }
 
 TEST_F(ModelChoice, FlanksAreNotAskedWhereAFrictionIsKnownOrATrendLeavesNothingOpen) {
