@@ -33,10 +33,6 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
   return settings;
 }
 
-/// Of a contact at least one pillar in so many must be open for its evidence to be heard: fewer are
-/// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
-constexpr std::uint32_t kLeastOpenShare = 64;
-
 static_assert(std::endian::native == std::endian::little,
               "words are taken apart from their low end");
 static_assert(status::kUsable == 15 && status::kAmbiguous == 1 << 4 &&

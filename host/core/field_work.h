@@ -11,6 +11,10 @@
 
 namespace pillarfield {
 
+/// Of a contact at least one pillar in so many must be open for its evidence to be heard: fewer are
+/// lone pillars at its edge, which bear little, and all of the contact would be searched for them.
+inline constexpr std::uint32_t kLeastOpenShare = 64;
+
 /// What the field estimator has to do in one frame: which contacts are worth a look, where in the
 /// scratch memory each has its place, and which pillars stay alone. Memory is kept from frame to
 /// frame.

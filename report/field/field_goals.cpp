@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "core/field_work.h"
+
 namespace pillarfield::report {
 namespace {
 
@@ -91,7 +93,9 @@ FieldGoal goal_of(const Rule& rule, const std::vector<SceneResult>& judging) {
     ++goal.missed;
     if (result.best.rms_counts() > rule.limit * result.theta.rms_counts()) ++goal.by_noise;
     const field_study::Score& score = *result.by_method[rule.method];
-    if (2 * score.resolved < score.open) ++goal.left;
+    if (2 * score.resolved >= score.open) continue;
+    ++goal.left;
+    if (kLeastOpenShare * score.open < score.loaded) ++goal.unasked;
   }
   goal.misses = misses_by_shape(by_shape);
   return goal;

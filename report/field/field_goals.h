@@ -20,6 +20,7 @@ struct FieldGoal {
   std::size_t missed = 0;    ///< scenes above the limit
   std::size_t by_noise = 0;  ///< of them those where noise alone is above it
   std::size_t left = 0;      ///< of them those with less than half of the pillars resolved
+  std::size_t unasked = 0;   ///< of these, those with so few open pillars that none is asked
   std::string misses;        ///< what the missed ones are, by shape; empty without any
 
   [[nodiscard]] bool is_met() const { return scenes > 0 && missed == 0; }

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/field_work.h"
 #include "report/field/field_goals.h"
 #include "report/field/section.h"
 #include "report/table.h"
@@ -45,8 +46,15 @@ std::string text_of_missed(const FieldGoal& goal) {
         goal.by_noise, goal.missed);
   }
   if (goal.left > 0) {
-    text += fmt::format(" In {} the evidence does not suffice, and most pillars keep the midpoint.",
+    text += fmt::format(" In {} the evidence does not suffice, and most pillars keep the midpoint",
                         goal.left);
+    if (goal.unasked > 0) {
+      text += fmt::format(
+          "; {} of them have less than one open pillar in {}, at the contact's edge, little above "
+          "the noise, and are [not asked](decisions/field_estimator.md)",
+          goal.unasked, kLeastOpenShare);
+    }
+    text += ".";
   }
   return text + "\n";
 }

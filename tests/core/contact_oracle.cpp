@@ -37,11 +37,11 @@ std::vector<Node> double_exponential_rule() {
 /// By that rule, to which singularities at the ends do no harm.
 template <class Function>
 Traction integrate(double low, double high, Function f) {
-  static const std::vector<Node> kNodes = double_exponential_rule();
+  static const std::vector<Node> nodes = double_exponential_rule();
   Traction sum;
   if (!(high > low)) return sum;
   const double half = (high - low) / 2;
-  for (const Node& node : kNodes) sum = sum + half * node.weight * f(low + half * (1 + node.at));
+  for (const Node& node : nodes) sum = sum + half * node.weight * f(low + half * (1 + node.at));
   return sum;
 }
 

@@ -151,7 +151,7 @@ class LastVerdict : public ModelChoice {
   [[nodiscard]] maths::Verdict of(double implied, float known, float shown_spread) const {
     maths::Course course{};
     maths::begin_course(&course);
-    course.choice = {PF_USE_BEST, 0, 0.5F};
+    course.choice = {PF_USE_BEST, 0, 0.5F, 0};
     course.implied.ratio = implied;
     course.implied.share = 0.9;
     course.known = known;
