@@ -72,6 +72,24 @@ std::string misses_by_shape(
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// Why a scene misses a goal.
+void add_miss(const SceneResult& result, const field_study::Score& score, FieldGoal& goal) {
+  ++goal.missed;
+  if (result.best.rms_counts() > goal.limit * result.theta.rms_counts()) {
+    ++goal.by_noise;
+  } else if (2 * score.resolved < score.open) {
+    ++goal.left;
+    if (kLeastOpenShare * score.open < score.loaded) {
+      ++goal.unasked;
+      goal.most_unasked_counts = std::max(goal.most_unasked_counts, result.theta.rms_counts());
+    }
+  } else {
+    ++goal.otherwise;
+    goal.most_over_noise =
+        std::max(goal.most_over_noise, score.rms_counts() / result.best.rms_counts());
+  }
+}
+
 FieldGoal goal_of(const Rule& rule, const std::vector<SceneResult>& judging) {
   FieldGoal goal;
   goal.what = rule.what;
@@ -90,12 +108,7 @@ FieldGoal goal_of(const Rule& rule, const std::vector<SceneResult>& judging) {
     }
     if (ratio <= rule.limit) continue;
     ++missed;
-    ++goal.missed;
-    if (result.best.rms_counts() > rule.limit * result.theta.rms_counts()) ++goal.by_noise;
-    const field_study::Score& score = *result.by_method[rule.method];
-    if (2 * score.resolved >= score.open) continue;
-    ++goal.left;
-    if (kLeastOpenShare * score.open < score.loaded) ++goal.unasked;
+    add_miss(result, *result.by_method[rule.method], goal);
   }
   goal.misses = misses_by_shape(by_shape);
   return goal;

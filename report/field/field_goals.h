@@ -19,9 +19,12 @@ struct FieldGoal {
   std::string worst_scene;
   std::size_t missed = 0;    ///< scenes above the limit
   std::size_t by_noise = 0;  ///< of them those where noise alone is above it
-  std::size_t left = 0;      ///< of them those with less than half of the pillars resolved
+  std::size_t left = 0;      ///< of the others those with less than half of the pillars resolved
   std::size_t unasked = 0;   ///< of these, those with so few open pillars that none is asked
-  std::string misses;        ///< what the missed ones are, by shape; empty without any
+  double most_unasked_counts = 0;  ///< the largest RMS error of their midpoints
+  std::size_t otherwise = 0;       ///< missed ones that are neither
+  double most_over_noise = 0;      ///< the largest error of these, by that of noise alone
+  std::string misses;              ///< what the missed ones are, by shape; empty without any
 
   [[nodiscard]] bool is_met() const { return scenes > 0 && missed == 0; }
 };

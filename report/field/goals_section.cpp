@@ -50,11 +50,16 @@ std::string text_of_missed(const FieldGoal& goal) {
                         goal.left);
     if (goal.unasked > 0) {
       text += fmt::format(
-          "; {} of them have less than one open pillar in {}, at the contact's edge, little above "
-          "the noise, and are [not asked](decisions/field_estimator.md)",
-          goal.unasked, kLeastOpenShare);
+          "; {} of them have less than one open pillar in {}, at the contact's edge, and are "
+          "[not asked](decisions/field_estimator.md): the midpoint errs by {:.1f} counts there at "
+          "most",
+          goal.unasked, kLeastOpenShare, goal.most_unasked_counts);
     }
     text += ".";
+  }
+  if (goal.otherwise > 0) {
+    text += fmt::format(" In {} the error is up to {:.2f} times that of noise alone.",
+                        goal.otherwise, goal.most_over_noise);
   }
   return text + "\n";
 }
