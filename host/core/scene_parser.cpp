@@ -121,7 +121,7 @@ void read_solver(TomlSection section, Scene& scene) {
   scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
   if (scene.uncertainty && scene.estimator == Estimator::paper) {
     section.fail("uncertainty", "comes with the paper's estimator, which has none",
-                 "estimator = \"direct\" or \"field\"");
+                 R"(estimator = "direct" or "field")");
   }
   if (scene.estimator == Estimator::field) read_evidence(section, scene.field);
   section.finish();

@@ -110,7 +110,7 @@ static inline void sum_flank_line(Cells cells, FlankLine line, FlankScale scale,
  * rows. */
 static inline uint column_sampling_of(Tile tile) {
   const uint most = tile.rows < PF_MOST_SAMPLED_ROWS ? tile.rows : PF_MOST_SAMPLED_ROWS;
-  return (tile.cols + most - 1) / most;
+  return most > 0 ? (tile.cols + most - 1) / most : 1;
 }
 
 static inline PF_GLOBAL double* row_record(Tile tile, PF_GLOBAL double* lines, uint row) {
