@@ -188,6 +188,22 @@ TEST(Flanks, TheirErrorIsWhatTheySayAndGrowsWithTheNoise) {
   EXPECT_NEAR(error_at(1) / error_at(0.5), 2, 0.4);
 }
 
+TEST(Flanks, TheirErrorIsThatOfWhatTheirCubicsLeaveAndOfHowTheyDiffer) {
+  // Two flanks of precision 1, whose scales are 0.8 and 1.2.
+  std::array<double, PF_FLANKS_SUMS> sums{};
+  sums[PF_FLANKS_PRECISION] = 2;
+  sums[PF_FLANKS_PULL] = 2;
+  sums[PF_FLANKS_PRECISION_SQUARE] = 2;
+  sums[PF_FLANKS_PRODUCT] = 2;
+  sums[PF_FLANKS_PULL_SQUARE] = 0.8 * 0.8 + 1.2 * 1.2;
+  sums[PF_FLANKS_SQUARE] = 2;
+  sums[PF_FLANKS_FREEDOM] = 4;
+  const double of_mean = 0.2 * 0.2 / 2;
+  EXPECT_NEAR(maths::flank_scale_variance(sums.data(), 1), of_mean, 1e-12);
+  sums[PF_FLANKS_SQUARE] = 2.3;  // of which the scale explains 2
+  EXPECT_NEAR(maths::flank_scale_variance(sums.data(), 1), of_mean + 0.3 / 3 / 2, 1e-12);
+}
+
 TEST(Flanks, SayTheSameOfAContactThatIsMirroredOrTurned) {
   const maths::FlankVerdict said = FlankedContact(2.2, 0.5).verdict();
   const std::array<Place, 3> places = {[](double row, double col) {
