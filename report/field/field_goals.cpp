@@ -131,14 +131,17 @@ CoverageGoal coverage_goal(const std::vector<SceneResult>& judging) {
     ++goal.scenes;
     goal.most = std::max(goal.most, share);
     const field_study::Score& score = result.field();
+    const bool resolved = 2 * score.resolved >= score.open;
+    if (resolved) ++goal.resolved;
     if (share < 0.93) {
       ++goal.below;
+      if (resolved) ++goal.resolved_below;
       const double chance = std::sqrt(0.95 * 0.05 / static_cast<double>(score.open));
       if (share >= 0.95 - 1.96 * chance) ++goal.by_chance;
     }
     if (share > 0.99) {
       ++goal.above;
-      if (2 * score.resolved < score.open) ++goal.whole;
+      if (!resolved) ++goal.whole;
     }
     if (share >= goal.least) continue;
     goal.least = share;

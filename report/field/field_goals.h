@@ -40,8 +40,10 @@ struct CoverageGoal {
   double most = 0;
   std::size_t below = 0;
   std::size_t above = 0;
-  std::size_t by_chance = 0;  ///< of those below: independent errors of 95 % could do as much
-  std::size_t whole = 0;      ///< of those above: most pillars are not resolved
+  std::size_t resolved = 0;        ///< scenes most of whose pillars are
+  std::size_t resolved_below = 0;  ///< of these below 93 %
+  std::size_t by_chance = 0;       ///< of those below: independent errors of 95 % could do as much
+  std::size_t whole = 0;           ///< of those above: most pillars are not resolved
 };
 [[nodiscard]] CoverageGoal coverage_goal(const std::vector<SceneResult>& judging);
 

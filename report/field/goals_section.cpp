@@ -66,20 +66,24 @@ std::string text_of_missed(const FieldGoal& goal) {
 
 std::string text_of_coverage(const CoverageGoal& goal) {
   const bool met = goal.below == 0 && goal.above == 0;
+  const double share_of_resolved =
+      100.0 * static_cast<double>(goal.resolved_below) / static_cast<double>(goal.resolved);
   return fmt::format(
       "\nThe truth shall lie in the stated 95 % band for 93 to 99 % of the pillars of region 3, in "
       "every judging scene: {}. Of {} scenes {} are below and {} above; the least is {:.1f} % "
       "({}), "
       "the largest {:.1f} %. Two things stop it. An error is *common* to a contact, that of its "
       "friction or of its model, and the band is one factor for all pillars: it holds nearly all "
-      "of them or few, so that 95 % can be true of contacts, not of each. And where nothing "
-      "resolves a pillar, the whole segment is all that can be said, and holds nearly every truth: "
-      "{} of those above. A narrower band could not be true there, since bodies that read the same "
-      "reach from one end of it to the other ([below](#what-cannot-be-known)). Of those below, {} "
+      "of them or few, so that 95 % can be true of contacts, not of each: of the {} contacts that "
+      "are resolved it holds less than 93 % in {}, {:.1f} %. And where nothing resolves a pillar, "
+      "the whole segment is all that can be said, and holds nearly every truth: {} of those above. "
+      "A narrower band could not be true there, since bodies that read the same reach "
+      "from one end of it to the other ([below](#what-cannot-be-known)). Of those below, {} "
       "are within two standard deviations of 95 %, for they have few pillars "
       "([coverage](#coverage)).\n",
       verdict_of(met), goal.scenes, goal.below, goal.above, 100 * goal.least, goal.least_scene,
-      100 * goal.most, goal.whole, goal.by_chance);
+      100 * goal.most, goal.resolved, goal.resolved_below, share_of_resolved, goal.whole,
+      goal.by_chance);
 }
 
 std::string text_of_rest(const FieldContext& context) {
