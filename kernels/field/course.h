@@ -21,7 +21,7 @@
 #define PF_BEGIN_MEMBRANE 15u
 #define PF_RELAX_MEMBRANE 16u
 #define PF_SUM_FLANKS 17u
-#define PF_JUDGE_FLANKS 18u
+#define PF_SHARE_FLANKS 18u
 #define PF_SHAPE_ROWS 19u
 #define PF_SHAPE_COLUMNS 20u
 #define PF_END_OF_COURSE 21u
@@ -141,7 +141,8 @@ static inline void after_fit(Course* course, Scratch scratch) {
   }
 }
 
-/* Flanks tell a friction: they are asked again at it, and at last open pillars, too. */
+/* Flanks tell a friction, at which they are asked again; after the last round open pillars are
+ * asked whether they contradict it. */
 static inline void after_flanks(Course* course, Scratch scratch) {
   course->flanked = (float)shared_flanks(scratch).friction;
   ++course->round;
@@ -243,7 +244,7 @@ static inline void next_step(Course* course, Scratch scratch, FieldSettings sett
     case PF_FIT_TREND:
       after_fit(course, scratch);
       break;
-    case PF_JUDGE_FLANKS:
+    case PF_SHARE_FLANKS:
       after_flanks(course, scratch);
       break;
     case PF_SHAPE_COLUMNS:

@@ -96,7 +96,7 @@ static inline void take_step(const Contact* contact, Course* course) {
     case PF_SUM_FLANKS:
       sum_flanks(tile, cells, flank_scale_of(contact, course), scratch.lines, share);
       break;
-    case PF_JUDGE_FLANKS:
+    case PF_SHARE_FLANKS:
       if (share.first == 0) share_flanks(tile, scratch, course->flanked);
       break;
     case PF_SHAPE_ROWS:
