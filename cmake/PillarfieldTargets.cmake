@@ -1,5 +1,19 @@
 # What every target of the project has in common.
 
+# The compilers that the project is checked with. Newer ones warn of more, which must not keep a user
+# from building.
+if((CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12\\.")
+   OR (CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^14\\."))
+  set(PILLARFIELD_KNOWN_COMPILER ON)
+endif()
+
+# Programs are position-independent, and the loader searches nothing but the system's directories. (A
+# build directory's own RUNPATH would end in an empty entry, which means the current directory.)
+include(CheckPIESupported)
+check_pie_supported(LANGUAGES CXX)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+
 # Language, warnings and the floating-point rules that make host and device agree bit for bit.
 function(pillarfield_compile_options target)
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -9,16 +23,25 @@ function(pillarfield_compile_options target)
     -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wnull-dereference
     -ffp-contract=off)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # g++ 12 reports null dereferences inside the standard library at -O3.
-    target_compile_options(${target} PRIVATE -Wno-null-dereference)
+    # g++ 12 reports null dereferences and overlaps inside the standard library at -O3 that are none.
+    target_compile_options(${target} PRIVATE -Wno-null-dereference -Wno-restrict)
   endif()
-  if(PILLARFIELD_WERROR)
+  if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # g++ takes an included source file for a header, whose types would differ from file to file.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
+  if(PILLARFIELD_WERROR AND PILLARFIELD_KNOWN_COMPILER)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
   if(PILLARFIELD_SANITIZE)
     target_compile_options(${target} PRIVATE -fsanitize=address,undefined
       -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=address,undefined)
+  else()
+    # Hardening; tests/package/hardening_test.py reads it from the programs. FORTIFY needs an optimiser.
+    target_compile_options(${target} PRIVATE -fstack-protector-strong
+      $<$<NOT:$<CONFIG:Debug>>:-U_FORTIFY_SOURCE$<SEMICOLON>-D_FORTIFY_SOURCE=2>)
+    target_link_options(${target} PRIVATE -Wl,-z,relro,-z,now)
   endif()
 endfunction()
 
@@ -35,4 +58,13 @@ function(pillarfield_library name)
       $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
     PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/host)
   pillarfield_compile_options(pillarfield_${name})
+endfunction()
+
+# pillarfield_precompile(<target> <headers...>): headers that take long to read are read once where
+# files are compiled one by one for quick incremental builds (the preset dev). A unity build reads them
+# once per batch anyway.
+function(pillarfield_precompile target)
+  if(NOT CMAKE_UNITY_BUILD)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
 endfunction()

@@ -1,67 +1,88 @@
 # How tests are made, and what they run with.
+#
+# A test program is one entry of ctest and runs all of its tests; `PROGRAM --gtest_filter=...` runs some.
+# Three keywords say when an entry is run:
+#   (none)     in the optimised build, by `./dev test`
+#   LONG       by `./dev test --all` alone: it takes minutes, or tests what is for developers
+#   SANITIZED  with sanitizers too, by `./dev test`: parsers, files, the ring, calibration planes.
+#              All others are run with sanitizers by `./dev test --all`.
+# The target `default_tests` builds what `./dev test` runs, `all_tests` the rest too.
 
 # PoCL keeps compiled kernels in the build tree, not in the user's home; graphics drivers look for a
 # folder of the user's session.
-file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/session)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/pocl_cache)
+file(CHMOD ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/pocl_cache
+  PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
 set(PILLARFIELD_TEST_ENVIRONMENT "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/pocl_cache"
   "XDG_RUNTIME_DIR=${PROJECT_BINARY_DIR}/session")
 set(PILLARFIELD_TEST_PREFIX "")
+# At exit LeakSanitizer stops all threads, and dies of it now and then where they are PoCL's. Leaks are
+# looked for where no such threads live (LEAKS in pillarfield_test); device_leaks counts those of devices.
+set(PILLARFIELD_LEAKS_SOUGHT "")
 if(PILLARFIELD_SANITIZE)
+  set(asan_options "detect_stack_use_after_return=1:strict_string_checks=1")
   list(APPEND PILLARFIELD_TEST_ENVIRONMENT
-    "ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1"
-    "LSAN_OPTIONS=suppressions=${PROJECT_SOURCE_DIR}/tests/sanitizer/lsan.supp:print_suppressions=0"
+    "ASAN_OPTIONS=${asan_options}:detect_leaks=0"
     "UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1")
+  set(PILLARFIELD_LEAKS_SOUGHT "ASAN_OPTIONS=${asan_options}:detect_leaks=1")
   set(PILLARFIELD_TEST_PREFIX "asan.")
 endif()
+
+add_custom_target(default_tests)
+add_custom_target(all_tests)
+add_dependencies(all_tests default_tests)
+
+# pillarfield_test_entry(<name> [LONG] [SANITIZED] [TARGETS <targets...>]): says of the test <name> when it
+# runs and which targets it needs. Its label is the floor that its name begins with.
+function(pillarfield_test_entry name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED" "" "TARGETS")
+  string(REGEX REPLACE "[_.].*" "" labels ${name})
+  set(group default_tests)
+  if(arg_LONG OR (PILLARFIELD_SANITIZE AND NOT arg_SANITIZED))
+    list(APPEND labels long)
+    set(group all_tests)
+  endif()
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}"
+    ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
+  if(arg_TARGETS)
+    add_dependencies(${group} ${arg_TARGETS})
+  endif()
+endfunction()
 
 # pillarfield_test_program(<name> LINK <floors...> SOURCES <files...>): a GoogleTest program.
 function(pillarfield_test_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LINK;SOURCES")
-  add_executable(${name} ${arg_SOURCES})
+  add_executable(${name} EXCLUDE_FROM_ALL ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/host)
   list(TRANSFORM arg_LINK PREPEND pillarfield_)
   target_link_libraries(${name} PRIVATE ${arg_LINK} GTest::gtest_main)
   pillarfield_compile_options(${name})
+  pillarfield_test_options(${name})
 endfunction()
 
-# pillarfield_test(<floor>_<subject> LINK <floors...> SOURCES <files...>): the same, and each of its
-# tests is a test of the project.
+# pillarfield_test_options(<target>): tests are compiled more often than they run.
+function(pillarfield_test_options target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# pillarfield_test(<floor>_<subject> [LONG] [SANITIZED] [LEAKS] LINK <floors...> SOURCES <files...>): the
+# same, and its tests are a test of the project. LEAKS: with sanitizers, leaks are errors.
 function(pillarfield_test name)
-  pillarfield_test_program(${name} ${ARGN})
-  string(REGEX REPLACE "_.*" "" label ${name})
-  gtest_discover_tests(${name} TEST_PREFIX "${PILLARFIELD_TEST_PREFIX}${name}." NO_PRETTY_VALUES
-    TEST_LIST ${name}_tests DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} TIMEOUT 240)
-
-  # gtest_discover_tests takes no property that is a list; ctest sets it once it has the tests.
-  set(environment_file ${CMAKE_CURRENT_BINARY_DIR}/${name}_environment.cmake)
-  file(CONFIGURE OUTPUT ${environment_file} @ONLY CONTENT [[
-if(@name@_tests)
-  set_tests_properties(${@name@_tests} PROPERTIES ENVIRONMENT "@PILLARFIELD_TEST_ENVIRONMENT@")
-endif()
-]])
-  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${environment_file})
-endfunction()
-
-# pillarfield_labels(<variable> <name> [LONG]): the floor that a test's name begins with, and `long`,
-# which `./dev test` leaves out and `./dev test --all` does not. LONG holds with sanitizers, which make
-# many times slower what they do not watch either: kernels.
-function(pillarfield_labels variable name)
-  string(REGEX REPLACE "_.*" "" labels ${name})
-  if("LONG" IN_LIST ARGN AND PILLARFIELD_SANITIZE)
-    list(APPEND labels long)
-  endif()
-  set(${variable} "${labels}" PARENT_SCOPE)
-endfunction()
-
-# pillarfield_device_test(<name> [LONG] ...): the same, but the whole program is one test of the
-# project: opening an OpenCL device and compiling kernels takes longer than a test of them.
-function(pillarfield_device_test name)
-  pillarfield_labels(labels ${name} ${ARGN})
-  list(REMOVE_ITEM ARGN LONG)
-  pillarfield_test_program(${name} ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED;LEAKS" "" "")
+  pillarfield_test_program(${name} ${arg_UNPARSED_ARGUMENTS})
   add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${name} --gtest_brief=1)
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}" TIMEOUT 600
-    ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
+  set(when "")
+  foreach(keyword LONG SANITIZED)
+    if(arg_${keyword})
+      list(APPEND when ${keyword})
+    endif()
+  endforeach()
+  pillarfield_test_entry(${name} ${when} TARGETS ${name})
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES TIMEOUT 900)
+  if(arg_LEAKS)
+    set_property(TEST ${PILLARFIELD_TEST_PREFIX}${name} APPEND PROPERTY ENVIRONMENT
+      "${PILLARFIELD_LEAKS_SOUGHT}")
+  endif()
 endfunction()
 
 # pillarfield_oclgrind_test(<name> <program> <filter> [LONG]): one more test, which runs those tests of a
@@ -75,17 +96,13 @@ function(pillarfield_oclgrind_test name program filter)
   add_test(NAME oclgrind.${name}
     COMMAND ${PROJECT_SOURCE_DIR}/tests/oclgrind/run_under_oclgrind
       ${CMAKE_CURRENT_BINARY_DIR}/${name}.log $<TARGET_FILE:${program}> ${filter})
-  set(labels oclgrind)
-  if("LONG" IN_LIST ARGN)
-    list(APPEND labels long)
-  endif()
-  set_tests_properties(oclgrind.${name} PROPERTIES LABELS "${labels}" TIMEOUT 480 SKIP_RETURN_CODE 77
-    ENVIRONMENT "${PILLARFIELD_TEST_ENVIRONMENT}")
+  pillarfield_test_entry(oclgrind.${name} ${ARGN} TARGETS ${program})
+  set_tests_properties(oclgrind.${name} PROPERTIES TIMEOUT 480 SKIP_RETURN_CODE 77)
 endfunction()
 
-# pillarfield_python_test(<floor>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...>): a Python script that
-# passes by exiting with 0. It needs h5py and NumPy, which may be there for the system's Python only,
-# and that need not be the first on the path. Without them the test is skipped.
+# pillarfield_python_test(<floor>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...> TARGETS <targets...>):
+# a Python script that passes by exiting with 0. It needs h5py and NumPy, which may be there for the
+# system's Python only, and that need not be the first on the path. Without them the test is skipped.
 find_program(PILLARFIELD_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(PILLARFIELD_PATH_PYTHON python3)
 mark_as_advanced(PILLARFIELD_SYSTEM_PYTHON PILLARFIELD_PATH_PYTHON)
@@ -99,15 +116,21 @@ foreach(python IN ITEMS ${PILLARFIELD_SYSTEM_PYTHON} ${PILLARFIELD_PATH_PYTHON})
 endforeach()
 
 function(pillarfield_python_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG" "SCRIPT" "ARGUMENTS")
-  pillarfield_labels(labels ${name} ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG" "SCRIPT" "ARGUMENTS;TARGETS")
   if(PILLARFIELD_PYTHON)
     set(command ${PILLARFIELD_PYTHON} ${CMAKE_CURRENT_SOURCE_DIR}/${arg_SCRIPT} ${arg_ARGUMENTS})
   else()
     set(command ${CMAKE_COMMAND} -E echo "skipped: no Python with h5py and numpy was found")
   endif()
   add_test(NAME ${PILLARFIELD_TEST_PREFIX}${name} COMMAND ${command})
-  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES LABELS "${labels}" TIMEOUT 240
-    SKIP_REGULAR_EXPRESSION "^skipped:"
-    ENVIRONMENT "PILLARFIELD=$<TARGET_FILE:pillarfield>;PILLARFIELD_SOURCE=${PROJECT_SOURCE_DIR};PYTHONDONTWRITEBYTECODE=1;${PILLARFIELD_TEST_ENVIRONMENT}")
+  set(when "")
+  if(arg_LONG)
+    set(when LONG)
+  endif()
+  pillarfield_test_entry(${name} ${when} TARGETS pillarfield ${arg_TARGETS})
+  set_tests_properties(${PILLARFIELD_TEST_PREFIX}${name} PROPERTIES TIMEOUT 400
+    SKIP_REGULAR_EXPRESSION "^skipped:")
+  set_property(TEST ${PILLARFIELD_TEST_PREFIX}${name} APPEND PROPERTY ENVIRONMENT
+    "PILLARFIELD=$<TARGET_FILE:pillarfield>" "PILLARFIELD_SOURCE=${PROJECT_SOURCE_DIR}"
+    "PYTHONDONTWRITEBYTECODE=1")
 endfunction()

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/silent_blocks.h"
+#include "core/status_word.h"
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
 
@@ -17,12 +18,9 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "words are taken apart from their low end");
 
-constexpr std::size_t kWord = sizeof(std::uint64_t);
-constexpr std::uint64_t kEachByte = 0x0101010101010101u;
-
 std::uint64_t word_at(const std::uint8_t* bytes) {
   std::uint64_t word = 0;
-  std::memcpy(&word, bytes, kWord);
+  std::memcpy(&word, bytes, kWordBytes);
   return word;
 }
 
@@ -36,10 +34,10 @@ unsigned loaded_of(std::uint64_t word) {
 
 /// Eight pillars from column `col`, those past the row's end not loaded.
 unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
-  if (col + kWord <= row.size()) return loaded_of(word_at(row.data() + col));
-  if (row.size() >= kWord) {
-    const std::uint64_t last = word_at(row.data() + row.size() - kWord);
-    return loaded_of(last >> (8 * (col + kWord - row.size())));
+  if (col + kWordBytes <= row.size()) return loaded_of(word_at(row.data() + col));
+  if (row.size() >= kWordBytes) {
+    const std::uint64_t last = word_at(row.data() + row.size() - kWordBytes);
+    return loaded_of(last >> (8 * (col + kWordBytes - row.size())));
   }
   std::uint64_t word = 0;
   std::memcpy(&word, row.data() + col, row.size() - col);
@@ -47,12 +45,12 @@ unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
 }
 
 /// So many bytes are looked at together where there is silence.
-constexpr std::size_t kStride = 4 * kWord;
+constexpr std::size_t kStride = 4 * kWordBytes;
 
 bool is_silent(const std::uint8_t* bytes) {
   // Not a loop: that would not be unrolled.
-  const std::uint64_t any = word_at(bytes) | word_at(bytes + kWord) | word_at(bytes + 2 * kWord) |
-                            word_at(bytes + 3 * kWord);
+  const std::uint64_t any = word_at(bytes) | word_at(bytes + kWordBytes) |
+                            word_at(bytes + 2 * kWordBytes) | word_at(bytes + 3 * kWordBytes);
   return any == 0;
 }
 
@@ -75,7 +73,7 @@ void for_each_run(std::size_t first, std::size_t places, const Skip& skip, const
                   const Use& use) {
   bool inside = false;
   std::size_t begin = 0;
-  for (std::size_t at = first; at < places; at += kWord) {
+  for (std::size_t at = first; at < places; at += kWordBytes) {
     if (!inside) at = skip(at);
     if (at >= places) break;
     const unsigned found = bits(at);
@@ -112,7 +110,7 @@ void append_runs(std::span<const std::uint8_t> row, const ContactRun& awake,
 /// Bit n says whether block n of eight, from `at` on, has no mark.
 unsigned awake_at(std::span<const std::uint8_t> marks, std::size_t at) {
   std::uint64_t word = kEachByte;  // past the last there is silence
-  if (at + kWord <= marks.size()) {
+  if (at + kWordBytes <= marks.size()) {
     word = word_at(marks.data() + at);
   } else {
     std::memcpy(&word, marks.data() + at, marks.size() - at);
@@ -128,7 +126,7 @@ void append_awake(std::uint32_t row, std::uint32_t cols, const SilentBlocks& sil
   const std::size_t blocks = (skew + cols + size - 1) / size;
   const auto marks = silent.marks.subspan(row * silent.stride, blocks);
   const auto skip = [&](std::size_t at) {
-    while (at + kWord <= blocks && word_at(marks.data() + at) == kEachByte) at += kWord;
+    while (at + kWordBytes <= blocks && word_at(marks.data() + at) == kEachByte) at += kWordBytes;
     return at;
   };
   for_each_run(

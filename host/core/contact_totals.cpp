@@ -6,12 +6,11 @@
 #include <cstring>
 
 #include "core/contact_block.h"
+#include "core/status_word.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
 namespace {
-
-constexpr std::size_t kWord = sizeof(std::uint64_t);
 
 /// So many blocks are summed before they are added to the totals: moments stay below 2^53 and so
 /// exact in double precision, counts in bytes below 2^8.
@@ -86,11 +85,11 @@ struct StatusCounts {
 
   PF_INLINE void add(const std::uint8_t* status, const std::uint8_t* mask) {
     static_assert(status::kAmbiguous == 1 << 4 && status::kFromNeighbours == 1 << 7);
-    for (std::size_t word = 0; word < kBlock; word += kWord) {
+    for (std::size_t word = 0; word < kBlock; word += kWordBytes) {
       std::uint64_t bits = 0;
       std::uint64_t wanted = 0;
-      std::memcpy(&bits, status + word, kWord);
-      std::memcpy(&wanted, mask + word, kWord);
+      std::memcpy(&bits, status + word, kWordBytes);
+      std::memcpy(&wanted, mask + word, kWordBytes);
       bits &= wanted;
       ambiguous += ((bits >> 7) | (bits >> 4)) & kEachByte;
       resolved += (bits >> 7) & kEachByte;

@@ -61,7 +61,7 @@ bool lies_between_ends(const Direction& truth, const Stated& stated) {
                           phi_slack);
 }
 
-void check_pair(const ForceFieldView& solved, const ForceFieldView& truth) {
+void check_stated(const ForceFieldView& solved, const ForceFieldView& truth) {
   if (solved.rows != truth.rows || solved.cols != truth.cols ||
       truth.normal.size() != solved.status.size()) {
     throw Error("solved forces", fmt::format("have {} x {} pillars", solved.rows, solved.cols),
@@ -80,7 +80,7 @@ double share(std::uint64_t part, std::uint64_t whole) {
 }  // namespace
 
 void Coverage::add(const ForceFieldView& solved, const ForceFieldView& truth) {
-  check_pair(solved, truth);
+  check_stated(solved, truth);
   for (std::size_t i = 0; i < solved.status.size(); ++i) {
     if ((solved.status[i] & (status::kSaturated | status::kInconsistent)) != 0) continue;
     const Stated stated(solved, i);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/status_word.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -38,9 +39,6 @@ static_assert(std::endian::native == std::endian::little,
 static_assert(status::kUsable == 15 && status::kAmbiguous == 1 << 4 &&
               status::kSaturated == 1 << 5 && status::kInconsistent == 1 << 6);
 
-constexpr std::size_t kWord = sizeof(std::uint64_t);
-constexpr std::uint64_t kEachByte = 0x0101010101010101u;
-
 /// How many sensels are usable, byte by byte.
 std::uint64_t usable_of(std::uint64_t bits) {
   const std::uint64_t pairs = (bits & (5 * kEachByte)) + ((bits >> 1) & (5 * kEachByte));
@@ -65,8 +63,8 @@ template <class Use>
 void for_each_word(std::span<const std::uint8_t> status, const Use& use) {
   std::uint64_t word = 0;
   std::size_t at = 0;
-  for (; at + kWord <= status.size(); at += kWord) {
-    std::memcpy(&word, status.data() + at, kWord);
+  for (; at + kWordBytes <= status.size(); at += kWordBytes) {
+    std::memcpy(&word, status.data() + at, kWordBytes);
     use(word, at);
   }
   const std::size_t left = status.size() - at;
@@ -76,8 +74,8 @@ void for_each_word(std::span<const std::uint8_t> status, const Use& use) {
     std::memcpy(&word, status.data(), left);
   } else {
     // Not so few bytes by themselves: to copy a number that is not known takes a call.
-    std::memcpy(&word, status.data() + status.size() - kWord, kWord);
-    word >>= 8 * (kWord - left);
+    std::memcpy(&word, status.data() + status.size() - kWordBytes, kWordBytes);
+    word >>= 8 * (kWordBytes - left);
   }
   use(word, at);
 }
@@ -89,7 +87,7 @@ std::uint32_t total_of(std::uint64_t counts) {
 }
 
 /// So many status bytes can be counted byte by byte.
-constexpr std::size_t kMostCounted = 255 * kWord;
+constexpr std::size_t kMostCounted = 255 * kWordBytes;
 
 /// How many of `of` there are in a run, eight bytes at a time; words with none of `needed` have
 /// none.

@@ -9,7 +9,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kGroup = 64;
+constexpr std::size_t kContactGroup = 64;
 constexpr std::size_t kWorkers = 1024;
 constexpr std::size_t kFloatPlanes = 6;
 
@@ -114,7 +114,8 @@ DeviceFieldStage::DeviceFieldStage(Device::State& device, const SolverPlan& plan
                              never.size() * sizeof(cl_uint), never.data());
   }
   if (groups) {
-    group_ = std::min(kGroup, contacts_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device));
+    group_ = std::min(kContactGroup,
+                      contacts_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device.device));
     workers_ = kWorkers;
   } else {
     workers_ = device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>();

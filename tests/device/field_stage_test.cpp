@@ -269,14 +269,11 @@ TEST_P(EveryWay, AnglesAreThoseOfTheForces) {
   EXPECT_GT(resolved, 500U);
 }
 
-#ifdef PILLARFIELD_FIELD_GROUPS
-constexpr Way kWays[] = {{"groups_shared", ContactSharing::work_group, Memory::shared},
-                         {"groups_staged", ContactSharing::work_group, Memory::staged}};
-#else
 constexpr Way kWays[] = {{"automatic_shared", ContactSharing::automatic, Memory::shared},
                          {"alone_shared", ContactSharing::work_item, Memory::shared},
-                         {"alone_staged", ContactSharing::work_item, Memory::staged}};
-#endif
+                         {"alone_staged", ContactSharing::work_item, Memory::staged},
+                         {"groups_shared", ContactSharing::work_group, Memory::shared},
+                         {"groups_staged", ContactSharing::work_group, Memory::staged}};
 INSTANTIATE_TEST_SUITE_P(Ways, EveryWay, testing::ValuesIn(kWays),
                          [](const auto& way) { return std::string(way.param.name); });
 

@@ -10,12 +10,12 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr float kKeys = 5.8f;    ///< width of the keys, font sizes
-constexpr float kBlock = 19.5f;  ///< width of a block of keys and words
+constexpr float kKeyColumn = 5.8f;  ///< width of the keys, font sizes
+constexpr float kBlock = 19.5f;     ///< width of a block of keys and words
 
 void line(const char* keys, const char* what) {
   ImGui::TextUnformatted(keys);
-  ImGui::SameLine(kKeys * ImGui::GetFontSize());
+  ImGui::SameLine(kKeyColumn * ImGui::GetFontSize());
   ImGui::TextDisabled("%s", what);
 }
 

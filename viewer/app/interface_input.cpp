@@ -7,25 +7,25 @@
 #include <algorithm>
 #include <utility>
 
+#include "viewer/draw/imgui_point.h"
+
 namespace pillarfield::viewer {
 namespace {
 
-constexpr std::array kKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
-                           std::pair{ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
-                           std::pair{ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
-                           std::pair{ImGuiKey_Home, GLFW_KEY_HOME},
-                           std::pair{ImGuiKey_End, GLFW_KEY_END},
-                           std::pair{ImGuiKey_Delete, GLFW_KEY_DELETE},
-                           std::pair{ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
-                           std::pair{ImGuiKey_Enter, GLFW_KEY_ENTER},
-                           std::pair{ImGuiKey_Escape, GLFW_KEY_ESCAPE},
-                           std::pair{ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
-                           std::pair{ImGuiKey_A, GLFW_KEY_A},
-                           std::pair{ImGuiKey_C, GLFW_KEY_C},
-                           std::pair{ImGuiKey_V, GLFW_KEY_V},
-                           std::pair{ImGuiKey_X, GLFW_KEY_X}};
-
-ImVec2 to_imgui(Vec2 pixel) { return {static_cast<float>(pixel.x), static_cast<float>(pixel.y)}; }
+constexpr std::array kImGuiKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
+                                std::pair{ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+                                std::pair{ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
+                                std::pair{ImGuiKey_Home, GLFW_KEY_HOME},
+                                std::pair{ImGuiKey_End, GLFW_KEY_END},
+                                std::pair{ImGuiKey_Delete, GLFW_KEY_DELETE},
+                                std::pair{ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
+                                std::pair{ImGuiKey_Enter, GLFW_KEY_ENTER},
+                                std::pair{ImGuiKey_Escape, GLFW_KEY_ESCAPE},
+                                std::pair{ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+                                std::pair{ImGuiKey_A, GLFW_KEY_A},
+                                std::pair{ImGuiKey_C, GLFW_KEY_C},
+                                std::pair{ImGuiKey_V, GLFW_KEY_V},
+                                std::pair{ImGuiKey_X, GLFW_KEY_X}};
 
 void take_key(ImGuiIO& io, const KeyEvent& event) {
   if (event.key < 0 || event.key >= IM_ARRAYSIZE(io.KeysDown)) return;
@@ -71,7 +71,7 @@ void InterfaceInput::close_lists() {
 
 void InterfaceInput::begin_frame(double seconds_since_last) {
   ImGuiIO& io = ImGui::GetIO();
-  for (const auto& [name, key] : kKeys) io.KeyMap[name] = key;
+  for (const auto& [name, key] : kImGuiKeys) io.KeyMap[name] = key;
   io.DeltaTime = static_cast<float>(std::clamp(seconds_since_last, 1e-4, 0.1));
   for (std::size_t i = 0; i < buttons_.size(); ++i) {
     io.MouseDown[i] = buttons_[i].held || buttons_[i].went_down;

@@ -9,12 +9,11 @@
 #include "viewer/app/panel_ink.h"
 #include "viewer/app/pins.h"
 #include "viewer/app/style.h"
+#include "viewer/draw/imgui_point.h"
 #include "viewer/draw/skin_outline.h"
 
 namespace pillarfield::viewer {
 namespace {
-
-ImVec2 to_imgui(Vec2 point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
 /// Draws on top of everything that the picture shows, with an edge that any colour lets see.
 class Marker {

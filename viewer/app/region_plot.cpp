@@ -14,11 +14,11 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 constexpr std::size_t kTrailPoints = 48;
 constexpr int kBorderPoints = 97;
 
-double in_degrees(float radians) { return static_cast<double>(radians) * kDegrees; }
+double in_degrees(float radians) { return static_cast<double>(radians) * kDegreesPerRadian; }
 
 int sensel_bit(int sensel) { return 1 << (sensel - 1); }
 
@@ -42,14 +42,14 @@ double model_reading(const PillarValues& values, int sensel) {
 
 /// Theta of a border at phi, degrees; 90 where it is not there.
 double border_at(const std::vector<std::vector<Vec2>>& pieces, double phi) {
-  const double x = phi / kDegrees;
+  const double x = phi / kDegreesPerRadian;
   for (const auto& piece : pieces) {
     if (piece.empty() || x < piece.front().x || x > piece.back().x) continue;
     const auto after = std::ranges::lower_bound(piece, x, {}, &Vec2::x);
-    if (after == piece.begin()) return after->y * kDegrees;
+    if (after == piece.begin()) return after->y * kDegreesPerRadian;
     const auto before = after - 1;
     const double share = (x - before->x) / (after->x - before->x);
-    return (before->y + share * (after->y - before->y)) * kDegrees;
+    return (before->y + share * (after->y - before->y)) * kDegreesPerRadian;
   }
   return 90;
 }
@@ -133,7 +133,7 @@ void Drawing::draw_borders() const {
       std::vector<Vec2> line;
       line.reserve(piece.size());
       for (const Vec2& radians : piece) {
-        line.push_back({radians.x * kDegrees, radians.y * kDegrees});
+        line.push_back({radians.x * kDegreesPerRadian, radians.y * kDegreesPerRadian});
       }
       draw_line(line, mixed(ink_.ground, ink_.text, 0.5), 1.2 * ink_.unit);
     }
@@ -249,8 +249,8 @@ std::optional<DirectionBox> direction_box(const PillarValues& values) {
     const double phi = in_degrees(values.phi);
     const double theta = in_degrees(values.theta);
     // Without shear every direction in the plane is as good.
-    const double phi_half = std::min(deviation.phi * kDegrees, 180.0);
-    const double theta_half = deviation.theta * kDegrees;
+    const double phi_half = std::min(deviation.phi * kDegreesPerRadian, 180.0);
+    const double theta_half = deviation.theta * kDegreesPerRadian;
     box.phi = std::isfinite(phi_half) ? Span{phi - phi_half, phi + phi_half} : Span{-180, 180};
     box.theta = {std::max(theta - theta_half, 0.0), theta + theta_half};
   }
@@ -264,7 +264,8 @@ std::vector<Vec2> contour_of(const PillarValues& values) {
   if (sensel == 0) return {};
   std::vector<Vec2> contour = ambiguity_contour(sensel, model_reading(values, sensel),
                                                 model_reading(values, sensel % 4 + 1), 48);
-  for (Vec2& direction : contour) direction = {direction.x * kDegrees, direction.y * kDegrees};
+  for (Vec2& direction : contour)
+    direction = {direction.x * kDegreesPerRadian, direction.y * kDegreesPerRadian};
   return contour;
 }
 

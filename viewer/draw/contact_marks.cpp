@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer/draw/imgui_point.h"
 #include "viewer/draw/scene.h"
 #include "viewer/draw/skin_outline.h"
 #include "viewer/picture/ticks.h"
@@ -20,8 +21,6 @@ constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< lets the lines be seen on 
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
 constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< unlike the arrows of cells
 constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< of texts
-
-ImVec2 to_imgui(Vec2 point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
 /// A box about points, pixels.
 Viewport box_about(const std::vector<Vec2>& points) {

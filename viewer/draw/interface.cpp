@@ -20,7 +20,7 @@ void check_result(VkResult result) {
               "start the viewer again; if it comes back, choose another device with --gpu");
 }
 
-vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
+vk::raii::DescriptorPool make_texture_pool(const gpu::Device& device) {
   const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 4);
   return {device.handle(), vk::DescriptorPoolCreateInfo(
                                vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4, size)};
@@ -45,7 +45,7 @@ void load_font(ImGuiIO& io, double scale) {
 
 Interface::Interface(const gpu::Instance& instance, const gpu::Device& device,
                      vk::RenderPass render_pass, double scale)
-    : scale_(scale), context_(ImGui::CreateContext()), pool_(make_pool(device)) {
+    : scale_(scale), context_(ImGui::CreateContext()), pool_(make_texture_pool(device)) {
   use();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;  // Remembers nothing.

@@ -15,7 +15,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-ImU32 packed(const Colour& colour, int alpha = 255) {
+ImU32 packed_colour(const Colour& colour, int alpha = 255) {
   return IM_COL32(colour.red, colour.green, colour.blue, alpha);
 }
 
@@ -145,7 +145,8 @@ void write_bar(const Pen& pen, const Layout& layout) {
     const auto left = static_cast<float>(bar.x);
     const auto right = static_cast<float>(bar.x + bar.width);
     if (edge(i) > edge(i + 1)) {
-      pen.list.AddRectFilled(ImVec2(left, edge(i + 1)), ImVec2(right, edge(i)), packed(table[i]));
+      pen.list.AddRectFilled(ImVec2(left, edge(i + 1)), ImVec2(right, edge(i)),
+                             packed_colour(table[i]));
     }
   }
   pen.rectangle(bar, pen.faint);
@@ -179,7 +180,7 @@ void write_wheel(const Pen& pen, const Layout& layout) {
     const auto value = static_cast<float>(0.5 * (first + last));
     const Colour& colour = table[entry_of(value, pen.look.range, Scale::cyclic)];
     pen.list.AddQuadFilled(at(first, radius), at(last, radius), at(last, 0.55 * radius),
-                           at(first, 0.55 * radius), packed(colour));
+                           at(first, 0.55 * radius), packed_colour(colour));
   }
   const auto label = [&](double angle, const char* words) {
     const ImVec2 size = Pen::size_of(words);
@@ -201,7 +202,7 @@ class LegendList {
     const auto left = static_cast<float>(x_);
     const auto top = std::round(static_cast<float>(y_ + 3 * pen_.unit()));
     const ImVec2 corner(left + side, top + side);
-    const ImU32 colour = packed(pen_.special(kind));
+    const ImU32 colour = packed_colour(pen_.special(kind));
     if (hatched) {
       pen_.list.PushClipRect(ImVec2(left, top), corner, true);
       for (int line = 0; line < 5; ++line) {

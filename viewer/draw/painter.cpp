@@ -13,7 +13,7 @@ namespace {
 
 using Usage = vk::BufferUsageFlagBits;
 using Place = gpu::Buffer::Place;
-using Stage = vk::PipelineStageFlagBits;
+using PipelineStage = vk::PipelineStageFlagBits;
 
 template <class Struct>
 gpu::Buffer uniform_buffer(const gpu::Device& device) {
@@ -85,8 +85,8 @@ void Painter::record(const vk::raii::CommandBuffer& commands, const ShownField& 
     commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipelines_.layout(), 0, set,
                                 nullptr);
     commands.dispatch((cells + 63) / 64, 1, 1);
-    gpu::barrier(commands, {Stage::eComputeShader, vk::AccessFlagBits::eShaderWrite},
-                 {Stage::eVertexShader, vk::AccessFlagBits::eShaderRead});
+    gpu::barrier(commands, {PipelineStage::eComputeShader, vk::AccessFlagBits::eShaderWrite},
+                 {PipelineStage::eVertexShader, vk::AccessFlagBits::eShaderRead});
   }
 
   write_overlay(*overlay_, field, source, look, layout, size);

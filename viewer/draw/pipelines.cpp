@@ -15,7 +15,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-using Stage = vk::ShaderStageFlagBits;
+using ShaderStage = vk::ShaderStageFlagBits;
 using Type = vk::DescriptorType;
 
 struct Binding {
@@ -27,13 +27,13 @@ struct Binding {
 /// The one table of what shaders see.
 constexpr std::array<Binding, 5> kBindings{{
     {shader::kSceneBinding, Type::eUniformBuffer,
-     Stage::eVertex | Stage::eFragment | Stage::eCompute},
+     ShaderStage::eVertex | ShaderStage::eFragment | ShaderStage::eCompute},
     {shader::kColoursBinding, Type::eUniformBuffer,
-     Stage::eVertex | Stage::eFragment | Stage::eCompute},
+     ShaderStage::eVertex | ShaderStage::eFragment | ShaderStage::eCompute},
     {shader::kFieldBinding, Type::eStorageBuffer,
-     Stage::eVertex | Stage::eFragment | Stage::eCompute},
-    {shader::kReadingsBinding, Type::eStorageBuffer, Stage::eVertex | Stage::eFragment},
-    {shader::kCellsBinding, Type::eStorageBuffer, Stage::eVertex | Stage::eCompute},
+     ShaderStage::eVertex | ShaderStage::eFragment | ShaderStage::eCompute},
+    {shader::kReadingsBinding, Type::eStorageBuffer, ShaderStage::eVertex | ShaderStage::eFragment},
+    {shader::kCellsBinding, Type::eStorageBuffer, ShaderStage::eVertex | ShaderStage::eCompute},
 }};
 
 vk::raii::DescriptorSetLayout make_set_layout(const gpu::Device& device) {
@@ -45,7 +45,7 @@ vk::raii::DescriptorSetLayout make_set_layout(const gpu::Device& device) {
   return {device.handle(), vk::DescriptorSetLayoutCreateInfo({}, bindings)};
 }
 
-vk::raii::DescriptorPool make_pool(const gpu::Device& device) {
+vk::raii::DescriptorPool make_descriptor_pool(const gpu::Device& device) {
   const std::array sizes{vk::DescriptorPoolSize(Type::eUniformBuffer, 2),
                          vk::DescriptorPoolSize(Type::eStorageBuffer, 3)};
   return {device.handle(), vk::DescriptorPoolCreateInfo(
@@ -65,8 +65,8 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout l
                                  const vk::raii::ShaderModule& fragment, Depth depth,
                                  const vk::SpecializationInfo* constants = nullptr) {
   const std::array stages{
-      vk::PipelineShaderStageCreateInfo({}, Stage::eVertex, *vertex, "main"),
-      vk::PipelineShaderStageCreateInfo({}, Stage::eFragment, *fragment, "main", constants)};
+      vk::PipelineShaderStageCreateInfo({}, ShaderStage::eVertex, *vertex, "main"),
+      vk::PipelineShaderStageCreateInfo({}, ShaderStage::eFragment, *fragment, "main", constants)};
   const vk::PipelineVertexInputStateCreateInfo no_vertices;
   const vk::PipelineInputAssemblyStateCreateInfo triangles({},
                                                            vk::PrimitiveTopology::eTriangleList);
@@ -97,7 +97,7 @@ Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
     : device_(&device),
       render_pass_(render_pass),
       set_layout_(make_set_layout(device)),
-      pool_(make_pool(device)),
+      pool_(make_descriptor_pool(device)),
       heat_vertex_(make_module(device, heat_vert)),
       heat_fragment_(make_module(device, heat_frag)) {
   layout_ =
@@ -107,7 +107,7 @@ Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
   set_ = std::move(sets.front());
 
   const auto cells = make_module(device, cells_comp);
-  const vk::PipelineShaderStageCreateInfo stage({}, Stage::eCompute, *cells, "main");
+  const vk::PipelineShaderStageCreateInfo stage({}, ShaderStage::eCompute, *cells, "main");
   cells_ = vk::raii::Pipeline(device.handle(), nullptr,
                               vk::ComputePipelineCreateInfo({}, stage, *layout_));
   arrows_ = make_pipeline(device, *layout_, render_pass, make_module(device, arrow_vert),

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr auto kPi = std::numbers::pi_v<float>;
+constexpr auto kHalfTurn = std::numbers::pi_v<float>;
 
 constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
     {"normal", "Normal force", "N", 1, Scale::sequential},
@@ -187,8 +187,8 @@ float largest(Quantity quantity, const ShownField& field) {
 }
 
 Range fitting_range(Quantity quantity, float largest_value) {
-  if (quantity == Quantity::theta) return {0, kPi / 2};
-  if (quantity == Quantity::phi) return {-kPi, kPi};
+  if (quantity == Quantity::theta) return {0, kHalfTurn / 2};
+  if (quantity == Quantity::phi) return {-kHalfTurn, kHalfTurn};
   if (quantity == Quantity::region) return {0, kRegions};
   if (quantity == Quantity::status) return {0, kStatusClasses};
   const bool fits = std::isfinite(largest_value) && largest_value > 0;

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace pillarfield {
+
+/// Status bytes are gone through eight at a time.
+inline constexpr std::size_t kWordBytes = sizeof(std::uint64_t);
+inline constexpr std::uint64_t kEachByte = 0x0101010101010101u;  ///< the lowest bit of each
+
+}  // namespace pillarfield
