@@ -41,14 +41,14 @@ class Renderer {
   Painter painter_;
 };
 
-struct Span {
+struct FrameRange {
   std::uint64_t begin;
   std::uint64_t end;
 };
 
-Span frames_of(const Options& options, const SourceInfo& source) {
-  const Span span{options.first_frame,
-                  options.end_frame != 0 ? options.end_frame : options.first_frame + 1};
+FrameRange frames_of(const Options& options, const SourceInfo& source) {
+  const FrameRange span{options.first_frame,
+                        options.end_frame != 0 ? options.end_frame : options.first_frame + 1};
   if (span.end <= source.frames) return span;
   throw Error(source.name, fmt::format("it has no frame {}", span.end),
               fmt::format("its frames are 1 to {}", source.frames));
@@ -62,7 +62,7 @@ void run_headless(const Options& options) {
   for (const std::string& remark : source.remarks) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", source.name, remark);
   }
-  const Span span = frames_of(options, source);
+  const FrameRange span = frames_of(options, source);
   Look look = first_look(options, *producer, Renderer::scale_of(options));
   const Viewport plot = layout_of(options.width, options.height, look).plot;
   look.view = first_view(options, source, plot);

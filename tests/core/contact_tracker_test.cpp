@@ -18,7 +18,7 @@ namespace {
 
 using Ids = std::vector<std::uint64_t>;
 
-constexpr double kPitchMm = 1;
+constexpr double kPillarPitchMm = 1;
 
 /// A patch of skin on which discs and boxes of loaded pillars are laid.
 class Patch {
@@ -75,7 +75,7 @@ const TrackedContact& by_id(const FrameContacts& frame, std::uint64_t id) {
 }
 
 TEST(ContactTracker, ASlidingContactKeepsItsId) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   for (int i = 0; i < 40; ++i) {
     const FrameContacts& frame = tracker.update(Patch(20, 60).disc(10, 6 + i, 4).view(), 0.5 * i);
     ASSERT_EQ(ids_of(frame), Ids{1}) << i;
@@ -87,7 +87,7 @@ TEST(ContactTracker, ASlidingContactKeepsItsId) {
 }
 
 TEST(ContactTracker, AContactThatJumpsWithinReachKeepsItsId) {
-  ContactTracker tracker(kPitchMm, {.reach_mm = 8});
+  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 8});
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(ids_of(tracker.update(Patch(9, 70).disc(4, 4 + 8 * i, 2).view(), i)), Ids{1}) << i;
   }
@@ -103,7 +103,7 @@ TEST(ContactTracker, MayJumpInAnyDirection) {
     const double row = 30.5 + 9 * std::sin(angle);
     const double col = 30.5 + 9 * std::cos(angle);
     for (int shift = 0; shift < 12; ++shift) {
-      ContactTracker tracker(kPitchMm);
+      ContactTracker tracker(kPillarPitchMm);
       tracker.update(Patch(75, 75).disc(30.5 + shift, 30.5, 2).view(), 0);
       const Patch jumped = Patch(75, 75).disc(row + shift, col, 2);
       EXPECT_EQ(ids_of(tracker.update(jumped.view(), 1)), Ids{1}) << direction << " " << shift;
@@ -112,7 +112,7 @@ TEST(ContactTracker, MayJumpInAnyDirection) {
 }
 
 TEST(ContactTracker, WithoutReachOnlySharedPillarsCount) {
-  ContactTracker tracker(kPitchMm, {.reach_mm = 0});
+  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 0});
   tracker.update(Patch(9, 20).box(4, 4, 1, 2).view(), 0);
   EXPECT_EQ(ids_of(tracker.update(Patch(9, 20).box(4, 5, 1, 2).view(), 1)), Ids{1});
   EXPECT_EQ(ids_of(tracker.update(Patch(9, 20).box(4, 7, 1, 2).view(), 2)), Ids{2});
@@ -120,7 +120,7 @@ TEST(ContactTracker, WithoutReachOnlySharedPillarsCount) {
 
 TEST(ContactTracker, OfASplitTheLargerPartKeepsTheId) {
   for (const bool larger_right : {false, true}) {
-    ContactTracker tracker(kPitchMm);
+    ContactTracker tracker(kPillarPitchMm);
     tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 1);
     const int left = larger_right ? 7 : 12;
     Patch parts(10, 30);
@@ -138,7 +138,7 @@ TEST(ContactTracker, OfASplitTheLargerPartKeepsTheId) {
 }
 
 TEST(ContactTracker, OfEqualPartsTheFirstKeepsTheId) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   tracker.update(Patch(10, 30).box(2, 2, 4, 21).view(), 0);
   const FrameContacts& frame =
       tracker.update(Patch(10, 30).box(2, 2, 4, 10).box(2, 13, 4, 10).view(), 1);
@@ -148,7 +148,7 @@ TEST(ContactTracker, OfEqualPartsTheFirstKeepsTheId) {
 
 TEST(ContactTracker, AMergedContactKeepsTheIdThatBroughtMostPillars) {
   for (const bool larger_right : {false, true}) {
-    ContactTracker tracker(kPitchMm);
+    ContactTracker tracker(kPillarPitchMm);
     const int left = larger_right ? 7 : 12;
     tracker.update(Patch(10, 30).box(2, 2, 4, left).box(2, 3 + left, 4, 19 - left).view(), 1);
     const FrameContacts& frame = tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 2);
@@ -162,7 +162,7 @@ TEST(ContactTracker, AMergedContactKeepsTheIdThatBroughtMostPillars) {
 }
 
 TEST(ContactTracker, OfEqualOnesThatMergeTheLowerIdStays) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   tracker.update(Patch(10, 30).box(2, 2, 4, 5).box(2, 8, 4, 5).view(), 0);
   const FrameContacts& frame = tracker.update(Patch(10, 30).box(2, 2, 4, 11).view(), 1);
   EXPECT_EQ(ids_of(frame), Ids{1});
@@ -170,7 +170,7 @@ TEST(ContactTracker, OfEqualOnesThatMergeTheLowerIdStays) {
 }
 
 TEST(ContactTracker, WhatVanishesAndReturnsIsNew) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   const Patch pressed = Patch(10, 10).disc(4, 4, 2);
   EXPECT_EQ(ids_of(tracker.update(pressed.view(), 1)), Ids{1});
   const FrameContacts& gone = tracker.update(Patch(10, 10).view(), 2);
@@ -189,7 +189,7 @@ TEST(ContactTracker, WhatVanishesAndReturnsIsNew) {
 /// Side by side, in opposite directions, by pillars that they share and by leaps.
 TEST(ContactTracker, TwoThatPassEachOtherStayThemselves) {
   for (const int step : {1, 3, 6}) {
-    ContactTracker tracker(kPitchMm, {.reach_mm = 7});
+    ContactTracker tracker(kPillarPitchMm, {.reach_mm = 7});
     for (int i = 0; 10 + i * step <= 60; ++i) {
       const Patch patch = Patch(30, 70).disc(8, 10 + i * step, 2).disc(18, 60 - i * step, 2);
       EXPECT_EQ(ids_of(tracker.update(patch.view(), i)), (Ids{1, 2})) << step << " " << i;
@@ -199,7 +199,7 @@ TEST(ContactTracker, TwoThatPassEachOtherStayThemselves) {
 
 /// One leaps over to where another was, which moves on: shared pillars come before distance.
 TEST(ContactTracker, SharedPillarsComeBeforeDistance) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   tracker.update(Patch(12, 40).box(2, 4, 4, 4).box(2, 12, 4, 4).view(), 0);
   const FrameContacts& frame =
       tracker.update(Patch(12, 40).box(2, 15, 4, 4).box(2, 9, 4, 2).view(), 1);
@@ -209,7 +209,7 @@ TEST(ContactTracker, SharedPillarsComeBeforeDistance) {
 }
 
 TEST(ContactTracker, TheNearestGoesFirst) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   tracker.update(Patch(10, 40).box(4, 10, 2, 2).view(), 0);
   const FrameContacts& frame =
       tracker.update(Patch(10, 40).box(4, 5, 2, 2).box(4, 14, 2, 2).view(), 1);
@@ -218,7 +218,7 @@ TEST(ContactTracker, TheNearestGoesFirst) {
 }
 
 TEST(ContactTracker, SmallContactsAreNotFollowed) {
-  ContactTracker tracker(kPitchMm, {.minimum_pillars = 4});
+  ContactTracker tracker(kPillarPitchMm, {.minimum_pillars = 4});
   EXPECT_TRUE(tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 0).contacts.empty());
   EXPECT_EQ(ids_of(tracker.update(Patch(9, 9).box(1, 1, 2, 2).view(), 1)), Ids{1});
   const FrameContacts& frame = tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 2);
@@ -228,7 +228,7 @@ TEST(ContactTracker, SmallContactsAreNotFollowed) {
 }
 
 TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   Patch teeth(20, 41);
   for (int col = 0; col < 41; col += 2) teeth.box(0, col, 20, 1);
   const Patch whole = Patch(20, 41).box(0, 0, 20, 41);
@@ -245,7 +245,7 @@ TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
 
 TEST(ContactTracker, TenThousandContactsThatMoveAside) {
   for (const int step : {1, 3}) {
-    ContactTracker tracker(kPitchMm, {.reach_mm = 3});
+    ContactTracker tracker(kPillarPitchMm, {.reach_mm = 3});
     Ids first;
     for (int i = 0; i < 3; ++i) {
       Patch patch(820, 820);
@@ -262,7 +262,7 @@ TEST(ContactTracker, TenThousandContactsThatMoveAside) {
 
 /// A reach that holds all of them at once.
 TEST(ContactTracker, ThousandsWithinReach) {
-  ContactTracker tracker(kPitchMm, {.reach_mm = 1000});
+  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 1000});
   for (int i = 0; i < 2; ++i) {
     Patch patch(200, 200);
     for (int contact = 0; contact < 2500; ++contact) {
@@ -275,7 +275,7 @@ TEST(ContactTracker, ThousandsWithinReach) {
 }
 
 TEST(ContactTracker, IdsAreNeverGivenTwice) {
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   std::map<std::uint64_t, double> ended;
   for (int i = 0; i < 200; ++i) {
     Patch patch(30, 30);
@@ -293,8 +293,8 @@ TEST(ContactTracker, IdsAreNeverGivenTwice) {
 }
 
 TEST(ContactTracker, TakesContactsThatWereFound) {
-  ContactTracker finds(kPitchMm);
-  ContactTracker takes(kPitchMm);
+  ContactTracker finds(kPillarPitchMm);
+  ContactTracker takes(kPillarPitchMm);
   for (int step = 0; step < 4; ++step) {
     Patch patch(40, 60);
     patch.disc(10 + step, 12, 6).disc(25, 20 + 3 * step, 5).box(33, 40, 4, 9 - step);
@@ -371,8 +371,8 @@ void expect_same_bits(const ContactQuantities& actual, const ContactQuantities& 
 TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
   for (const std::optional<double> friction : {std::optional<double>(), {0.6}}) {
     for (const std::uint32_t threads : {2U, 7U, 0U}) {
-      ContactTracker alone(kPitchMm, {.friction = friction, .threads = 1});
-      ContactTracker shared(kPitchMm, {.friction = friction, .threads = threads});
+      ContactTracker alone(kPillarPitchMm, {.friction = friction, .threads = 1});
+      ContactTracker shared(kPillarPitchMm, {.friction = friction, .threads = threads});
       bool remembered = false;
       for (int step = 0; step < 4; ++step) {
         const ForceField field = many_contacts(step);
@@ -408,7 +408,7 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
     says([&] { const ContactTracker tracker(1, {.reach_mm = reach_mm}); }, "jump");
   }
   says([] { const ContactTracker tracker(1, {.threads = 1025}); }, "1025 threads");
-  ContactTracker tracker(kPitchMm);
+  ContactTracker tracker(kPillarPitchMm);
   tracker.update(Patch(4, 5).view(), 0);
   const Patch other(5, 4);
   says([&] { tracker.update(other.view(), 1); }, "5 x 4 pillars after such of 4 x 5");

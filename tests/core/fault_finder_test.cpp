@@ -19,7 +19,7 @@ namespace {
 
 using core_test::message_of;
 
-constexpr std::uint32_t kFrames = 200;
+constexpr std::uint32_t kPressedFrames = 200;
 constexpr std::uint32_t kSize = 40;  // sensel rows and columns
 
 /// A skin of 20 x 20 pillars with spread gains, tares and one count of noise.
@@ -63,7 +63,7 @@ using Spoil = std::function<void(std::span<std::uint8_t> readings, std::uint32_t
 
 void no_spoil(std::span<std::uint8_t>, std::uint32_t) {}
 
-FaultResult faults_in(const Scene& scene, const Spoil& spoil, std::uint32_t frames = kFrames,
+FaultResult faults_in(const Scene& scene, const Spoil& spoil, std::uint32_t frames = kPressedFrames,
                       const FaultOptions& options = {}) {
   const Simulator simulator(scene);
   const Skin& skin = simulator.scene().skin;
@@ -93,7 +93,7 @@ TEST(FaultFinder, GoodSenselsThatMoveAreGood) {
   EXPECT_TRUE(result.findings.empty());
   EXPECT_TRUE(result.untested.empty());
   EXPECT_TRUE(result.calibration.planes.mask.empty());
-  EXPECT_EQ(result.frames, kFrames);
+  EXPECT_EQ(result.frames, kPressedFrames);
 }
 
 TEST(FaultFinder, DeadStuckAndSaturatedSenselsAreMasked) {
@@ -154,7 +154,7 @@ TEST(FaultFinder, ASenselThatIsNoNumberIsMasked) {
                      calibration_of(simulator), {});
   FrameBuffer frame(SenselType::f32, kSize, kSize);
   ForceField truth(kSize / 2, kSize / 2);
-  for (std::uint32_t t = 0; t < kFrames; ++t) {
+  for (std::uint32_t t = 0; t < kPressedFrames; ++t) {
     simulator.render(t, frame, truth);
     frame.readings<float>()[place(8, 8)] = std::numeric_limits<float>::quiet_NaN();
     if (t == 7) frame.readings<float>()[place(4, 4)] = std::numeric_limits<float>::infinity();
@@ -194,7 +194,7 @@ TEST(FaultFinder, AStillSenselBesideAMissingOneIsSuspected) {
   FaultFinder finder("frames.h5", simulator.scene().skin, SenselType::u8, calibration, {});
   FrameBuffer frame(SenselType::u8, kSize, kSize);
   ForceField truth(kSize / 2, kSize / 2);
-  for (std::uint32_t t = 0; t < kFrames; ++t) {
+  for (std::uint32_t t = 0; t < kPressedFrames; ++t) {
     simulator.render(t, frame, truth);
     frame.readings<std::uint8_t>()[place(11, 10)] = 12;
     finder.add(frame.view());
@@ -248,7 +248,7 @@ TEST(FaultFinder, LegallyLiftedSenselsAreNeverMasked) {
                          calibration_of(simulator), {});
       FrameBuffer frame(SenselType::u16, kSize, kSize);
       ForceField truth(kSize / 2, kSize / 2);
-      for (std::uint32_t t = 0; t < kFrames; ++t) {
+      for (std::uint32_t t = 0; t < kPressedFrames; ++t) {
         simulator.render(t, frame, truth);
         finder.add(frame.view());
       }

@@ -19,8 +19,8 @@ namespace {
 
 namespace maths = single_precision;
 
-constexpr std::uint32_t kSide = 41;
-constexpr double kPeak = 100;
+constexpr std::uint32_t kFlankSide = 41;
+constexpr double kFlankPeak = 100;
 constexpr double kRadius = 19.3;  // pillars
 constexpr double kCore = 9;       // of what is resolved
 constexpr double kStuck = 13;     // of what sticks, up to a ratio just above the least
@@ -38,12 +38,13 @@ class FlankedContact {
                           const Place& place = upright);
 
   [[nodiscard]] maths::FlankScale scale(double friction) const {
-    return {static_cast<float>(friction), static_cast<float>(noise_), static_cast<float>(kPeak)};
+    return {static_cast<float>(friction), static_cast<float>(noise_),
+            static_cast<float>(kFlankPeak)};
   }
   /// What flanks say in the rounds of an estimate.
   [[nodiscard]] maths::FlankVerdict verdict();
 
-  maths::Tile tile{0, 0, kSide, kSide, 0, 0, 0, 0};
+  maths::Tile tile{0, 0, kFlankSide, kFlankSide, 0, 0, 0, 0};
   maths::Cells cells{};
   std::vector<double> pressure;  ///< of each cell
 
@@ -59,18 +60,18 @@ class FlankedContact {
 
 FlankedContact::FlankedContact(double friction, double noise, std::uint32_t seed,
                                const Place& place)
-    : pressure(std::size_t{kSide + 2} * (kSide + 2)),
+    : pressure(std::size_t{kFlankSide + 2} * (kFlankSide + 2)),
       friction_(friction),
       noise_(noise),
       kind_(pressure.size(), PF_CELL_OUTSIDE),
       planes_(6, std::vector<float>(kind_.size())),
-      lines_(std::size_t{PF_LINE_SUMS} * kSide) {
+      lines_(std::size_t{PF_LINE_SUMS} * kFlankSide) {
   cells = {kind_.data(),      planes_[0].data(), planes_[1].data(), planes_[2].data(),
            planes_[3].data(), planes_[4].data(), planes_[5].data()};
   std::mt19937 random(seed);
   std::normal_distribution<double> error(0, noise);
-  for (std::uint32_t row = 0; row < kSide; ++row) {
-    for (std::uint32_t col = 0; col < kSide; ++col) {
+  for (std::uint32_t row = 0; row < kFlankSide; ++row) {
+    for (std::uint32_t col = 0; col < kFlankSide; ++col) {
       const auto [down, across] = place(row, col);
       const double resolved_error = std::numbers::sqrt2 / 2 * error(random);
       lay(maths::cell_at(tile, static_cast<std::uint32_t>(down),
@@ -84,7 +85,7 @@ void FlankedContact::lay(std::uint32_t cell, double from_centre, double resolved
                          double open_error) {
   const double part = from_centre / kRadius;
   if (part >= 1) return;
-  pressure[cell] = kPeak * std::sqrt(1 - part * part);
+  pressure[cell] = kFlankPeak * std::sqrt(1 - part * part);
   if (from_centre < kCore) {
     cells.kind[cell] = PF_CELL_RESOLVED;
     cells.top[cell] = static_cast<float>(pressure[cell] + resolved_error);
@@ -114,20 +115,20 @@ double share_at(double friction, double asked) {
 /// The first flank of the middle row.
 maths::Flank middle_flank(const FlankedContact& contact) {
   std::uint32_t at = 0;
-  return maths::next_flank(contact.cells, maths::flank_row(contact.tile, kSide / 2), &at);
+  return maths::next_flank(contact.cells, maths::flank_row(contact.tile, kFlankSide / 2), &at);
 }
 
 TEST(Flank, BeginsBesideTheCoreAndEndsBeforeTheEdge) {
   const FlankedContact contact(2);
   const maths::Flank flank = middle_flank(contact);
   EXPECT_EQ(flank.core, PF_FLANK_SIDE);
-  EXPECT_EQ(flank.last, maths::cell_at(contact.tile, kSide / 2, 28));
+  EXPECT_EQ(flank.last, maths::cell_at(contact.tile, kFlankSide / 2, 28));
   EXPECT_EQ(flank.open, 9U);  // up to column 37; 38 is the edge
 }
 
 TEST(Flank, IsNoneWhereAnotherCoreFollows) {
   const FlankedContact contact(2);
-  contact.cells.kind[maths::cell_at(contact.tile, kSide / 2, 36)] = PF_CELL_RESOLVED;
+  contact.cells.kind[maths::cell_at(contact.tile, kFlankSide / 2, 36)] = PF_CELL_RESOLVED;
   EXPECT_EQ(middle_flank(contact).core, 0U);
 }
 
@@ -157,7 +158,8 @@ TEST(Flank, ItsRingBeginsWhereWhatSticksEnds) {
   EXPECT_EQ(ring.sums.samples, PF_FLANK_SIDE + 5.0);
   for (std::uint32_t at = 1; at <= flank.open; ++at) {
     const double truth = contact.pressure[maths::flank_cell(flank, static_cast<int>(at))];
-    EXPECT_NEAR(maths::on_flank(&ring.fit, at), truth * truth, 1e-4 * kPeak * kPeak) << at;
+    EXPECT_NEAR(maths::on_flank(&ring.fit, at), truth * truth, 1e-4 * kFlankPeak * kFlankPeak)
+        << at;
   }
 }
 
@@ -207,10 +209,10 @@ TEST(Flanks, TheirErrorIsThatOfWhatTheirCubicsLeaveAndOfHowTheyDiffer) {
 TEST(Flanks, SayTheSameOfAContactThatIsMirroredOrTurned) {
   const maths::FlankVerdict said = FlankedContact(2.2, 0.5).verdict();
   const std::array<Place, 3> places = {[](double row, double col) {
-                                         return std::array{row, kSide - 1 - col};
+                                         return std::array{row, kFlankSide - 1 - col};
                                        },
                                        [](double row, double col) {
-                                         return std::array{kSide - 1 - row, col};
+                                         return std::array{kFlankSide - 1 - row, col};
                                        },
                                        [](double row, double col) {
                                          return std::array{col, row};
@@ -228,14 +230,14 @@ TEST(Flanks, BridgeWhatSticksAndLeaveOthersToSlip) {
   maths::shape_rows(contact.tile, contact.cells, contact.scale(2), {0, 1});
   maths::shape_columns(contact.tile, contact.cells, contact.scale(2), {0, 1});
   std::size_t bridged = 0;
-  for (std::uint32_t row = 0; row < kSide; ++row) {
-    for (std::uint32_t col = 0; col < kSide; ++col) {
+  for (std::uint32_t row = 0; row < kFlankSide; ++row) {
+    for (std::uint32_t col = 0; col < kFlankSide; ++col) {
       const std::uint32_t cell = maths::cell_at(contact.tile, row, col);
       if (contact.cells.kind[cell] != PF_CELL_AMBIGUOUS) continue;
       const float shaped = contact.cells.shaped[cell];
       if (shaped == 0) continue;
       ++bridged;
-      EXPECT_NEAR(shaped, contact.pressure[cell], 0.02 * kPeak) << row << ", " << col;
+      EXPECT_NEAR(shaped, contact.pressure[cell], 0.02 * kFlankPeak) << row << ", " << col;
     }
   }
   EXPECT_GT(bridged, 400U);

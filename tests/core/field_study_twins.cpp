@@ -13,7 +13,7 @@ namespace {
 
 using double_precision::Force;
 
-constexpr double kCountsPerNewton = 320;
+constexpr double kTwinCountsPerNewton = 320;
 
 /// The force with that much of the normal force and the same readings of sensels 1 and 4, which
 /// shear to the right presses.
@@ -24,7 +24,7 @@ Force twin_of(const Force& force, double normal_share) {
 
 /// Sensels 2 and 3 lift.
 void check_lifted(const Force& force) {
-  const auto v = double_precision::model_readings(force, kCountsPerNewton);
+  const auto v = double_precision::model_readings(force, kTwinCountsPerNewton);
   if (v.v2 <= 0 && v.v3 <= 0) return;
   throw Error("twin scene", "a pillar presses three sensels", "raise the friction");
 }
@@ -41,7 +41,7 @@ FieldContact contact_of(const TwinScene& scene) {
 
 Twins sliding_twins(const TwinScene& scene) {
   const PillarLoads loads = loads_of(contact_of(scene));
-  const double per_count = 1 / kCountsPerNewton;
+  const double per_count = 1 / kTwinCountsPerNewton;
   Twins twins;
   for (std::size_t i = 0; i < loads.normal.size(); ++i) {
     const Force force = {scene.friction * loads.shear_x[i] * per_count,
@@ -63,12 +63,12 @@ Twins sliding_twins(const TwinScene& scene) {
 }
 
 std::array<double, 4> readings_counts(const Force& force) {
-  const auto v = ideal_readings(force, kCountsPerNewton);
+  const auto v = ideal_readings(force, kTwinCountsPerNewton);
   return {v.v1, v.v2, v.v3, v.v4};
 }
 
 double distance_counts(const Force& a, const Force& b) {
-  return kCountsPerNewton *
+  return kTwinCountsPerNewton *
          std::hypot(a.shear_x - b.shear_x, a.shear_y - b.shear_y, a.normal - b.normal);
 }
 

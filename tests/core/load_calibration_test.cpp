@@ -17,7 +17,7 @@ namespace {
 using core_test::message_of;
 using core_test::PressedSkin;
 
-constexpr std::uint32_t kFrames = 50;
+constexpr std::uint32_t kLoadFrames = 50;
 
 SensorModel noisy_sensor() {
   SensorModel sensor;
@@ -28,8 +28,8 @@ SensorModel noisy_sensor() {
   return sensor;
 }
 
-SkinCalibration tared(PressedSkin& skin) {
-  return take_tare(blank_calibration(skin.skin()), skin.bare(kFrames), {}).calibration;
+SkinCalibration tared_skin(PressedSkin& skin) {
+  return take_tare(blank_calibration(skin.skin()), skin.bare(kLoadFrames), {}).calibration;
 }
 
 /// A punch of 12 mm across in the middle of the skin.
@@ -40,14 +40,14 @@ FrameStatistics punched(PressedSkin& skin, double load_n) {
   punch.contact_radius_mm = 6;
   punch.path = {{0, 0, 0, load_n}};
   scene.load = std::vector<Contact>{punch};
-  return skin.statistics_of(Simulator(scene), kFrames);
+  return skin.statistics_of(Simulator(scene), kLoadFrames);
 }
 
 TEST(LoadCalibration, AFlatPressGivesTheSensitivity) {
   PressedSkin skin(20, 20, noisy_sensor());
   skin.scene().skin.counts_per_newton = 250;
-  const SkinCalibration before = tared(skin);
-  const FrameStatistics press = skin.press(0.4, kFrames);
+  const SkinCalibration before = tared_skin(skin);
+  const FrameStatistics press = skin.press(0.4, kLoadFrames);
   const KnownLoad loads[] = {{press, 400 * 0.4}};
   const LoadResult result = calibrate_load(before, loads, LoadModel::linear);
   // 1600 sensels with the noise of tare and press, over their sum.
@@ -62,7 +62,7 @@ TEST(LoadCalibration, AFlatPressGivesTheSensitivity) {
 
 TEST(LoadCalibration, SeveralLoadsShareTheirErrors) {
   PressedSkin skin(20, 20, noisy_sensor());
-  const SkinCalibration before = tared(skin);
+  const SkinCalibration before = tared_skin(skin);
   const FrameStatistics light = punched(skin, 10);
   const FrameStatistics heavy = punched(skin, 40);
   // Both balances are wrong by two percent, one up and one down.
@@ -76,10 +76,10 @@ TEST(LoadCalibration, SeveralLoadsShareTheirErrors) {
 
 TEST(LoadCalibration, MissingSenselsAreNoLoss) {
   PressedSkin skin(20, 20, noisy_sensor());
-  SkinCalibration before = tared(skin);
+  SkinCalibration before = tared_skin(skin);
   before.planes.mask.assign(skin.skin().sensels(), 1);
   for (std::size_t i = 0; i < before.planes.mask.size(); i += 14) before.planes.mask[i] = 0;
-  const FrameStatistics press = skin.press(0.4, kFrames);
+  const FrameStatistics press = skin.press(0.4, kLoadFrames);
   const KnownLoad loads[] = {{press, 160}};
   const LoadResult result = calibrate_load(before, loads, LoadModel::linear);
   EXPECT_NEAR(result.calibration.counts_per_newton.value(), 320, 320 * 1e-3);
@@ -87,7 +87,7 @@ TEST(LoadCalibration, MissingSenselsAreNoLoss) {
 
 TEST(LoadCalibration, ShearedPillarsGiveAnIntervalThatHoldsTheTruth) {
   PressedSkin skin(20, 20, noisy_sensor());
-  const SkinCalibration before = tared(skin);
+  const SkinCalibration before = tared_skin(skin);
   Scene scene = skin.scene();
   Contact slider;
   slider.contact_radius_mm = 8;
@@ -96,7 +96,7 @@ TEST(LoadCalibration, ShearedPillarsGiveAnIntervalThatHoldsTheTruth) {
   slider.friction = 1.6;
   slider.path = {{0, 0, 0, 20}};
   scene.load = std::vector<Contact>{slider};
-  const FrameStatistics sheared = skin.statistics_of(Simulator(scene), kFrames);
+  const FrameStatistics sheared = skin.statistics_of(Simulator(scene), kLoadFrames);
   const KnownLoad loads[] = {{sheared, 20}};
   const LoadResult result = calibrate_load(before, loads, LoadModel::linear);
   EXPECT_GT(result.loads[0].ambiguous_share, 0.5);
@@ -112,10 +112,10 @@ TEST_P(PowerLawLoad, TheExponentIsFound) {
   sensor.noise_counts = 0.5;
   PressedSkin skin(20, 20, sensor);
   skin.scene().skin.power_law = {GetParam(), 100};
-  const SkinCalibration before = tared(skin);
-  const FrameStatistics light = skin.press(0.1, kFrames);  // 32 counts
-  const FrameStatistics middle = skin.press(0.3, kFrames);
-  const FrameStatistics heavy = skin.press(0.7, kFrames);  // 224 counts
+  const SkinCalibration before = tared_skin(skin);
+  const FrameStatistics light = skin.press(0.1, kLoadFrames);  // 32 counts
+  const FrameStatistics middle = skin.press(0.3, kLoadFrames);
+  const FrameStatistics heavy = skin.press(0.7, kLoadFrames);  // 224 counts
   const KnownLoad loads[] = {{light, 40}, {middle, 120}, {heavy, 280}};
   const LoadResult result = calibrate_load(before, loads, LoadModel::power);
   const PowerLaw& law = result.calibration.power_law.value();
@@ -141,8 +141,8 @@ TEST(LoadCalibration, SaturationInSomeFramesIsSeen) {
   sensor.adc_bits = 8;
   sensor.noise_counts = 6;
   PressedSkin skin(10, 10, sensor);
-  const SkinCalibration before = tared(skin);
-  const FrameStatistics press = skin.press(0.72, kFrames);  // 242 counts with the tare
+  const SkinCalibration before = tared_skin(skin);
+  const FrameStatistics press = skin.press(0.72, kLoadFrames);  // 242 counts with the tare
   const KnownLoad loads[] = {{press, 72}};
   const std::string message =
       message_of([&] { (void)calibrate_load(before, loads, LoadModel::linear); });
@@ -151,10 +151,10 @@ TEST(LoadCalibration, SaturationInSomeFramesIsSeen) {
 
 TEST(LoadCalibration, RefusesWhatDoesNotTell) {
   PressedSkin skin(10, 10, noisy_sensor());
-  const SkinCalibration before = tared(skin);
-  const FrameStatistics press = skin.press(0.4, kFrames);
-  const FrameStatistics bare = skin.bare(kFrames);
-  const FrameStatistics crushed = skin.press(100, kFrames);
+  const SkinCalibration before = tared_skin(skin);
+  const FrameStatistics press = skin.press(0.4, kLoadFrames);
+  const FrameStatistics bare = skin.bare(kLoadFrames);
+  const FrameStatistics crushed = skin.press(100, kLoadFrames);
   const auto message = [&](std::vector<KnownLoad> loads, LoadModel model) {
     return message_of([&] { (void)calibrate_load(before, loads, model); });
   };

@@ -18,7 +18,7 @@ namespace {
 using core_test::message_of;
 using core_test::PressedSkin;
 
-constexpr std::uint32_t kFrames = 100;
+constexpr std::uint32_t kTareFrames = 100;
 
 /// 900 pillars of 12 counts of tare and one of noise, 8 bits.
 SensorModel common_sensor() {
@@ -37,35 +37,35 @@ TareResult tare_of(const FrameStatistics& unloaded, const TareOptions& options =
 }
 
 /// The noise of a rounded reading.
-const double kNoise = std::sqrt(1 + 1 / 12.0);
+const double kReadingNoise = std::sqrt(1 + 1 / 12.0);
 
 TEST(Tare, IsTheMeanWithinItsStandardError) {
   PressedSkin skin = common_skin();
   const Calibration truth = skin.truth();
-  const TareResult result = tare_of(skin.bare(kFrames));
+  const TareResult result = tare_of(skin.bare(kTareFrames));
   const std::vector<float>& tare = result.calibration.planes.tare;
   double squares = 0;
   for (std::size_t i = 0; i < tare.size(); ++i) {
     const double error = tare[i] - truth.tare[i];
-    EXPECT_LT(std::abs(error), 5 * kNoise / std::sqrt(kFrames)) << i;
+    EXPECT_LT(std::abs(error), 5 * kReadingNoise / std::sqrt(kTareFrames)) << i;
     squares += error * error;
   }
-  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(tare.size())), kNoise / std::sqrt(kFrames),
-              0.01);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(tare.size())),
+              kReadingNoise / std::sqrt(kTareFrames), 0.01);
   EXPECT_TRUE(result.findings.empty());
   EXPECT_TRUE(result.calibration.planes.mask.empty());
 }
 
 TEST(Tare, NoiseIsTheStandardDeviationAndMakesTheThreshold) {
   PressedSkin skin = common_skin();
-  const TareResult result = tare_of(skin.bare(kFrames), {.threshold_factor = 3});
+  const TareResult result = tare_of(skin.bare(kTareFrames), {.threshold_factor = 3});
   const std::vector<float>& noise = result.calibration.planes.noise;
   // The standard error of a standard deviation of n readings is a share 1/sqrt(2 (n - 1)) of it.
-  const double error = kNoise / std::sqrt(2.0 * (kFrames - 1));
-  for (const float value : noise) EXPECT_NEAR(value, kNoise, 5.5 * error);
-  EXPECT_NEAR(result.noise_counts, kNoise, error / 10);
+  const double error = kReadingNoise / std::sqrt(2.0 * (kTareFrames - 1));
+  for (const float value : noise) EXPECT_NEAR(value, kReadingNoise, 5.5 * error);
+  EXPECT_NEAR(result.noise_counts, kReadingNoise, error / 10);
   const double threshold = result.calibration.threshold_counts.value();
-  EXPECT_NEAR(threshold, 3 * (kNoise + 2.33 * error), 3 * 0.3 * error);
+  EXPECT_NEAR(threshold, 3 * (kReadingNoise + 2.33 * error), 3 * 0.3 * error);
   const auto above = std::ranges::count_if(noise, [&](float n) { return 3 * n > threshold; });
   EXPECT_LE(above, static_cast<long>(noise.size() / 100));
   EXPECT_GT(above, 0);
@@ -75,12 +75,12 @@ TEST(Tare, WholeCountsHaveAtLeastTheirRoundingError) {
   SensorModel sensor = common_sensor();
   sensor.noise_counts = 0;
   PressedSkin skin(4, 4, sensor);
-  for (const float value : tare_of(skin.bare(kFrames)).calibration.planes.noise) {
+  for (const float value : tare_of(skin.bare(kTareFrames)).calibration.planes.noise) {
     EXPECT_FLOAT_EQ(value, static_cast<float>(1 / std::sqrt(12.0)));
   }
   sensor.adc_bits.reset();
   PressedSkin exact(4, 4, sensor);
-  const TareResult result = tare_of(exact.bare(kFrames));
+  const TareResult result = tare_of(exact.bare(kTareFrames));
   for (const float value : result.calibration.planes.noise) EXPECT_EQ(value, 0);
   EXPECT_EQ(result.calibration.threshold_counts, 0);
 }
@@ -169,14 +169,14 @@ TEST(Tare, KeepsWhatWasKnownBefore) {
   before.planes.gain.assign(skin.skin().sensels(), 2);
   before.planes.mask.assign(skin.skin().sensels(), 1);
   before.planes.mask[5] = 0;
-  const TareResult result = take_tare(before, skin.bare(kFrames), {});
+  const TareResult result = take_tare(before, skin.bare(kTareFrames), {});
   EXPECT_EQ(result.calibration.counts_per_newton, 123);
   EXPECT_EQ(result.calibration.planes.gain, before.planes.gain);
   EXPECT_EQ(result.calibration.planes.mask, before.planes.mask);
   EXPECT_TRUE(result.findings.empty()) << "a sensel that was masked is no finding";
   // The threshold is compared with corrected readings, which the gain has made twice as noisy.
   EXPECT_NEAR(result.calibration.threshold_counts.value(),
-              2 * tare_of(skin.bare(kFrames)).calibration.threshold_counts.value(), 0.2);
+              2 * tare_of(skin.bare(kTareFrames)).calibration.threshold_counts.value(), 0.2);
 }
 
 TEST(Tare, RefusesATouchedSkin) {

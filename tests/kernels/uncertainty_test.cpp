@@ -13,8 +13,8 @@
 namespace pillarfield {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kCountsPerNewton = 50;
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kCountsOfOneNewton = 50;
 using Components = std::array<double, 3>;
 
 template <class Force>
@@ -28,7 +28,7 @@ class Deviations : public testing::Test {
  protected:
   using Real = RealOf<Precision>;
   static Components of(const PillarOf<Precision>& pillar, const std::array<Real, 4>& noise) {
-    const auto solved = solve<Precision>(pillar, kCountsPerNewton);
+    const auto solved = solve<Precision>(pillar, kCountsOfOneNewton);
     return components(force_deviations(pillar, solved.diagonals,
                                        {noise[0], noise[1], noise[2], noise[3]}, solved.scale));
   }
@@ -36,7 +36,7 @@ class Deviations : public testing::Test {
 TYPED_TEST_SUITE(Deviations, Precisions, PrecisionNames);
 
 TYPED_TEST(Deviations, AreTheClosedFormsOfRegionsOneToThree) {
-  const double unit = 2 / kCountsPerNewton;
+  const double unit = 2 / kCountsOfOneNewton;
   const auto region_1 = TestFixture::of(pillar_of<TypeParam>({30, 20, 25, 35}), {2, 2, 2, 2});
   EXPECT_NEAR(region_1[0], unit / std::numbers::sqrt2, 1e-8);
   EXPECT_NEAR(region_1[1], unit / std::numbers::sqrt2, 1e-8);
@@ -62,9 +62,9 @@ Components deviations_by_differences(const States& states, const std::array<doub
     more[n] += kStep;
     less[n] -= kStep;
     const auto high =
-        components(solve<Double>(pillar_in<Double>(states, more), kCountsPerNewton).force);
+        components(solve<Double>(pillar_in<Double>(states, more), kCountsOfOneNewton).force);
     const auto low =
-        components(solve<Double>(pillar_in<Double>(states, less), kCountsPerNewton).force);
+        components(solve<Double>(pillar_in<Double>(states, less), kCountsOfOneNewton).force);
     for (std::size_t i = 0; i < 3; ++i) {
       const double part = (high[i] - low[i]) / (2 * kStep) * noise[n];
       variances[i] += part * part;
@@ -82,7 +82,7 @@ TEST(Deviations, AreThoseOfTheEstimateForAllStates) {
       for (auto& reading : readings) reading = random.uniform(10, 100);
       for (auto& sigma : noise) sigma = random.uniform(0.1, 3);
       const auto pillar = pillar_in<Double>(states, readings);
-      const auto solved = solve<Double>(pillar, kCountsPerNewton);
+      const auto solved = solve<Double>(pillar, kCountsOfOneNewton);
       const auto actual = components(force_deviations(
           pillar, solved.diagonals, {noise[0], noise[1], noise[2], noise[3]}, solved.scale));
       const auto expected = deviations_by_differences(states, readings, noise);
@@ -102,7 +102,7 @@ struct Explanation {
   [[nodiscard]] double theta() const { return std::atan2(std::hypot(rising, falling), sum); }
   [[nodiscard]] double phi() const { return std::atan2(-(rising + falling), falling - rising); }
   [[nodiscard]] double magnitude() const {
-    return std::hypot(sum, rising, falling) / (2 * kCountsPerNewton);
+    return std::hypot(sum, rising, falling) / (2 * kCountsOfOneNewton);
   }
   [[nodiscard]] std::array<double, 4> readings() const {
     return {(sum + rising) / 2, (sum + falling) / 2, (sum - rising) / 2, (sum - falling) / 2};
@@ -128,18 +128,18 @@ struct Ends {
 
   explicit Ends(const PillarOf<Precision>& pillar)
       : slack(64 * std::numeric_limits<RealOf<Precision>>::epsilon()) {
-    const auto solved = solve<Precision>(pillar, kCountsPerNewton);
+    const auto solved = solve<Precision>(pillar, kCountsOfOneNewton);
     interval = direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
                                   solved.scale);
   }
 
   /// How far phi lies counter-clockwise of phi_low, and how far phi_high does.
   [[nodiscard]] double turn(double phi) const {
-    const double angle = std::remainder(phi - static_cast<double>(interval.phi_low), 2 * kPi);
-    return angle < -slack ? angle + 2 * kPi : angle;
+    const double angle = std::remainder(phi - static_cast<double>(interval.phi_low), 2 * kHalfTurn);
+    return angle < -slack ? angle + 2 * kHalfTurn : angle;
   }
   [[nodiscard]] double turn_high() const {
-    if (interval.phi_high - interval.phi_low > 6) return 2 * kPi;
+    if (interval.phi_high - interval.phi_low > 6) return 2 * kHalfTurn;
     return turn(static_cast<double>(interval.phi_high));
   }
 };
@@ -161,7 +161,7 @@ TYPED_TEST_SUITE(DirectionIntervals, Precisions, PrecisionNames);
 
 Explanation random_truth(Random& random) {
   const auto force = random.force(random.decades(0.05, 4));
-  const double k = kCountsPerNewton;
+  const double k = kCountsOfOneNewton;
   return {2 * k * force.normal, std::numbers::sqrt2 * k * (force.shear_x + force.shear_y),
           std::numbers::sqrt2 * k * (force.shear_y - force.shear_x)};
 }
@@ -181,9 +181,9 @@ TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsSilent) {
 
 /// The extremes that explanations reach: those with the same usable readings and silence elsewhere.
 struct Reached {
-  double theta_low = kPi;
+  double theta_low = kHalfTurn;
   double theta_high = 0;
-  double turn_low = 2 * kPi;
+  double turn_low = 2 * kHalfTurn;
   double turn_high = 0;
   double magnitude_low = std::numeric_limits<double>::infinity();
   double magnitude_high = 0;
@@ -260,11 +260,11 @@ TEST(DirectionIntervals, EndWhereTheExplanationsEnd) {
 TYPED_TEST(DirectionIntervals, AreTheEstimateWhereTheForceIsDetermined) {
   Random random(73);
   for (int i = 0; i < 10'000; ++i) {
-    const auto readings = rounded_readings<TypeParam>(random.force(1), kCountsPerNewton);
+    const auto readings = rounded_readings<TypeParam>(random.force(1), kCountsOfOneNewton);
     if (count_positive(readings) < 3) continue;
     const auto pillar = pillar_of<TypeParam>(readings);
     const Ends<TypeParam> ends(pillar);
-    const auto direction = direction_of(solve<TypeParam>(pillar, kCountsPerNewton).force);
+    const auto direction = direction_of(solve<TypeParam>(pillar, kCountsOfOneNewton).force);
     EXPECT_NEAR(ends.interval.theta_low, direction.theta, ends.slack);
     EXPECT_NEAR(ends.interval.theta_high, direction.theta, ends.slack);
     EXPECT_NEAR(ends.interval.magnitude_low, direction.magnitude, ends.slack);
@@ -304,7 +304,7 @@ TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
       FourReadings<TypeParam> readings;
       for (auto& reading : readings) reading = odd[random.below(odd.size())];
       const auto pillar = pillar_in<TypeParam>(states, readings);
-      const auto solved = solve<TypeParam>(pillar, kCountsPerNewton);
+      const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
       const auto interval = direction_interval(pillar, solved.diagonals, solved.sum,
                                                direction_of(solved.force), solved.scale);
       const Real most = static_cast<Real>(1e6);

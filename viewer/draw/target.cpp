@@ -7,12 +7,12 @@
 
 namespace pillarfield::viewer {
 
-using Usage = vk::ImageUsageFlagBits;
+using ImageUsage = vk::ImageUsageFlagBits;
 
 Target::Target(const gpu::Device& device, vk::RenderPass render_pass, vk::Extent2D size)
-    : colour_(device, size, kFormat, Usage::eColorAttachment | Usage::eTransferSrc,
+    : colour_(device, size, kFormat, ImageUsage::eColorAttachment | ImageUsage::eTransferSrc,
               vk::ImageAspectFlagBits::eColor),
-      depth_(device, size, kDepthFormat, Usage::eDepthStencilAttachment,
+      depth_(device, size, kDepthFormat, ImageUsage::eDepthStencilAttachment,
              vk::ImageAspectFlagBits::eDepth) {
   const std::array views{colour_.view(), depth_.view()};
   framebuffer_ = vk::raii::Framebuffer(

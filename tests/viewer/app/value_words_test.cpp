@@ -13,7 +13,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 PillarValues pillar(double x, double y, double normal, double sx, double sy, double sn) {
   PillarValues values;
@@ -96,8 +96,8 @@ TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {
   EXPECT_EQ(value_words(-123.456, 2.3), "−123.5");
   EXPECT_EQ(value_words(-0.00001, 0.01), "0.000");
   EXPECT_EQ(value_words(123.456, 230), "123");
-  EXPECT_EQ(value_words(0.123456, kNoNumber), "0.123");
-  EXPECT_EQ(deviation_words(kNoNumber), "");
+  EXPECT_EQ(value_words(0.123456, kNotANumber), "0.123");
+  EXPECT_EQ(deviation_words(kNotANumber), "");
   EXPECT_EQ(deviation_words(0), "");
 }
 
@@ -105,7 +105,7 @@ TEST(IntervalWords, TellTheEndsApart) {
   EXPECT_EQ(interval_words(0.12, 0.34), "0.12 … 0.34");
   EXPECT_EQ(interval_words(60, 73.3), "60 … 73");
   EXPECT_EQ(interval_words(-5, -5), "−5.000 … −5.000");
-  EXPECT_EQ(interval_words(kNoNumber, 1), "");
+  EXPECT_EQ(interval_words(kNotANumber, 1), "");
 }
 
 TEST(ShownDirection, HasIntervalsWhereItIsAmbiguousAndDeviationsElsewhere) {

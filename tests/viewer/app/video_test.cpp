@@ -22,7 +22,7 @@ Pixels grey(std::uint32_t width, std::uint32_t height, std::uint8_t level) {
   return {width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height, level)};
 }
 
-std::string message_of(const std::function<void()>& act) {
+std::string complaint_about(const std::function<void()>& act) {
   try {
     act();
   } catch (const Error& error) {
@@ -98,7 +98,7 @@ TEST_F(Video, MoreBytesThanAnyBufferHoldsArrive) {
 TEST_F(Video, WithoutFfmpegTheErrorNamesThePackage) {
   no_ffmpeg();
   const std::string message =
-      message_of([&] { const VideoWriter video(folder_ / "a.mp4", 4, 4, 25); });
+      complaint_about([&] { const VideoWriter video(folder_ / "a.mp4", 4, 4, 25); });
   EXPECT_NE(message.find("ffmpeg: is not installed"), std::string::npos) << message;
   EXPECT_NE(message.find("Debian package ffmpeg"), std::string::npos) << message;
   EXPECT_TRUE(is_alone(""));
@@ -108,7 +108,7 @@ TEST_F(Video, WhatFfmpegComplainsOfIsInTheError) {
   stand_in("cat > /dev/null; echo first complaint >&2; echo second >&2; exit 3");
   VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
   video.add(grey(4, 4, 1));
-  const std::string message = message_of([&] { video.finish(); });
+  const std::string message = complaint_about([&] { video.finish(); });
   EXPECT_NE(message.find("a.mp4: ffmpeg failed: first complaint; second"), std::string::npos)
       << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
@@ -118,11 +118,11 @@ TEST_F(Video, AnFfmpegThatLeavesEarlyIsAnErrorAndNoSignal) {
   stand_in("echo no space left >&2; exit 1");
   std::signal(SIGPIPE, SIG_DFL);
   VideoWriter video(folder_ / "a.mp4", 1000, 1000, 25);
-  const std::string message = message_of([&] {
+  const std::string message = complaint_about([&] {
     for (int i = 0; i < 20; ++i) video.add(grey(1000, 1000, 1));
   });
   EXPECT_NE(message.find("no space left"), std::string::npos) << message;
-  EXPECT_NE(message_of([&] { video.add(grey(1000, 1000, 1)); }).find("is finished"),
+  EXPECT_NE(complaint_about([&] { video.add(grey(1000, 1000, 1)); }).find("is finished"),
             std::string::npos);
 }
 
@@ -140,14 +140,14 @@ TEST_F(Video, AnUnfinishedVideoLeavesNothing) {
 TEST_F(Video, WrongEndingsSizesAndRatesAreErrors) {
   stand_in("cat > \"$out\"");
   const auto message = [&](const char* name, std::uint32_t width, double rate) {
-    return message_of([&] { const VideoWriter video(folder_ / name, width, 4, rate); });
+    return complaint_about([&] { const VideoWriter video(folder_ / name, width, 4, rate); });
   };
   EXPECT_NE(message("a.avi", 4, 25).find("use .mp4, .mkv, .mov or .webm"), std::string::npos);
   EXPECT_NE(message("a.mp4", 0, 25).find("pixels"), std::string::npos);
   EXPECT_NE(message("a.mp4", 4, 0).find("0 pictures a second"), std::string::npos);
   VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
-  EXPECT_NE(message_of([&] { video.add(grey(4, 5, 1)); }).find("4 x 5"), std::string::npos);
-  EXPECT_NE(message_of([&] { video.finish(); }).find("needs pictures"), std::string::npos);
+  EXPECT_NE(complaint_about([&] { video.add(grey(4, 5, 1)); }).find("4 x 5"), std::string::npos);
+  EXPECT_NE(complaint_about([&] { video.finish(); }).find("needs pictures"), std::string::npos);
 }
 
 TEST_F(Video, FfmpegWritesVideosOfOddSizes) {

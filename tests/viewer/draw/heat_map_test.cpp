@@ -10,8 +10,8 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr std::uint32_t kWidth = 640;
-constexpr std::uint32_t kHeight = 480;
+constexpr std::uint32_t kMapWidth = 640;
+constexpr std::uint32_t kMapHeight = 480;
 
 /// Every pillar another force, in all directions.
 MadeUpField varied_field() {
@@ -39,15 +39,15 @@ TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
   const Quantity quantity = GetParam();
   const MadeUpField field = varied_field();
   Drawing drawing;
-  Look look = bare_look(field, kWidth, kHeight);
+  Look look = bare_look(field, kMapWidth, kMapHeight);
   look.quantity = quantity;
   look.map = default_map(info_of(quantity).scale);
   look.range = fitting_range(quantity, largest(quantity, field.shown()));
-  const Pixels pixels = drawing.draw(field, look, kWidth, kHeight);
+  const Pixels pixels = drawing.draw(field, look, kMapWidth, kMapHeight);
   std::set<std::size_t> seen;
   for (std::uint32_t row = 0; row < 18; ++row) {
     for (std::uint32_t col = 0; col < 24; ++col) {
-      const PixelPlace place = middle_of(field, look, kWidth, kHeight, row, col);
+      const PixelPlace place = middle_of(field, look, kMapWidth, kMapHeight, row, col);
       const auto entries = entries_with(look.map, colour_at(pixels, place.x, place.y));
       const float value = value_of(quantity, field.shown(), row, col);
       const std::size_t expected = entry_of(value, look.range, info_of(quantity).scale);
@@ -74,12 +74,13 @@ TEST_P(States, HaveColoursOfTheirOwn) {
   });
   Drawing drawing;
   for (const Theme theme : {Theme::dark, Theme::light}) {
-    Look look = bare_look(field, kWidth, kHeight);
+    Look look = bare_look(field, kMapWidth, kMapHeight);
     look.theme = theme;
     look.quantity = quantity;
-    const Pixels pixels = drawing.draw(field, look, kWidth, kHeight);
+    const Pixels pixels = drawing.draw(field, look, kMapWidth, kMapHeight);
     for (std::uint32_t status = 0; status < 256; ++status) {
-      const PixelPlace place = middle_of(field, look, kWidth, kHeight, status / 16, status % 16);
+      const PixelPlace place =
+          middle_of(field, look, kMapWidth, kMapHeight, status / 16, status % 16);
       const auto special = special_of(quantity, static_cast<std::uint8_t>(status));
       const Colour mapped =
           table_of(look.map)[entry_of(value_of(quantity, field.shown(), status / 16, status % 16),
@@ -115,11 +116,11 @@ TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
   const MadeUpField field = varied_field();
   Drawing in_place;
   Drawing copied(false);
-  Look look = bare_look(field, kWidth, kHeight);
+  Look look = bare_look(field, kMapWidth, kMapHeight);
   look.arrows = true;
   look.legend = true;
-  const Pixels first = in_place.draw(field, look, kWidth, kHeight);
-  const Pixels second = copied.draw(field, look, kWidth, kHeight);
+  const Pixels first = in_place.draw(field, look, kMapWidth, kMapHeight);
+  const Pixels second = copied.draw(field, look, kMapWidth, kMapHeight);
   EXPECT_EQ(first.rgba, second.rgba);
   EXPECT_EQ(copied.memory().fields_in_place(), 0U);
   EXPECT_EQ(copied.memory().bytes_copied(), field.shown().pages.size());
@@ -132,14 +133,14 @@ TEST(HeatMap, ReadInPlaceFollowsTheMemory) {
   const MadeUpField field = varied_field();
   Drawing drawing;
   if (!drawing.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
-  const Look look = bare_look(field, kWidth, kHeight);
-  const Pixels before = drawing.draw(field, look, kWidth, kHeight);
+  const Look look = bare_look(field, kMapWidth, kMapHeight);
+  const Pixels before = drawing.draw(field, look, kMapWidth, kMapHeight);
   // What a solver does: it writes where the device reads, and nobody copies.
   auto* const normal = const_cast<float*>(field.shown().forces.normal.data());
   std::fill(normal, normal + field.shown().forces.normal.size(), 1.0F);
-  const Pixels after = drawing.draw(field, look, kWidth, kHeight);
+  const Pixels after = drawing.draw(field, look, kMapWidth, kMapHeight);
   EXPECT_NE(before.rgba, after.rgba);
-  const PixelPlace place = middle_of(field, look, kWidth, kHeight, 3, 3);
+  const PixelPlace place = middle_of(field, look, kMapWidth, kMapHeight, 3, 3);
   EXPECT_EQ(colour_at(after, place.x, place.y), table_of(look.map).back());
   EXPECT_EQ(drawing.memory().bytes_copied(), 0U);
 }
