@@ -55,11 +55,15 @@ Span frames_of(const Options& options, const SourceInfo& source) {
               fmt::format("its frames are 1 to {}", source.frames));
 }
 
+bool asks_for_sequence(const Options& options) {
+  return options.end_frame > options.first_frame + 1;
+}
+
 /// Pictures that are asked for: one, or one of each frame.
 std::vector<std::filesystem::path> png_names(const Options& options, const Span& span,
                                              std::uint64_t frames) {
   if (options.png.empty()) return {};
-  if (span.end - span.begin == 1) return {options.png};
+  if (!asks_for_sequence(options)) return {options.png};
   std::vector<std::filesystem::path> names;
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     names.push_back(numbered(options.png, frame + 1, frames));
@@ -87,13 +91,17 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
 
 void run_headless(const Options& options) {
   const Replace replace = options.overwrite ? Replace::anything : Replace::results;
+  // What needs no look into the source is checked before it is opened.
+  const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
+  using Paths = std::vector<std::filesystem::path>;
+  check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
   const auto producer = open_producer(options.source, ProducerOptions{options.device});
   const SourceInfo& source = producer->info();
   for (const std::string& remark : source.remarks) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", source.name, remark);
   }
   const Span span = frames_of(options, source);
-  const auto pictures = png_names(options, span, source.frames);
+  const Paths pictures = png_names(options, span, source.frames);
   check_exports(options, pictures, replace);
   Look look = first_look(options, *producer, Renderer::scale_of(options));
   const Viewport plot = layout_of(options.width, options.height, look).plot;

@@ -27,7 +27,7 @@ constexpr int kPartFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY;
     throw Error(place.part_path.string(), "is a symbolic link", kOtherPart);
   }
   throw Error(place.part_path.string(), std::strerror(error_number),
-              "write to a directory that can be written");
+              "write to a directory that is there and can be written");
 }
 
 void require_plain(const struct stat& found, const OutputPlace& place) {

@@ -88,7 +88,7 @@ void require_writable_folder(const OutputPlace& place) {
   const std::filesystem::path folder = place.final_path.parent_path();
   if (access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0) return;
   throw Error(place.part_path.string(), std::strerror(errno),
-              "check its directory, or write to one that can be written");
+              "write to a directory that is there and can be written");
 }
 
 }  // namespace

@@ -64,7 +64,8 @@ class Calibrate(CommandTest):
         path = self.folder / f"{name}.h5"
         scene.write_text(load + sensor)
         last_frame = self.first_frame + frames
-        run("simulate", scene, "-o", path, "--uncalibrated", "--frames", last_frame)
+        run("simulate", scene, "-o", path, "--uncalibrated", "--frames", last_frame,
+            "--overwrite")
         with h5py.File(path, "r+") as file:
             for dataset in ("frames/raw", "frames/time", "truth/shear_x", "truth/shear_y",
                             "truth/normal"):
