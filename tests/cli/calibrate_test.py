@@ -194,7 +194,8 @@ class Chain(Calibrate):
         with h5py.File(tested) as file:
             self.assertEqual(sorted(zip(*numpy.where(file["calibration/mask"][:] == 0))),
                              [(20, 20), (24, 31)])
-        text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested).stdout
+        text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested,
+                   "--overwrite").stdout
         for words in ("row 20, column 20: silent", "row 30, column 31: undecided", "not masked"):
             self.assertIn(words, text)
 

@@ -9,7 +9,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdarg>
 #include <cstdlib>
+#include <functional>
+#include <utility>
 
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/force_file.h"
@@ -31,9 +34,23 @@ int note_sync(int descriptor, long number) {
   return static_cast<int>(syscall(number, descriptor));
 }
 
+/// What happens between the opening of a part and its lock, once.
+std::function<void()>& before_lock() {
+  static std::function<void()> action;
+  return action;
+}
+
 }  // namespace
 
 // They stand before those of the C library.
+extern "C" int fcntl(int descriptor, int command, ...) {
+  va_list arguments;
+  va_start(arguments, command);
+  void* const argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if (command == F_OFD_SETLK && before_lock()) std::exchange(before_lock(), nullptr)();
+  return static_cast<int>(syscall(SYS_fcntl, descriptor, command, argument));
+}
 extern "C" int fsync(int descriptor) { return note_sync(descriptor, SYS_fsync); }
 extern "C" int fdatasync(int descriptor) { return note_sync(descriptor, SYS_fdatasync); }
 extern "C" int rename(const char* from, const char* to) noexcept {
@@ -167,6 +184,19 @@ TEST(OutputFile, ItsLockEndsWithAKilledProcess) {
   EXPECT_EQ(bytes_of(directory / "a.csv.part"), "half");
   write_text(directory / "a.csv", "whole", Replace::results);
   EXPECT_EQ(bytes_of(directory / "a.csv"), "whole");
+}
+
+TEST(OutputFile, APartThatTakesItsNameBeforeTheLockIsLeftAlone) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "a.csv.part", "finished");
+  before_lock() = [&] { fs::rename(directory / "a.csv.part", directory / "a.csv"); };
+  OutputFile file(directory / "a.csv", OutputKind::force_table, Replace::anything);
+  EXPECT_FALSE(before_lock());
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "finished");
+  file.write("next");
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "finished");
+  file.commit();
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "next");
 }
 
 /// Eight processes begin at once, over and over; the lines of a file are always of one of them.
