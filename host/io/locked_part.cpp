@@ -7,6 +7,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "pillarfield/error.h"
 
@@ -50,7 +51,7 @@ bool is_same_file(const struct stat& a, const struct stat& b) {
 
 }  // namespace
 
-LockedPart::LockedPart(const OutputPlace& place) : place_(place) {
+LockedPart::LockedPart(OutputPlace place) : place_(std::move(place)) {
   // A part that takes its final name between open() and the lock is a finished file, to be left
   // alone; whoever finds one begins anew.
   constexpr int kMostTries = 100;

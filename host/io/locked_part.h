@@ -15,7 +15,7 @@ class LockedPart {
  public:
   /// Creates the part, or opens one that an earlier writer left. Throws Error where another process
   /// writes it, or where it is a symbolic link, has further names, or is no regular file.
-  explicit LockedPart(const OutputPlace& place);
+  explicit LockedPart(OutputPlace place);
   ~LockedPart();
   LockedPart(const LockedPart&) = delete;
   LockedPart& operator=(const LockedPart&) = delete;

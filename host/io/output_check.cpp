@@ -2,7 +2,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <compare>
 #include <cstring>
 #include <optional>
 #include <set>
@@ -19,11 +18,7 @@ namespace pillarfield {
 namespace {
 
 /// Of what a path leads to.
-struct FileIdentity {
-  dev_t device;
-  ino_t inode;
-  auto operator<=>(const FileIdentity&) const = default;
-};
+using FileIdentity = std::pair<dev_t, ino_t>;
 
 std::optional<FileIdentity> identity_of(const std::filesystem::path& path) {
   struct stat found = {};

@@ -51,7 +51,7 @@ std::filesystem::path end_of_links(const std::filesystem::path& path) {
 OutputPlace place_of_output(const std::filesystem::path& path) {
   if (path == "-") {
     throw Error("-", "standard output takes no file of this kind",
-                "name a file, or ./- for this one");
+                "name a file; ./- is one of this name");
   }
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);

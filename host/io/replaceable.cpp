@@ -48,7 +48,7 @@ struct Beginning {
 constexpr std::array<Beginning, 7> kBeginnings = {{
     {OutputKind::force_table, "is a table of forces", 0, "frame,time_s,row,col,shear_x_n,"},
     {OutputKind::contact_table, "is a table of contacts", 0, "row,frame,time_s,id,parent,"},
-    {OutputKind::contact_list, "is a list of contacts", 0, "{\"format\":\"pillarfield-contacts\""},
+    {OutputKind::contact_list, "is a list of contacts", 0, R"({"format":"pillarfield-contacts")"},
     {OutputKind::png, "is a picture", 0, "\x89PNG\r\n\x1a\n"},
     {OutputKind::video, "is a video", 4, "ftyp"},              // MP4, QuickTime
     {OutputKind::video, "is a video", 0, "\x1a\x45\xdf\xa3"},  // Matroska, WebM
