@@ -1,16 +1,13 @@
 #include "report/page.h"
 
-#include <fstream>
-
-#include "pillarfield/error.h"
+#include "pillarfield/output_file.h"
 
 namespace pillarfield::report {
 
 void write_page(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw Error(path.string(), "cannot be written", "check the folder and the disk");
+  OutputFile file(path, OutputKind::text, Replace::anything);
+  file.write(text);
+  file.commit();
 }
 
 }  // namespace pillarfield::report

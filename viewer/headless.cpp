@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 #include "viewer/app/export.h"
 #include "viewer/app/field_place.h"
 #include "viewer/draw/painter.h"
@@ -54,15 +55,54 @@ FrameRange frames_of(const Options& options, const SourceInfo& source) {
               fmt::format("its frames are 1 to {}", source.frames));
 }
 
+bool asks_for_sequence(const Options& options) {
+  return options.end_frame > options.first_frame + 1;
+}
+
+/// Pictures that are asked for: one, or one of each frame.
+std::vector<std::filesystem::path> png_names(const Options& options, const Span& span,
+                                             std::uint64_t frames) {
+  if (options.png.empty()) return {};
+  if (!asks_for_sequence(options)) return {options.png};
+  std::vector<std::filesystem::path> names;
+  for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
+    names.push_back(numbered(options.png, frame + 1, frames));
+  }
+  return names;
+}
+
+void check_exports(const Options& options, const std::vector<std::filesystem::path>& pictures,
+                   Replace replace) {
+  std::vector<PlannedOutput> outputs;
+  for (const auto& picture : pictures) outputs.push_back({picture, OutputKind::png});
+  if (!options.csv.empty()) outputs.push_back({options.csv, OutputKind::force_table});
+  if (!options.video.empty()) outputs.push_back({options.video, OutputKind::video});
+  check_outputs({options.source}, outputs, replace);
+}
+
+/// Pictures that are complete stay; a video is there whole or not at all.
+void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
+  if (!is_interrupted()) return;
+  throw Error(options.source.string(), fmt::format("interrupted after {} pictures", pictures),
+              "start again");
+}
+
 }  // namespace
 
 void run_headless(const Options& options) {
+  const Replace replace = options.overwrite ? Replace::anything : Replace::results;
+  // What needs no look into the source is checked before it is opened.
+  const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
+  using Paths = std::vector<std::filesystem::path>;
+  check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
   const auto producer = open_producer(options.source, ProducerOptions{options.device});
   const SourceInfo& source = producer->info();
   for (const std::string& remark : source.remarks) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", source.name, remark);
   }
   const FrameRange span = frames_of(options, source);
+  const Paths pictures = png_names(options, span, source.frames);
+  check_exports(options, pictures, replace);
   Look look = first_look(options, *producer, Renderer::scale_of(options));
   const Viewport plot = layout_of(options.width, options.height, look).plot;
   look.view = first_view(options, source, plot);
@@ -70,27 +110,24 @@ void run_headless(const Options& options) {
   if (!options.csv.empty()) {
     const Viewport picture{0, 0, static_cast<double>(options.width),
                            static_cast<double>(options.height)};
-    write_csv(options.csv, producer->produce(span.begin),
-              visible_pillars({picture, &source}, look));
+    write_csv(options.csv, producer->produce(span.begin), visible_pillars({picture, &source}, look),
+              replace);
   }
   if (options.png.empty() && options.video.empty()) return;
   Renderer renderer(options);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
-    video =
-        std::make_unique<VideoWriter>(options.video, options.width, options.height, source.rate_hz);
+    video = std::make_unique<VideoWriter>(options.video, options.width, options.height,
+                                          source.rate_hz, replace);
   }
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
+    stop_if_interrupted(options, frame - span.begin);
     ShownField field = producer->produce(frame);
     if (look.contacts) {
       field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
     }
     const Pixels pixels = renderer.render(field, source, look);
-    if (!options.png.empty()) {
-      write_png(span.end - span.begin == 1 ? options.png
-                                           : numbered(options.png, frame + 1, source.frames),
-                pixels);
-    }
+    if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace);
     if (video != nullptr) video->add(pixels);
   }
   if (video != nullptr) video->finish();

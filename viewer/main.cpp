@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 
+#include "pillarfield/interrupt.h"
 #include "viewer/app/app.h"
 #include "viewer/gpu/vulkan.h"
 #include "viewer/headless.h"
@@ -21,6 +22,7 @@ int complain(const char* message) noexcept {
 int run(int argc, char** argv) {
   pillarfield::viewer::Options options;
   if (const auto status = pillarfield::viewer::parse_options(argc, argv, options)) return *status;
+  pillarfield::catch_interrupts();
   if (!options.headless) return pillarfield::viewer::run_window(options);
   pillarfield::viewer::run_headless(options);
   return 0;

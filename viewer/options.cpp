@@ -189,6 +189,10 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option("--csv", options.csv, "Forces in sight of the first frame, as a table")
       ->group("Files");
 
+  app.add_flag("--overwrite", options.overwrite,
+               "Replace a file to write that exists, whatever it holds; never the source")
+      ->group("Files");
+
   app.add_option("--device", options.device, "OpenCL device that solves [the best]")
       ->group("Devices");
   app.add_option("--gpu", options.gpu, "Vulkan device that draws, a part of its name [the best]")

@@ -43,6 +43,7 @@ struct Options {
   std::filesystem::path png;
   std::filesystem::path video;
   std::filesystem::path csv;
+  bool overwrite = false;
   std::uint64_t first_frame = 0;  ///< first shown; of --frame and --frames
   std::uint64_t end_frame = 0;    ///< after the last one rendered; 0: first_frame + 1
 };

@@ -33,14 +33,15 @@ void copy_frames(FrameSource& source, const ApplyCommand& command, RecordingWrit
 }
 
 void run(const ApplyCommand& command) {
-  const std::unique_ptr<FrameSource> source = open_for_step(command.recording, command.step);
+  check_step_output({command.recording}, command.step, OutputKind::recording);
+  const std::unique_ptr<FrameSource> source = open_for_step(command.recording);
   const SkinCalibration calibration = read_calibration_file(command.step.calibration);
   require_fitting(calibration, source->skin(), command.recording);
   Skin skin = source->skin();
   Calibration planes = source->calibration();
   apply(calibration, skin, planes);
   RecordingWriter writer(command.step.output, skin, source->sensel_type(), planes,
-                         {.truth = source->has_truth()});
+                         {.truth = source->has_truth(), .replace = command.step.replace});
   copy_frames(*source, command, writer);
   writer.finish();
   if (command.step.json) {

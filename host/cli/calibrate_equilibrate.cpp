@@ -77,7 +77,7 @@ void run(const EquilibrateCommand& command) {
       "equilibrate", names_of(command.files), input.frames,
       fmt::format("pressures_kpa = {}, most_unevenness = {}", fmt::join(command.pressures_kpa, " "),
                   command.equilibration.most_unevenness)));
-  write_calibration_file(command.step.output, result.calibration);
+  write_calibration_file(command.step.output, result.calibration, command.step.replace);
   print_remarks(command, result);
   if (command.step.json) {
     print_json(command, result, input.frames);

@@ -20,7 +20,8 @@ struct FaultsCommand {
 };
 
 FaultResult find_faults(const FaultsCommand& command) {
-  const std::unique_ptr<FrameSource> source = open_for_step(command.frames, command.step);
+  check_step_output({command.frames}, command.step, OutputKind::calibration);
+  const std::unique_ptr<FrameSource> source = open_for_step(command.frames);
   FaultFinder finder(command.frames, source->skin(), source->sensel_type(),
                      calibration_before(command.step, *source, command.frames), command.faults);
   FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
@@ -58,7 +59,7 @@ void run(const FaultsCommand& command) {
       step_done("faults", names_of({command.frames}), result.frames,
                 fmt::format("least_frames = {}, still_factor = {}, moving_factor = {}",
                             faults.least_frames, faults.still_factor, faults.moving_factor)));
-  write_calibration_file(command.step.output, result.calibration);
+  write_calibration_file(command.step.output, result.calibration, command.step.replace);
   if (command.step.json) {
     print_json(command, result);
   } else {

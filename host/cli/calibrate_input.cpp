@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <system_error>
-
 #include "cli/interrupt.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
@@ -30,6 +29,7 @@ FrameStatistics statistics_of(FrameSource& source, const std::string& file,
 
 void add_step_options(CLI::App& command, StepOptions& options, const char* wrote) {
   command.add_option("-o,--output", options.output, wrote)->required();
+  add_overwrite_option(command, options.replace);
   command.add_flag("--json", options.json, "Print the summary as JSON");
   command.add_flag("-q,--quiet", options.quiet, "Show no progress");
 }
@@ -40,13 +40,16 @@ void add_calibration_option(CLI::App& command, StepOptions& options) {
       ->required();
 }
 
-std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
+void check_step_output(const std::vector<std::string>& files, const StepOptions& options,
+                       OutputKind kind) {
+  std::vector<std::filesystem::path> inputs(files.begin(), files.end());
+  inputs.emplace_back(options.calibration);
+  check_outputs(inputs, {{options.output, kind}}, options.replace);
+}
+
+std::unique_ptr<FrameSource> open_for_step(const std::string& file) {
   std::unique_ptr<FrameSource> source = open_frames(file);
   for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
-  std::error_code absent;
-  if (std::filesystem::equivalent(file, options.output, absent)) {
-    throw Error(options.output, "holds the frames that are read", "write to another file");
-  }
   return source;
 }
 
@@ -61,9 +64,10 @@ SkinCalibration calibration_before(const StepOptions& options, const FrameSource
 }
 
 StepInput read_input(const std::vector<std::string>& files, const StepOptions& options) {
+  check_step_output(files, options, OutputKind::calibration);
   StepInput input;
   for (const std::string& file : files) {
-    const std::unique_ptr<FrameSource> source = open_for_step(file, options);
+    const std::unique_ptr<FrameSource> source = open_for_step(file);
     if (input.files.empty()) input.before = calibration_before(options, *source, file);
     require_fitting(input.before, source->skin(), file);
     mask_missing(input.before, source->calibration().mask);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pillarfield/frame_statistics.h"
+#include "pillarfield/output_file.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/skin_calibration.h"
 
@@ -16,19 +17,24 @@ namespace pillarfield::cli {
 struct StepOptions {
   std::string calibration;  ///< file to go on from; empty where there is none
   std::string output;
+  Replace replace = Replace::results;
   bool json = false;
   bool quiet = false;
 };
 
-/// --output, --json and --quiet; `wrote` says what the output is.
+/// --output, --overwrite, --json and --quiet; `wrote` says what the output is.
 void add_step_options(CLI::App& command, StepOptions& options, const char* wrote);
 
 /// --calibration, which is needed.
 void add_calibration_option(CLI::App& command, StepOptions& options);
 
-/// Opens frames, tells their remarks on standard error, and refuses them as the step's output:
-/// recordings are never overwritten.
-std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options);
+/// Throws Error where the step's output cannot be written, or is one of `files` of frames or the
+/// calibration that the step goes on from.
+void check_step_output(const std::vector<std::string>& files, const StepOptions& options,
+                  OutputKind kind);
+
+/// Opens frames and tells their remarks on standard error.
+std::unique_ptr<FrameSource> open_for_step(const std::string& file);
 
 /// The calibration that the options name, or a blank one for the skin of `source`; sensels that
 /// are missing in `source` are masked. Throws Error where the two do not fit.
@@ -42,7 +48,8 @@ struct StepInput {
   std::uint64_t frames = 0;  ///< in all files
 };
 
-/// Reads all frames of one file or more, and the calibration that goes before.
+/// Checks the output, a calibration; then reads all frames of one file or more, and the calibration
+/// that goes before.
 StepInput read_input(const std::vector<std::string>& files, const StepOptions& options);
 
 /// Throws the error of a wrong command line unless there is a value of `option` for each file.

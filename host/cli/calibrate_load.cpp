@@ -97,7 +97,7 @@ void run(const LoadCommand& command) {
       step_done("load", names_of(command.files), input.frames,
                 fmt::format("loads_n = {}, model = {}", fmt::join(command.loads_n, " "),
                             name_of(command.model))));
-  write_calibration_file(command.step.output, result.calibration);
+  write_calibration_file(command.step.output, result.calibration, command.step.replace);
   print_remarks(command, result);
   if (command.step.json) {
     print_json(command, result, input.frames);

@@ -47,7 +47,7 @@ void run(const TareCommand& command) {
       step_done("tare", names_of({command.unloaded}), unloaded.frames(),
                 fmt::format("threshold_factor = {}, preloaded = {}", command.tare.threshold_factor,
                             command.tare.preloaded)));
-  write_calibration_file(command.step.output, result.calibration);
+  write_calibration_file(command.step.output, result.calibration, command.step.replace);
   if (command.step.json) {
     print_json(command, result, unloaded.frames());
   } else {

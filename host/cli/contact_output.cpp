@@ -17,18 +17,9 @@ std::string ending_of(const std::string& file) {
   return ending;
 }
 
-bool is_table(const std::string& file) {
-  const std::string ending = ending_of(file);
-  return ending == ".csv" || ending == ".json";
-}
-
 bool is_hdf5(const std::string& file) {
   const std::string ending = ending_of(file);
   return ending == ".h5" || ending == ".hdf5";
-}
-
-bool same_file(const std::string& a, const std::string& b) {
-  return std::filesystem::path(a).lexically_normal() == std::filesystem::path(b).lexically_normal();
 }
 
 }  // namespace
@@ -60,15 +51,22 @@ void take_friction(const SolverPlan& plan, ContactOptions& contacts) {
 void check(const ContactOutputOptions& options, const std::string& output) {
   if (options.file.empty()) return;
   check(options.contacts, "the command line");
-  const bool same = same_file(options.file, output);
+  const bool same = name_same_file(options.file, output);
   if (same && !is_hdf5(output)) {
     throw Error(options.file, "forces and contacts cannot share this file",
                 "give contacts a name of their own");
   }
-  if (!same && !is_table(options.file)) {
+  if (!same && is_hdf5(options.file)) {
     throw Error(options.file, "its ending names no table of contacts",
                 "end it in .csv or .json, or name the .h5 file of forces");
   }
+  static_cast<void>(planned_table(options, output));
+}
+
+std::optional<PlannedOutput> planned_table(const ContactOutputOptions& options,
+                                           const std::string& output) {
+  if (options.file.empty() || name_same_file(options.file, output)) return std::nullopt;
+  return PlannedOutput{options.file, kind_of_contact_file(options.file)};
 }
 
 void ask_for_contacts(const ContactOutputOptions& options, const std::string& output,
@@ -77,12 +75,12 @@ void ask_for_contacts(const ContactOutputOptions& options, const std::string& ou
 }
 
 ContactOutput::ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
-                             const std::string& output)
+                             const std::string& output, Replace replace)
     : tracker_(forces.pillar_pitch_mm, options.contacts),
       in_force_file_(forces.contacts.has_value()) {
-  if (same_file(options.file, output)) return;
-  table_ =
-      create_contact_sink(options.file, {forces.pillar_pitch_mm, forces.source, options.contacts});
+  if (!planned_table(options, output)) return;
+  table_ = create_contact_sink(options.file,
+                               {forces.pillar_pitch_mm, forces.source, options.contacts}, replace);
 }
 
 void ContactOutput::append(const ForceFieldView& forces, const ContactMap* found, double time_s,

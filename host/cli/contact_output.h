@@ -30,6 +30,10 @@ void take_friction(const SolverPlan& plan, ContactOptions& contacts);
 /// `output` is the file of forces.
 void check(const ContactOutputOptions& options, const std::string& output);
 
+/// The table of contacts that the options ask for; none where the file of forces `output` is named.
+[[nodiscard]] std::optional<PlannedOutput> planned_table(const ContactOutputOptions& options,
+                                                         const std::string& output);
+
 /// Lets the file of forces hold contacts where `options` asks for any and it can.
 void ask_for_contacts(const ContactOutputOptions& options, const std::string& output,
                       ForceFileInfo& forces);
@@ -40,7 +44,7 @@ class ContactOutput {
  public:
   /// `forces` is what its file `output` says of itself.
   ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
-                const std::string& output);
+                const std::string& output, Replace replace);
 
   /// Takes a frame that `sink` has just taken; `found` as ContactTracker::update() has it.
   void append(const ForceFieldView& forces, const ContactMap* found, double time_s,

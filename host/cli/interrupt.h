@@ -3,13 +3,9 @@
 #include <cstdint>
 #include <filesystem>
 
+#include "pillarfield/interrupt.h"
+
 namespace pillarfield::cli {
-
-/// From now on Ctrl-C and SIGTERM are noted instead of ending the process; a second one ends it.
-void catch_interrupts();
-
-/// Whether an interrupt was noted.
-[[nodiscard]] bool is_interrupted();
 
 /// Throws Error where an interrupt was noted: `frames` are done, and what is written under the name
 /// of `output` + ".part" may hold them.

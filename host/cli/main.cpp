@@ -4,7 +4,7 @@
 #include <exception>
 
 #include "cli/command.h"
-#include "cli/interrupt.h"
+#include "pillarfield/interrupt.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::cli {

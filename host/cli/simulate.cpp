@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "pillarfield/recording.h"
@@ -21,6 +22,7 @@ struct SimulateOptions {
   std::optional<std::uint32_t> frames;
   std::optional<std::uint64_t> seed;
   bool uncalibrated = false;
+  Replace replace = Replace::results;
   bool json = false;
   bool quiet = false;
 };
@@ -52,6 +54,7 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
 
 void simulate(const SimulateOptions& options) {
   const Stopwatch watch;
+  check_outputs({options.scene}, {{options.output, OutputKind::recording}}, options.replace);
   const Simulator simulator(scene_of(options));
   const Scene& scene = simulator.scene();
   FrameBuffer frame(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
@@ -60,7 +63,7 @@ void simulate(const SimulateOptions& options) {
   if (options.uncalibrated) skin.power_law.reset();
   RecordingWriter writer(options.output, skin, simulator.sensel_type(),
                          options.uncalibrated ? Calibration() : simulator.calibration(),
-                         {.truth = true});
+                         {.truth = true, .replace = options.replace});
   {
     Progress progress("Simulating", scene.frames, options.quiet);
     for (std::uint64_t index = 0; index < scene.frames; ++index) {
@@ -87,6 +90,7 @@ void add_simulate(CLI::App& app, Work& work) {
   command->add_option("--seed", options->seed, "Seed of the sensor's randomness [the scene's]");
   command->add_flag("--uncalibrated", options->uncalibrated,
                     "Leave out the sensor's calibration, as of a skin that is new");
+  add_overwrite_option(*command, options->replace);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");
   command->callback([options, &work] { work = [options] { simulate(*options); }; });

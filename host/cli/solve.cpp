@@ -9,6 +9,7 @@
 #include "cli/contact_output.h"
 #include "cli/device_options.h"
 #include "cli/interrupt.h"
+#include "cli/output_options.h"
 #include "cli/plan_options.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
@@ -27,6 +28,7 @@ struct SolveOptions {
   PlanOptions plan;
   DeviceOptions device;
   ContactOutputOptions contacts;
+  Replace replace = Replace::results;
   bool json = false;
   bool quiet = false;
 };
@@ -205,9 +207,17 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Wrote {}\n", options.output);
 }
 
+void check_solve_outputs(const SolveOptions& options) {
+  std::vector<PlannedOutput> outputs = {{options.output, kind_of_force_file(options.output)}};
+  if (const auto table = planned_table(options.contacts, options.output)) outputs.push_back(*table);
+  check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
+                options.replace);
+}
+
 void solve(SolveOptions options) {
   const Stopwatch watch;
   check(options.contacts, options.output);
+  check_solve_outputs(options);
   const std::unique_ptr<FrameSource> source = open_frames(options.input);
   for (const std::string& remark : source->remarks()) {
     fmt::print(stderr, "{}: {}\n", options.input, remark);
@@ -219,9 +229,11 @@ void solve(SolveOptions options) {
       device, plan,
       {.memory = options.device.memory, .frames_in_flight = Pipeline::kFramesInFlight});
   const ForceFileInfo info = file_info(options, plan, device);
-  const std::unique_ptr<ForceSink> sink = create_force_sink(options.output, info);
+  const std::unique_ptr<ForceSink> sink = create_force_sink(options.output, info, options.replace);
   std::optional<ContactOutput> contacts;
-  if (!options.contacts.file.empty()) contacts.emplace(options.contacts, info, options.output);
+  if (!options.contacts.file.empty()) {
+    contacts.emplace(options.contacts, info, options.output, options.replace);
+  }
   Pipeline pipeline(*source, processor, *sink, contacts ? &*contacts : nullptr, plan);
   {
     Progress progress("Solving", source->frames(), options.quiet);
@@ -260,6 +272,7 @@ void add_solve(CLI::App& app, Work& work) {
   add_plan_options(*command, options->plan);
   add_contact_options(*command, options->contacts);
   add_device_options(*command, options->device);
+  add_overwrite_option(*command, options->replace);
   command->add_flag("--json", options->json, "Print the summary as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");
   command->callback([options, &work] { work = [options] { solve(*options); }; });

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "cli/command.h"
+#include "cli/output_options.h"
 #include "testbed/figures.h"
 #include "testbed/magnitude.h"
 #include "testbed/table_two.h"
@@ -26,6 +27,7 @@ struct TestbedOptions {
   testbed::Parameters parameters;
   std::uint64_t runs = 1000;
   std::string figures;
+  Replace replace = Replace::results;
   bool json = false;
 };
 
@@ -197,7 +199,9 @@ void print_magnitudes(const MagnitudeFigure& figure) {
 void run_testbed(const TestbedOptions& options) {
   const testbed::Parameters& parameters = options.parameters;
   testbed::check(parameters);
-  if (!options.figures.empty()) testbed::draw_figures(options.figures, parameters);
+  if (!options.figures.empty()) {
+    testbed::draw_figures(options.figures, parameters, options.replace);
+  }
   const TableTwo table = testbed::table_two(parameters, options.runs);
   const MagnitudeFigure figure = testbed::magnitude_figure(parameters);
   if (options.json) {
@@ -243,6 +247,7 @@ void add_testbed(CLI::App& app, Work& work) {
   command->add_option("--runs", options->runs, "Repetitions of the experiment [1000]")
       ->check(CLI::Range(2U, 1'000'000U));
   add_parameters(*command, options->parameters);
+  add_overwrite_option(*command, options->replace);
   command->add_flag("--json", options->json, "Print the results as JSON");
   command->callback([options, &work] { work = [options] { run_testbed(*options); }; });
 }

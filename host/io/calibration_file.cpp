@@ -12,7 +12,6 @@
 #include "io/file_kind.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
-#include "io/part_file.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
@@ -158,11 +157,12 @@ SkinCalibration read_calibration_file(const std::filesystem::path& path) {
   return calibration;
 }
 
-void write_calibration_file(const std::filesystem::path& path, const SkinCalibration& calibration) {
+void write_calibration_file(const std::filesystem::path& path, const SkinCalibration& calibration,
+                            Replace replace) {
   const hdf5::QuietErrors quiet;
   check(calibration, path.c_str());
-  PartFile part(path);
-  hdf5::File file = hdf5::create(part.path());
+  OutputFile part(path, OutputKind::calibration, replace);
+  hdf5::File file = hdf5::create(part);
   write_all(file, calibration);
   hdf5::flush(file);
   hdf5::close(file);

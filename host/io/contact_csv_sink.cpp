@@ -10,7 +10,7 @@ namespace {
 /// A line for the patch, for each contact and for each that ended.
 class CsvSink final : public ContactSink {
  public:
-  explicit CsvSink(const std::filesystem::path& path);
+  CsvSink(const std::filesystem::path& path, Replace replace);
 
   void append(const FrameContacts& frame) override;
   void finish() override { file_.finish(); }
@@ -26,7 +26,8 @@ class CsvSink final : public ContactSink {
   std::uint64_t frames_ = 0;
 };
 
-CsvSink::CsvSink(const std::filesystem::path& path) : path_(path), file_(path) {
+CsvSink::CsvSink(const std::filesystem::path& path, Replace replace)
+    : path_(path), file_(path, OutputKind::contact_table, replace) {
   file_.write("row,frame,time_s,id,parent,merged_into,first_time_s,age_s");
   for (const auto& column : quantity_columns()) file_.write(fmt::format(",{}", column.name));
   file_.write("\n");
@@ -67,8 +68,9 @@ void CsvSink::append(const FrameContacts& frame) {
 }  // namespace
 
 std::unique_ptr<ContactSink> create_contact_csv_sink(const std::filesystem::path& path,
-                                                     const ContactFileInfo& /*info*/) {
-  return std::make_unique<CsvSink>(path);
+                                                     const ContactFileInfo& /*info*/,
+                                                     Replace replace) {
+  return std::make_unique<CsvSink>(path, replace);
 }
 
 }  // namespace pillarfield

@@ -40,7 +40,7 @@ std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& r
 /// One object; each frame is a line of it.
 class JsonSink final : public ContactSink {
  public:
-  JsonSink(const std::filesystem::path& path, const ContactFileInfo& info);
+  JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace);
 
   void append(const FrameContacts& frame) override;
   void finish() override;
@@ -51,8 +51,8 @@ class JsonSink final : public ContactSink {
   std::uint64_t frames_ = 0;
 };
 
-JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& info)
-    : path_(path), file_(path) {
+JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace)
+    : path_(path), file_(path, OutputKind::contact_list, replace) {
   const auto& friction = info.options.friction;
   file_.write(
       fmt::format("{{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":{},"
@@ -93,8 +93,9 @@ void JsonSink::finish() {
 }  // namespace
 
 std::unique_ptr<ContactSink> create_contact_json_sink(const std::filesystem::path& path,
-                                                      const ContactFileInfo& info) {
-  return std::make_unique<JsonSink>(path, info);
+                                                      const ContactFileInfo& info,
+                                                      Replace replace) {
+  return std::make_unique<JsonSink>(path, info, replace);
 }
 
 }  // namespace pillarfield

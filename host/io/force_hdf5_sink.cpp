@@ -9,7 +9,6 @@
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
 #include "io/hdf5_frames.h"
-#include "io/part_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
 
@@ -26,7 +25,7 @@ constexpr const char* kConvention =
 
 class Hdf5Sink final : public ForceSink {
  public:
-  Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info);
+  Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replace replace);
   ~Hdf5Sink() override;
 
   void append(const ForceFieldView& forces, double time_s) override;
@@ -43,7 +42,7 @@ class Hdf5Sink final : public ForceSink {
 
   ForceFileInfo info_;
   std::filesystem::path path_;
-  PartFile part_;
+  OutputFile part_;
   hdf5::File file_;
   std::vector<hdf5::GrowingDataset> planes_;  // those of all_planes(), in that order
   hdf5::GrowingDataset status_;
@@ -53,8 +52,11 @@ class Hdf5Sink final : public ForceSink {
   std::uint64_t flushed_ = 0;
 };
 
-Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info)
-    : info_(std::move(info)), path_(path), part_(path), file_(hdf5::create(part_.path())) {
+Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replace replace)
+    : info_(std::move(info)),
+      path_(path),
+      part_(path, OutputKind::forces, replace),
+      file_(hdf5::create(part_)) {
   write_info();
   create_datasets();
   hdf5::start_appending(file_);
@@ -121,6 +123,7 @@ void Hdf5Sink::flush() {
   if (info_.contacts) contacts_.write();
   hdf5::flush(file_);
   flushed_ = frames_;
+  part_.sync_at_intervals();
 }
 
 void Hdf5Sink::append(const ForceFieldView& forces, double time_s) {
@@ -160,9 +163,9 @@ void Hdf5Sink::finish() {
 }  // namespace
 
 std::unique_ptr<ForceSink> create_hdf5_sink(const std::filesystem::path& path,
-                                            const ForceFileInfo& info) {
+                                            const ForceFileInfo& info, Replace replace) {
   const hdf5::QuietErrors quiet;
-  return std::make_unique<Hdf5Sink>(path, info);
+  return std::make_unique<Hdf5Sink>(path, info, replace);
 }
 
 }  // namespace pillarfield

@@ -7,8 +7,6 @@
 
 #include "io/force_planes.h"
 #include "io/force_sink.h"
-#include "io/output_file.h"
-#include "io/part_file.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -42,7 +40,7 @@ std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
 
 class NpySink final : public ForceSink {
  public:
-  NpySink(const std::filesystem::path& path, const ForceFileInfo& info);
+  NpySink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
 
   void append(const ForceFieldView& forces, double time_s) override;
   void finish() override;
@@ -55,19 +53,17 @@ class NpySink final : public ForceSink {
   ForceFileInfo info_;
   std::vector<ForcePlane> further_;
   std::filesystem::path path_;
-  PartFile part_;
   OutputFile file_;
   std::size_t record_bytes_;
   std::vector<std::byte> records_;  // one frame
   std::uint64_t frames_ = 0;
 };
 
-NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info)
+NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
     : info_(info),
       further_(further_planes(info)),
       path_(path),
-      part_(path),
-      file_(part_.path()),
+      file_(path, OutputKind::force_array, replace),
       record_bytes_(kStatusEnd + 4 * further_.size()),
       records_(record_bytes_ * info.rows * info.cols) {
   file_.write(npy_header(info_, 0));
@@ -106,15 +102,14 @@ void NpySink::append(const ForceFieldView& forces, double time_s) {
 void NpySink::finish() {
   require_open();
   file_.write_at_begin(npy_header(info_, frames_));
-  file_.close();
-  part_.commit();
+  file_.commit();
 }
 
 }  // namespace
 
 std::unique_ptr<ForceSink> create_npy_sink(const std::filesystem::path& path,
-                                           const ForceFileInfo& info) {
-  return std::make_unique<NpySink>(path, info);
+                                           const ForceFileInfo& info, Replace replace) {
+  return std::make_unique<NpySink>(path, info, replace);
 }
 
 }  // namespace pillarfield

@@ -48,19 +48,26 @@ void ForceSink::append_contacts(const FrameContacts& /*contacts*/) {
   throw Error("", "a file of forces alone was given contacts", "name them in its ForceFileInfo");
 }
 
-std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
-                                             const ForceFileInfo& info) {
-  check(info, path.string());
+OutputKind kind_of_force_file(const std::filesystem::path& path) {
   const std::string ending = ending_of(path);
-  if (ending == ".h5" || ending == ".hdf5") return create_hdf5_sink(path, info);
+  if (ending == ".h5" || ending == ".hdf5") return OutputKind::forces;
+  if (ending == ".csv") return OutputKind::force_table;
+  if (ending == ".npy") return OutputKind::force_array;
+  throw Error(path.string(), "its ending names no format of forces",
+              "end it in .h5, .hdf5, .csv or .npy");
+}
+
+std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
+                                             const ForceFileInfo& info, Replace replace) {
+  check(info, path.string());
+  const OutputKind kind = kind_of_force_file(path);
+  if (kind == OutputKind::forces) return create_hdf5_sink(path, info, replace);
   if (info.contacts) {
     throw Error(path.string(), "only HDF5 files hold contacts beside the forces",
                 "end it in .h5, or write the contacts to a file of their own");
   }
-  if (ending == ".csv") return create_csv_sink(path, info);
-  if (ending == ".npy") return create_npy_sink(path, info);
-  throw Error(path.string(), "its ending names no format of forces",
-              "end it in .h5, .hdf5, .csv or .npy");
+  if (kind == OutputKind::force_table) return create_csv_sink(path, info, replace);
+  return create_npy_sink(path, info, replace);
 }
 
 }  // namespace pillarfield

@@ -9,11 +9,14 @@
 namespace pillarfield {
 
 [[nodiscard]] std::unique_ptr<ForceSink> create_hdf5_sink(const std::filesystem::path& path,
-                                                          const ForceFileInfo& info);
+                                                          const ForceFileInfo& info,
+                                                          Replace replace);
 [[nodiscard]] std::unique_ptr<ForceSink> create_csv_sink(const std::filesystem::path& path,
-                                                         const ForceFileInfo& info);
+                                                         const ForceFileInfo& info,
+                                                         Replace replace);
 [[nodiscard]] std::unique_ptr<ForceSink> create_npy_sink(const std::filesystem::path& path,
-                                                         const ForceFileInfo& info);
+                                                         const ForceFileInfo& info,
+                                                         Replace replace);
 
 /// Throws Error, its place being `where`, unless the frame is of the size and has the planes that
 /// `info` names, and the time is finite.

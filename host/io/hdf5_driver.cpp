@@ -20,6 +20,7 @@ namespace {
 
 /// What the file access list carries to the driver.
 struct DriverOptions {
+  int descriptor = -1;  ///< of an empty file; the driver works on a duplicate
   std::shared_ptr<WriteHealth> health;
 };
 
@@ -42,10 +43,10 @@ herr_t free_options(void* options) {
   return 0;
 }
 
-H5FD_t* open_file(const char* name, unsigned, hid_t access, haddr_t) {
+H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
   const auto* options = static_cast<const DriverOptions*>(H5Pget_driver_info(access));
   if (options == nullptr) return nullptr;
-  const int descriptor = open(name, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int descriptor = fcntl(options->descriptor, F_DUPFD_CLOEXEC, 0);
   if (descriptor < 0) {
     options->health->error_number = errno;
     return nullptr;
@@ -172,13 +173,13 @@ void require_written(const WriteHealth& health, const std::filesystem::path& fil
               "check its directory and the space left on its disk");
 }
 
-Handle surviving_access(const std::shared_ptr<WriteHealth>& health,
-                        const std::filesystem::path& file) {
+Handle surviving_access(const std::shared_ptr<WriteHealth>& health, const OutputFile& output) {
+  const std::filesystem::path& file = output.part_path();
   constexpr const char* kFailure = "HDF5 does not take a file driver";
   Handle access = own(H5Pcreate(H5P_FILE_ACCESS), file, kFailure);
   const H5FD_class_t driver = driver_class();
   const Handle registered = own(H5FDregister(&driver), file, kFailure);
-  const DriverOptions options = {health};
+  const DriverOptions options = {output.descriptor(), health};
   require(H5Pset_driver(access.get(), registered.get(), &options), file, kFailure);
   return access;
 }

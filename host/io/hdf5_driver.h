@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "io/hdf5_handle.h"
+#include "pillarfield/output_file.h"
 
 namespace pillarfield::hdf5 {
 
@@ -15,13 +16,15 @@ struct WriteHealth {
 /// Throws Error with the system's reason where a write to `file` has failed.
 void require_written(const WriteHealth& health, const std::filesystem::path& file);
 
-/// A file access list for files to be created, which records a failed write in `health`.
+/// A file access list to create an HDF5 file in `output`, which is locked and empty. The driver
+/// neither opens nor truncates a file; it writes to that one, and records a failed write in
+/// `health`.
 ///
 /// HDF5 up to 2.x crashes when a write fails while it closes or flushes, as on a full disk. With
 /// this driver the first write that fails is the last one tried, and HDF5 is told that all went
 /// well; the caller asks require_written() after each call. The file then holds what it would hold
 /// had the process been killed at that write, so a SWMR reader finds all flushed frames.
 [[nodiscard]] Handle surviving_access(const std::shared_ptr<WriteHealth>& health,
-                                      const std::filesystem::path& file);
+                                      const OutputFile& output);
 
 }  // namespace pillarfield::hdf5

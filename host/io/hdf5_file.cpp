@@ -74,11 +74,12 @@ void require_format(const File& file, std::string_view format, int version) {
   }
 }
 
-File create(const std::filesystem::path& path) {
+File create(const OutputFile& output) {
+  const std::filesystem::path& path = output.part_path();
   File file;
   file.path = path;
   file.health = std::make_shared<WriteHealth>();
-  const Handle access = surviving_access(file.health, path);
+  const Handle access = surviving_access(file.health, output);
   require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path,
           kCannotWrite);
   file.id = own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), path,

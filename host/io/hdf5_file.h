@@ -6,6 +6,7 @@
 
 #include "io/hdf5_driver.h"
 #include "io/hdf5_handle.h"
+#include "pillarfield/output_file.h"
 
 namespace pillarfield::hdf5 {
 
@@ -23,9 +24,10 @@ struct File {
 /// Throws Error unless the root attributes `format` and `version` are these.
 void require_format(const File& file, std::string_view format, int version);
 
-/// Creates a file in which whatever is flushed survives the death of the process. Its groups,
+/// Makes of an output, empty yet, a file in which whatever is flushed survives the death of the
+/// process. The output has to stay open for as long. Groups,
 /// attributes and datasets have to be made before start_appending(); from then on datasets grow.
-[[nodiscard]] File create(const std::filesystem::path& path);
+[[nodiscard]] File create(const OutputFile& output);
 void start_appending(const File& file);
 void flush(const File& file);
 

@@ -7,7 +7,6 @@
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
 #include "io/hdf5_frames.h"
-#include "io/part_file.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
@@ -18,27 +17,12 @@ namespace {
 
 namespace layout = recording_format;
 
-/// A recording cannot be made again, so one that was cut short is not overwritten.
-void require_no_frames_in(const std::filesystem::path& part) {
-  std::uint64_t frames = 0;
-  try {
-    if (std::filesystem::exists(part)) frames = open_frames(part)->frames();
-  } catch (const Error&) {
-    return;  // nothing in it that could be lost
-  }
-  if (frames == 0) return;
-  throw Error(part.string(),
-              fmt::format("holds {} frames of a recording that was cut short", frames),
-              "rename or remove it");
-}
-
 std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin,
                               const Calibration& calibration,
                               const RecordingWriter::Options& options) {
   check(skin, path.c_str());
   check(calibration, skin, path.c_str());
   if (options.flush_every == 0) throw Error(path.string(), "flush_every is 0", "flush every frame");
-  require_no_frames_in(PartFile::part_of(path));
   return path;
 }
 
@@ -60,7 +44,7 @@ struct RecordingWriter::State {
   SenselType type;
   Options options;
   std::filesystem::path path;
-  PartFile part;
+  OutputFile part;
   hdf5::File file;
   hdf5::GrowingDataset raw;
   hdf5::GrowingDataset time;
@@ -76,8 +60,8 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
       type(sensel_type),
       options(writer_options),
       path(checked(final_path, frame_skin, calibration, writer_options)),
-      part(path),
-      file(hdf5::create(part.path())) {
+      part(path, OutputKind::recording, writer_options.replace),
+      file(hdf5::create(part)) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));
   hdf5::write_attribute(file, file.id.get(), "version", layout::kVersion);
   write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
@@ -108,7 +92,7 @@ void RecordingWriter::State::create_datasets() {
 
 void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
                                          const ForceField* field) const {
-  const std::string where = fmt::format("{}: frame {}", part.path().string(), frames);
+  const std::string where = fmt::format("{}: frame {}", part.part_path().string(), frames);
   if (frame.type != type || frame.rows != skin.rows || frame.cols != skin.cols ||
       frame.row_stride < frame.cols || frame.data == nullptr) {
     throw Error(where, fmt::format("is {} x {} {}", frame.rows, frame.cols, name_of(frame.type)),
@@ -144,6 +128,7 @@ void RecordingWriter::State::require_open() const {
 void RecordingWriter::State::flush() {
   hdf5::flush(file);
   flushed = frames;
+  part.sync_at_intervals();
 }
 
 void RecordingWriter::State::close() {

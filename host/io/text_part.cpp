@@ -5,16 +5,16 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kBufferBytes = 1 << 20;
+constexpr std::size_t kTextBlockBytes = 1 << 20;
 
 }  // namespace
 
-TextPart::TextPart(const std::filesystem::path& path)
-    : path_(path), part_(path), file_(part_.path()) {}
+TextPart::TextPart(const std::filesystem::path& path, OutputKind kind, Replace replace)
+    : file_(path, kind, replace) {}
 
 void TextPart::write(std::string_view text) {
   text_.append(text);
-  if (text_.size() < kBufferBytes) return;
+  if (text_.size() < kTextBlockBytes) return;
   file_.write(std::string_view(text_.data(), text_.size()));
   text_.clear();
 }
@@ -23,13 +23,12 @@ void TextPart::finish() {
   require_open();
   file_.write(std::string_view(text_.data(), text_.size()));
   text_.clear();
-  file_.close();
-  part_.commit();
+  file_.commit();
 }
 
 void TextPart::require_open() const {
   if (file_.is_open()) return;
-  throw Error(path_.string(), "is finished", "start another file");
+  throw Error(file_.path().string(), "is finished", "start another file");
 }
 
 }  // namespace pillarfield

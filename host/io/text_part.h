@@ -6,15 +6,14 @@
 #include <filesystem>
 #include <string_view>
 
-#include "io/output_file.h"
-#include "io/part_file.h"
+#include "pillarfield/output_file.h"
 
 namespace pillarfield {
 
 /// A text file that is written in large blocks under its name and ".part".
 class TextPart {
  public:
-  explicit TextPart(const std::filesystem::path& path);
+  TextPart(const std::filesystem::path& path, OutputKind kind, Replace replace);
 
   void write(std::string_view text);
 
@@ -25,8 +24,6 @@ class TextPart {
   void require_open() const;
 
  private:
-  std::filesystem::path path_;
-  PartFile part_;
   OutputFile file_;
   fmt::memory_buffer text_;
 };

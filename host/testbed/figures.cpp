@@ -210,30 +210,33 @@ std::string magnitudes(const Parameters& parameters) {
 
 }  // namespace
 
-void draw_regions(const std::filesystem::path& stem) {
-  gnuplot::draw(stem, borders() + region_labels() + kRegionsScript);
+void draw_regions(const std::filesystem::path& stem, Replace replace) {
+  gnuplot::draw(stem, borders() + region_labels() + kRegionsScript, {}, replace);
 }
 
-void draw_contours(const std::filesystem::path& stem) {
-  gnuplot::draw(stem, border_of_region_312() + contours() + middle_of_ratio_2() + kContoursScript);
+void draw_contours(const std::filesystem::path& stem, Replace replace) {
+  gnuplot::draw(stem, border_of_region_312() + contours() + middle_of_ratio_2() + kContoursScript,
+                {}, replace);
 }
 
-void draw_uncertainty(const std::filesystem::path& stem) {
-  gnuplot::draw(stem, uncertainty() + kUncertaintyScript);
+void draw_uncertainty(const std::filesystem::path& stem, Replace replace) {
+  gnuplot::draw(stem, uncertainty() + kUncertaintyScript, {}, replace);
 }
 
-void draw_magnitude(const std::filesystem::path& stem, const Parameters& parameters) {
-  gnuplot::draw(stem, magnitudes(parameters) + kMagnitudeScript, {1040, 370});
+void draw_magnitude(const std::filesystem::path& stem, const Parameters& parameters,
+                    Replace replace) {
+  gnuplot::draw(stem, magnitudes(parameters) + kMagnitudeScript, {1040, 370}, replace);
 }
 
-void draw_figures(const std::filesystem::path& folder, const Parameters& parameters) {
+void draw_figures(const std::filesystem::path& folder, const Parameters& parameters,
+                  Replace replace) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error(folder.string(), error.message(), "choose a folder that can be written");
-  draw_regions(folder / "figure_3_regions");
-  draw_contours(folder / "figure_4_contours");
-  draw_uncertainty(folder / "figure_5_uncertainty");
-  draw_magnitude(folder / "figure_8_magnitude", parameters);
+  draw_regions(folder / "figure_3_regions", replace);
+  draw_contours(folder / "figure_4_contours", replace);
+  draw_uncertainty(folder / "figure_5_uncertainty", replace);
+  draw_magnitude(folder / "figure_8_magnitude", parameters, replace);
 }
 
 }  // namespace pillarfield::testbed

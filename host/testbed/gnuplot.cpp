@@ -11,11 +11,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <string_view>
 
-#include "io/part_file.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::gnuplot {
@@ -84,8 +82,8 @@ class FileActions {
   FileActions(const FileActions&) = delete;
   FileActions& operator=(const FileActions&) = delete;
 
-  void connect(std::FILE* file, int descriptor) {
-    posix_spawn_file_actions_adddup2(&actions_, fileno(file), descriptor);
+  void connect(int from, int descriptor) {
+    posix_spawn_file_actions_adddup2(&actions_, from, descriptor);
   }
   [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
 
@@ -93,11 +91,11 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-pid_t start(std::FILE* input, std::FILE* output, std::FILE* messages) {
+pid_t start(std::FILE* input, int output, std::FILE* messages) {
   FileActions actions;
-  actions.connect(input, STDIN_FILENO);
+  actions.connect(fileno(input), STDIN_FILENO);
   actions.connect(output, STDOUT_FILENO);
-  actions.connect(messages, STDERR_FILENO);
+  actions.connect(fileno(messages), STDERR_FILENO);
   std::string program = "gnuplot";
   std::string plain = "--default-settings";  // without the user's own
   const std::array<char*, 3> arguments = {program.data(), plain.data(), nullptr};
@@ -135,39 +133,41 @@ std::string complaint_in(std::FILE* messages, bool failed) {
 }
 
 /// Whether the file is written to its end: gnuplot does not notice that a disk is full.
-bool is_whole(const std::filesystem::path& path, std::string_view end_mark) {
-  constexpr std::streamoff kTail = 16;
-  std::ifstream file(path, std::ios::binary);
-  file.seekg(0, std::ios::end);
-  file.seekg(std::max<std::streamoff>(file.tellg() - kTail, 0));
-  const std::string tail((std::istreambuf_iterator<char>(file)), {});
-  return tail.find(end_mark) != std::string::npos;
+bool is_whole(const OutputFile& file, std::string_view end_mark) {
+  std::array<char, 16> tail{};
+  const off_t end = lseek(file.descriptor(), 0, SEEK_END);
+  const off_t begin = std::max<off_t>(end - static_cast<off_t>(tail.size()), 0);
+  const ssize_t got = pread(file.descriptor(), tail.data(), tail.size(), begin);
+  if (got <= 0) return false;
+  const std::string_view text(tail.data(), static_cast<std::size_t>(got));
+  return text.find(end_mark) != std::string_view::npos;
 }
 
-void run(const Format& format, const std::string& script, const std::filesystem::path& output) {
-  const File picture(std::fopen(output.c_str(), "wb"));
-  if (!picture) throw Error(output.string(), std::strerror(errno));
+void run(const Format& format, const std::string& script, const OutputFile& output) {
   const File input = file_of(format.terminal + kStyle + script);
   const File messages = file_of("");
-  const int status = wait_for(start(input.get(), picture.get(), messages.get()));
+  const int status = wait_for(start(input.get(), output.descriptor(), messages.get()));
   const std::string complaint = complaint_in(messages.get(), status != 0);
   if (!complaint.empty()) {
-    throw Error(output.string(), "gnuplot failed: " + complaint, "draw with gnuplot 5.4 or later");
+    throw Error(output.path().string(), "gnuplot failed: " + complaint,
+                "draw with gnuplot 5.4 or later");
   }
   if (!is_whole(output, format.end_mark)) {
-    throw Error(output.string(), "gnuplot did not write all of it", "make room on that disk");
+    throw Error(output.path().string(), "gnuplot did not write all of it",
+                "make room on that disk");
   }
 }
 
 }  // namespace
 
-void draw(const std::filesystem::path& stem, const std::string& script, Size size) {
+void draw(const std::filesystem::path& stem, const std::string& script, Size size,
+          Replace replace) {
   const Format svg = svg_format(size);
   const Format png = png_format(size);
-  PartFile svg_file(stem.string() + svg.ending);
-  PartFile png_file(stem.string() + png.ending);
-  run(svg, script, svg_file.path());
-  run(png, script, png_file.path());
+  OutputFile svg_file(stem.string() + svg.ending, OutputKind::svg, replace);
+  OutputFile png_file(stem.string() + png.ending, OutputKind::png, replace);
+  run(svg, script, svg_file);
+  run(png, script, png_file);
   svg_file.commit();
   png_file.commit();
 }

@@ -64,7 +64,8 @@ class Calibrate(CommandTest):
         path = self.folder / f"{name}.h5"
         scene.write_text(load + sensor)
         last_frame = self.first_frame + frames
-        run("simulate", scene, "-o", path, "--uncalibrated", "--frames", last_frame)
+        run("simulate", scene, "-o", path, "--uncalibrated", "--frames", last_frame,
+            "--overwrite")
         with h5py.File(path, "r+") as file:
             for dataset in ("frames/raw", "frames/time", "truth/shear_x", "truth/shear_y",
                             "truth/normal"):
@@ -193,7 +194,8 @@ class Chain(Calibrate):
         with h5py.File(tested) as file:
             self.assertEqual(sorted(zip(*numpy.where(file["calibration/mask"][:] == 0))),
                              [(20, 20), (24, 31)])
-        text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested).stdout
+        text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested,
+                   "--overwrite").stdout
         for words in ("row 20, column 20: silent", "row 30, column 31: undecided", "not masked"):
             self.assertIn(words, text)
 

@@ -147,7 +147,8 @@ class Work(CommandTest):
     def test_seeds_make_frames_reproducible(self):
         copies = [self.folder / name for name in ("a.npy", "b.npy", "c.npy")]
         for copy, seed in zip(copies, (5, 5, 6)):
-            run("simulate", self.scene, "-o", self.recording, "--seed", seed, "--frames", 2)
+            run("simulate", self.scene, "-o", self.recording, "--seed", seed, "--frames", 2,
+                "--overwrite")
             run("solve", self.recording, "-o", copy)
         self.assertEqual(copies[0].read_bytes(), copies[1].read_bytes())
         self.assertNotEqual(copies[0].read_bytes(), copies[2].read_bytes())

@@ -180,10 +180,11 @@ class Contacts(CommandTest):
         self.assertIn("--contacts", result.stderr)
 
     def test_interrupt_leaves_no_half_table(self):
-        run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 4000)
+        run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 4000,
+            "--overwrite")
         self.csv.write_text("precious", encoding="utf-8")
         with subprocess.Popen([PROGRAM, "solve", self.recording, "-o", self.folder / "f.npy",
-                               "--contacts", self.csv], stdout=subprocess.DEVNULL,
+                               "--contacts", self.csv, "--overwrite"], stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL) as process:
             part = self.folder / "contacts.csv.part"
             deadline = time.monotonic() + 60

@@ -167,7 +167,7 @@ TEST(ContactSink, KeepsTheOldFileUntilItIsFinished) {
     const TemporaryDirectory directory;
     write_bytes(directory / name, "old");
     {
-      const auto sink = create_contact_sink(directory / name, sample_info());
+      const auto sink = create_contact_sink(directory / name, sample_info(), Replace::anything);
       sink->append(sample_contacts(3));
       EXPECT_EQ(bytes_of(directory / name), "old");
       EXPECT_EQ(directory.names(), (Names{name, name + ".part"}));

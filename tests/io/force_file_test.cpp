@@ -197,7 +197,7 @@ TEST(ForceSink, KeepsTheOldFileUntilItIsFinishedAndCleansUp) {
     const TemporaryDirectory directory;
     write_bytes(directory / name, "precious");
     {
-      const auto sink = create_force_sink(directory / name, info_of(2, 3));
+      const auto sink = create_force_sink(directory / name, info_of(2, 3), Replace::anything);
       sink->append(Field(0, 2, 3).view(), 0);
     }
     EXPECT_EQ(directory.names(), Names{name});

@@ -179,7 +179,8 @@ TEST(RecordingRoundTrip, RemarksOnRowsAndColumnsWithoutPillars) {
 TEST(RecordingWriter, LeavesTheOldFileUntilItIsFinished) {
   const TemporaryDirectory directory;
   write_bytes(directory / "r.h5", "precious");
-  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
+  RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {},
+                         {.replace = Replace::anything});
   writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);
   writer.flush();
   EXPECT_EQ(bytes_of(directory / "r.h5"), "precious");

@@ -39,7 +39,7 @@ void write_recording(const std::string& path, std::uint32_t rows, std::uint32_t 
   skin.rows = 2 * rows;
   skin.cols = 2 * cols;
   RecordingWriter writer(path, skin, SenselType::u16, {},
-                         {.truth = true, .flush_every = kFlushEvery});
+                         {.truth = true, .flush_every = kFlushEvery, .replace = Replace::anything});
   FrameBuffer frame(SenselType::u16, skin.rows, skin.cols);
   for (std::uint64_t index = 0; index < frames; ++index) {
     fill_frame(index, frame);

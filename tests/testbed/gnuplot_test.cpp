@@ -71,12 +71,12 @@ TEST_F(Gnuplot, ReplacesNothingUnlessBothAreDrawn) {
            "$none << E\nE\nplot x, $none",
            "if (GPVAL_TERM eq 'pngcairo') { plot wrong(x) } else { plot x }",
        }) {
-    std::ofstream(stem_.string() + ".svg") << "precious";
+    std::ofstream(stem_.string() + ".svg") << "<svg precious";
     const std::string complaint = complaint_about(script);
     EXPECT_NE(complaint.find("it's a figure"), std::string::npos) << script;
     EXPECT_NE(complaint.find("gnuplot failed: "), std::string::npos) << complaint;
     EXPECT_EQ(complaint.find('\n'), std::string::npos) << complaint;
-    EXPECT_EQ(content_of(stem_.string() + ".svg"), "precious");
+    EXPECT_EQ(content_of(stem_.string() + ".svg"), "<svg precious");
     EXPECT_EQ(files(), 1) << script;
   }
 }

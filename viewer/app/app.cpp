@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 #include "viewer/app/changes.h"
 #include "viewer/app/controls.h"
 #include "viewer/app/draw_clock.h"
@@ -128,7 +129,7 @@ void Application::run() {
   // Not before: contacts are followed from the frame that is seen first.
   session_.player->set_contacts(session_.look.contacts);
   if (!options_.paused) session_.player->play();
-  while (!window_.closes() && !requests_.quit) {
+  while (!window_.closes() && !requests_.quit && !is_interrupted()) {
     wait();
     take_input();
     take_newest_field();
@@ -304,14 +305,16 @@ void Application::serve() {
 void Application::write_picture() {
   if (!painted_look_) return;
   const auto path = free_path(*place_.source, info_of(session_.look.quantity).name, ".png");
-  write_png(path, pixels());
+  check_outputs({options_.source}, {{path, OutputKind::png}}, Replace::nothing);
+  write_png(path, pixels(), Replace::nothing);
   session_.notice = "wrote " + path.string();
 }
 
 void Application::write_table() {
   const std::string frame = fmt::format("frame_{}", session_.field->index + 1);
   const auto path = free_path(*place_.source, frame, ".csv");
-  write_csv(path, *session_.field, visible_pillars(place_, session_.look));
+  check_outputs({options_.source}, {{path, OutputKind::force_table}}, Replace::nothing);
+  write_csv(path, *session_.field, visible_pillars(place_, session_.look), Replace::nothing);
   session_.notice = "wrote " + path.string();
 }
 
@@ -320,6 +323,7 @@ void Application::begin_frames(FrameWriter::Kind kind) {
   const std::string quantity = info_of(session_.look.quantity).name;
   const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
                                                      : free_sequence_path(*place_.source, quantity);
+  check_outputs({options_.source}, {{path, OutputKind::video}}, Replace::nothing);
   const vk::Extent2D size = presenter_.painter().image().size();
   writer_ = std::make_unique<FrameWriter>(session_, kind, path, size.width, size.height);
 }

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "viewer/app/export.h"
-#include "viewer/app/unfinished_file.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -52,8 +51,9 @@ void append_line(std::string& text, const ShownField& field, const std::vector<C
 
 }  // namespace
 
-void write_csv(const std::filesystem::path& path, const ShownField& field, const PillarRect& rect) {
-  UnfinishedFile file(path);
+void write_csv(const std::filesystem::path& path, const ShownField& field, const PillarRect& rect,
+               Replace replace) {
+  OutputFile file(path, OutputKind::force_table, replace);
   const ForceFieldView& forces = field.forces;
   const std::vector<Column> columns = further_columns(forces);
   std::string text = header(columns);
@@ -63,10 +63,10 @@ void write_csv(const std::filesystem::path& path, const ShownField& field, const
       append_line(text, field, columns, {row, col});
     }
     if (text.size() < kBlockBytes) continue;
-    file.append(text);
+    file.write(text);
     text.clear();
   }
-  file.append(text);
+  file.write(text);
   file.commit();
 }
 

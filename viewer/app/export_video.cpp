@@ -8,7 +8,6 @@
 #include "pillarfield/error.h"
 #include "viewer/app/child_process.h"
 #include "viewer/app/export.h"
-#include "viewer/app/unfinished_file.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -18,17 +17,20 @@ using Words = std::vector<std::string>;
 /// What ffmpeg makes of a file's ending.
 struct Encoding {
   std::string_view ending;
-  Words words;
+  Words words;  ///< the muxer's name is among them, for the part's ending does not tell it
 };
 
 /// H.264 at a quality that keeps thin lines and small text; players want an index at the beginning.
 const std::array<Encoding, 4>& encodings() {
-  static const Words h264{"-c:v", "libx264", "-preset",   "medium",
-                          "-crf", "16",      "-movflags", "+faststart"};
-  static const Words matroska{"-c:v", "libx264", "-preset", "medium", "-crf", "16"};
-  static const Words vp9{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0"};
+  static const Words mp4{"-c:v", "libx264",   "-preset",    "medium", "-crf",
+                         "16",   "-movflags", "+faststart", "-f",     "mp4"};
+  static const Words mov{"-c:v", "libx264",   "-preset",    "medium", "-crf",
+                         "16",   "-movflags", "+faststart", "-f",     "mov"};
+  static const Words matroska{"-c:v", "libx264", "-preset", "medium",
+                              "-crf", "16",      "-f",      "matroska"};
+  static const Words vp9{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-f", "webm"};
   static const std::array<Encoding, 4> all{
-      {{".mp4", h264}, {".mov", h264}, {".mkv", matroska}, {".webm", vp9}}};
+      {{".mp4", mp4}, {".mov", mov}, {".mkv", matroska}, {".webm", vp9}}};
   return all;
 }
 
@@ -39,8 +41,7 @@ const Words& encoding_of(const std::filesystem::path& path) {
   throw Error(path.string(), "no video has this ending", "use .mp4, .mkv, .mov or .webm");
 }
 
-Words command(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
-              double rate_hz) {
+Words command(const OutputFile& file, std::uint32_t width, std::uint32_t height, double rate_hz) {
   Words words{"ffmpeg",
               "-hide_banner",
               "-loglevel",
@@ -67,10 +68,10 @@ Words command(const std::filesystem::path& path, std::uint32_t width, std::uint3
                       "bt709",
                       "-color_trc",
                       "bt709"};
-  const Words& encoding = encoding_of(path);
+  const Words& encoding = encoding_of(file.path());
   words.insert(words.end(), colours.begin(), colours.end());
   words.insert(words.end(), encoding.begin(), encoding.end());
-  words.push_back("file:" + path.string());
+  words.push_back("file:" + file.part_path().string());
   return words;
 }
 
@@ -90,19 +91,19 @@ void check(const std::filesystem::path& path, std::uint32_t width, std::uint32_t
 
 struct VideoWriter::State {
   State(const std::filesystem::path& path, std::uint32_t picture_width,
-        std::uint32_t picture_height, double rate_hz)
-      : file(path),
-        ffmpeg(command(file.path(), picture_width, picture_height, rate_hz),
+        std::uint32_t picture_height, double rate_hz, Replace replace)
+      : file(path, OutputKind::video, replace),
+        ffmpeg(command(file, picture_width, picture_height, rate_hz),
                "install the Debian package ffmpeg, or write a sequence of PNG files"),
         width(picture_width),
         height(picture_height) {}
 
   [[noreturn]] void fail() const {
-    throw Error(file.final_path().string(), "ffmpeg failed: " + ffmpeg.complaint(),
+    throw Error(file.path().string(), "ffmpeg failed: " + ffmpeg.complaint(),
                 "mend that, or write a sequence of PNG files");
   }
 
-  UnfinishedFile file;  ///< outlives ffmpeg, which writes it
+  OutputFile file;  ///< outlives ffmpeg, which writes it by its name
   ChildProcess ffmpeg;
   std::uint32_t width;
   std::uint32_t height;
@@ -111,15 +112,15 @@ struct VideoWriter::State {
 };
 
 VideoWriter::VideoWriter(const std::filesystem::path& path, std::uint32_t width,
-                         std::uint32_t height, double rate_hz) {
+                         std::uint32_t height, double rate_hz, Replace replace) {
   check(path, width, height, rate_hz);
-  state_ = std::make_unique<State>(path, width, height, rate_hz);
+  state_ = std::make_unique<State>(path, width, height, rate_hz, replace);
 }
 
 VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const Pixels& pixels) {
-  const std::filesystem::path& path = state_->file.final_path();
+  const std::filesystem::path& path = state_->file.path();
   if (state_->finished) throw Error(path.string(), "is finished", "start another video");
   if (pixels.width != state_->width || pixels.height != state_->height ||
       pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
@@ -140,7 +141,7 @@ void VideoWriter::finish() {
   state_->finished = true;
   if (!state_->ffmpeg.finish()) state_->fail();
   if (state_->pictures == 0) {
-    throw Error(state_->file.final_path().string(), "a video needs pictures", "add one at least");
+    throw Error(state_->file.path().string(), "a video needs pictures", "add one at least");
   }
   state_->file.commit();
 }

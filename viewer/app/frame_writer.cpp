@@ -14,7 +14,8 @@ std::filesystem::path first_free(const SourceInfo& source, const std::string& de
   std::string stem = std::filesystem::path(source.name).stem().string();
   if (!detail.empty()) stem += "_" + detail;
   std::filesystem::path path = stem + ending;
-  for (int number = 2; std::filesystem::exists(looked_for(path)); ++number) {
+  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
+       ++number) {
     path = fmt::format("{}_{}{}", stem, number, ending);
   }
   return path;
@@ -27,7 +28,7 @@ FrameWriter::FrameWriter(Session& session, Kind kind, std::filesystem::path path
     : session_(&session), path_(std::move(path)), frames_(session.player->state().frames) {
   if (kind == Kind::video) {
     const double rate = session.player->info().rate_hz;
-    video_ = std::make_unique<VideoWriter>(path_, width, height, rate);
+    video_ = std::make_unique<VideoWriter>(path_, width, height, rate, Replace::nothing);
   }
   session.writing = true;
   session.player->pause();
@@ -44,7 +45,7 @@ bool FrameWriter::add(const Pixels& pixels) {
   if (video_ != nullptr) {
     video_->add(pixels);
   } else {
-    write_png(numbered(path_, next_ + 1, frames_), pixels);
+    write_png(numbered(path_, next_ + 1, frames_), pixels, Replace::nothing);
   }
   ++next_;
   if (next_ < frames_) {

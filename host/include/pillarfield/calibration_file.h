@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "pillarfield/output_file.h"
 #include "pillarfield/skin_calibration.h"
 
 namespace pillarfield {
@@ -13,8 +14,10 @@ namespace pillarfield {
 /// where the file is none, is damaged, or holds values out of range.
 [[nodiscard]] SkinCalibration read_calibration_file(const std::filesystem::path& path);
 
-/// Writes such a file, under `path` + ".part" until it is complete; one that bears the name stays
-/// good until then. Throws Error where the calibration is out of range or cannot be written.
-void write_calibration_file(const std::filesystem::path& path, const SkinCalibration& calibration);
+/// Writes such a file, under `path` + ".part" until it is complete. A file that bears the name is
+/// replaced only with Replace::anything, and stays good until then. Throws Error where the
+/// calibration is out of range or cannot be written.
+void write_calibration_file(const std::filesystem::path& path, const SkinCalibration& calibration,
+                            Replace replace = Replace::results);
 
 }  // namespace pillarfield

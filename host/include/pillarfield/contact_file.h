@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/output_file.h"
 
 namespace pillarfield {
 
@@ -27,9 +28,14 @@ class ContactSink {
   virtual void finish() = 0;
 };
 
-/// Makes the sink that the ending of `path` names: .csv or .json (docs/formats.md). Throws Error
-/// for another ending or a place that cannot be written.
+/// Makes the sink that the ending of `path` names: .csv or .json (docs/formats.md). `replace` says
+/// what of the same name it may replace. Throws Error for another ending or a place that cannot be
+/// written.
 [[nodiscard]] std::unique_ptr<ContactSink> create_contact_sink(const std::filesystem::path& path,
-                                                               const ContactFileInfo& info);
+                                                               const ContactFileInfo& info,
+                                                               Replace replace = Replace::results);
+
+/// What create_contact_sink() makes of this path, by its ending. Throws Error for another ending.
+[[nodiscard]] OutputKind kind_of_contact_file(const std::filesystem::path& path);
 
 }  // namespace pillarfield

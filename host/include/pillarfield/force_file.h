@@ -9,6 +9,7 @@
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/output_file.h"
 
 namespace pillarfield {
 
@@ -42,9 +43,14 @@ class ForceSink {
 
 /// Makes the sink that the ending of `path` names: .h5 or .hdf5 (format "pillarfield-forces"), .csv
 /// (one line per pillar that is not idle) or .npy (a structured array [frames, rows, cols]).
-/// Throws Error for another ending or a place that cannot be written.
+/// `replace` says what of the same name it may replace. Throws Error for another ending or a place
+/// that cannot be written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
-                                                           const ForceFileInfo& info);
+                                                           const ForceFileInfo& info,
+                                                           Replace replace = Replace::results);
+
+/// What create_force_sink() makes of this path, by its ending. Throws Error for another ending.
+[[nodiscard]] OutputKind kind_of_force_file(const std::filesystem::path& path);
 
 /// Whether this is an HDF5 file that says it holds force fields; false where it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path);

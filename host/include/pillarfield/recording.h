@@ -9,6 +9,7 @@
 #include "pillarfield/calibration.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
+#include "pillarfield/output_file.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
@@ -46,12 +47,14 @@ class FrameSource {
 ///
 /// Frames go to `path` + ".part", which takes the final name in finish(). If the process dies, the
 /// part holds every flushed frame and open_frames() reads it. A writer destroyed without finish()
-/// leaves the part where frames are in it and removes it where none are.
+/// leaves the part where frames are in it and removes it where none are. A part with frames that an
+/// earlier writer left is never overwritten.
 class RecordingWriter {
  public:
   struct Options {
-    bool truth = false;              ///< frames come with their truth
-    std::uint32_t flush_every = 16;  ///< frames, at least 1
+    bool truth = false;                  ///< frames come with their truth
+    std::uint32_t flush_every = 16;      ///< frames, at least 1
+    Replace replace = Replace::results;  ///< a recording is replaced with Replace::anything only
   };
   RecordingWriter(const std::filesystem::path& path, const Skin& skin, SenselType type,
                   const Calibration& calibration, const Options& options);

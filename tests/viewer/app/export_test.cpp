@@ -102,7 +102,7 @@ TEST_F(Export, APictureThatCannotBeWrittenLeavesNothingAndSaysWhere) {
   const std::string nowhere =
       message_of([&] { write_png(folder_ / "none" / "a.png", noise(2, 2)); });
   EXPECT_NE(nowhere.find("none/a.png"), std::string::npos) << nowhere;
-  EXPECT_NE(nowhere.find("check its directory"), std::string::npos) << nowhere;
+  EXPECT_NE(nowhere.find("write to a directory"), std::string::npos) << nowhere;
   EXPECT_THROW(write_png(folder_ / "a.png", Pixels{}), Error);
   EXPECT_THROW(write_png(folder_ / "a.png", Pixels{2, 2, {1, 2, 3}}), Error);
   EXPECT_TRUE(files().empty());
@@ -120,6 +120,30 @@ TEST_F(Export, ADirectoryIsNotReplaced) {
   const std::string message = message_of([&] { write_png(folder_ / "a.png", noise(2, 2)); });
   EXPECT_NE(message.find("no regular file"), std::string::npos) << message;
   EXPECT_TRUE(fs::is_directory(folder_ / "a.png"));
+}
+
+TEST_F(Export, OnlyEarlierPicturesAndTablesAreReplaced) {
+  const MadeField made;
+  const PillarRect all{0, made.forces.rows, 0, made.forces.cols};
+  write_csv(folder_ / "a.csv", made.shown(), all);
+  const std::string table = text_of(folder_ / "a.csv");
+  for (const Replace replace : {Replace::results, Replace::nothing}) {
+    const std::string message =
+        message_of([&] { write_png(folder_ / "a.csv", noise(2, 2), replace); });
+    EXPECT_NE(message.find("a.csv: exists"), std::string::npos) << message;
+  }
+  EXPECT_EQ(text_of(folder_ / "a.csv"), table);
+  write_csv(folder_ / "a.csv", made.shown(), all);
+  write_png(folder_ / "a.csv", noise(2, 2), Replace::anything);
+  EXPECT_EQ(text_of(folder_ / "a.csv").substr(1, 3), "PNG");
+}
+
+TEST_F(Export, ALinkInPlaceOfAPartIsNotFollowed) {
+  std::ofstream(folder_ / "victim") << "precious";
+  fs::create_symlink("victim", folder_ / "a.png.part");
+  const std::string message = message_of([&] { write_png(folder_ / "a.png", noise(2, 2)); });
+  EXPECT_NE(message.find("a.png.part: is a symbolic link"), std::string::npos) << message;
+  EXPECT_EQ(text_of(folder_ / "victim"), "precious");
 }
 
 TEST_F(Export, NamesOfASequenceSortByFrame) {

@@ -1,0 +1,491 @@
+// Outputs: locked parts, what they replace, and when they are on the disk.
+
+#include "pillarfield/output_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdarg>
+#include <cstdlib>
+#include <functional>
+#include <utility>
+
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+namespace {
+
+/// What the library asks of the system, in order: "file", "folder" (written to the disk), "rename".
+std::vector<std::string>& disk_calls() {
+  static std::vector<std::string> calls;
+  return calls;
+}
+
+int note_sync(int descriptor, long number) {
+  struct stat found = {};
+  fstat(descriptor, &found);
+  disk_calls().emplace_back(S_ISDIR(found.st_mode) ? "folder" : "file");
+  return static_cast<int>(syscall(number, descriptor));
+}
+
+/// What happens between the opening of a part and its lock, once.
+std::function<void()>& before_lock() {
+  static std::function<void()> action;
+  return action;
+}
+
+}  // namespace
+
+// They stand before those of the C library.
+extern "C" int fcntl(int descriptor, int command, ...) {
+  va_list arguments;
+  va_start(arguments, command);
+  void* const argument = va_arg(arguments, void*);
+  va_end(arguments);
+  if (command == F_OFD_SETLK && before_lock()) std::exchange(before_lock(), nullptr)();
+  return static_cast<int>(syscall(SYS_fcntl, descriptor, command, argument));
+}
+extern "C" int fsync(int descriptor) { return note_sync(descriptor, SYS_fsync); }
+extern "C" int fdatasync(int descriptor) { return note_sync(descriptor, SYS_fdatasync); }
+extern "C" int rename(const char* from, const char* to) noexcept {
+  disk_calls().emplace_back("rename");
+  return static_cast<int>(syscall(SYS_rename, from, to));
+}
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                         unsigned flags) noexcept {
+  disk_calls().emplace_back("rename");
+  return static_cast<int>(syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
+}
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::has_all;
+using io_test::sample_forces;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+using Names = std::vector<std::string>;
+namespace fs = std::filesystem;
+
+constexpr const char* kTableHead = "frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status\n";
+
+Skin small_skin() {
+  Skin skin;
+  skin.rows = skin.cols = 4;
+  return skin;
+}
+
+RecordingWriter begin_recording(const fs::path& path, Replace replace = Replace::results) {
+  return RecordingWriter(path, small_skin(), SenselType::u8, {}, {.replace = replace});
+}
+
+void write_recording(const fs::path& path, std::uint64_t frames, bool finish = true) {
+  RecordingWriter writer = begin_recording(path, Replace::anything);
+  const FrameBuffer frame(SenselType::u8, 4, 4);
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    writer.append(frame.view(), static_cast<double>(index));
+  }
+  if (finish) writer.finish();
+}
+
+void write_forces(const fs::path& path, std::uint64_t frames, Replace replace = Replace::results) {
+  const auto sink =
+      create_force_sink(path, {2, 2, 1.25, "direct", "a device", "it", false}, replace);
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    sink->append(sample_forces(index, 2, 2).view(), static_cast<double>(index));
+  }
+  sink->finish();
+}
+
+SkinCalibration small_calibration() {
+  SkinCalibration calibration;
+  calibration.rows = calibration.cols = 4;
+  return calibration;
+}
+
+void write_text(const fs::path& path, const std::string& text, Replace replace) {
+  OutputFile file(path, OutputKind::force_table, replace);
+  file.write(text);
+  file.commit();
+}
+
+TEST(OutputFile, TakesItsNameWhenItIsComplete) {
+  const TemporaryDirectory directory;
+  OutputFile file(directory / "a.csv", OutputKind::force_table);
+  EXPECT_EQ(directory.names(), Names{"a.csv.part"});
+  file.write("one ");
+  file.write("two");
+  file.write_at_begin("O");
+  file.commit();
+  EXPECT_EQ(directory.names(), Names{"a.csv"});
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "One two");
+  EXPECT_TRUE(has_all(error_of([&] { file.write("three"); }), {"a.csv", "is finished"}));
+}
+
+TEST(OutputFile, IsRemovedUnlessItIsKept) {
+  const TemporaryDirectory directory;
+  { OutputFile(directory / "a.csv", OutputKind::force_table).write("lost"); }
+  EXPECT_EQ(directory.names(), Names{});
+  {
+    OutputFile file(directory / "a.csv", OutputKind::force_table);
+    file.write("kept");
+    file.keep();
+  }
+  EXPECT_EQ(bytes_of(directory / "a.csv.part"), "kept");
+}
+
+TEST(OutputFile, ASecondWriterEndsAndTheFirstWritesOn) {
+  const TemporaryDirectory directory;
+  OutputFile first(directory / "a.csv", OutputKind::force_table);
+  first.write("first");
+  fs::create_symlink("a.csv", directory / "link.csv");
+  for (const char* name : {"a.csv", "link.csv"}) {
+    const std::string error =
+        error_of([&] { OutputFile(directory / name, OutputKind::force_table); });
+    EXPECT_TRUE(has_all(error, {"a.csv: is being written by another process", "wait"})) << error;
+  }
+  EXPECT_EQ(bytes_of(directory / "a.csv.part"), "first") << "truncated before it was locked";
+  EXPECT_TRUE(has_all(
+      error_of([&] {
+        check_outputs({}, {{directory / "a.csv", OutputKind::force_table}}, Replace::anything);
+      }),
+      {"is being written"}));
+  first.commit();
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "first");
+}
+
+TEST(OutputFile, ItsLockEndsWithAKilledProcess) {
+  const TemporaryDirectory directory;
+  int ready[2];
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    OutputFile file(directory / "a.csv", OutputKind::force_table);
+    file.write("half");
+    static_cast<void>(!write(ready[1], "!", 1));
+    pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  close(ready[0]);
+  close(ready[1]);
+  EXPECT_TRUE(has_all(error_of([&] { OutputFile(directory / "a.csv", OutputKind::force_table); }),
+                      {"is being written"}));
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(bytes_of(directory / "a.csv.part"), "half");
+  write_text(directory / "a.csv", "whole", Replace::results);
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "whole");
+}
+
+TEST(OutputFile, APartThatTakesItsNameBeforeTheLockIsLeftAlone) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "a.csv.part", "finished");
+  before_lock() = [&] { fs::rename(directory / "a.csv.part", directory / "a.csv"); };
+  OutputFile file(directory / "a.csv", OutputKind::force_table, Replace::anything);
+  EXPECT_FALSE(before_lock());
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "finished");
+  file.write("next");
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "finished");
+  file.commit();
+  EXPECT_EQ(bytes_of(directory / "a.csv"), "next");
+}
+
+/// Eight processes begin at once, over and over; the lines of a file are always of one of them.
+TEST(OutputFile, OfManyWritersAtOnceEachFileIsOfOne) {
+  const TemporaryDirectory directory;
+  for (int round = 0; round < 10; ++round) {
+    int start[2];
+    ASSERT_EQ(pipe(start), 0);
+    std::vector<pid_t> children;
+    for (int writer = 0; writer < 8; ++writer) {
+      children.push_back(fork());
+      if (children.back() != 0) continue;
+      close(start[1]);
+      char byte = 0;
+      static_cast<void>(!read(start[0], &byte, 1));
+      try {
+        OutputFile file(directory / "a.csv", OutputKind::force_table, Replace::anything);
+        for (int line = 0; line < 200; ++line) file.write(std::to_string(writer) + "\n");
+        file.commit();
+      } catch (const Error& error) {
+        _exit(std::string(error.what()).find("being written") == std::string::npos ? 2 : 1);
+      }
+      _exit(0);
+    }
+    close(start[0]);
+    close(start[1]);
+    int finished = 0;
+    for (const pid_t child : children) {
+      int status = 0;
+      waitpid(child, &status, 0);
+      ASSERT_TRUE(WIFEXITED(status));
+      EXPECT_NE(WEXITSTATUS(status), 2);
+      if (WEXITSTATUS(status) == 0) ++finished;
+    }
+    EXPECT_GE(finished, 1);
+    const std::string text = bytes_of(directory / "a.csv");
+    ASSERT_EQ(text.size(), 400u);
+    for (std::size_t at = 0; at < text.size(); at += 2) ASSERT_EQ(text[at], text[0]);
+    EXPECT_EQ(directory.names(), Names{"a.csv"});
+  }
+}
+
+TEST(OutputFile, APartThatIsALinkIsRefused) {
+  const TemporaryDirectory directory;
+  write_bytes(directory / "victim", "precious");
+  const auto refusal = [&] {
+    const std::string checked = error_of([&] {
+      check_outputs({}, {{directory / "a.csv", OutputKind::force_table}}, Replace::anything);
+    });
+    const std::string opened = error_of(
+        [&] { OutputFile(directory / "a.csv", OutputKind::force_table, Replace::anything); });
+    EXPECT_EQ(checked, opened);
+    fs::remove(directory / "a.csv.part");
+    EXPECT_EQ(bytes_of(directory / "victim"), "precious");
+    return opened;
+  };
+  fs::create_symlink(directory / "victim", directory / "a.csv.part");
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part: is a symbolic link", "remove it"}));
+  fs::create_symlink(directory / "absent", directory / "a.csv.part");
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part: is a symbolic link"}));
+  fs::create_hard_link(directory / "victim", directory / "a.csv.part");
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "several names"}));
+  ASSERT_EQ(mkfifo((directory / "a.csv.part").c_str(), 0600), 0);
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "no regular file"}));
+}
+
+TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
+  const TemporaryDirectory directory;
+  const auto refusal = [&] {
+    const std::string before = bytes_of(directory / "a.csv.part");
+    const std::string error = error_of(
+        [&] { OutputFile(directory / "a.csv", OutputKind::force_table, Replace::anything); });
+    EXPECT_EQ(bytes_of(directory / "a.csv.part"), before);
+    return error;
+  };
+  write_recording(directory / "a.csv", 3, false);
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds 3 frames", "rename or remove"}));
+  fs::remove(directory / "a.csv.part");
+  write_calibration_file(directory / "a.csv.part", small_calibration());
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "holds a calibration"}));
+  write_bytes(directory / "a.csv.part", "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "Tekscan"}));
+  fs::remove(directory / "a.csv.part");
+  write_forces(directory / "f.h5", 20);
+  fs::rename(directory / "f.h5", directory / "a.csv.part");
+  write_text(directory / "a.csv", "forces can be solved again", Replace::results);
+  EXPECT_EQ(directory.names(), Names{"a.csv"});
+}
+
+TEST(OutputFile, WithoutLeaveOnlyEarlierResultsOfItsKindAreReplaced) {
+  const TemporaryDirectory directory;
+  const fs::path path = directory / "a.csv";
+  const auto refused = [&](const char* words) {
+    const std::string before = bytes_of(path);
+    const std::string error = error_of([&] { write_text(path, "new", Replace::results); });
+    EXPECT_TRUE(has_all(error, {"a.csv", words, "--overwrite"}));
+    EXPECT_TRUE(bytes_of(path) == before);
+    EXPECT_EQ(directory.names(), Names{"a.csv"});
+    fs::remove(path);
+  };
+  write_text(path, kTableHead, Replace::results);
+  EXPECT_TRUE(has_all(error_of([&] { write_text(path, "new", Replace::nothing); }), {"exists"}));
+  write_text(path, kTableHead, Replace::results);
+  write_bytes(path, "");
+  write_text(path, kTableHead, Replace::results);
+  write_bytes(path, "my,own,notes\n");
+  refused("no earlier output");
+  write_bytes(path, "\x89PNG\r\n\x1a\n and more");
+  refused("is a picture");
+  write_recording(path, 1);
+  refused("holds a recording");
+  write_calibration_file(path, small_calibration());
+  refused("holds a calibration");
+  write_bytes(path, "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
+  refused("Tekscan");
+  write_forces(directory / "f.h5", 1);
+  fs::rename(directory / "f.h5", path);
+  refused("holds force fields");
+  write_recording(path, 1);
+  write_text(path, "new", Replace::anything);
+  EXPECT_EQ(bytes_of(path), "new");
+}
+
+TEST(OutputFile, EveryFormatReplacesItsOwnKind) {
+  const TemporaryDirectory directory;
+  for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
+    write_forces(directory / name, 1);
+    write_forces(directory / name, 2);
+    write_bytes(directory / name, "rubbish");
+    EXPECT_TRUE(has_all(error_of([&] { write_forces(directory / name, 1); }), {name, "exists"}));
+    write_forces(directory / name, 1, Replace::anything);
+  }
+}
+
+TEST(OutputFile, RecordingsAndCalibrationsAreReplacedOnlyWithLeave) {
+  const TemporaryDirectory directory;
+  write_recording(directory / "r.h5", 2);
+  EXPECT_TRUE(has_all(error_of([&] { begin_recording(directory / "r.h5"); }),
+                      {"r.h5", "exists and holds a recording", "--overwrite"}));
+  write_recording(directory / "r.h5", 3);
+  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 3u);
+  const SkinCalibration calibration = small_calibration();
+  write_calibration_file(directory / "c.h5", calibration);
+  EXPECT_TRUE(has_all(error_of([&] { write_calibration_file(directory / "c.h5", calibration); }),
+                      {"c.h5", "exists and holds a calibration", "--overwrite"}));
+  write_calibration_file(directory / "c.h5", calibration, Replace::anything);
+}
+
+TEST(OutputFile, WhatComesWhileItIsWrittenIsNotReplaced) {
+  const TemporaryDirectory directory;
+  RecordingWriter writer = begin_recording(directory / "r.h5");
+  writer.append(FrameBuffer(SenselType::u8, 4, 4).view(), 0);
+  write_bytes(directory / "r.h5", "precious");
+  const std::string error = error_of([&] { writer.finish(); });
+  EXPECT_TRUE(has_all(error, {"r.h5", "exists", "the data are complete in", "r.h5.part"}));
+  EXPECT_EQ(bytes_of(directory / "r.h5"), "precious");
+  EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
+}
+
+TEST(OutputFile, APartThatWasRemovedIsNotSaidToBeThere) {
+  const TemporaryDirectory directory;
+  OutputFile file(directory / "a.csv", OutputKind::force_table);
+  fs::remove(directory / "a.csv.part");
+  write_bytes(directory / "a.csv.part", "of somebody else");
+  const std::string error = error_of([&] { file.commit(); });
+  EXPECT_TRUE(has_all(error, {"a.csv.part", "renamed or removed"}));
+  EXPECT_EQ(error.find("complete in"), std::string::npos);
+  EXPECT_FALSE(fs::exists(directory / "a.csv"));
+  EXPECT_EQ(bytes_of(directory / "a.csv.part"), "of somebody else");
+}
+
+TEST(OutputFile, ALinkAtItsNameStaysAndItsTargetIsWritten) {
+  const TemporaryDirectory directory;
+  fs::create_directory(directory / "far");
+  fs::create_symlink("far/b.csv", directory / "a.csv");
+  write_text(directory / "a.csv", kTableHead, Replace::results);
+  EXPECT_TRUE(fs::is_symlink(directory / "a.csv"));
+  EXPECT_EQ(bytes_of(directory / "far/b.csv"), kTableHead);
+  write_recording(directory / "far/b.csv", 1);
+  EXPECT_TRUE(has_all(error_of([&] { write_text(directory / "a.csv", "", Replace::results); }),
+                      {"far/b.csv", "holds a recording"}));
+  fs::create_symlink("loop", directory / "loop");
+  EXPECT_NE(error_of([&] { write_text(directory / "loop", "", Replace::anything); }), "");
+}
+
+TEST(OutputFile, IsOnTheDiskBeforeItHasItsNameAndItsFolderAfter) {
+  const TemporaryDirectory directory;
+  const Names expected = {"file", "rename", "folder"};
+  const auto calls_of = [](auto&& action) {
+    disk_calls().clear();
+    action();
+    return disk_calls();
+  };
+  EXPECT_EQ(calls_of([&] { write_text(directory / "a.csv", "", Replace::results); }), expected);
+  EXPECT_EQ(calls_of([&] { write_recording(directory / "r.h5", 20); }), expected);
+  EXPECT_EQ(calls_of([&] { write_recording(directory / "r.h5", 20); }), expected);
+  EXPECT_EQ(calls_of([&] { write_forces(directory / "f.h5", 20); }), expected);
+  EXPECT_EQ(calls_of([&] { write_forces(directory / "f.npy", 20); }), expected);
+  EXPECT_EQ(calls_of([&] { write_calibration_file(directory / "c.h5", small_calibration()); }),
+            expected);
+}
+
+TEST(OutputFile, APartThatGrowsIsWrittenToTheDiskAtIntervals) {
+  const TemporaryDirectory directory;
+  OutputFile file(directory / "a.csv", OutputKind::force_table);
+  disk_calls().clear();
+  file.sync_at_intervals();
+  file.sync_at_intervals(std::chrono::hours(1));
+  EXPECT_EQ(disk_calls(), Names{}) << "too soon";
+  file.sync_at_intervals(std::chrono::seconds(0));
+  file.commit();  // Waits for it.
+  EXPECT_EQ(disk_calls(), (Names{"file", "file", "rename", "folder"}));
+}
+
+TEST(CheckOutputs, InputsAreNeverOutputs) {
+  const TemporaryDirectory directory;
+  const fs::path input = directory / "in.csv";
+  write_bytes(input, kTableHead);
+  write_bytes(directory / "in2.csv", kTableHead);
+  fs::create_symlink("in.csv", directory / "link.csv");
+  fs::create_hard_link(input, directory / "hard.csv");
+  fs::create_directory(directory / "folder");
+  fs::create_directory_symlink(".", directory / "here");
+  for (const char* name : {"in.csv", "link.csv", "hard.csv", "folder/../in.csv", "./in.csv",
+                           "here/in.csv", "here/here/link.csv"}) {
+    for (const Replace replace : {Replace::results, Replace::anything}) {
+      const std::string error = error_of([&] {
+        check_outputs({"", directory / "absent", directory / "in2.csv", input},
+                      {{directory / name, OutputKind::force_table}}, replace);
+      });
+      EXPECT_TRUE(has_all(error, {name, "is a file that is read", "another file"}));
+    }
+  }
+  fs::rename(input, directory / "new.csv.part");
+  EXPECT_TRUE(has_all(error_of([&] {
+                        check_outputs({directory / "link.csv", directory / "new.csv.part"},
+                                      {{directory / "new.csv", OutputKind::force_table}},
+                                      Replace::anything);
+                      }),
+                      {"new.csv", "part", "is read"}));
+}
+
+TEST(CheckOutputs, TwoOutputsNeverShareAFile) {
+  const TemporaryDirectory directory;
+  fs::create_symlink("a.csv", directory / "link.csv");
+  for (const char* other : {"a.csv", "./a.csv", "link.csv", "a.csv.part"}) {
+    const std::string error = error_of([&] {
+      check_outputs({},
+                    {{directory / "a.csv", OutputKind::force_table},
+                     {directory / other, OutputKind::contact_table}},
+                    Replace::anything);
+    });
+    EXPECT_TRUE(has_all(error, {"cannot share this file"}));
+  }
+  check_outputs({},
+                {{directory / "a.csv", OutputKind::force_table},
+                 {directory / "b.csv", OutputKind::contact_table}},
+                Replace::results);
+  EXPECT_TRUE(name_same_file(directory / "a.csv", directory / "link.csv"));
+  EXPECT_FALSE(name_same_file(directory / "a.csv", directory / "b.csv"));
+}
+
+TEST(CheckOutputs, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
+  const TemporaryDirectory directory;
+  const auto refused = [&](const fs::path& path) {
+    return error_of([&] { check_outputs({}, {{path, OutputKind::svg}}, Replace::anything); });
+  };
+  EXPECT_TRUE(has_all(refused(directory / "none" / "a.svg"), {"none/a.svg", "No such file"}));
+  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "no regular file"}));
+  EXPECT_TRUE(has_all(refused("-"), {"standard output"}));
+  EXPECT_TRUE(has_all(refused(""), {"empty"}));
+  EXPECT_EQ(directory.names(), Names{});
+}
+
+/// A reader of HDF5 comes and goes while a part is written, and the writer notices nothing.
+TEST(OutputFile, ItsLockIsNoneToReaders) {
+  const TemporaryDirectory directory;
+  RecordingWriter writer = begin_recording(directory / "r.h5");
+  const FrameBuffer frame(SenselType::u8, 4, 4);
+  for (int round = 1; round <= 3; ++round) {
+    writer.append(frame.view(), round);
+    writer.flush();
+    EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), static_cast<std::uint64_t>(round));
+    EXPECT_TRUE(has_all(error_of([&] { begin_recording(directory / "r.h5"); }),
+                        {"is being written by another process"}));
+  }
+  writer.finish();
+  EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 3u);
+}
+
+}  // namespace
+}  // namespace pillarfield

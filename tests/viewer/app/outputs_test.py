@@ -1,0 +1,104 @@
+"""What pillarfield-viewer --headless writes: never onto its source, never over other files."""
+
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+VIEWER = os.environ["PILLARFIELD_VIEWER"]
+PROGRAM = os.environ["PILLARFIELD"]
+
+SCENE = """
+[skin]
+pillars = [16, 16]
+[time]
+frames = 12
+[[contact]]
+shape = "sphere"
+motion = "press"
+contact_radius_mm = 4
+load_n = 10
+position_mm = [0, 0]
+"""
+
+
+class Outputs(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = pathlib.Path(scratch.name)
+        (self.folder / "ball.toml").write_text(SCENE, encoding="utf-8")
+        for arguments in (("simulate", "ball.toml", "-o", "rec.h5"),
+                          ("solve", "rec.h5", "-o", "forces.h5")):
+            subprocess.run([PROGRAM, *arguments], cwd=self.folder, check=True, timeout=60,
+                           stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for name in ("ball.toml", "rec.h5", "forces.h5"):
+            (self.folder / ("soft_" + name)).symlink_to(name)
+            os.link(self.folder / name, self.folder / ("hard_" + name))
+
+    def view(self, *arguments):
+        return subprocess.run([VIEWER, *arguments, "--headless"], cwd=self.folder, check=False,
+                              capture_output=True, text=True, timeout=120)
+
+    def assert_refused(self, *arguments, says):
+        ended = self.view(*arguments)
+        lines = ended.stderr.strip().splitlines()
+        self.assertEqual((ended.returncode, len(lines)), (1, 1), ended)
+        self.assertTrue(lines[0].startswith("pillarfield-viewer: "), lines)
+        self.assertIn(says, lines[0])
+
+    def test_the_source_is_never_written(self):
+        before = {path: path.read_bytes() for path in self.folder.iterdir()}
+        for name in ("ball.toml", "rec.h5", "forces.h5"):
+            for output in ("", "soft_", "hard_", "./"):
+                for option in ("--png", "--csv"):
+                    for leave in ((), ("--overwrite",)):
+                        with self.subTest(name=name, output=output, option=option, leave=leave):
+                            self.assert_refused(name, option, output + name, *leave,
+                                                says="is a file that is read")
+        os.link(self.folder / "forces.h5", self.folder / "forces_02.png")
+        os.link(self.folder / "forces.h5", self.folder / "forces.mp4")
+        self.assert_refused("forces.h5", "--frames", "1:3", "--png", "forces.png",
+                            says="forces_02.png: is a file that is read")
+        self.assert_refused("forces.h5", "--video", "forces.mp4", says="is a file that is read")
+        self.assert_refused("forces.h5", "--csv", "x.png", "--png", "x.png", says="share this file")
+        for path, content in before.items():
+            self.assertEqual(path.read_bytes(), content, path)
+
+    def test_only_earlier_tables_are_replaced_unless_told(self):
+        self.assert_refused("forces.h5", "--csv", "rec.h5", says="holds a recording")
+        self.assert_refused("forces.h5", "--png", "rec.h5", says="holds a recording")
+        notes = self.folder / "notes.csv"
+        notes.write_text("mine\n", encoding="utf-8")
+        self.assert_refused("forces.h5", "--csv", "notes.csv", says="--overwrite")
+        self.assertEqual(notes.read_text(encoding="utf-8"), "mine\n")
+        for leave in (("--overwrite",), ()):
+            self.assertEqual(self.view("forces.h5", "--csv", "notes.csv", *leave).returncode, 0)
+            self.assertIn("frame,time_s", notes.read_text(encoding="utf-8"))
+
+    def test_hang_up_ends_it_in_one_line(self):
+        scene = self.folder / "long.toml"
+        scene.write_text(SCENE.replace("frames = 12", "frames = 100000"), encoding="utf-8")
+        with subprocess.Popen([VIEWER, "long.toml", "--headless", "--frames", "1:100000", "--png",
+                               "long.png"], cwd=self.folder, stderr=subprocess.PIPE,
+                              text=True) as process:
+            deadline = time.monotonic() + 60
+            while process.poll() is None and time.monotonic() < deadline:
+                if (self.folder / "long_000001.png").exists():
+                    process.send_signal(signal.SIGHUP)
+                    break
+                time.sleep(0.02)
+            _, complaint = process.communicate(timeout=60)
+        if "Vulkan" in complaint:
+            self.skipTest(complaint)
+        lines = complaint.strip().splitlines()
+        self.assertEqual((process.returncode, len(lines)), (1, 1), complaint)
+        self.assertIn("interrupted after", lines[0])
+        self.assertEqual(list(self.folder.glob("*.part")), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
