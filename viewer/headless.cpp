@@ -6,8 +6,10 @@
 #include <memory>
 
 #include "pillarfield/error.h"
+#include "pillarfield/printable.h"
 #include "viewer/app/export.h"
 #include "viewer/app/field_place.h"
+#include "viewer/app/opening.h"
 #include "viewer/draw/painter.h"
 #include "viewer/draw/scene.h"
 
@@ -57,10 +59,11 @@ Span frames_of(const Options& options, const SourceInfo& source) {
 }  // namespace
 
 void run_headless(const Options& options) {
-  const auto producer = open_producer(options.source, ProducerOptions{options.device});
+  const auto producer = open_producer(options.source, producer_options(options));
   const SourceInfo& source = producer->info();
   for (const std::string& remark : source.remarks) {
-    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", source.name, remark);
+    fmt::print(stderr, "pillarfield-viewer: {}\n",
+               printable(fmt::format("{}: {}", source.name, remark)));
   }
   const Span span = frames_of(options, source);
   Look look = first_look(options, *producer, Renderer::scale_of(options));
