@@ -6,6 +6,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/remarks.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 
@@ -42,7 +43,7 @@ void add_calibration_option(CLI::App& command, StepOptions& options) {
 
 std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
   std::unique_ptr<FrameSource> source = open_frames(file);
-  for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
+  print_file_remarks(file, source->remarks());
   std::error_code absent;
   if (std::filesystem::equivalent(file, options.output, absent)) {
     throw Error(options.output, "holds the frames that are read", "write to another file");
