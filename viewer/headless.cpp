@@ -7,8 +7,10 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
+#include "pillarfield/printable.h"
 #include "viewer/app/export.h"
 #include "viewer/app/field_place.h"
+#include "viewer/app/opening.h"
 #include "viewer/draw/painter.h"
 #include "viewer/draw/scene.h"
 
@@ -60,7 +62,7 @@ bool asks_for_sequence(const Options& options) {
 }
 
 /// Pictures that are asked for: one, or one of each frame.
-std::vector<std::filesystem::path> png_names(const Options& options, const Span& span,
+std::vector<std::filesystem::path> png_names(const Options& options, const FrameRange& span,
                                              std::uint64_t frames) {
   if (options.png.empty()) return {};
   if (!asks_for_sequence(options)) return {options.png};
@@ -95,10 +97,11 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  const auto producer = open_producer(options.source, ProducerOptions{options.device});
+  const auto producer = open_producer(options.source, producer_options(options));
   const SourceInfo& source = producer->info();
   for (const std::string& remark : source.remarks) {
-    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", source.name, remark);
+    fmt::print(stderr, "pillarfield-viewer: {}\n",
+               printable(fmt::format("{}: {}", source.name, remark)));
   }
   const FrameRange span = frames_of(options, source);
   const Paths pictures = png_names(options, span, source.frames);

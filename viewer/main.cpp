@@ -6,6 +6,7 @@
 #include <new>
 
 #include "pillarfield/interrupt.h"
+#include "pillarfield/printable.h"
 #include "viewer/app/app.h"
 #include "viewer/gpu/vulkan.h"
 #include "viewer/headless.h"
@@ -17,6 +18,15 @@ constexpr int kFailed = 1;
 int complain(const char* message) noexcept {
   std::fprintf(stderr, "pillarfield-viewer: %s\n", message);
   return kFailed;
+}
+
+/// The same for a text that may hold anything, as that of a system's error with a file's name.
+int complain_of(const std::exception& error) noexcept {
+  try {
+    return complain(pillarfield::printable(error.what()).c_str());
+  } catch (...) {
+    return complain("out of memory");
+  }
 }
 
 int run(int argc, char** argv) {
@@ -38,7 +48,7 @@ int main(int argc, char** argv) {
   } catch (const vk::DeviceLostError&) {
     return complain("the graphics device was lost; start again, or choose another with --gpu");
   } catch (const std::exception& error) {
-    return complain(error.what());
+    return complain_of(error);
   } catch (...) {
     return complain("an unknown failure; please report it");
   }

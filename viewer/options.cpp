@@ -4,12 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "pillarfield/version.h"
-#include "viewer/draw/scene.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -38,7 +38,7 @@ std::vector<double> numbers(const std::string& text, const std::string& separato
     } catch (const std::exception&) {
       used = std::string::npos;
     }
-    if (used != part.size()) break;
+    if (used != part.size() || !std::isfinite(values.back())) break;
     begin = end + 1;
   }
   if (begin <= text.size() || values.size() != count) {
@@ -59,9 +59,12 @@ std::string quantity_names() {
   return names;
 }
 
+bool is_whole(double value) { return value == std::floor(value); }
+
 void take_size(Options& options, const std::string& text) {
   const auto size = numbers(text, "x", 2, "WIDTHxHEIGHT, in pixels");
-  require(size[0] >= 320 && size[0] <= 8192 && size[1] >= 240 && size[1] <= 8192,
+  require(is_whole(size[0]) && is_whole(size[1]) && size[0] >= 320 && size[0] <= 8192 &&
+              size[1] >= 240 && size[1] <= 8192,
           "a picture has 320x240 to 8192x8192 pixels");
   options.width = static_cast<std::uint32_t>(size[0]);
   options.height = static_cast<std::uint32_t>(size[1]);
@@ -108,7 +111,8 @@ void take_surface(Options& options, const std::string& text) {
 /// Frames are counted from 1 for people.
 void take_frames(Options& options, const std::string& text) {
   const auto frames = numbers(text, ":", 2, "FIRST:LAST, counted from 1");
-  require(frames[0] >= 1 && frames[1] >= frames[0] && frames[1] < 1e15,
+  require(is_whole(frames[0]) && is_whole(frames[1]) && frames[0] >= 1 && frames[1] >= frames[0] &&
+              frames[1] < 1e15,
           "frames are counted from 1, and the last does not come before the first");
   options.first_frame = static_cast<std::uint64_t>(frames[0]) - 1;
   options.end_frame = static_cast<std::uint64_t>(frames[1]);
@@ -116,8 +120,28 @@ void take_frames(Options& options, const std::string& text) {
 
 void take_range(Options& options, const std::string& text) {
   const auto ends = numbers(text, ":", 2, "LOW:HIGH");
-  require(ends[0] < ends[1], "the low end of a range lies below the high one");
+  constexpr double kMost = 1e30;  // Far from where single precision ends.
+  require(ends[0] < ends[1] && ends[0] >= -kMost && ends[1] <= kMost,
+          "the low end of a range lies below the high one, both in [-1e30, 1e30]");
   options.range = Range{static_cast<float>(ends[0]), static_cast<float>(ends[1])};
+}
+
+void take_centre(Options& options, const std::string& text) {
+  constexpr double kMostMm = 1e6;  // Beyond, there is no skin, and axes run out of digits.
+  const auto point = numbers(text, ",", 2, "X,Y, in mm");
+  require(std::abs(point[0]) <= kMostMm && std::abs(point[1]) <= kMostMm,
+          "the centre lies within 1e6 mm of the middle of the skin");
+  options.centre_mm = Vec2{point[0], point[1]};
+}
+
+void take_zoom(Options& options, const std::string& text) {
+  options.zoom = numbers(text, "", 1, "NUMBER")[0];
+  require(options.zoom >= 0.05 && options.zoom <= 1000, "the zoom lies in [0.05, 1000]");
+}
+
+void take_scale(Options& options, const std::string& text) {
+  options.scale = numbers(text, "", 1, "NUMBER")[0];
+  require(options.scale >= 0.5 && options.scale <= 4, "the scale lies in [0.5, 4]");
 }
 
 void add_texts(CLI::App& app, Options& options) {
@@ -135,11 +159,9 @@ void add_texts(CLI::App& app, Options& options) {
   add("--view", "top, orbit or orbit:AZIMUTH,ELEVATION in degrees [top]", take_view);
   add("--surface", "In 3-D: plane or cylinder:RADIUS in mm [plane]", take_surface);
   add("--frames", "Render frames FIRST:LAST, counted from 1", take_frames);
-  add("--centre", "Point in the middle of a view from the top, X,Y in mm [0,0]",
-      [](Options& all, const std::string& text) {
-        const auto point = numbers(text, ",", 2, "X,Y, in mm");
-        all.centre_mm = Vec2{point[0], point[1]};
-      });
+  add("--centre", "Point in the middle of a view from the top, X,Y in mm [0,0]", take_centre);
+  add("--zoom", "Enlarges the view [1]", take_zoom);
+  add("--scale", "Size of letters and lines [the display's, or 1]", take_scale);
 }
 
 void check_together(const Options& options, bool has_frame, bool has_frames) {
@@ -165,9 +187,6 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   std::uint64_t frame = 1;
   auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1]")
                         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
-  app.add_option("--zoom", options.zoom, "Enlarges the view [1]")->check(CLI::Range(0.05, 1000.0));
-  app.add_option("--scale", options.scale, "Size of letters and lines [the display's, or 1]")
-      ->check(CLI::Range(0.5, 4.0));
   app.add_flag_callback(
       "--light", [&] { options.theme = Theme::light; }, "Dark on white");
   app.add_flag_callback(

@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
 #include "cli/interrupt.h"
+#include "cli/json_text.h"
 #include "cli/progress.h"
 #include "pillarfield/calibration_file.h"
+#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -45,11 +45,12 @@ void run(const ApplyCommand& command) {
   copy_frames(*source, command, writer);
   writer.finish();
   if (command.step.json) {
-    const nlohmann::json json = {{"output", command.step.output}, {"frames", source->frames()}};
-    fmt::print("{}\n", json.dump());
+    const nlohmann::ordered_json json = {{"output", command.step.output},
+                                         {"frames", source->frames()}};
+    fmt::print("{}\n", json_text(json));
   } else {
     fmt::print("Copied {} frames, with the calibration beside them\nWrote {}\n", source->frames(),
-               command.step.output);
+               printable(command.step.output));
   }
 }
 

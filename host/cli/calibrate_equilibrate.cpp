@@ -6,8 +6,11 @@
 #include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
 #include "cli/calibrate_report.h"
+#include "cli/json_text.h"
+#include "cli/number_range.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/equilibration.h"
+#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -31,7 +34,7 @@ void print_json(const EquilibrateCommand& command, const EquilibrationResult& re
   if (result.levels > 1) json["dead_zone_counts"] = result.dead_zone_counts;
   if (result.levels > 2) json["nonlinearity"] = result.nonlinearity;
   add_findings(json, result.calibration, result.findings);
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const EquilibrateCommand& command, const EquilibrationResult& result,
@@ -54,7 +57,7 @@ void print_text(const EquilibrateCommand& command, const EquilibrationResult& re
                100 * result.nonlinearity);
   }
   print_findings(result.calibration, result.findings);
-  fmt::print("Wrote {}\n", command.step.output);
+  fmt::print("Wrote {}\n", printable(command.step.output));
 }
 
 void print_remarks(const EquilibrateCommand& command, const EquilibrationResult& result) {
@@ -63,7 +66,7 @@ void print_remarks(const EquilibrateCommand& command, const EquilibrationResult&
   fmt::print(stderr,
              "{}: the press shears the skin by {:.1f} % of the normal force, which the gains "
              "take for their own; press straight\n",
-             command.files.back(), 100 * result.shear);
+             printable(command.files.back()), 100 * result.shear);
 }
 
 void run(const EquilibrateCommand& command) {
@@ -98,14 +101,14 @@ void add_calibrate_equilibrate(CLI::App& calibrate, Work& work) {
       ->add_option("--pressure-kpa", options->pressures_kpa,
                    "Pressure of each file, in their order: P1,P2,...")
       ->required()
-      ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->check(number_range(1e-6, 1e6).description(""))
       ->delimiter(',')
       ->allow_extra_args(false);
   add_calibration_option(*command, options->step);
   command
       ->add_option("--max-unevenness", options->equilibration.most_unevenness,
                    "Largest share by which the pressure may vary from pillar to pillar")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(number_range(0, 1e6).description(""))
       ->capture_default_str();
   add_step_options(*command, options->step, "Calibration to write (HDF5)");
   command->callback([options, &work] {

@@ -6,9 +6,12 @@
 #include "cli/calibrate_input.h"
 #include "cli/calibrate_report.h"
 #include "cli/interrupt.h"
+#include "cli/json_text.h"
+#include "cli/number_range.h"
 #include "cli/progress.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/fault_finder.h"
+#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -39,7 +42,7 @@ void print_json(const FaultsCommand& command, const FaultResult& result) {
   nlohmann::ordered_json json = {{"output", command.step.output}, {"frames", result.frames}};
   add_findings(json, result.calibration, result.findings);
   json["untested"] = result.untested;
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const FaultsCommand& command, const FaultResult& result) {
@@ -49,7 +52,7 @@ void print_text(const FaultsCommand& command, const FaultResult& result) {
   print_findings(result.calibration, result.findings);
   fmt::print("Untested: {} of {} sensels, which nothing asked to answer; --json lists them\n",
              result.untested.size(), sensels);
-  fmt::print("Wrote {}\n", command.step.output);
+  fmt::print("Wrote {}\n", printable(command.step.output));
 }
 
 void run(const FaultsCommand& command) {
@@ -79,17 +82,17 @@ void add_calibrate_faults(CLI::App& calibrate, Work& work) {
   command
       ->add_option("--min-frames", options->faults.least_frames,
                    "Frames in which parity must have told of a sensel")
-      ->check(CLI::Range(2U, 1'000'000'000U).description(""))
+      ->check(whole_number_range(2, 1'000'000'000).description(""))
       ->capture_default_str();
   command
       ->add_option("--still", options->faults.still_factor,
                    "A range of so many times its noise is no movement of a reading")
-      ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->check(number_range(1e-6, 1e6).description(""))
       ->capture_default_str();
   command
       ->add_option("--moving", options->faults.moving_factor,
                    "A deviation of so many times its noise is one of what parity leaves")
-      ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->check(number_range(1e-6, 1e6).description(""))
       ->capture_default_str();
   add_step_options(*command, options->step, "Calibration to write (HDF5)");
   command->callback([options, &work] { work = [options] { run(*options); }; });

@@ -5,6 +5,7 @@
 #include "cli/interrupt.h"
 #include "cli/output_options.h"
 #include "cli/progress.h"
+#include "cli/remarks.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 
@@ -49,7 +50,7 @@ void check_step_output(const std::vector<std::string>& files, const StepOptions&
 
 std::unique_ptr<FrameSource> open_for_step(const std::string& file) {
   std::unique_ptr<FrameSource> source = open_frames(file);
-  for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
+  print_file_remarks(file, source->remarks());
   return source;
 }
 

@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
 #include "cli/choice.h"
+#include "cli/json_text.h"
+#include "cli/number_range.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/load_calibration.h"
+#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -46,7 +47,7 @@ void print_json(const LoadCommand& command, const LoadResult& result, std::uint6
                              {"ambiguous_share", load.ambiguous_share},
                              {"saturated", load.saturated}});
   }
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const LoadCommand& command, const LoadResult& result, std::uint64_t frames) {
@@ -67,7 +68,7 @@ void print_text(const LoadCommand& command, const LoadResult& result, std::uint6
                load.load_n, load.solved_n, 100 * (load.solved_n / load.load_n - 1),
                100 * load.ambiguous_share);
   }
-  fmt::print("Wrote {}\n", command.step.output);
+  fmt::print("Wrote {}\n", printable(command.step.output));
 }
 
 void print_remarks(const LoadCommand& command, const LoadResult& result) {
@@ -77,11 +78,11 @@ void print_remarks(const LoadCommand& command, const LoadResult& result) {
       fmt::print(stderr,
                  "{}: {:.0f} % of the load stands on ambiguous pillars; press flat and without "
                  "shear\n",
-                 command.files[i], 100 * load.ambiguous_share);
+                 printable(command.files[i]), 100 * load.ambiguous_share);
     }
     if (load.saturated > 0) {
       fmt::print(stderr, "{}: {} pillars have a saturated sensel and lack force; press less\n",
-                 command.files[i], load.saturated);
+                 printable(command.files[i]), load.saturated);
     }
   }
 }
@@ -119,7 +120,7 @@ void add_calibrate_load(CLI::App& calibrate, Work& work) {
       ->add_option("--load-n", options->loads_n,
                    "Normal load of each file, in their order: L1,L2,... or given again for each")
       ->required()
-      ->check(CLI::Range(1e-6, 1e6).description(""))
+      ->check(number_range(1e-6, 1e6).description(""))
       ->delimiter(',')
       ->allow_extra_args(false);
   add_choice<LoadModel>(

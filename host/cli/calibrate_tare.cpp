@@ -5,7 +5,10 @@
 #include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
 #include "cli/calibrate_report.h"
+#include "cli/json_text.h"
+#include "cli/number_range.h"
 #include "pillarfield/calibration_file.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/tare.h"
 
 namespace pillarfield::cli {
@@ -24,7 +27,7 @@ void print_json(const TareCommand& command, const TareResult& result, std::uint3
                                  {"noise_counts", result.noise_counts},
                                  {"threshold_counts", *result.calibration.threshold_counts}};
   add_findings(json, result.calibration, result.findings);
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const TareCommand& command, const TareResult& result, std::uint32_t frames) {
@@ -36,7 +39,7 @@ void print_text(const TareCommand& command, const TareResult& result, std::uint3
       result.calibration.rows, result.calibration.cols, frames, result.tare_counts,
       result.noise_counts, *result.calibration.threshold_counts, command.tare.threshold_factor);
   print_findings(result.calibration, result.findings);
-  fmt::print("Wrote {}\n", command.step.output);
+  fmt::print("Wrote {}\n", printable(command.step.output));
 }
 
 void run(const TareCommand& command) {
@@ -68,7 +71,7 @@ void add_calibrate_tare(CLI::App& calibrate, Work& work) {
   command
       ->add_option("--threshold-factor", options->tare.threshold_factor,
                    "The threshold, as a multiple of the noise of a reading")
-      ->check(CLI::Range(0.0, kMaxThresholdFactor).description(""))
+      ->check(number_range(0, kMaxThresholdFactor).description(""))
       ->capture_default_str();
   command->add_flag("--preloaded", options->tare.preloaded,
                     "Take as tare what looks like a touch: the skin is bent or covered there");

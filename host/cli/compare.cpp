@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
+#include "cli/json_text.h"
 #include "cli/progress.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/recording.h"
 
 namespace pillarfield::cli {
@@ -67,7 +68,14 @@ void print_json(const std::vector<Row>& rows, const std::optional<Coverage>& cov
                                            {"ends", of_region.ends}};
     }
   }
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
+}
+
+/// A number of so many decimals that fits its column, by an exponent where it must.
+std::string fitted(double value, std::size_t width, int decimals, std::string_view unit = "") {
+  std::string text = fmt::format("{:.{}f}{}", value, decimals, unit);
+  if (text.size() > width) text = fmt::format("{:.1e}{}", value, unit);
+  return fmt::format("{:>{}}", text, width);
 }
 
 void print_row(const Row& row) {
@@ -76,20 +84,21 @@ void print_row(const Row& row) {
                                 ? 0
                                 : 100 * static_cast<double>(errors.status_mismatches) /
                                       static_cast<double>(errors.pillars);
-  fmt::print("{:<8} {:>10} {:>9.4f} {:>9.4f}", row.name, errors.pillars, errors.rms_n,
-             errors.p95_n);
+  fmt::print("{:<8} {:>10} {} {}", row.name, errors.pillars, fitted(errors.rms_n, 9, 4),
+             fitted(errors.p95_n, 9, 4));
   if (row.name == "none") {
     fmt::print(" {:>8} {:>8} {:>9} {:>9}", "-", "-", "-", "-");
   } else {
-    fmt::print(" {:>7.1f}% {:>7.1f}% {:>9.4f} {:>9.4f}", 100 * errors.rms_relative,
-               100 * errors.p95_relative, errors.theta_rms_rad, errors.phi_rms_rad);
+    fmt::print(" {} {} {:>9.4f} {:>9.4f}", fitted(100 * errors.rms_relative, 8, 1, "%"),
+               fitted(100 * errors.p95_relative, 8, 1, "%"), errors.theta_rms_rad,
+               errors.phi_rms_rad);
   }
   fmt::print(" {:>9.2f}%\n", mismatches);
 }
 
 void print_text(const std::vector<Row>& rows, std::uint64_t frames, const CompareOptions& options) {
-  fmt::print("{} against the truth in {}, {} frames\n\n", options.forces, options.recording,
-             frames);
+  fmt::print("{} against the truth in {}, {} frames\n\n", printable(options.forces),
+             printable(options.recording), frames);
   fmt::print("{:<8} {:>10} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
              "of the true force", "angle RMS, rad", "status");
   fmt::print("{:<8} {:>10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
@@ -138,7 +147,8 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   const std::uint64_t frames = std::min(forces.frames(), recording.frames());
   if (forces.frames() != recording.frames()) {
     fmt::print(stderr, "{}: it has {} frames and {} has {}; the first {} are compared\n",
-               options.forces, forces.frames(), options.recording, recording.frames(), frames);
+               printable(options.forces), forces.frames(), printable(options.recording),
+               recording.frames(), frames);
   }
   return frames;
 }

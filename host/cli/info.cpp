@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/command.h"
+#include "cli/json_text.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/simulator.h"
@@ -30,23 +31,27 @@ struct InfoOptions {
 /// A value as text; of an object or a list, the values of its members.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
-  if (!value.is_structured()) return value.dump();
+  if (!value.is_structured()) return json_text(value);
   std::vector<std::string> parts;
   for (const Json& part : value) parts.push_back(text_of(part));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+void print_fact(const std::string& key, const Json& value) {
+  fmt::print("{:<20} {}\n", key, printable(text_of(value)));
+}
+
 /// Prints `facts` as JSON, or one "key value" line each.
 void print_facts(const Json& facts, bool json) {
   if (json) {
-    fmt::print("{}\n", facts.dump());
+    fmt::print("{}\n", json_text(facts));
     return;
   }
   for (const auto& [key, value] : facts.items()) {
     if (value.is_array()) {
-      for (const Json& item : value) fmt::print("{:<20} {}\n", key, text_of(item));
+      for (const Json& item : value) print_fact(key, item);
     } else {
-      fmt::print("{:<20} {}\n", key, text_of(value));
+      print_fact(key, value);
     }
   }
 }
@@ -159,6 +164,14 @@ Json facts_of(const std::string& file) {
   return is_force_file(file) ? facts_of_forces(file) : facts_of_frames(file);
 }
 
+void print_why_no_device() {
+  try {
+    static_cast<void>(open_device());
+  } catch (const Error& error) {
+    fmt::print("{}\n", error.what());
+  }
+}
+
 void print_devices(bool json) {
   const std::vector<DeviceInfo> devices = list_devices();
   if (json) {
@@ -170,16 +183,14 @@ void print_devices(bool json) {
                       {"type", device.type},
                       {"lanes", device.lanes},
                       {"shares_memory", device.shares_memory},
-                      {"unsuitable", device.unsuitable}});
+                      {"unsuitable", device.unsuitable},
+                      {"kernel_cache", device.kernel_cache},
+                      {"kernels_not_kept", device.kernels_not_kept}});
     }
-    fmt::print("{}\n", list.dump());
+    fmt::print("{}\n", json_text(list));
     return;
   }
-  if (devices.empty()) {
-    fmt::print(
-        "No OpenCL device; install a driver, for instance the Debian package "
-        "pocl-opencl-icd\n");
-  }
+  if (devices.empty()) print_why_no_device();
   for (const DeviceInfo& device : devices) {
     fmt::print("{:>3}  {} ({}, {}; {} lanes, {})  {}\n", device.index, device.name, device.type,
                device.platform, device.lanes, device.shares_memory ? "zero copy" : "staged",

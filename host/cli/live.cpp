@@ -15,9 +15,12 @@
 #include "cli/live_report.h"
 #include "cli/live_run.h"
 #include "cli/monotonic_clock.h"
+#include "cli/number_range.h"
 #include "cli/plan_options.h"
+#include "cli/progress.h"
 #include "cli/realtime.h"
 #include "pillarfield/error.h"
+#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -129,8 +132,9 @@ void announce(const LiveReport& report, const LiveOptions& options) {
                remark_on("locked memory", report.realtime->memory_refused));
   }
   if (report.frames_loaded < std::min(report.frames_in_source, report.schedule.frames)) {
-    fmt::print(stderr, "{}: {} of {} frames fit into {} MiB; see --memory-limit\n", options.source,
-               report.frames_loaded, report.frames_in_source, options.memory_limit_mib);
+    fmt::print(stderr, "{}: {} of {} frames fit into {} MiB; see --memory-limit\n",
+               printable(options.source), report.frames_loaded, report.frames_in_source,
+               options.memory_limit_mib);
   }
   if (options.quiet || isatty(STDERR_FILENO) == 0) return;
   fmt::print(stderr, "Live for {:g} s at {:g} Hz, {}\n", options.seconds, options.rate_hz,
@@ -176,9 +180,10 @@ void live(const LiveOptions& options) {
   report.frames_loaded = frames.loaded.size();
   // The device's threads inherit how this one is scheduled; memory is locked once it is there.
   if (options.realtime) report.realtime.emplace().scheduling_refused = ask_for_realtime();
-  Processor processor(
-      open_device(options.device.name), plan,
-      {.memory = options.device.memory, .frames_in_flight = options.frames_in_flight});
+  Processor processor(open_device(options.device.name), plan,
+                      {.memory = options.device.memory,
+                       .frames_in_flight = options.frames_in_flight,
+                       .on_compiling = terminal_line(options.quiet)});
   Replay replay(frames, processor, options);
   report.frames_in_flight = options.frames_in_flight;
   LiveRun run(report.schedule);
@@ -206,17 +211,17 @@ void add_run_options(CLI::App& command, LiveOptions& options) {
   command
       .add_option("--backlog", options.backlog_frames,
                   "Drop a frame whose turn comes more than so many frames late [4]")
-      ->check(CLI::Range(0U, 1000U));
+      ->check(whole_number_range(0, 1000));
   command
       .add_option("--in-flight", options.frames_in_flight,
                   "While the solver is late, start so many frames before the first is done [2]")
-      ->check(CLI::Range(1, static_cast<int>(LiveRun::kMaxInFlight)));
+      ->check(whole_number_range(1, LiveRun::kMaxInFlight));
   command.add_option("--spin", options.spin_us,
                      "Of each wait, spend the last so many microseconds spinning [0]");
   command
       .add_option("--memory-limit", options.memory_limit_mib,
                   "Frames are loaded beforehand, into so many MiB at most [1024]")
-      ->check(CLI::Range(1U, 1U << 20U));
+      ->check(whole_number_range(1, 1U << 20U));
   command.add_flag(
       "--half", options.half,
       "Forces of half precision, which take fewer bytes to memory; not with --estimator field");

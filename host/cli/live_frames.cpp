@@ -7,6 +7,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/remarks.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/simulator.h"
@@ -47,7 +48,7 @@ LiveFrames simulated(const std::string& file) {
 
 LiveFrames recorded(const std::string& file) {
   const std::shared_ptr<FrameSource> source = open_frames(file);
-  for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
+  print_file_remarks(file, source->remarks());
   if (source->frames() == 0) {
     throw Error(file, "it has no frames", "give a recording with one at least");
   }

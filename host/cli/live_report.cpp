@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <thread>
 
+#include "cli/json_text.h"
 #include "cli/latencies.h"
+#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -144,14 +145,14 @@ void print_live_json(const LiveReport& report, const SolverPlan& plan, const Pro
                      {"minor_page_faults", usage.minor_page_faults},
                      {"major_page_faults", usage.major_page_faults},
                      {"contact_share", contact_share(report.last_frame)}};
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_live_text(const LiveReport& report, const SolverPlan& plan, const Processor& processor) {
   const DeviceInfo& device = processor.device().info();
   if (report.result.interrupted) fmt::print("Interrupted; until then\n");
-  fmt::print("{}: {} x {} pillars on {} ({}, {})\n", report.source, plan.skin.pillar_rows(),
-             plan.skin.pillar_cols(), device.name, device.type,
+  fmt::print("{}: {} x {} pillars on {} ({}, {})\n", printable(report.source),
+             plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
              processor.shares_memory() ? "zero copy" : "staged");
   fmt::print("Stages: {}\n", fmt::join(kernel_stages(plan), ", "));
   const Latencies latencies(report.result);

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "pillarfield/interrupt.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::cli {
@@ -23,6 +24,15 @@ Try:  pillarfield simulate scenes/demo.toml -o demo.h5
 int complain(const char* message) noexcept {
   std::fprintf(stderr, "pillarfield: %s\n", message);
   return kFailed;
+}
+
+/// The same for a text that may hold anything, as that of a system's error with a file's name.
+int complain_of(const std::exception& error) noexcept {
+  try {
+    return complain(printable(error.what()).c_str());
+  } catch (...) {
+    return complain("out of memory");
+  }
 }
 
 int run(int argc, char** argv) {
@@ -60,7 +70,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return pillarfield::cli::complain("out of memory; take a smaller patch");
   } catch (const std::exception& error) {
-    return pillarfield::cli::complain(error.what());
+    return pillarfield::cli::complain_of(error);
   } catch (...) {
     return pillarfield::cli::complain("an unknown failure; please report it");
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/choice.h"
+#include "cli/number_range.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
@@ -68,7 +69,7 @@ void add_evidence_options(CLI::App& command, PlanOptions& options) {
       .add_option("--friction", options.friction,
                   "--estimator field: no pillar's shear exceeds this many times its normal force; "
                   "also the friction of contacts [not known]")
-      ->check(CLI::Range(1e-6, 100.0).description("RATIO"));
+      ->check(number_range(1e-6, 100).description("RATIO"));
   command.add_flag("--slips", options.slips,
                    "--estimator field: every pillar slips, at that friction");
   command.add_flag("--frames-close", options.frames_close,
@@ -78,7 +79,7 @@ void add_evidence_options(CLI::App& command, PlanOptions& options) {
           "--sweeps", options.sweeps,
           "--estimator field: sweeps of the pressure's relaxation, more for accuracy, fewer "
           "for speed [8]")
-      ->check(CLI::Range(0, 1000).description("NUMBER"));
+      ->check(whole_number_range(0, 1000).description("NUMBER"));
 }
 
 /// Applies what is said of the evidence; it is of no use to other estimators.
@@ -130,12 +131,12 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
       .add_option("--follow-baseline", options.baseline_time_s,
                   "Let the tare of untouched sensels follow a drift, time constant in seconds "
                   "[stays]")
-      ->check(CLI::Range(1e-6, 1e9).description("SECONDS"));
+      ->check(number_range(1e-6, 1e9).description("SECONDS"));
   command
       .add_option("--baseline-interval", options.baseline_interval,
                   "Follow it in one pillar row of so many after each frame, at that share of the "
                   "cost [1; --everything: up to 16]")
-      ->check(CLI::Range(1, 1024).description("FRAMES"));
+      ->check(whole_number_range(1, 1024).description("FRAMES"));
   command.add_flag("--everything", options.everything,
                    "All outputs, the parity test, and the baseline followed; needs the noise");
 }

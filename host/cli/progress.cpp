@@ -5,7 +5,14 @@
 
 #include <cstdio>
 
+#include "pillarfield/printable.h"
+
 namespace pillarfield::cli {
+
+std::function<void(const std::string&)> terminal_line(bool quiet) {
+  if (quiet || isatty(STDERR_FILENO) != 1) return {};
+  return [](const std::string& line) { fmt::print(stderr, "{}\n", printable(line)); };
+}
 
 Progress::Progress(std::string verb, std::uint64_t frames, bool quiet)
     : verb_(std::move(verb)), frames_(frames), visible_(!quiet && isatty(STDERR_FILENO) == 1) {}

@@ -2,9 +2,13 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 namespace pillarfield::cli {
+
+/// What prints a line to standard error; empty where that is no terminal, or `quiet` is asked for.
+[[nodiscard]] std::function<void(const std::string&)> terminal_line(bool quiet);
 
 /// A line on the terminal that shows how far a long job is: only where standard error is a
 /// terminal, and rewritten at most ten times a second.

@@ -2,14 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
 #include "cli/output_options.h"
+#include "cli/json_text.h"
+#include "cli/number_range.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/simulator.h"
 
@@ -41,15 +43,16 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
                                             {"rate_hz", scene.rate_hz}, {"sensel_rows", skin.rows},
                                             {"sensel_cols", skin.cols}, {"seed", scene.seed},
                                             {"seconds", seconds}};
-    fmt::print("{}\n", summary.dump());
+    fmt::print("{}\n", json_text(summary));
     return;
   }
   const double millimetres = skin.sensel_pitch_mm;
   fmt::print(
       "Simulated '{}': {} frames at {} Hz of {} x {} sensels ({:.0f} x {:.0f} mm, {} pillars) "
       "in {:.2f} s\nWrote {} with the true force of every pillar\n",
-      scene.title, scene.frames, scene.rate_hz, skin.rows, skin.cols, skin.cols * millimetres,
-      skin.rows * millimetres, skin.pillars(), seconds, options.output);
+      printable(scene.title), scene.frames, scene.rate_hz, skin.rows, skin.cols,
+      skin.cols * millimetres, skin.rows * millimetres, skin.pillars(), seconds,
+      printable(options.output));
 }
 
 void simulate(const SimulateOptions& options) {
@@ -86,8 +89,9 @@ void add_simulate(CLI::App& app, Work& work) {
   command->add_option("SCENE", options->scene, "Scene file (TOML), see docs/scenes.md")->required();
   command->add_option("-o,--output", options->output, "Recording to write (HDF5)")->required();
   command->add_option("--frames", options->frames, "Number of frames [the scene's]")
-      ->check(CLI::Range(1U, 100'000'000U));
-  command->add_option("--seed", options->seed, "Seed of the sensor's randomness [the scene's]");
+      ->check(whole_number_range(1, 100'000'000));
+  command->add_option("--seed", options->seed, "Seed of the sensor's randomness [the scene's]")
+      ->check(whole_number_range(0, kLargestSeed));
   command->add_flag("--uncalibrated", options->uncalibrated,
                     "Leave out the sensor's calibration, as of a skin that is new");
   add_overwrite_option(*command, options->replace);

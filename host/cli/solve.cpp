@@ -3,19 +3,21 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cli/command.h"
 #include "cli/contact_output.h"
 #include "cli/device_options.h"
 #include "cli/interrupt.h"
 #include "cli/output_options.h"
+#include "cli/json_text.h"
 #include "cli/plan_options.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
+#include "cli/remarks.h"
 #include "cli/stopwatch.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
 
@@ -36,8 +38,8 @@ struct SolveOptions {
 struct SolveSummary {
   std::uint64_t frames = 0;
   RegionCount regions;
-  double seconds_in_all = 0;
-  double seconds_in_solver = 0;
+  double startup_seconds = 0;  ///< opening the files and the device, compiling
+  double seconds = 0;          ///< reading, solving and writing, which overlap
 };
 
 /// Seconds from one frame to the next; throws where the file does not tell.
@@ -96,17 +98,13 @@ class Pipeline {
     if (processor_.in_flight() == kFramesInFlight) pop();
     const std::size_t slot = pushed_ % frames_.size();
     times_.at(slot) = source_.read(pushed_, frames_[slot]);
-    const Stopwatch watch;
     processor_.submit(frames_[slot].view());
-    summary_.seconds_in_solver += watch.seconds();
     ++pushed_;
   }
 
   /// Writes the result of the oldest frame.
   void pop() {
-    const Stopwatch watch;
     const ForceFieldView forces = processor_.receive();
-    summary_.seconds_in_solver += watch.seconds();
     summary_.regions.add(forces.status);
     const double time_s = times_.at(summary_.frames % frames_.size());
     sink_.append(forces, time_s);
@@ -140,36 +138,33 @@ double percent(std::uint64_t part, std::uint64_t whole) {
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
                 const SolveSummary& summary, const ContactOutput* contacts,
                 const std::vector<std::string>& remarks) {
-  const auto pillars = static_cast<double>(summary.regions.all());
   nlohmann::ordered_json regions;
   for (const Region region :
        {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
     regions[name_of(region)] = summary.regions.of(region);
   }
-  nlohmann::ordered_json json = {
-      {"input", options.input},
-      {"output", options.output},
-      {"estimator", name_of(plan.estimator)},
-      {"device", processor.device().info().name},
-      {"zero_copy", processor.shares_memory()},
-      {"stages", kernel_stages(plan)},
-      {"frames", summary.frames},
-      {"pillar_rows", plan.skin.pillar_rows()},
-      {"pillar_cols", plan.skin.pillar_cols()},
-      {"regions", regions},
-      {"resolved", summary.regions.resolved},
-      {"saturated", summary.regions.saturated},
-      {"inconsistent", summary.regions.inconsistent},
-      {"seconds", summary.seconds_in_all},
-      {"solver_seconds", summary.seconds_in_solver},
-      {"solver_pillars_per_second", per_second(pillars, summary.seconds_in_solver)},
-      {"remarks", remarks}};
+  nlohmann::ordered_json json = {{"input", options.input},
+                                 {"output", options.output},
+                                 {"estimator", name_of(plan.estimator)},
+                                 {"device", processor.device().info().name},
+                                 {"zero_copy", processor.shares_memory()},
+                                 {"stages", kernel_stages(plan)},
+                                 {"frames", summary.frames},
+                                 {"pillar_rows", plan.skin.pillar_rows()},
+                                 {"pillar_cols", plan.skin.pillar_cols()},
+                                 {"regions", regions},
+                                 {"resolved", summary.regions.resolved},
+                                 {"saturated", summary.regions.saturated},
+                                 {"inconsistent", summary.regions.inconsistent},
+                                 {"startup_seconds", summary.startup_seconds},
+                                 {"seconds", summary.seconds},
+                                 {"remarks", remarks}};
   if (contacts != nullptr) {
     json["contacts_output"] = options.contacts.file;
     json["contacts"] = contacts->contacts();
     json["contacts_at_once"] = contacts->most_at_once();
   }
-  fmt::print("{}\n", json.dump());
+  fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
@@ -181,12 +176,10 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Solved {} frames of {} x {} pillars on {} ({}, {})\n", summary.frames,
              plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
              processor.shares_memory() ? "zero copy" : "staged");
-  fmt::print("  solver alone           {:9.0f} frames/s  {:9.1f} million pillars/s\n",
-             per_second(frames, summary.seconds_in_solver),
-             per_second(pillars, summary.seconds_in_solver) / 1e6);
-  fmt::print("  with reading, writing  {:9.0f} frames/s  {:9.1f} million pillars/s\n",
-             per_second(frames, summary.seconds_in_all),
-             per_second(pillars, summary.seconds_in_all) / 1e6);
+  fmt::print("  reading, solving, writing  {:.2f} s, {:.1f} frames/s, {:.3g} million pillars/s\n",
+             summary.seconds, per_second(frames, summary.seconds),
+             per_second(pillars, summary.seconds) / 1e6);
+  fmt::print("  opening, compiling         {:.2f} s\n", summary.startup_seconds);
   fmt::print("In contact: {} of {} pillars ({:.2f} %), of these\n", regions.in_contact(),
              regions.all(), percent(regions.in_contact(), regions.all()));
   for (const Region region : kContactRegions) {
@@ -202,9 +195,9 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
              regions.saturated, regions.inconsistent);
   if (contacts != nullptr) {
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", contacts->contacts(),
-               contacts->most_at_once(), options.contacts.file);
+               contacts->most_at_once(), printable(options.contacts.file));
   }
-  fmt::print("Wrote {}\n", options.output);
+  fmt::print("Wrote {}\n", printable(options.output));
 }
 
 void check_solve_outputs(const SolveOptions& options) {
@@ -219,21 +212,21 @@ void solve(SolveOptions options) {
   check(options.contacts, options.output);
   check_solve_outputs(options);
   const std::unique_ptr<FrameSource> source = open_frames(options.input);
-  for (const std::string& remark : source->remarks()) {
-    fmt::print(stderr, "{}: {}\n", options.input, remark);
-  }
+  print_file_remarks(options.input, source->remarks());
   const SolverPlan plan = plan_of(options, *source);
   take_friction(plan, options.contacts.contacts);
   const Device device = open_device(options.device.name);
-  Processor processor(
-      device, plan,
-      {.memory = options.device.memory, .frames_in_flight = Pipeline::kFramesInFlight});
+  Processor processor(device, plan,
+                      {.memory = options.device.memory,
+                       .frames_in_flight = Pipeline::kFramesInFlight,
+                       .on_compiling = terminal_line(options.quiet)});
   const ForceFileInfo info = file_info(options, plan, device);
   const std::unique_ptr<ForceSink> sink = create_force_sink(options.output, info, options.replace);
   std::optional<ContactOutput> contacts;
   if (!options.contacts.file.empty()) {
     contacts.emplace(options.contacts, info, options.output, options.replace);
   }
+  const double startup_seconds = watch.seconds();
   Pipeline pipeline(*source, processor, *sink, contacts ? &*contacts : nullptr, plan);
   {
     Progress progress("Solving", source->frames(), options.quiet);
@@ -247,7 +240,8 @@ void solve(SolveOptions options) {
   sink->finish();
   if (contacts) contacts->finish();
   SolveSummary summary = pipeline.summary();
-  summary.seconds_in_all = watch.seconds();
+  summary.startup_seconds = startup_seconds;
+  summary.seconds = watch.seconds() - startup_seconds;
   if (options.json) {
     print_json(options, plan, processor, summary, contacts ? &*contacts : nullptr,
                source->remarks());

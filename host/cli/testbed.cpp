@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string_view>
 
 #include "cli/command.h"
 #include "cli/output_options.h"
+#include "cli/json_text.h"
+#include "cli/number_range.h"
+#include "pillarfield/printable.h"
 #include "testbed/figures.h"
 #include "testbed/magnitude.h"
 #include "testbed/table_two.h"
@@ -99,7 +101,7 @@ void print_json(const TestbedOptions& options, const TableTwo& table,
                        {"wrong_regions", table.audit.wrong_regions},
                        {"unflagged", table.audit.unflagged},
                        {"figure_8", json_of(figure)}};
-  fmt::print("{}\n", result.dump());
+  fmt::print("{}\n", json_text(result));
 }
 
 void print_setup(const TestbedOptions& options) {
@@ -212,7 +214,8 @@ void run_testbed(const TestbedOptions& options) {
   print_run(table);
   print_expected(table, options.runs);
   print_magnitudes(figure);
-  if (!options.figures.empty()) fmt::print("\nDrew Figures 3, 4, 5 and 8 in {}\n", options.figures);
+  if (!options.figures.empty())
+    fmt::print("\nDrew Figures 3, 4, 5 and 8 in {}\n", printable(options.figures));
 }
 
 void add_parameters(CLI::App& command, testbed::Parameters& parameters) {
@@ -233,7 +236,8 @@ void add_parameters(CLI::App& command, testbed::Parameters& parameters) {
                      "They turn by at most this as the force rises, rad [0.01]");
   command.add_option("--probe-resolution", parameters.probe_resolution_n,
                      "Resolution of the applied force, N [0.1]");
-  command.add_option("--seed", parameters.seed, "Seed of the testbed's randomness [1]");
+  command.add_option("--seed", parameters.seed, "Seed of the testbed's randomness [1]")
+      ->check(whole_number_range(0, kLargestSeed));
 }
 
 }  // namespace
@@ -245,7 +249,7 @@ void add_testbed(CLI::App& app, Work& work) {
   command->add_option("--figures", options->figures,
                       "Draw Figures 3, 4, 5 and 8 into this folder, as SVG and PNG (gnuplot)");
   command->add_option("--runs", options->runs, "Repetitions of the experiment [1000]")
-      ->check(CLI::Range(2U, 1'000'000U));
+      ->check(whole_number_range(2, 1'000'000));
   add_parameters(*command, options->parameters);
   add_overwrite_option(*command, options->replace);
   command->add_flag("--json", options->json, "Print the results as JSON");

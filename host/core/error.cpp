@@ -1,5 +1,7 @@
 #include "pillarfield/error.h"
 
+#include "pillarfield/printable.h"
+
 namespace pillarfield {
 namespace {
 
@@ -9,9 +11,9 @@ std::string one_line(std::string_view where, std::string_view what_failed, std::
   text.append(what_failed);
   if (!mend.empty()) text.append("; ").append(mend);
   for (char& character : text) {
-    if (character == '\n' || character == '\r') character = ' ';
+    if (character == '\n' || character == '\r' || character == '\t') character = ' ';
   }
-  return text;
+  return printable(text);
 }
 
 }  // namespace

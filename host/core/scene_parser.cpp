@@ -10,6 +10,7 @@
 
 #include "core/chart.h"
 #include "core/scene_limits.h"
+#include "core/toml_depth.h"
 #include "core/toml_section.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
@@ -331,6 +332,7 @@ Scene read_scene(TomlSection root) {
 }  // namespace
 
 Scene parse_scene(std::string_view text, const std::string& name) {
+  check_key_depth(text, name);
   try {
     const toml::table table = toml::parse(text, name);
     Scene scene = read_scene(TomlSection(&table, "the scene", name));

@@ -1,19 +1,20 @@
 // Which OpenCL device to use.
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 
 #include "device/device_state.h"
+#include "device/kernel_cache.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr int kLanesOfCpu = 16;
-constexpr const char* kMendNoDevice =
-    "install an OpenCL driver, for instance the Debian package pocl-opencl-icd";
+constexpr const char* kPoclPlatform = "Portable Computing Language";
 
 const char* type_name(cl_device_type type) {
   if ((type & CL_DEVICE_TYPE_GPU) != 0) return "GPU";
@@ -50,7 +51,33 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int 
   info.lanes = (type & CL_DEVICE_TYPE_CPU) != 0 ? kLanesOfCpu : 1;
   info.shares_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
   info.unsuitable = reason_against(device);
+  if (info.platform == kPoclPlatform) {
+    const KernelCache& cache = kernel_cache();
+    if (cache.not_kept.empty()) info.kernel_cache = cache.directory.string();
+    info.kernels_not_kept = cache.not_kept;
+  }
   return info;
+}
+
+/// What may let a driver be found that is not.
+std::string mend_no_device() {
+  const KernelCache& cache = kernel_cache();
+  if (cache.directory.empty()) {
+    return fmt::format(
+        "PoCL needs a directory that only you can write, for compiled kernels, and there is none "
+        "({}): name one with POCL_CACHE_DIR",
+        cache.not_kept);
+  }
+  constexpr const char* kInstall =
+      "install an OpenCL driver, for instance the Debian package pocl-opencl-icd";
+  rlimit space{};
+  if (getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY) {
+    return fmt::format(
+        "drivers may not fit into the address space, which is limited to {} MiB: raise the limit "
+        "(ulimit -v), or {}",
+        space.rlim_cur >> 20U, kInstall);
+  }
+  return kInstall;
 }
 
 std::string lower_case(std::string_view text) {
@@ -99,6 +126,7 @@ const Candidate* choose(const std::vector<Candidate>& candidates, std::string_vi
 }  // namespace
 
 std::vector<Candidate> all_devices() {
+  static_cast<void>(kernel_cache());  // Before PoCL asks for it.
   std::vector<Candidate> candidates;
   std::vector<cl::Platform> platforms;
   try {
@@ -132,7 +160,7 @@ std::vector<DeviceInfo> list_devices() {
 Device open_device(std::string_view index_or_name) {
   return with_opencl_errors("OpenCL", [&] {
     const std::vector<Candidate> candidates = all_devices();
-    if (candidates.empty()) throw Error("OpenCL", "there is no device", kMendNoDevice);
+    if (candidates.empty()) throw Error("OpenCL", "there is no device", mend_no_device());
     const Candidate* const chosen = choose(candidates, index_or_name);
     if (chosen == nullptr) {
       throw Error("OpenCL",

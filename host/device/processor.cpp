@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "device/block_lanes.h"
+#include "device/late_call.h"
 #include "device/slot.h"
 #include "device/slot_turns.h"
 #include "pillarfield/error.h"
@@ -15,6 +18,7 @@ namespace pillarfield {
 namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
+constexpr std::chrono::milliseconds kMoment{300};  ///< that nobody minds to wait
 
 void check_options(const Processor::Options& options) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -63,6 +67,17 @@ std::unique_ptr<FieldStage> make_field_stage(Device::State& device, const Solver
     return host_field_stage(device, plan);
   }
   return device_field_stage(device, plan, groups);
+}
+
+/// What a user reads while kernels are compiled.
+std::string line_on_compiling(const DeviceInfo& device) {
+  if (!device.kernel_cache.empty()) {
+    return fmt::format("Compiling the kernels for {}; the next start finds them in {}", device.name,
+                       device.kernel_cache);
+  }
+  if (device.kernels_not_kept.empty()) return "Compiling the kernels for " + device.name;
+  return fmt::format("Compiling the kernels for {}, as at every start: {}", device.name,
+                     device.kernels_not_kept);
 }
 
 [[noreturn]] void throw_no_slot(const SlotTurns& turns) {
@@ -153,6 +168,11 @@ std::span<const std::byte> Processor::Kept::pages() const { return state_->slot-
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options) {
   check_options(options);
   check(plan, "solver plan");
+  std::function<void()> tell;
+  if (options.on_compiling) {
+    tell = [&] { options.on_compiling(line_on_compiling(device.info())); };
+  }
+  const LateCall notice(kMoment, tell);
   state_ = with_opencl_errors(device.info().name,
                               [&] { return std::make_unique<State>(device, plan, options); });
 }

@@ -1,5 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
+#include "core/utf8.h"
 #include "io/contact_columns.h"
 #include "io/contact_sink.h"
 #include "io/text_part.h"
@@ -7,19 +11,23 @@
 namespace pillarfield {
 namespace {
 
-/// A string of JSON, quotes and all.
-std::string quoted(const std::string& text) {
+/// A string of JSON, quotes and all; a byte that is not UTF-8 becomes the replacement character.
+std::string json_string(std::string_view text) {
   std::string json = "\"";
-  for (const char character : text) {
-    const auto code = static_cast<unsigned char>(character);
-    if (character == '"' || character == '\\') {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto code = static_cast<unsigned char>(text.front());
+    if (length == 0) {
+      json += "\xef\xbf\xbd";
+    } else if (code == '"' || code == '\\') {
       json += '\\';
-      json += character;
+      json += text.front();
     } else if (code < 0x20) {
       json += fmt::format("\\u{:04x}", code);
     } else {
-      json += character;
+      json += text.substr(0, length);
     }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return json + '"';
 }
@@ -32,7 +40,7 @@ std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& r
     const std::string value = text_of(column, row, "null");
     const bool is_word = column.kind == ColumnKind::word;
     members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", column.name,
-                           is_word ? quoted(value) : value);
+                           is_word ? json_string(value) : value);
   }
   return members;
 }
@@ -58,7 +66,7 @@ JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& inf
       fmt::format("{{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":{},"
                   "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"
                   "\"reach_mm\":{},\"frames\":[",
-                  quoted(info.source), info.pillar_pitch_mm, info.options.minimum_pillars,
+                  json_string(info.source), info.pillar_pitch_mm, info.options.minimum_pillars,
                   friction ? fmt::format("{}", *friction) : "null", info.options.reach_mm));
 }
 

@@ -258,6 +258,52 @@ TEST(WrongScene, DeepNestingIsRefused) {
   EXPECT_NE(message.find("is not TOML"), std::string::npos) << message.substr(0, 200);
 }
 
+std::string repeated(std::size_t times, const std::string& part) {
+  std::string text;
+  for (std::size_t i = 0; i < times; ++i) text += part;
+  return text;
+}
+
+TEST(WrongScene, KeysOfManyPartsAreRefused) {
+  for (const std::size_t levels : {16UL, 20'000UL, 100'000UL}) {
+    const std::string key = repeated(levels, "a.") + "a";
+    const std::string quoted = repeated(levels, "\"a.b\" . 'c' .") + "a";
+    for (const std::string& text :
+         {key + " = 1", "[" + key + "]", "[[" + key + "]]", "x = { " + key + " = 1 }",
+          "x = [1, { b = 1, " + key + " = 1 }]", quoted + " = 1", "[ " + quoted + " ]",
+          "x = [ \"\"\"a\"\"\"\"\", { " + key + " = 1 } ]",
+          "x = [ '''a''''', { " + key + " = 1 } ]", "x = 'a' # \"\n" + key + " = 1",
+          "x = \"\\\"\"\n" + key + " = 1"}) {
+      const std::string message = message_of(text).substr(0, 80);
+      EXPECT_TRUE(message.starts_with("s.toml:1: a key has more than 16 parts") ||
+                  message.starts_with("s.toml:2: a key has more than 16 parts"))
+          << message << " for " << text.substr(0, 60);
+    }
+  }
+  const std::string most = repeated(15, "a.") + "a = 1";
+  EXPECT_NE(message_of(on_skin(most.c_str())).find("key 'a' in the scene is unknown"),
+            std::string::npos);
+}
+
+TEST(WrongScene, DepthsThatAddUpAreNoDanger) {
+  const std::string key = repeated(15, "a.") + "a";
+  const std::string tables = repeated(250, "{" + key + " = ") + "1" + repeated(250, "}");
+  for (const std::string& text :
+       {repeated(100'000, "{a="), repeated(100'000, "["), repeated(100'000, "[{a="), tables}) {
+    const std::string message = message_of("[" + key + "]\n" + key + " = " + text);
+    EXPECT_TRUE(message.starts_with("s.toml")) << message.substr(0, 80);
+  }
+}
+
+TEST(WrongScene, DotsThatAreNotInKeysAreAllowed) {
+  const std::string dots(1000, '.');
+  const std::string numbers = repeated(200, "0.5, ") + "0.5";
+  EXPECT_EQ(message_of("# " + dots + "\ntitle = \"" + dots + "\" # " + dots + "\n[chart]\n" +
+                       "directions = 2\nmagnitudes_n = [" + numbers + "]"),
+            "no error");
+  EXPECT_EQ(message_of(on_skin("") + "title = '''\n" + dots + "\n'''"), "no error");
+}
+
 /// One random edit: a character replaced, a piece cut out, or a piece said twice.
 std::string damaged(std::string text, std::mt19937_64& random) {
   static constexpr std::string_view kCharacters = "0159.-e[]{}=,\"'#\n x_ninf\xff\x00";

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "pillarfield/printable.h"
+
 namespace pillarfield::viewer {
 namespace {
 
@@ -35,16 +37,27 @@ class Progress {
 
 }  // namespace
 
+ProducerOptions producer_options(const Options& options) {
+  ProducerOptions wanted;
+  wanted.device = options.device;
+  if (isatty(STDERR_FILENO) == 1) {
+    wanted.on_compiling = [](const std::string& line) {
+      fmt::print(stderr, "{}\n", printable(line));
+    };
+  }
+  return wanted;
+}
+
 Opened open_source(const Options& options, double scale) {
   std::unique_ptr<FieldProducer> producer;
   {
     Progress progress;
-    ProducerOptions wanted;
-    wanted.device = options.device;
-    producer = open_producer(options.source, wanted, [&](double share) { progress.tell(share); });
+    producer = open_producer(options.source, producer_options(options),
+                             [&](double share) { progress.tell(share); });
   }
   for (const std::string& remark : producer->info().remarks) {
-    fmt::print(stderr, "pillarfield-viewer: {}: {}\n", producer->info().name, remark);
+    fmt::print(stderr, "pillarfield-viewer: {}\n",
+               printable(fmt::format("{}: {}", producer->info().name, remark)));
   }
   Opened opened;
   opened.look = first_look(options, *producer, scale);

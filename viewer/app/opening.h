@@ -13,6 +13,10 @@ struct Opened {
   Look look;
 };
 
+/// How the source is opened; that kernels are compiled is said on standard error where that is a
+/// terminal.
+[[nodiscard]] ProducerOptions producer_options(const Options& options);
+
 /// Opens the source of the options; on a terminal, tells how far a scene is simulated. Remarks of
 /// the source go to standard error. Throws Error.
 [[nodiscard]] Opened open_source(const Options& options, double scale);

@@ -21,7 +21,9 @@ namespace {
 Processor processor_for(const SolverPlan& plan, const ProducerOptions& options) {
   return {open_device(options.device),
           plan,
-          {.memory = options.memory, .frames_in_flight = FieldProducer::kMostShown}};
+          {.memory = options.memory,
+           .frames_in_flight = FieldProducer::kMostShown,
+           .on_compiling = options.on_compiling}};
 }
 
 /// What plan and processor tell of themselves.

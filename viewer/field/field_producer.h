@@ -66,7 +66,8 @@ struct ProducerOptions {
   Memory memory = Memory::automatic;
   /// Frames of a scene are simulated beforehand, as many as it has and fit.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
-  std::uint64_t most_frames = 0;  ///< of a scene; 0: all
+  std::uint64_t most_frames = 0;                              ///< of a scene; 0: all
+  std::function<void(const std::string&)> on_compiling = {};  ///< as Processor::Options has it
 };
 
 /// Opens a scene (.toml), a recording, a Tekscan ASCII export or a file of force fields, told apart

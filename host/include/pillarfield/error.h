@@ -6,7 +6,7 @@
 
 namespace pillarfield {
 
-/// The one exception type of the library. Its text is a single line of three parts:
+/// The one exception type of the library. Its text is a single printable() line of three parts:
 /// where it happened, what failed, and how to mend it.
 ///
 ///     scenes/press.toml:12: key 'radius' is unknown; allowed: radius_mm, load_n

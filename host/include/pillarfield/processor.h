@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -31,9 +32,18 @@ struct DeviceInfo {
   int lanes = 1;     ///< pillars a work-item solves at once
   bool shares_memory = false;
   std::string unsuitable;  ///< why it is passed over; empty where it is suitable
+  /// The directory in which PoCL, OpenCL on the host's processor, keeps compiled kernels for other
+  /// processes; empty where it does not, for which `kernels_not_kept` says why, and of other
+  /// drivers, which keep them where they please.
+  std::string kernel_cache;
+  std::string kernels_not_kept;
 };
 
-/// All OpenCL devices, suitable or not; none is no error.
+/// All OpenCL devices, suitable or not; none is no error. The first call of this function or of
+/// open_device() chooses a private directory for PoCL's compiled kernels and sets POCL_CACHE_DIR to
+/// it (docs/decisions/kernel_cache.md): no other thread may read or change the environment
+/// meanwhile. Throws Error where $POCL_CACHE_DIR names one that others can write, or that cannot be
+/// written.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
 /// An open device with the programs compiled for it so far. Copies share both.
@@ -50,7 +60,8 @@ class Device {
 };
 
 /// Opens a device by index or by a part of its name (any case); empty: the best suitable one, GPUs
-/// before CPUs. Throws Error that lists every device and why it was passed over.
+/// before CPUs. Throws Error that lists every device and why it was passed over, and as
+/// list_devices() does.
 [[nodiscard]] Device open_device(std::string_view index_or_name = {});
 
 /// How results are written.
@@ -114,6 +125,10 @@ class Processor {
                     ///< fewer where a row of the skin is shorter
     SpeedPaths paths = {};
     ContactSharing contacts = ContactSharing::automatic;  ///< of the estimator `field`
+    /// Called at most once, from another thread, where the constructor takes longer than a moment,
+    /// as when kernels are compiled for the first time: with a line that says so to a user. May not
+    /// throw.
+    std::function<void(const std::string& line)> on_compiling = {};
   };
 
   /// A result that was kept. Its spans and its pages stay as they are until it is destroyed, which

@@ -1,0 +1,15 @@
+#include "cli/remarks.h"
+
+#include <fmt/format.h>
+
+#include "pillarfield/printable.h"
+
+namespace pillarfield::cli {
+
+void print_file_remarks(const std::string& file, const std::vector<std::string>& remarks) {
+  for (const std::string& remark : remarks) {
+    fmt::print(stderr, "{}\n", printable(fmt::format("{}: {}", file, remark)));
+  }
+}
+
+}  // namespace pillarfield::cli

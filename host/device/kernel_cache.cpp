@@ -1,0 +1,96 @@
+#include "device/kernel_cache.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A plan's compiled kernels take 0.2 MB; a disk that is full ends the process inside of LLVM.
+constexpr std::uintmax_t kLeastFreeBytes = 16U << 20U;
+
+/// In a file that is no directory nobody can make one, so PoCL finds no place, and offers no
+/// device.
+constexpr const char* kNowhere = "/dev/null/pillarfield";
+
+/// An environment variable; empty and unset are the same.
+std::string environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+/// What the user asks for is taken or refused, never passed over.
+KernelCache cache_of_user(const std::string& wanted) {
+  std::error_code failed;
+  const PrivateDirectory found = private_directory(fs::absolute(wanted, failed), kLeastFreeBytes);
+  if (found.refused.empty()) return {found.path, {}};
+  throw Error("POCL_CACHE_DIR", found.refused, "name another that only you can write, or unset it");
+}
+
+/// Where kernels are kept unless the user says something else, the best place first.
+std::vector<fs::path> usual_places() {
+  std::vector<fs::path> places;
+  const fs::path below = fs::path("pillarfield") / "kernels";
+  const fs::path caches = environment("XDG_CACHE_HOME");
+  const fs::path home = environment("HOME");
+  if (caches.is_absolute()) places.push_back(caches / below);
+  if (home.is_absolute()) places.push_back(home / ".cache" / below);
+  return places;
+}
+
+KernelCache choose_directory(std::unique_ptr<TemporaryDirectory>& temporary) {
+  if (const std::string wanted = environment("POCL_CACHE_DIR"); !wanted.empty()) {
+    return cache_of_user(wanted);
+  }
+  std::string refused;
+  for (const fs::path& place : usual_places()) {
+    const PrivateDirectory found = private_directory(place, kLeastFreeBytes);
+    if (found.refused.empty()) return {found.path, {}};
+    refused += (refused.empty() ? "" : ", ") + found.refused;
+  }
+  if (refused.empty()) refused = "HOME and XDG_CACHE_HOME are not set";
+  temporary = std::make_unique<TemporaryDirectory>(kLeastFreeBytes);
+  if (!temporary->directory().refused.empty()) refused += ", " + temporary->directory().refused;
+  return {temporary->directory().path, refused};
+}
+
+/// The choice and what it needs as long as the process lives.
+struct ProcessCache {
+  ProcessCache() : cache(choose_kernel_cache(temporary)) {
+    setenv("POCL_CACHE_DIR", cache.directory.empty() ? kNowhere : cache.directory.c_str(), 1);
+  }
+  std::unique_ptr<TemporaryDirectory> temporary;
+  KernelCache cache;
+};
+
+}  // namespace
+
+KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary) {
+  KernelCache cache = choose_directory(temporary);
+  if (cache.not_kept.empty() && environment("POCL_KERNEL_CACHE") == "0") {
+    cache.not_kept = "POCL_KERNEL_CACHE is 0";
+  }
+  return cache;
+}
+
+const KernelCache& kernel_cache() {
+  static const ProcessCache chosen;
+  return chosen.cache;
+}
+
+std::string reason_not_to_compile(const DeviceInfo& device) {
+  if (device.kernel_cache.empty() && device.kernels_not_kept.empty()) return {};
+  return private_directory(kernel_cache().directory, kLeastFreeBytes).refused;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,156 @@
+"""Compiled kernels are code: where the command takes them from, and what it says meanwhile."""
+
+import os
+import pathlib
+import pty
+import resource
+import shutil
+import subprocess
+import unittest
+
+from command import PROGRAM, CommandTest, run, run_json
+
+SCENE = """
+[skin]
+pillars = [2, 2]
+[[contact]]
+shape = "sphere"
+motion = "press"
+contact_radius_mm = 1
+load_n = 1
+position_mm = [0, 0]
+"""
+
+# A library that ends the process that loads it.
+PLANTED = "__attribute__((constructor)) static void planted(void) { _Exit(42); }"
+
+
+def environment(**changes):
+    """That of the test, without any variable that says where kernels are kept but `changes`."""
+    kept = {name: value for name, value in os.environ.items()
+            if name not in ("POCL_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")}
+    return kept | {name: str(value) for name, value in changes.items()}
+
+
+class KernelCache(CommandTest):
+    def setUp(self):
+        super().setUp()
+        scene = self.folder / "scene.toml"
+        scene.write_text(SCENE)
+        self.recording = self.folder / "recording.h5"
+        self.outputs = 0
+        run("simulate", scene, "-o", self.recording)
+
+    def directory(self, *parts, mode=0o700):
+        path = self.folder.joinpath(*parts)
+        path.mkdir(parents=True)
+        path.chmod(mode)
+        return path
+
+    def output(self):
+        """A file that is not there yet."""
+        self.outputs += 1
+        return self.folder / f"forces_{self.outputs}.npy"
+
+    def solve(self, *more, **changes):
+        """The result of solving in that environment."""
+        command = [PROGRAM, "solve", self.recording, "-o", self.output(), *more]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False,
+                              env=environment(**changes))
+
+    def plant(self, kernels, *places):
+        """Copies `kernels` to `places`, with a library that ends the process for each of theirs."""
+        source = self.folder / "planted.c"
+        source.write_text("#include <stdlib.h>\n" + PLANTED)
+        library = self.folder / "planted.so"
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", library, source], check=True)
+        for place in places:
+            shutil.copytree(kernels, place, dirs_exist_ok=True)
+            compiled = list(place.rglob("*.so"))
+            self.assertTrue(compiled, "PoCL keeps no compiled kernels there")
+            for path in compiled:
+                shutil.copy(library, path)
+
+    @unittest.skipUnless(shutil.which("cc"), "there is no C compiler")
+    def test_planted_kernels_are_not_loaded(self):
+        kernels = self.folder / "home/.cache/pillarfield/kernels"
+        self.assertEqual(self.solve(HOME=self.folder / "home").returncode, 0)
+        self.assertTrue(list(kernels.rglob("*.so")))
+        # Where only this user can write they would be loaded: that is what a cache is.
+        own = self.directory("own")
+        self.plant(kernels, own)
+        self.assertEqual(self.solve(POCL_CACHE_DIR=own).returncode, 42)
+
+        open_to_all = self.directory("open", mode=0o777)
+        for below in ("", ".cache"):
+            self.plant(kernels, open_to_all / below / "pillarfield/kernels",
+                       open_to_all / below / "pocl/kcache")
+        link = self.directory("linked") / ".cache"
+        link.symlink_to(open_to_all, target_is_directory=True)
+        result = self.solve(XDG_CACHE_HOME=open_to_all, HOME=link.parent)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        result = self.solve(POCL_CACHE_DIR=open_to_all / "pocl/kcache")
+        self.assertEqual(result.returncode, 1)
+        self.assertRegex(result.stderr, r"^pillarfield: POCL_CACHE_DIR: others can write .*\n$")
+
+    def test_info_says_where(self):
+        home = self.directory("home")
+        command = [PROGRAM, "info", "--devices", "--json"]
+        for changes, place, reason in (
+                ({"HOME": home}, str(home / ".cache/pillarfield/kernels"), ""),
+                ({"HOME": "/proc/nope"}, "", "/proc/nope cannot be made")):
+            result = subprocess.run(command, capture_output=True, text=True, check=True,
+                                    env=environment(**changes))
+            self.assertIn(f'"kernel_cache":"{place}","kernels_not_kept":"{reason}', result.stdout)
+
+    def test_compiling_is_announced_on_a_terminal(self):
+        home = self.directory("home")
+        self.assertIn(f"the next start finds them in {home}/.cache/pillarfield/kernels",
+                      self.on_terminal(HOME=home))
+        shared = pathlib.Path("/tmp/pocl").exists()
+        temporary = self.directory("temporary")
+        self.assertIn("as at every start: HOME and XDG_CACHE_HOME are not set",
+                      self.on_terminal(TMPDIR=temporary))
+        self.assertEqual(list(temporary.iterdir()), [])
+        self.assertEqual(pathlib.Path("/tmp/pocl").exists(), shared)
+        self.assertNotIn("Compiling", self.on_terminal("--quiet", HOME=self.directory("other")))
+
+    def on_terminal(self, *more, **changes):
+        """What solving says to standard error where that is a terminal."""
+        terminal, end = pty.openpty()
+        process = subprocess.Popen(
+            [PROGRAM, "solve", self.recording, "-o", self.output(), *more],
+            stdout=subprocess.DEVNULL, stderr=end, env=environment(**changes))
+        os.close(end)
+        said = b""
+        try:
+            while part := os.read(terminal, 4096):
+                said += part
+        except OSError:
+            pass  # Nobody has the other end any more.
+        os.close(terminal)
+        self.assertEqual(process.wait(timeout=120), 0, said)
+        return said.decode()
+
+    @unittest.skipIf("ASAN_OPTIONS" in os.environ, "AddressSanitizer needs much address space")
+    def test_a_driver_that_does_not_fit_is_said(self):
+        limit = 200 << 20
+        for command in (["solve", self.recording, "-o", self.folder / "a.npy"],
+                        ["info", "--devices"]):
+            result = subprocess.run(
+                [PROGRAM, *command], capture_output=True, text=True, check=False,
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+            self.assertIn("limited to 200 MiB: raise the limit (ulimit -v)",
+                          result.stdout + result.stderr)
+
+    def test_startup_is_kept_out_of_the_rate(self):
+        solved = run_json("solve", self.recording, "-o", self.output())
+        self.assertGreater(solved["startup_seconds"], 0)
+        text = run("solve", self.recording, "-o", self.output()).stdout
+        self.assertRegex(text, r"reading, solving, writing +[\d.]+ s, [\d.]+ frames/s")
+        self.assertRegex(text, r"opening, compiling +[\d.]+ s\n")
+        self.assertNotIn("alone", text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,120 @@
+"""Texts from files and names of files: bytes that are not UTF-8, and such as command a terminal."""
+
+import json
+import os
+import shutil
+import subprocess
+import unittest
+
+import h5py
+import numpy
+
+from command import PROGRAM, CommandTest, run
+
+SCENE = """
+title = "{title}"
+[skin]
+pillars = [4, 4]
+[time]
+frames = 10
+[sensor]
+adc_bits = 8
+noise_counts = 0.5
+[[contact]]
+shape = "sphere"
+motion = "press"
+contact_radius_mm = 3
+load_n = 2
+position_mm = [0, 0]
+"""
+
+ESCAPES = "a\x1b[31mb\x1b]0;c\x07\x9b2Jd\x7f"
+ESCAPED = r"a\u001b[31mb\u001b]0;c\u0007\u009b2Jd\u007f"
+
+
+def output_of(*arguments, expect=0):
+    """The bytes that the command prints, on standard output and error."""
+    result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120, check=False)
+    assert result.returncode == expect, (arguments, result)
+    return result.stdout, result.stderr
+
+
+class StrangeText(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.folder / "scene.toml"
+        self.scene.write_text(SCENE.format(title="A ball"))
+
+    def assert_harmless(self, output):
+        """No control character but the ends of lines, and all of it UTF-8."""
+        text = output.decode()
+        self.assertTrue(text.replace("\n", "").isprintable(), repr(text))
+        return text
+
+    def test_json_is_valid_whatever_a_file_is_called(self):
+        def name(text):
+            return os.fsencode(self.folder) + b"/" + text
+
+        recording, forces, table = name(b"i\xffn.h5"), name(b"f\xfe.h5"), name(b"c\xfd.json")
+        made = json.loads(output_of("simulate", self.scene, "-o", recording, "--json")[0])
+        self.assertTrue(made["output"].endswith("i\ufffdn.h5"))
+        solved = json.loads(output_of("solve", recording, "-o", forces, "--contacts", table,
+                                      "--json")[0])
+        self.assertTrue(solved["input"].endswith("i\ufffdn.h5"))
+        self.assertTrue(solved["contacts_output"].endswith("c\ufffd.json"))
+        with open(table, "rb") as file:
+            self.assertEqual(json.loads(file.read().decode())["source"], "i\ufffdn.h5")
+        self.assertEqual(json.loads(output_of("info", forces, "--json")[0])["source"],
+                         "i\ufffdn.h5")
+        compared = json.loads(output_of("compare", forces, recording, "--json")[0])
+        self.assertEqual(compared["frames"], 10)
+        live = json.loads(output_of("live", recording, "--seconds", "0.1", "--json")[0])
+        self.assertTrue(live["source"].endswith("i\ufffdn.h5"))
+        calibration = name(b"k\xff.h5")
+        for step, written in ((["tare", recording, "--preloaded"], calibration),
+                              (["apply", calibration, recording], name(b"l\xff.h5"))):
+            report = json.loads(output_of("calibrate", *step, "-o", written, "--json")[0])
+            self.assertIn("\ufffd", report["output"])
+        self.assertIn("i\ufffdn.h5", output_of("info", calibration, "--json")[0].decode())
+        for command in (["info", forces], ["info", calibration], ["compare", forces, recording]):
+            self.assert_harmless(output_of(*command)[0])
+
+    def test_texts_of_files_do_not_command_the_terminal(self):
+        recording = self.folder / "recording.h5"
+        forces = self.folder / "forces.h5"
+        run("simulate", self.scene, "-o", recording)
+        run("solve", recording, "-o", forces)
+        for kind in ("source", "device", "estimator"):
+            changed = self.folder / f"{kind}.h5"
+            shutil.copy(forces, changed)
+            with h5py.File(changed, "r+") as file:
+                file.attrs[kind] = numpy.bytes_(ESCAPES.encode())
+            output, complaint = self.either("info", changed)
+            self.assertIn(ESCAPED, output + complaint)
+        escapes_in_toml = "".join(f"\\u{ord(character):04x}" for character in ESCAPES)
+        self.scene.write_text(SCENE.format(title=escapes_in_toml))
+        self.assertIn(ESCAPED, self.either("info", self.scene)[0])
+        self.assertIn(ESCAPED, self.either("simulate", self.scene, "-o",
+                                           self.folder / "again.h5")[0])
+        self.scene.write_text(SCENE.format(title="") + f'"{escapes_in_toml}" = 1\n')
+        self.assertIn(ESCAPED, self.either("info", self.scene)[1])
+
+    def test_names_of_files_do_not_command_the_terminal(self):
+        absent = self.folder / f"{ESCAPES}.h5"
+        for command in (["info", absent], ["solve", absent, "-o", "a.h5"],
+                        ["compare", absent, absent], ["live", absent],
+                        ["calibrate", "tare", absent, "-o", "a.h5"]):
+            self.assertIn(ESCAPED, self.either(*command)[1])
+        self.assertIn(ESCAPED, self.either("simulate", self.scene, "-o", absent)[0])
+        self.assertIn(ESCAPED, self.either("solve", absent, "-o", f"{absent}.npy")[0])
+
+    def either(self, *arguments):
+        """What the command prints, harmless, whether it fails or not."""
+        result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120,
+                                check=False)
+        self.assertIn(result.returncode, (0, 1))
+        return self.assert_harmless(result.stdout), self.assert_harmless(result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

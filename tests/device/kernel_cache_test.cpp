@@ -1,0 +1,239 @@
+// Where compiled kernels, which are loaded as code, may lie.
+
+#include "device/kernel_cache.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uid_t kNobody = 65534;
+
+/// The choice, made with an environment and folders of its own.
+class KernelCacheTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = "/tmp/pillarfield-test-XXXXXX";
+    ASSERT_NE(mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    for (const char* variable :
+         {"POCL_CACHE_DIR", "POCL_KERNEL_CACHE", "XDG_CACHE_HOME", "HOME", "TMPDIR"}) {
+      unsetenv(variable);
+    }
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// A directory in the test's folder with these rights, whatever the mask.
+  [[nodiscard]] fs::path directory(const char* name, mode_t mode) const {
+    const fs::path path = folder_ / name;
+    mkdir(path.c_str(), mode);
+    chmod(path.c_str(), mode);
+    return path;
+  }
+
+  static void set(const char* variable, const fs::path& value) {
+    setenv(variable, value.c_str(), 1);
+  }
+
+  KernelCache choose() { return choose_kernel_cache(temporary_); }
+
+  /// The choice is a temporary directory, for a reason that says `why`.
+  void expect_temporary(const std::string& why) {
+    const KernelCache cache = choose();
+    ASSERT_NE(temporary_, nullptr) << cache.directory;
+    EXPECT_EQ(cache.directory, temporary_->directory().path);
+    EXPECT_NE(cache.not_kept.find(why), std::string::npos) << cache.not_kept;
+    struct stat facts {};
+    ASSERT_EQ(stat(cache.directory.c_str(), &facts), 0);
+    EXPECT_EQ(facts.st_mode & 0777U, 0700U);
+    EXPECT_EQ(facts.st_uid, geteuid());
+    temporary_.reset();
+    EXPECT_FALSE(fs::exists(cache.directory));
+  }
+
+  /// What the user asks for is refused in one line that says `why`.
+  void expect_refused(const fs::path& asked_for, const std::string& why) {
+    set("POCL_CACHE_DIR", asked_for);
+    try {
+      FAIL() << "it is " << choose().directory;
+    } catch (const Error& error) {
+      const std::string message = error.what();
+      EXPECT_TRUE(message.starts_with("POCL_CACHE_DIR: ")) << message;
+      EXPECT_NE(message.find(why), std::string::npos) << message;
+    }
+    EXPECT_EQ(temporary_, nullptr);
+  }
+
+  fs::path folder_;
+  std::unique_ptr<TemporaryDirectory> temporary_;
+};
+
+TEST_F(KernelCacheTest, WhatIsMissingIsMadeForThisUserAlone) {
+  const mode_t before = umask(0);
+  for (const char* variable : {"HOME", "XDG_CACHE_HOME"}) {  // The second goes before the first.
+    set(variable, folder_ / variable);
+    const KernelCache cache = choose();
+    const fs::path caches = folder_ / variable / (variable == std::string("HOME") ? ".cache" : "");
+    EXPECT_EQ(cache.directory, caches / "pillarfield/kernels");
+    EXPECT_EQ(cache.not_kept, "");
+    for (fs::path made = cache.directory; made != folder_; made = made.parent_path()) {
+      struct stat facts {};
+      ASSERT_EQ(stat(made.c_str(), &facts), 0);
+      EXPECT_EQ(facts.st_mode & 0777U, 0700U) << made;
+    }
+  }
+  umask(before);
+  set("POCL_CACHE_DIR", folder_ / "mine/of old");
+  EXPECT_EQ(choose().directory, folder_ / "mine/of old");
+}
+
+TEST_F(KernelCacheTest, WithoutAHomeItIsNotKept) {
+  expect_temporary("HOME and XDG_CACHE_HOME are not set");
+  set("HOME", "relative/home");
+  expect_temporary("not set");
+  EXPECT_FALSE(fs::exists("relative"));
+}
+
+TEST_F(KernelCacheTest, WhatOthersCanWriteIsPassedOver) {
+  set("XDG_CACHE_HOME", directory("open", 0777));
+  expect_temporary("others can write " + (folder_ / "open").string());
+  EXPECT_TRUE(fs::is_empty(folder_ / "open"));
+
+  const fs::path home = directory("home", 0755);
+  set("HOME", home);  // The next choice.
+  EXPECT_EQ(choose().directory, home / ".cache/pillarfield/kernels");
+
+  chmod((home / ".cache").c_str(), 0777);
+  expect_temporary("others can write " + (home / ".cache").string());
+  chmod((home / ".cache").c_str(), 0700);
+  chmod((home / ".cache/pillarfield/kernels").c_str(), 01777);
+  expect_temporary("others can write");
+}
+
+TEST_F(KernelCacheTest, LinksAreJudgedByWhereTheyLead) {
+  const fs::path open = directory("open", 0777);
+  const fs::path home = directory("home", 0755);
+  fs::create_directory_symlink(open, home / ".cache");
+  set("HOME", home);
+  expect_temporary("others can write " + open.string());
+  fs::remove(home / ".cache");
+  fs::create_directory_symlink(directory("mine", 0700), home / ".cache");
+  EXPECT_EQ(choose().directory, folder_ / "mine/pillarfield/kernels");
+}
+
+TEST_F(KernelCacheTest, InAStickyDirectoryOnesOwnIsSafe) {
+  set("POCL_CACHE_DIR", directory("sticky", 01777) / "mine");
+  EXPECT_EQ(choose().directory, folder_ / "sticky/mine");
+  expect_refused(folder_ / "sticky", "others can write");
+}
+
+TEST_F(KernelCacheTest, DirectoriesOfOthersArePassedOver) {
+  const fs::path theirs = directory("theirs", 0755);
+  if (chown(theirs.c_str(), kNobody, kNobody) != 0) GTEST_SKIP() << "only root gives files away";
+  set("HOME", theirs);
+  expect_temporary("belongs to another user");
+  EXPECT_TRUE(fs::is_empty(theirs));
+  expect_refused(theirs / "kernels", "belongs to another user");
+}
+
+TEST_F(KernelCacheTest, AGroupOfOthersIsOthers) {
+  const fs::path shared = directory("shared", 0770);
+  if (chown(shared.c_str(), 0, 0) != 0) GTEST_SKIP() << "only root gives files away";
+  set("POCL_CACHE_DIR", shared);
+  EXPECT_EQ(choose().directory, shared);  // Its group is root's alone.
+  ASSERT_EQ(chown(shared.c_str(), 0, kNobody), 0);
+  expect_refused(shared, "others can write");
+}
+
+TEST_F(KernelCacheTest, WhatTheUserAsksForIsTakenOrRefused) {
+  expect_refused(directory("open", 0777), "others can write");
+  std::ofstream(folder_ / "file") << "text";
+  expect_refused(folder_ / "file", "is not a directory");
+  expect_refused(folder_ / "file/below", "");
+  expect_refused("/proc/nope", "/proc/nope cannot be made");
+  expect_refused("/dev/full", "");
+  fs::current_path(directory("here", 0700));
+  set("POCL_CACHE_DIR", "kernels");
+  EXPECT_EQ(choose().directory, folder_ / "here/kernels");
+  fs::current_path("/");
+}
+
+TEST_F(KernelCacheTest, AHomeThatCannotBeWrittenIsNoFailure) {
+  set("HOME", "/proc/nope");
+  expect_temporary("/proc/nope cannot be made");
+  std::ofstream(folder_ / "file") << "text";
+  set("HOME", folder_ / "file");
+  expect_temporary("");
+  set("TMPDIR", directory("open", 0777));  // Nor a bad folder for temporary files.
+  expect_temporary("");
+  EXPECT_TRUE(fs::is_empty(folder_ / "open"));
+  set("TMPDIR", directory("mine", 0700));
+  EXPECT_EQ(choose().directory.parent_path(), folder_ / "mine");
+}
+
+TEST_F(KernelCacheTest, AFullDiskIsSaid) {
+  const PrivateDirectory found = private_directory(folder_ / "kernels", UINTMAX_MAX);
+  EXPECT_TRUE(found.path.empty());
+  EXPECT_NE(found.refused.find("KiB left"), std::string::npos) << found.refused;
+}
+
+TEST_F(KernelCacheTest, TemporaryDirectoriesOfKilledProcessesAreRemoved) {
+  const fs::path parent = directory("mine", 0700);
+  set("TMPDIR", parent);
+  std::array<int, 2> ready{};
+  ASSERT_EQ(pipe(ready.data()), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    static_cast<void>(choose());
+    static_cast<void>(write(ready[1], "", 1));
+    pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(read(ready[0], &byte, 1), 1);
+  const auto entries = [&] {
+    return std::distance(fs::directory_iterator(parent), fs::directory_iterator());
+  };
+  { const TemporaryDirectory mine(0); }
+  EXPECT_EQ(entries(), 1);  // It is in use.
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(entries(), 1);
+  { const TemporaryDirectory mine(0); }
+  EXPECT_EQ(entries(), 0);
+  close(ready[0]);
+  close(ready[1]);
+}
+
+TEST_F(KernelCacheTest, AForkedProcessLeavesTheDirectoryAlone) {
+  const KernelCache cache = choose();
+  const pid_t child = fork();
+  if (child == 0) {
+    temporary_.reset();
+    _exit(0);
+  }
+  waitpid(child, nullptr, 0);
+  EXPECT_TRUE(fs::exists(cache.directory));
+}
+
+TEST_F(KernelCacheTest, PoclWithoutItsCacheKeepsNothing) {
+  set("HOME", folder_);
+  set("POCL_KERNEL_CACHE", "0");
+  EXPECT_EQ(choose().not_kept, "POCL_KERNEL_CACHE is 0");
+}
+
+}  // namespace
+}  // namespace pillarfield
