@@ -1,45 +1,46 @@
 // The entry point of libFuzzer: one program for each target, PILLARFIELD_FUZZ_READ being its
-// function. The readers take a path, so the bytes become a file in memory. They trust it: crashes
+// function. The readers take a path, so the bytes become a file. They trust it: crashes
 // within libhdf5 end the fuzzer's process, and thousands of files a second need no child process
 // each.
 
-#include <fmt/format.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 
 #include "fuzz/targets.h"
 #include "pillarfield/error.h"
 
 namespace {
 
-class MemoryFile {
+/// A file of the directory for temporary files, which should lie in memory. HDF5 opens no file that
+/// has no name, as those of memfd_create().
+class TemporaryFile {
  public:
-  MemoryFile(const std::uint8_t* data, std::size_t size)
-      : descriptor_(memfd_create("fuzz", MFD_CLOEXEC)) {
-    if (descriptor_ < 0 || write(descriptor_, data, size) != static_cast<ssize_t>(size)) {
+  TemporaryFile(const std::uint8_t* data, std::size_t size)
+      : path_(std::filesystem::temp_directory_path() / "fuzz-XXXXXX") {
+    const int descriptor = mkstemp(path_.data());
+    if (descriptor < 0 || write(descriptor, data, size) != static_cast<ssize_t>(size)) {
       std::abort();
     }
+    close(descriptor);
   }
-  ~MemoryFile() { close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
+  ~TemporaryFile() { unlink(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
 
-  [[nodiscard]] std::filesystem::path path() const {
-    return fmt::format("/proc/self/fd/{}", descriptor_);
-  }
+  [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  int descriptor_;
+  std::string path_;
 };
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const MemoryFile file(data, size);
+  const TemporaryFile file(data, size);
   try {
     pillarfield::fuzz::PILLARFIELD_FUZZ_READ(file.path(), {.trust = true});
   } catch (const pillarfield::Error&) {  // NOLINT(bugprone-empty-catch): the expected outcome

@@ -54,7 +54,6 @@ size_mm = [16.5, 12.8]
 sensel_pitch_mm = 0.632455532
 counts_per_newton = 320
 threshold_counts = 2.5
-full_scale_counts = 4000
 [sensor]
 adc_bits = 12
 dead_zone_counts = 1
@@ -113,7 +112,8 @@ counts_per_newton = 100
 """
 
 SCENES = {"sliding": SCENE, "all": SCENE_OF_ALL, "chart": SCENE_CHART,
-          "empty": "[skin]\npillars = [1, 1]\n"}
+          "empty": "[skin]\npillars = [1, 1]\n",
+          "control": 'title = "\\u001b[2J\\n"\n[skin]\npillars = [2, 2]\n'}
 
 TEKSCAN_HEADER = ["DATA_TYPE MOVIE", "VERSION Measurement 1.0", "ROWS {rows}", "COLS {cols}",
                   "ROW_SPACING 0.5 mm", "COL_SPACING 0.02 inches", "NOISE_THRESHOLD 3",
@@ -162,21 +162,36 @@ def copy_attributes(source, copy, variable):
         copy.attrs[name] = text if variable else value
 
 
-def convert(source, target, variable=False, layout=None, **file_options):
+def growing(item):
+    """The layout of a dataset that grows along its first axis, as ours do."""
+    return {"maxshape": (None, *item.shape[1:]), "chunks": (2, *item.shape[1:])}
+
+
+def convert(source, target, variable=False, layout=None, swmr=False, **file_options):
     """Copies a file object by object: strings of variable length where `variable`, datasets of frames
-    in the `layout` of h5py, the file of the version that `file_options` say."""
-    with h5py.File(source, "r") as old, h5py.File(target, "w", **file_options) as new:
+    in the `layout` of h5py, the file of the version that `file_options` say. With `swmr` it is
+    `target` as a writer leaves it that was killed after a flush."""
+    unfinished = target.with_name("unfinished.h5") if swmr else target
+    with h5py.File(source, "r") as old, h5py.File(unfinished, "w", **file_options) as new:
         copy_attributes(old, new, variable)
 
         def visit(name, item):
             if isinstance(item, h5py.Group):
                 copy_attributes(item, new.require_group(name), variable)
                 return
-            options = (layout or {}) if item.ndim > 1 and item.size > 0 else {}
-            made = new.create_dataset(name, data=item[()], **options)
+            options = {}
+            if item.ndim > 0 and item.size > 0:
+                options = growing(item) if layout == "growing" else layout if item.ndim > 1 else {}
+            made = new.create_dataset(name, data=item[()], **(options or {}))
             copy_attributes(item, made, variable)
 
         old.visititems(visit)
+        if swmr:
+            new.swmr_mode = True
+            new.flush()
+            target.write_bytes(unfinished.read_bytes())
+    if swmr:
+        unfinished.unlink()
 
 
 # How an HDF5 file may look: old and new format, compressed, checked, in strings of variable length.
@@ -186,13 +201,12 @@ VARIANTS = {
     "latest": {"libver": "latest"},
     "latest_gzip": {"libver": "latest", "layout": {"compression": "gzip", "fletcher32": True}},
     "latest_variable": {"libver": "latest", "variable": True},
+    "growing": {"libver": "latest", "layout": "growing"},
 }
 
 
 def write_variants(ours, folder):
-    """`ours` and its variants."""
-    ours_bytes = ours.read_bytes()
-    (folder / f"seed_ours_{ours.stem}.h5").write_bytes(ours_bytes)
+    """The variants of a file of ours, which is far larger: its chunks are of 256 KiB."""
     for name, options in VARIANTS.items():
         convert(ours, folder / f"seed_{name}_{ours.stem}.h5", **options)
 
@@ -296,10 +310,8 @@ def write_hostile(folder):
 
 HOSTILE_SCENES = {
     "dotted_key_50000": b"a." * 50000 + b"a=1\n",
-    "dotted_table_50000": b"[" + b"a." * 50000 + b"a]\n",
     "nested_arrays": b"a=" + b"[" * 5000 + b"]" * 5000 + b"\n",
     "not_utf8": b'title = "\xff\xfe"\n[skin]\npillars = [2, 2]\n',
-    "control": b'title = "\\u001b[2J\\n"\n[skin]\npillars = [2, 2]\n',
     "nul": b"title = \"\x00\"\n[skin]\npillars = [2, 2]\n",
     "huge_skin": b"[skin]\npillars = [32767, 32767]\n",
     "nan": b"[skin]\npillars = [2, 2]\nthreshold_counts = nan\n",
@@ -322,18 +334,29 @@ def write_seeds(folder, program):
         recording = scratch / "slide.h5"
         run(program, "simulate", scene, "-o", recording)
         write_variants(recording, folder / "recording")
+        convert(recording, folder / "recording" / "seed_killed_slide.h5", layout="growing", swmr=True,
+                libver="latest")
         for dtype in ("u1", ">u2", "<f4"):
             name = numpy.dtype(dtype).name
             write_plain_recording(folder / "recording" / f"seed_plain_{name}.h5", dtype)
-        run(program, "calibrate", "tare", recording, "-o", scratch / "tare.h5")
+        write_calibration(program, scratch)
         write_variants(scratch / "tare.h5", folder / "calibration")
         run(program, "solve", recording, "-o", scratch / "contacts.h5", "--contacts",
             scratch / "contacts.h5")
         write_variants(scratch / "contacts.h5", folder / "forces")
         run(program, "solve", recording, "-o", scratch / "uncertainty.h5", "--outputs",
             "angles,uncertainty", "--noise", "1")
-        (folder / "forces" / "seed_ours_uncertainty.h5").write_bytes(
-            (scratch / "uncertainty.h5").read_bytes())
+        convert(scratch / "uncertainty.h5", folder / "forces" / "seed_old_uncertainty.h5")
+
+
+def write_calibration(program, scratch):
+    """A calibration of the scene's skin in two steps, scratch/tare.h5."""
+    unloaded = SCENE.split("[[contact]]")[0].replace("frames = 5", "frames = 40")
+    (scratch / "unloaded.toml").write_text(unloaded)
+    run(program, "simulate", scratch / "unloaded.toml", "-o", scratch / "unloaded.h5")
+    run(program, "calibrate", "tare", scratch / "unloaded.h5", "-o", scratch / "first.h5")
+    run(program, "calibrate", "tare", scratch / "unloaded.h5", "--calibration", scratch / "first.h5",
+        "-o", scratch / "tare.h5")
 
 
 def main():

@@ -259,7 +259,7 @@ def run_all(options, scratch):
     os.environ["POCL_CACHE_DIR"] = str(scratch / "pocl")
     make_corpus.write_seeds(scratch / "seeds", options.program)
     read_seeds(scratch / "seeds", random)
-    recording = scratch / "seeds" / "recording" / "seed_ours_slide.h5"
+    recording = scratch / "seeds" / "recording" / "seed_old_slide.h5"
     (scratch / "good.h5").write_bytes(recording.read_bytes())
     make_corpus.run(options.program, "solve", scratch / "good.h5", "-o", scratch / "forces.h5")
     numbers = range(options.count) if options.only is None else [options.only]

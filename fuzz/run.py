@@ -19,6 +19,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGETS = ("recording", "forces", "calibration", "tekscan", "scene")
@@ -37,6 +38,12 @@ ENVIRONMENT = {
 OURS, HDF5, UNKNOWN = "our code", "libhdf5", "unknown place"
 
 Finding = collections.namedtuple("Finding", "owner kind place file")
+
+
+def memory_folder():
+    """A scratch folder, in memory where the system has such: each run writes and reads a file."""
+    memory = pathlib.Path("/dev/shm")
+    return tempfile.TemporaryDirectory(prefix="fuzz-", dir=memory if memory.is_dir() else None)
 
 
 def fuzz(program, target, seconds, folders):
@@ -178,8 +185,10 @@ def main():
     if options.target and options.target not in TARGETS:
         parser.error(f"'{options.target}' is no target; there are {', '.join(TARGETS)}")
     count = collections.Counter()
-    for target in [options.target] if options.target else TARGETS:
-        count.update(finding.owner for finding in run_target(target, options))
+    with memory_folder() as folder:
+        ENVIRONMENT["TMPDIR"] = folder
+        for target in [options.target] if options.target else TARGETS:
+            count.update(finding.owner for finding in run_target(target, options))
     ours = count[OURS] + count[UNKNOWN]
     print(f"{ours} distinct findings in our code, {count[HDF5]} within libhdf5")
     return 1 if ours else 0
