@@ -5,7 +5,7 @@
 
 Each mutant goes through `info` and `solve` (a scene through `simulate` as well, for `solve` takes
 its sensor only); with --more also through `compare`, `calibrate` or the other outputs. A run is in order
-where it ends by itself within 5 s of processor time and of waiting and within 1 GB; with status 0, or with
+where it ends by itself within 5 s and 1 GB; with status 0, or with
 status 1 and one line "pillarfield: ..." on standard error; where no other line is printed than
 remarks on the file, none holds a control character; and where nothing is left: no output after a
 failure, no part after a success, no process. With --twice, each solve that works runs again with
@@ -33,6 +33,9 @@ import make_corpus
 import mutations
 
 MOST_SECONDS = 5
+# A run is ended here. Others use the computer too, so one over 5 s runs again, up to twice, and its
+# quickest run counts.
+KILLED_AFTER = 20
 MOST_KILOBYTES = 1 << 20
 # What a run away writes or takes must not take the computer down.
 MOST_WRITTEN = 512 << 20
@@ -102,7 +105,7 @@ class Runner:
         self.child = os.posix_spawn(program, [program, *words],
                                     {**self.options.environment, **environment},
                                     file_actions=actions, setpgroup=0)
-        signal.setitimer(signal.ITIMER_REAL, MOST_SECONDS)
+        signal.setitimer(signal.ITIMER_REAL, KILLED_AFTER)
         _, status, usage = os.wait4(self.child, 0)
         signal.setitimer(signal.ITIMER_REAL, 0)
         seconds = time.monotonic() - start
@@ -113,10 +116,11 @@ class Runner:
                    *(path.read_bytes() for path in printed), lives_on)
 
     def timed(self, words, **environment):
-        """The run, once more where it was too slow: others use the computer too."""
-        run = self.run(words, **environment)
-        if run.signal == signal.SIGKILL and run.seconds >= MOST_SECONDS:
+        """The run, or a quicker one of the same where it takes too long."""
+        for _ in range(3):
             run = self.run(words, **environment)
+            if run.seconds <= MOST_SECONDS:
+                break
         return run
 
 
@@ -135,7 +139,7 @@ def fault_of_text(run, file):
 
 def fault_of(run, file, left):
     """What is wrong with a run, or None."""
-    if run.signal == signal.SIGKILL and run.seconds >= MOST_SECONDS:
+    if run.seconds > MOST_SECONDS:
         return f"over {MOST_SECONDS} s"
     if run.signal is not None:
         return f"killed by {signal.Signals(run.signal).name}"

@@ -114,7 +114,7 @@ def mutant_of(random, seed):
     data = bytearray(seed.data)
     mended = not seed.is_text and random.random() < 0.8
     changes = OF_TEXT if seed.is_text else IN_PLACE if mended else OF_BYTES
-    for _ in range(random.choice((1, 1, 1, 2, 3, 6))):
+    for _ in range(random.choice((1, 1, 1, 2) if seed.is_text else (1, 1, 1, 2, 3, 6))):
         random.choice(changes)(random, data, seed)
         if not data:
             data += b"\0"

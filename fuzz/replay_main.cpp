@@ -5,8 +5,8 @@
 // CORPUS has a folder for each target; FILE limits the run to these of its files, named as
 // FOLDER/NAME. A file fails when a signal ends its process, when it takes longer than 5 s (20 s
 // with sanitizers) or more than 1 GiB (without them), when it ends in anything but a
-// pillarfield::Error, or when its name begins with "seed_" and it is refused. Exit status: 0, or 1
-// where a file fails.
+// pillarfield::Error, when its name begins with "seed_" and it is refused, or when it does not and
+// it is read. Exit status: 0, or 1 where a file fails.
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -85,7 +85,7 @@ Outcome outcome_of(int status, bool is_seed, const std::string& message) {
   }
   switch (WEXITSTATUS(status)) {
     case kRead:
-      return {false, false, "read"};
+      return {!is_seed, false, is_seed ? "read" : "read, and should be refused"};
     case kRefused:
       return {is_seed, true, "refused: " + message};
     case kOtherException:
