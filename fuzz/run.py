@@ -31,13 +31,13 @@ MOST_BYTES = 65536
 
 ENVIRONMENT = {
     **os.environ,
-    "ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=0:handle_abort=1:symbolize=1",
+    "ASAN_OPTIONS": "detect_leaks=0:handle_abort=1",
     "UBSAN_OPTIONS": "print_stacktrace=1",
 }
 
 OURS, HDF5, UNKNOWN = "our code", "libhdf5", "unknown place"
 
-Finding = collections.namedtuple("Finding", "owner kind place file")
+Finding = collections.namedtuple("Finding", "owner kind place caller file")
 
 
 def memory_folder():
@@ -51,7 +51,7 @@ def fuzz(program, target, seconds, folders):
     seeds = [ROOT / "fuzz" / "corpus" / target]
     if target == "scene":
         seeds.append(ROOT / "scenes")
-    command = [program, "-fork=1", "-ignore_crashes=1", "-ignore_timeouts=1", "-ignore_ooms=1",
+    command = [program, "-fork=1", "-print_funcs=0", "-ignore_crashes=1", "-ignore_timeouts=1", "-ignore_ooms=1",
                f"-max_total_time={seconds}", f"-timeout={TIMEOUT_S}",
                f"-rss_limit_mb={MEMORY_MB}", f"-max_len={MOST_BYTES}", "-detect_leaks=0",
                f"-artifact_prefix={folders['raw']}/", folders["grown"], *seeds]
@@ -59,10 +59,10 @@ def fuzz(program, target, seconds, folders):
         subprocess.run([str(word) for word in command], stdout=log, stderr=log, env=ENVIRONMENT,
                        check=False, cwd=folders["raw"])
     text = folders["log"].read_text(errors="replace")
-    progress = re.findall(r"#(\d+): cov: (\d+).*exec/s: ?(\d+)", text)
+    progress = re.findall(r"#(\d+): cov: (\d+)", text)
     if not progress:
         sys.exit(f"run.py: {target} did not start; see {folders['log']}")
-    runs, coverage, _ = progress[-1]
+    runs, coverage = progress[-1]
     return f"{int(runs):,} runs in {seconds} s, {coverage} edges reached"
 
 
@@ -70,9 +70,20 @@ def failure_of(program, artifact):
     """What the program prints about one input, or None where it ends well."""
     command = [program, f"-timeout={TIMEOUT_S}", f"-rss_limit_mb={MEMORY_MB}", "-detect_leaks=0",
                f"-artifact_prefix={artifact.parent}/again-", artifact]
-    done = subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.PIPE, env=ENVIRONMENT, check=False)
-    return None if done.returncode == 0 else done.stderr.decode(errors="replace")
+    # libhdf5 has no frame pointers, so stacks through it take the slow unwinder, which gives up now
+    # and then.
+    slow = ":fast_unwind_on_malloc=0:fast_unwind_on_fatal=0:malloc_context_size=60"
+    report = None
+    for unwinder in (slow, ""):
+        options = {**ENVIRONMENT, "ASAN_OPTIONS": ENVIRONMENT["ASAN_OPTIONS"] + unwinder}
+        done = subprocess.run([str(word) for word in command], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, env=options, check=False)
+        if done.returncode == 0:
+            break
+        report = done.stderr.decode(errors="replace")
+        if stacks_of(report):
+            break
+    return report
 
 
 FRAME = re.compile(r"^\s+#\d+ 0x[0-9a-f]+ (?:in (?P<function>.+?) )?\(?(?P<place>/\S+?)"
@@ -99,13 +110,13 @@ def owner_of(place):
     return None
 
 
-def top_of(stack):
-    """Owner and function of the topmost frame that is ours or of libhdf5, and of the one below."""
+def top_of(stack, owners=(OURS, HDF5)):
+    """Owner and name of the topmost frame of these owners, or None."""
     for function, place in stack:
         owner = owner_of(place)
-        if owner:
+        if owner in owners:
             where = re.sub(r"^.*/(host|kernels|fuzz)/", r"\1/", place) if owner == OURS else ""
-            name = re.sub(r"pillarfield::|\(anonymous namespace\)::|\(.*", "", function)
+            name = re.sub(r"pillarfield::|\(anonymous namespace\)::|\(.*|\[abi.*?\]", "", function)
             return owner, f"{name} {where}".strip()
     return None
 
@@ -120,18 +131,20 @@ def kind_of(report):
 
 
 def judge(report):
-    """Owner, kind and place of a failure. Memory that is ours, or whose allocation is, makes libhdf5's
-    access beyond it ours: we gave it too little."""
-    stacks = [top for top in map(top_of, stacks_of(report)) if top]
-    if not stacks:
-        return UNKNOWN, kind_of(report), "no frame of ours or of libhdf5"
-    owner, place = stacks[0]
-    if owner == HDF5 and re.search(r"overflow|underflow|use-after|stack-buffer", kind_of(report)):
-        for other, where in stacks[1:]:
-            if other == OURS:
-                return OURS, kind_of(report), f"{place}, in memory of {where}"
-            break
-    return owner, kind_of(report), place
+    """Owner, kind and place of a failure, and which code of ours called. Memory whose allocation is
+    ours makes libhdf5's access beyond it ours: we gave it too little."""
+    kind = kind_of(report)
+    stacks = stacks_of(report)
+    tops = [top for top in map(top_of, stacks) if top]
+    if not tops:
+        return UNKNOWN, kind, "no frame of ours or of libhdf5", ""
+    owner, place = tops[0]
+    caller = (top_of(stacks[0], (OURS,)) or ("", ""))[1] if owner == HDF5 else ""
+    if owner == HDF5 and re.search(r"overflow|underflow|use-after", kind) and len(tops) > 1:
+        other, where = tops[1]
+        if other == OURS:
+            return OURS, kind, f"{place}, in memory of {where}", caller
+    return owner, kind, place, caller
 
 
 def collect(program, target, folders):
@@ -143,8 +156,8 @@ def collect(program, target, folders):
         report = failure_of(program, artifact)
         if report is None and not artifact.name.startswith("crash"):
             continue  # slow or large only after many other inputs in the same process
-        owner, kind, place = (judge(report) if report is not None
-                              else (UNKNOWN, "a crash", "not when run alone"))
+        owner, kind, place, caller = (judge(report) if report is not None
+                                      else (UNKNOWN, "a crash", "not when run alone", ""))
         key = (owner, kind, place)
         if key in found:
             continue
@@ -152,7 +165,7 @@ def collect(program, target, folders):
         kept = folders["findings"] / name
         kept.write_bytes(artifact.read_bytes())
         kept.with_name(kept.name + ".txt").write_text(report or "", errors="replace")
-        found[key] = Finding(owner, kind, place, kept)
+        found[key] = Finding(owner, kind, place, caller, kept)
     return list(found.values())
 
 
@@ -169,7 +182,9 @@ def run_target(target, options):
     print(fuzz(program, target, options.seconds, folders), flush=True)
     findings = collect(program, target, folders)
     for finding in sorted(findings):
-        print(f"  {finding.owner}: {finding.kind}: {finding.place}\n    {finding.file}", flush=True)
+        called = f", called by {finding.caller}" if finding.caller else ""
+        print(f"  {finding.owner}: {finding.kind}: {finding.place}{called}\n    {finding.file}",
+              flush=True)
     return findings
 
 
