@@ -209,9 +209,10 @@ def work(number):
             folder = RUNNER.options.keep
             kept = folder / f"{number}_{seed.kind}_{re.sub(r'[^a-z0-9]+', '_', outcome.lower())}_{seed.name}"
             kept.write_bytes(data)
-            kept.with_name(kept.name + ".txt").write_bytes(
-                f"{' '.join(words)}\n{outcome}; {run.seconds:.1f} s, {run.kilobytes} kB\n".encode()
-                + run.output[-2000:] + run.errors[-2000:])
+            with open(f"{kept}.txt", "ab") as report:
+                report.write(f"{' '.join(words)}\n{outcome}; {run.seconds:.1f} s, "
+                             f"{run.kilobytes} kB\n".encode())
+                report.write(run.output[-2000:] + run.errors[-2000:])
         results.append((seed.kind, command, outcome, run.seconds, run.processor, run.kilobytes, kept))
     return results
 
