@@ -1,0 +1,38 @@
+#include "core/host_solve.h"
+#include "fuzz/some_frames.h"
+#include "fuzz/targets.h"
+#include "pillarfield/contact_tracker.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield::fuzz {
+namespace {
+
+SolverPlan plan_of_source(const FrameSource& source) {
+  SolverPlan plan;
+  plan.skin = source.skin();
+  plan.sensel_type = source.sensel_type();
+  plan.calibration = source.calibration();
+  return plan;
+}
+
+}  // namespace
+
+void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
+  const auto source = open_frames(path PILLARFIELD_FUZZ_OPTIONS(options));
+  const Skin& skin = source->skin();
+  if (skin.sensels() > kMostRead) return;
+  const SolverPlan plan = plan_of_source(*source);
+  check(plan, path.native());
+  FrameBuffer frame(plan.sensel_type, skin.rows, skin.cols);
+  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  ContactTracker tracker(skin.pillar_pitch_mm(), {.threads = 1});
+  for (const std::uint64_t index : some_frames(source->frames())) {
+    const double time_s = source->read(index, frame);
+    if (source->has_truth()) source->read_truth(index, truth);
+    if (skin.sensels() > kMostSolved) continue;
+    tracker.update(solve_on_host(plan, frame.view()).view(), time_s);
+  }
+}
+
+}  // namespace pillarfield::fuzz

@@ -1,0 +1,373 @@
+#!/usr/bin/env python3
+"""Makes the files of fuzz/corpus that can be made.
+
+    fuzz/make_corpus.py --program build/release/bin/pillarfield [--folder fuzz/corpus]
+
+seed_* are small valid files of every kind, in every format that HDF5 may give them; hostile_* are made
+by hand to mislead a reader. Files that a fuzzer damaged stay as they are. fuzz/mutants.py makes its
+seeds by the same functions.
+"""
+
+import argparse
+import pathlib
+import subprocess
+import tempfile
+
+import h5py
+import numpy
+
+KINDS = ("recording", "forces", "calibration", "tekscan", "scene")
+
+SCENE = """\
+title = "A ball that slides"
+
+[skin]
+pillars = [6, 8]
+threshold_counts = 2
+
+[sensor]
+adc_bits = 8
+noise_counts = 0.5
+tare_counts = 3
+
+[time]
+rate_hz = 100
+frames = 5
+
+[[contact]]
+shape = "sphere"
+motion = "slide"
+contact_radius_mm = 2
+friction = 0.5
+direction_deg = 30
+path = [
+  { time_s = 0, position_mm = [-1, 0], load_n = 1 },
+  { time_s = 0.04, position_mm = [1, 0.5], load_n = 4 },
+]
+"""
+
+# One of each shape and motion, and every section.
+SCENE_OF_ALL = """\
+title = "Everything"
+[skin]
+size_mm = [16.5, 12.8]
+sensel_pitch_mm = 0.632455532
+counts_per_newton = 320
+threshold_counts = 2.5
+[sensor]
+adc_bits = 12
+dead_zone_counts = 1
+gain_spread = 0.05
+tare_counts = 20
+tare_spread_counts = 2
+noise_counts = 1.5
+drift_counts_per_s = 0.1
+dead_share = 0.01
+[time]
+rate_hz = 200
+frames = 3
+seed = 7
+[solver]
+estimator = "field"
+angles = true
+parity_tolerance_counts = 8
+[[contact]]
+shape = "flat_punch"
+motion = "spin"
+contact_radius_mm = 2
+friction = 0.4
+clockwise = true
+position_mm = [-4, 0]
+load_n = 3
+[[contact]]
+shape = "sphere"
+motion = "partial_slip"
+contact_radius_mm = 1.5
+reference_load_n = 2
+friction = 0.6
+tangential_ratio = 0.5
+direction_deg = 200
+position_mm = [3, 2]
+load_n = 2
+[[contact]]
+shape = "cylinder"
+motion = "roll"
+contact_radius_mm = 1
+length_mm = 4
+friction = 0.3
+tangential_ratio = 0.7
+direction_deg = 90
+position_mm = [3, -3]
+load_n = 2
+"""
+
+SCENE_CHART = """\
+[chart]
+directions = 12
+inclinations = 5
+max_theta_deg = 60
+magnitudes_n = [0.1, 0.5]
+[skin]
+counts_per_newton = 100
+"""
+
+SCENES = {"sliding": SCENE, "all": SCENE_OF_ALL, "chart": SCENE_CHART,
+          "empty": "[skin]\npillars = [1, 1]\n",
+          "control": 'title = "\\u001b[2J\\n"\n[skin]\npillars = [2, 2]\n'}
+
+TEKSCAN_HEADER = ["DATA_TYPE MOVIE", "VERSION Measurement 1.0", "ROWS {rows}", "COLS {cols}",
+                  "ROW_SPACING 0.5 mm", "COL_SPACING 0.02 inches", "NOISE_THRESHOLD 3",
+                  "SECONDS_PER_FRAME 0.5", "START_FRAME 1", "END_FRAME {frames}", "UNITS raw"]
+
+
+def tekscan(frames, line_end="\n", header=True, times=False, sums=False, trailing=""):
+    """An export of these frames; a reading below zero is a place without a sensel."""
+    lines = []
+    if header:
+        lines = [line.format(rows=len(frames[0]), cols=len(frames[0][0]), frames=len(frames))
+                 for line in TEKSCAN_HEADER]
+    else:
+        lines = [f"ROWS {len(frames[0])}", f"COLS {len(frames[0][0])}"]
+    lines.append("ASCII_DATA @@")
+    for number, frame in enumerate(frames, 1):
+        total = int(frame[frame > 0].sum())
+        time = f", {number / 8}" if times else ""
+        raw_sum = f", Raw Sum=,,{total}" if sums else ""
+        lines += ["", f"Frame {number}{time}{raw_sum}"]
+        lines += [",".join("B" if cell < 0 else str(cell) for cell in row) + trailing
+                  for row in frame]
+    return line_end.join(lines + ["@@", ""])
+
+
+def tekscan_exports():
+    random = numpy.random.default_rng(5)
+    bytes_ = random.integers(0, 256, (3, 4, 6)) * (random.random((3, 4, 6)) < 0.6)
+    words = random.integers(0, 65536, (2, 5, 3))
+    masked = bytes_.copy()
+    masked[:, 0, 0] = -1
+    masked[:, 3, 5] = -1
+    return {"bytes": tekscan(bytes_), "words": tekscan(words, times=True),
+            "crlf": tekscan(masked, "\r\n", times=True, sums=True, trailing=",,"),
+            "bare": tekscan(bytes_, header=False)}
+
+
+def run(program, *arguments):
+    subprocess.run([program, *map(str, arguments)], check=True, stdout=subprocess.DEVNULL,
+                   stderr=subprocess.DEVNULL)
+
+
+def copy_attributes(source, copy, variable):
+    for name, value in source.attrs.items():
+        text = value.decode() if isinstance(value, bytes) else value
+        copy.attrs[name] = text if variable else value
+
+
+def growing(item):
+    """The layout of a dataset that grows along its first axis, as ours do."""
+    return {"maxshape": (None, *item.shape[1:]), "chunks": (2, *item.shape[1:])}
+
+
+def convert(source, target, variable=False, layout=None, swmr=False, **file_options):
+    """Copies a file object by object: strings of variable length where `variable`, datasets of frames
+    in the `layout` of h5py, the file of the version that `file_options` say. With `swmr` it is
+    `target` as a writer leaves it that was killed after a flush."""
+    unfinished = target.with_name("unfinished.h5") if swmr else target
+    with h5py.File(source, "r") as old, h5py.File(unfinished, "w", **file_options) as new:
+        copy_attributes(old, new, variable)
+
+        def visit(name, item):
+            if isinstance(item, h5py.Group):
+                copy_attributes(item, new.require_group(name), variable)
+                return
+            options = {}
+            if item.ndim > 0 and item.size > 0:
+                options = growing(item) if layout == "growing" else layout if item.ndim > 1 else {}
+            made = new.create_dataset(name, data=item[()], **(options or {}))
+            copy_attributes(item, made, variable)
+
+        old.visititems(visit)
+        if swmr:
+            new.swmr_mode = True
+            new.flush()
+            target.write_bytes(unfinished.read_bytes())
+    if swmr:
+        unfinished.unlink()
+
+
+# How an HDF5 file may look: old and new format, compressed, checked, in strings of variable length.
+VARIANTS = {
+    "old": {},
+    "old_gzip_variable": {"variable": True, "layout": {"compression": "gzip", "shuffle": True}},
+    "latest": {"libver": "latest"},
+    "latest_gzip": {"libver": "latest", "layout": {"compression": "gzip", "fletcher32": True}},
+    "latest_variable": {"libver": "latest", "variable": True},
+    "growing": {"libver": "latest", "layout": "growing"},
+}
+
+
+def write_variants(ours, folder):
+    """The variants of a file of ours, which is far larger: its chunks are of 256 KiB."""
+    for name, options in VARIANTS.items():
+        convert(ours, folder / f"seed_{name}_{ours.stem}.h5", **options)
+
+
+def write_plain_recording(path, dtype, **file_options):
+    """A recording as a user writes it with h5py, without most of what may be there."""
+    raw = numpy.random.default_rng(3).uniform(0, 250, (4, 7, 9)).astype(dtype)
+    if raw.dtype.kind == "f":
+        raw[0, 0, :3] = numpy.nan, numpy.inf, -1
+    with h5py.File(path, "w", **file_options) as file:
+        file.attrs["format"] = "pillarfield-recording"
+        file.attrs["version"] = 1
+        file["frames/raw"] = raw
+        file["frames/time"] = numpy.arange(4) / 100
+
+
+def link_elsewhere(file):
+    del file["frames"]
+    file["frames"] = h5py.ExternalLink("other.h5", "/frames")
+
+
+def link_in_a_circle(file):
+    del file["frames/raw"]
+    file["frames/raw"] = h5py.SoftLink("/frames/raw")
+
+
+def store_elsewhere(file):
+    del file["frames/raw"]
+    space = h5py.h5s.create_simple((4, 7, 9))
+    options = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    options.set_external(b"/etc/passwd", 0, 4 * 7 * 9)
+    h5py.h5d.create(file["frames"].id, b"raw", h5py.h5t.STD_U8LE, space, options)
+
+
+def map_elsewhere(file):
+    del file["frames/raw"]
+    layout = h5py.VirtualLayout((4, 7, 9), "u1")
+    layout[:] = h5py.VirtualSource("other.h5", "frames/raw", (4, 7, 9))
+    file["frames"].create_virtual_dataset("raw", layout)
+
+
+def claim_frames(count, chunk):
+    """Frames that take no bytes: no chunk of theirs is stored."""
+    def change(file):
+        del file["frames/raw"]
+        del file["frames/time"]
+        file.create_dataset("frames/raw", (count, 7, 9), "u1", chunks=(chunk, 7, 9))
+        file.create_dataset("frames/time", (count,), "f8", chunks=(chunk,), compression="gzip")
+    return change
+
+
+def give_plane(name, value):
+    def change(file):
+        file[f"calibration/{name}"] = numpy.full((7, 9), value)
+    return change
+
+
+def give_raw(dtype):
+    def change(file):
+        del file["frames/raw"]
+        file["frames/raw"] = numpy.zeros((4, 7, 9), dtype)
+    return change
+
+
+def give_attribute(name, value):
+    def change(file):
+        file["skin"].attrs[name] = value
+    return change
+
+
+HOSTILE_RECORDINGS = {
+    "external_link": link_elsewhere, "soft_link_loop": link_in_a_circle,
+    "external_storage": store_elsewhere, "virtual_dataset": map_elsewhere,
+    "2e40_frames": claim_frames(2**40, 64), "huge_chunk": claim_frames(2**24, 2**24),
+    "tare_1e30": give_plane("tare", -1e30), "mask_nan": give_plane("mask", numpy.nan),
+    "gain_nan": give_plane("gain", numpy.nan), "noise_negative": give_plane("noise", -1.0),
+    "raw_compound": give_raw([("a", "u1"), ("b", "<f4")]), "raw_string": give_raw("S3"),
+    "raw_float16": give_raw("f2"), "raw_long_double": give_raw("longdouble"),
+    "raw_complex": give_raw("c8"), "raw_array_type": give_raw(numpy.dtype(("u1", (2,)))),
+    "pitch_nan": give_attribute("sensel_pitch_mm", numpy.nan),
+    "pitch_of_100": give_attribute("sensel_pitch_mm", numpy.ones(100)),
+    "pitch_string": give_attribute("sensel_pitch_mm", "wide\x1b[2J\n"),
+    "counts_subnormal": give_attribute("counts_per_newton", 5e-324),
+}
+
+
+def write_hostile(folder):
+    for old in (folder / "recording").glob("hostile_*"):
+        old.unlink()
+    for name, change in HOSTILE_RECORDINGS.items():
+        path = folder / "recording" / f"hostile_{name}.h5"
+        write_plain_recording(path, "u1", libver="latest")
+        with h5py.File(path, "a", libver="latest") as file:
+            file.require_group("skin")
+            change(file)
+    for old in (folder / "scene").glob("hostile_*"):
+        old.unlink()
+    for name, text in HOSTILE_SCENES.items():
+        (folder / "scene" / f"hostile_{name}.toml").write_bytes(text)
+
+
+HOSTILE_SCENES = {
+    "dotted_key_50000": b"a." * 50000 + b"a=1\n",
+    "nested_arrays": b"a=" + b"[" * 5000 + b"]" * 5000 + b"\n",
+    "not_utf8": b'title = "\xff\xfe"\n[skin]\npillars = [2, 2]\n',
+    "nul": b"title = \"\x00\"\n[skin]\npillars = [2, 2]\n",
+    "huge_skin": b"[skin]\npillars = [32767, 32767]\n",
+    "nan": b"[skin]\npillars = [2, 2]\nthreshold_counts = nan\n",
+}
+
+
+def write_seeds(folder, program):
+    """Makes all seeds in the folders `folder`/KIND."""
+    for kind in KINDS:
+        (folder / kind).mkdir(parents=True, exist_ok=True)
+        for old in (folder / kind).glob("seed_*"):
+            old.unlink()
+    for name, text in SCENES.items():
+        (folder / "scene" / f"seed_{name}.toml").write_text(text)
+    for name, text in tekscan_exports().items():
+        (folder / "tekscan" / f"seed_{name}.csv").write_bytes(text.encode())
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = pathlib.Path(scratch)
+        scene = folder / "scene" / "seed_sliding.toml"
+        recording = scratch / "slide.h5"
+        run(program, "simulate", scene, "-o", recording)
+        write_variants(recording, folder / "recording")
+        convert(recording, folder / "recording" / "seed_killed_slide.h5", layout="growing", swmr=True,
+                libver="latest")
+        for dtype in ("u1", ">u2", "<f4"):
+            name = numpy.dtype(dtype).name
+            write_plain_recording(folder / "recording" / f"seed_plain_{name}.h5", dtype)
+        write_calibration(program, scratch)
+        write_variants(scratch / "tare.h5", folder / "calibration")
+        run(program, "solve", recording, "-o", scratch / "contacts.h5", "--contacts",
+            scratch / "contacts.h5")
+        write_variants(scratch / "contacts.h5", folder / "forces")
+        run(program, "solve", recording, "-o", scratch / "uncertainty.h5", "--outputs",
+            "angles,uncertainty", "--noise", "1")
+        convert(scratch / "uncertainty.h5", folder / "forces" / "seed_old_uncertainty.h5")
+
+
+def write_calibration(program, scratch):
+    """A calibration of the scene's skin in two steps, scratch/tare.h5."""
+    unloaded = SCENE.split("[[contact]]")[0].replace("frames = 5", "frames = 40")
+    (scratch / "unloaded.toml").write_text(unloaded)
+    run(program, "simulate", scratch / "unloaded.toml", "-o", scratch / "unloaded.h5")
+    run(program, "calibrate", "tare", scratch / "unloaded.h5", "-o", scratch / "first.h5")
+    run(program, "calibrate", "tare", scratch / "unloaded.h5", "--calibration", scratch / "first.h5",
+        "-o", scratch / "tare.h5")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", type=pathlib.Path, required=True)
+    parser.add_argument("--folder", type=pathlib.Path,
+                        default=pathlib.Path(__file__).parent / "corpus")
+    options = parser.parse_args()
+    write_seeds(options.folder, options.program)
+    write_hostile(options.folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,180 @@
+// Reads every file of a corpus through its target, each in a process of its own.
+//
+//     fuzz_replay CORPUS [FILE...]
+//
+// CORPUS has a folder for each target; FILE limits the run to these of its files, named as
+// FOLDER/NAME. A file fails when a signal ends its process, when it takes longer than 5 s (20 s
+// with sanitizers) or more than 1 GiB (without them), when it ends in anything but a
+// pillarfield::Error, when its name begins with "seed_" and it is refused, or when it does not and
+// it is read. Exit status: 0, or 1 where a file fails.
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "fuzz/targets.h"
+#include "pillarfield/error.h"
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+#else
+constexpr bool kSanitized = false;
+#endif
+
+namespace pillarfield::fuzz {
+namespace {
+
+constexpr unsigned kMostSeconds = kSanitized ? 20 : 5;
+constexpr rlim_t kMostBytes = 1 << 30;
+
+// Exit statuses of a child, none of them one that a sanitizer uses.
+constexpr int kRead = 10;
+constexpr int kRefused = 11;
+constexpr int kOtherException = 12;
+
+void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
+  const rlimit both = {most, most};
+  setrlimit(resource, &both);
+}
+
+/// The child's work: its message goes to `message`, a pipe.
+int read_under_limits(const Target& target, const std::filesystem::path& path, int message) {
+  const auto tell = [&](const char* text) {
+    if (write(message, text, std::strlen(text)) < 0) _exit(kOtherException);
+  };
+  limit(RLIMIT_CORE, 0);
+  if (!kSanitized) limit(RLIMIT_AS, kMostBytes);
+  alarm(kMostSeconds);
+  try {
+    target.read(path, {.trust = false});
+    return kRead;
+  } catch (const Error& error) {
+    tell(error.what());
+    return kRefused;
+  } catch (const std::exception& error) {
+    tell(error.what());
+    return kOtherException;
+  }
+}
+
+struct Outcome {
+  bool failed = false;
+  bool refused = false;
+  std::string text;
+};
+
+Outcome outcome_of(int status, bool is_seed, const std::string& message) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMostSeconds)};
+    return {true, false, fmt::format("killed by signal {}, {}", signal, strsignal(signal))};
+  }
+  switch (WEXITSTATUS(status)) {
+    case kRead:
+      return {!is_seed, false, is_seed ? "read" : "read, and should be refused"};
+    case kRefused:
+      return {is_seed, true, "refused: " + message};
+    case kOtherException:
+      return {true, false, "ends in an exception that is no Error: " + message};
+    default:
+      return {true, false, fmt::format("ends with exit status {}", WEXITSTATUS(status))};
+  }
+}
+
+std::string all_of(int pipe_end) {
+  std::string text;
+  std::array<char, 4096> part{};
+  ssize_t size = 0;
+  while ((size = read(pipe_end, part.data(), part.size())) > 0) {
+    text.append(part.data(), static_cast<std::size_t>(size));
+  }
+  close(pipe_end);
+  return text;
+}
+
+Outcome replay(const Target& target, const std::filesystem::path& path) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw Error(path.string(), "no pipe", "close some programs");
+  const pid_t child = fork();
+  if (child < 0) throw Error(path.string(), "no process", "close some programs");
+  if (child == 0) {
+    close(ends[0]);
+    _exit(read_under_limits(target, path, ends[1]));
+  }
+  close(ends[1]);
+  const std::string message = all_of(ends[0]);
+  int status = 0;
+  waitpid(child, &status, 0);
+  return outcome_of(status, path.filename().string().starts_with("seed_"), message);
+}
+
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+const Target* target_named(const std::string& name) {
+  const auto* const found = std::find_if(kTargets.begin(), kTargets.end(),
+                                         [&](const Target& target) { return target.name == name; });
+  return found == kTargets.end() ? nullptr : found;
+}
+
+int replay_all(const std::filesystem::path& corpus, std::vector<std::filesystem::path> files) {
+  if (files.empty()) {
+    for (const Target& target : kTargets) {
+      const auto all = files_in(corpus / target.name);
+      if (all.empty()) throw Error((corpus / target.name).string(), "is empty", "make a corpus");
+      files.insert(files.end(), all.begin(), all.end());
+    }
+  }
+  int failed = 0;
+  int refused = 0;
+  for (const auto& file : files) {
+    const std::string folder = file.parent_path().filename().string();
+    const Target* const target = target_named(folder);
+    if (target == nullptr) throw Error(file.string(), "lies in no folder of a target", "move it");
+    const Outcome outcome = replay(*target, corpus / folder / file.filename());
+    failed += outcome.failed ? 1 : 0;
+    refused += outcome.refused && !outcome.failed ? 1 : 0;
+    fmt::print("{:<4} {}/{}: {}\n", outcome.failed ? "FAIL" : "ok", folder,
+               file.filename().string(), outcome.text);
+  }
+  fmt::print("{} files: {} read, {} refused, {} failed\n", files.size(),
+             static_cast<int>(files.size()) - refused - failed, refused, failed);
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace pillarfield::fuzz
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    fmt::print(stderr, "Usage: fuzz_replay CORPUS [FOLDER/NAME...]\n");
+    return 2;
+  }
+  try {
+    return pillarfield::fuzz::replay_all(argv[1], {argv + 2, argv + argc});
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "fuzz_replay: {}\n", error.what());
+    return 1;
+  }
+}

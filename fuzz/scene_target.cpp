@@ -1,0 +1,32 @@
+#include <algorithm>
+
+#include "fuzz/targets.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
+
+namespace pillarfield::fuzz {
+namespace {
+
+/// Largest scene that is simulated, in sensels, and in sensels times contacts.
+constexpr std::uint64_t kMostSensels = 1 << 12;
+constexpr std::uint64_t kMostWork = 1 << 14;
+
+bool is_small(const Scene& scene) {
+  const auto* const contacts = std::get_if<std::vector<Contact>>(&scene.load);
+  const std::uint64_t each = contacts == nullptr ? 1 : contacts->size();
+  return scene.skin.sensels() <= kMostSensels && scene.skin.sensels() * each <= kMostWork;
+}
+
+}  // namespace
+
+void read_scene(const std::filesystem::path& path, const ReadOptions&) {
+  const Scene scene = load_scene(path);
+  if (!is_small(scene)) return;
+  const Simulator simulator(scene);
+  FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
+  ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
+  simulator.render(0, raw, truth);
+  if (scene.frames > 1) simulator.render(scene.frames - 1, raw, truth);
+}
+
+}  // namespace pillarfield::fuzz
