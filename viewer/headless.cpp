@@ -57,7 +57,8 @@ Span frames_of(const Options& options, const SourceInfo& source) {
 }  // namespace
 
 void run_headless(const Options& options) {
-  const auto producer = open_producer(options.source, ProducerOptions{options.device});
+  const auto producer = open_producer(
+      options.source, {.device = options.device, .read = {.trust = options.trust_input}});
   const SourceInfo& source = producer->info();
   for (const std::string& remark : source.remarks) {
     fmt::print(stderr, "pillarfield-viewer: {}: {}\n", source.name, remark);

@@ -34,7 +34,8 @@ void copy_frames(FrameSource& source, const ApplyCommand& command, RecordingWrit
 
 void run(const ApplyCommand& command) {
   const std::unique_ptr<FrameSource> source = open_for_step(command.recording, command.step);
-  const SkinCalibration calibration = read_calibration_file(command.step.calibration);
+  const SkinCalibration calibration =
+      read_calibration_file(command.step.calibration, command.step.read);
   require_fitting(calibration, source->skin(), command.recording);
   Skin skin = source->skin();
   Calibration planes = source->calibration();

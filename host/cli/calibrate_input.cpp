@@ -6,6 +6,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
+#include "cli/trust_option.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 
@@ -30,6 +31,7 @@ FrameStatistics statistics_of(FrameSource& source, const std::string& file,
 
 void add_step_options(CLI::App& command, StepOptions& options, const char* wrote) {
   command.add_option("-o,--output", options.output, wrote)->required();
+  add_trust_option(command, options.read);
   command.add_flag("--json", options.json, "Print the summary as JSON");
   command.add_flag("-q,--quiet", options.quiet, "Show no progress");
 }
@@ -41,7 +43,7 @@ void add_calibration_option(CLI::App& command, StepOptions& options) {
 }
 
 std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
-  std::unique_ptr<FrameSource> source = open_frames(file);
+  std::unique_ptr<FrameSource> source = open_frames(file, options.read);
   for (const std::string& remark : source->remarks()) fmt::print(stderr, "{}: {}\n", file, remark);
   std::error_code absent;
   if (std::filesystem::equivalent(file, options.output, absent)) {
@@ -54,7 +56,7 @@ SkinCalibration calibration_before(const StepOptions& options, const FrameSource
                                    const std::string& file) {
   SkinCalibration calibration = options.calibration.empty()
                                     ? blank_calibration(source.skin())
-                                    : read_calibration_file(options.calibration);
+                                    : read_calibration_file(options.calibration, options.read);
   require_fitting(calibration, source.skin(), file);
   mask_missing(calibration, source.calibration().mask);
   return calibration;

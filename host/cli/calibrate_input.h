@@ -16,11 +16,12 @@ namespace pillarfield::cli {
 struct StepOptions {
   std::string calibration;  ///< file to go on from; empty where there is none
   std::string output;
+  ReadOptions read;
   bool json = false;
   bool quiet = false;
 };
 
-/// --output, --json and --quiet; `wrote` says what the output is.
+/// --output, --trust-input, --json and --quiet; `wrote` says what the output is.
 void add_step_options(CLI::App& command, StepOptions& options, const char* wrote);
 
 /// --calibration, which is needed.

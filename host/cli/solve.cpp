@@ -40,10 +40,8 @@ struct SolveSummary {
 
 /// Seconds from one frame to the next; throws where the file does not tell.
 double frame_interval(const SolveOptions& options, FrameSource& source) {
-  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
   if (source.frames() >= 2) {
-    const double first = source.read(0, frame);
-    const double interval = (source.read(source.frames() - 1, frame) - first) /
+    const double interval = (source.time(source.frames() - 1) - source.time(0)) /
                             static_cast<double>(source.frames() - 1);
     if (interval > 0) return interval;
   }
@@ -208,7 +206,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
 void solve(SolveOptions options) {
   const Stopwatch watch;
   check(options.contacts, options.output);
-  const std::unique_ptr<FrameSource> source = open_frames(options.input);
+  const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
   for (const std::string& remark : source->remarks()) {
     fmt::print(stderr, "{}: {}\n", options.input, remark);
   }

@@ -12,6 +12,8 @@
 #include "io/file_kind.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
+#include "io/hdf5_links.h"
+#include "io/hdf5_readers.h"
 #include "io/part_file.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
@@ -97,9 +99,7 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 CalibrationStep read_step(const hdf5::File& file, const std::string& name) {
-  const hdf5::Handle group =
-      hdf5::own(H5Gopen2(file.id.get(), name.c_str(), H5P_DEFAULT), file.path,
-                fmt::format("{} cannot be opened", name), hdf5::kDamaged);
+  const hdf5::Handle group = hdf5::open_object(file, name.c_str());
   const auto text = [&](const char* attribute) {
     return hdf5::read_text(file, group.get(), attribute).value_or("");
   };
@@ -127,23 +127,27 @@ std::vector<CalibrationStep> read_history(const hdf5::File& file) {
 
 }  // namespace
 
-bool is_calibration_file(const std::filesystem::path& path) {
+bool is_calibration_file(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
   try {
     if (kind_of(path) != FileKind::hdf5) return false;
-    const hdf5::File file = hdf5::open_to_read(path);
+    const hdf5::File file = open_probed(path, options);
     return hdf5::read_text(file, file.id.get(), "format") == layout::kName;
   } catch (const Error&) {
     return false;
   }
 }
 
-SkinCalibration read_calibration_file(const std::filesystem::path& path) {
+SkinCalibration read_calibration_file(const std::filesystem::path& path,
+                                      const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  const hdf5::File file = hdf5::open_to_read(path);
+  return read_calibration(open_probed(path, options));
+}
+
+SkinCalibration read_calibration(const hdf5::File& file) {
   hdf5::require_format(file, layout::kName, layout::kVersion);
   const hdf5::Handle skin = open_skin(file);
-  if (!skin.valid()) throw Error(path.string(), "has no /skin", hdf5::kDamaged);
+  if (!skin.valid()) throw Error(file.path.string(), "has no /skin", hdf5::kDamaged);
   SkinCalibration calibration;
   calibration.rows = read_size(file, skin.get(), layout::kRows);
   calibration.cols = read_size(file, skin.get(), layout::kCols);
@@ -154,7 +158,7 @@ SkinCalibration read_calibration_file(const std::filesystem::path& path) {
   calibration.threshold_factor = hdf5::read_number(file, skin.get(), layout::kThresholdFactor);
   calibration.planes = read_planes(file, size_of_skin(calibration));
   calibration.history = read_history(file);
-  check(calibration, path.c_str());
+  check(calibration, file.path.c_str());
   return calibration;
 }
 

@@ -9,6 +9,7 @@
 #include "io/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5_attribute.h"
+#include "io/hdf5_links.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -35,12 +36,7 @@ void read_columns(std::span<const ContactColumn<Row>> columns, const hdf5::Store
 
 void ContactTablesReader::Table::open(const hdf5::File& file, const std::string& group,
                                       const char* name) {
-  columns.emplace_back(file, (group + "/" + name).c_str(), 0);
-  const H5T_class_t kind = columns.back().value_class();
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT) {
-    throw Error(file.path.string(), fmt::format("{} holds no numbers", columns.back().name()),
-                "docs/formats.md tells its type");
-  }
+  columns.emplace_back(file, group + "/" + name, 0);
   rows = columns.size() == 1 ? columns.back().frames() : std::min(rows, columns.back().frames());
 }
 
@@ -53,23 +49,28 @@ ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.pa
   for (const char* name : layout::kPatchRows) patch_.open(file, layout::kPatch, name);
   for (const auto& column : quantity_columns()) patch_.open(file, layout::kPatch, column.name);
   for (const auto& column : ended_columns()) ended_.open(file, layout::kEnded, column.name);
-  count_frames(file.unclosed);
+  frames_ = patch_.rows;
+  if (file.unclosed) drop_frames_without_rows();
 }
 
-void ContactTablesReader::count_frames(bool unclosed) {
-  // Of a writer that was killed, the last frames may have told of rows that are not there.
-  frames_ = patch_.rows;
-  while (unclosed && frames_ > 0 &&
-         (count_at(kFirstContact, frames_ - 1) + count_at(kContactCount, frames_ - 1) >
-              contacts_.rows ||
-          count_at(kFirstEnded, frames_ - 1) + count_at(kEndedCount, frames_ - 1) > ended_.rows)) {
-    --frames_;
+/// Of a writer that was killed, the last frames may have told of rows that are not there. The rows
+/// of one frame lie behind those of the frame before.
+void ContactTablesReader::drop_frames_without_rows() {
+  std::uint64_t good = 0;
+  for (std::uint64_t beyond = frames_ + 1; beyond - good > 1;) {
+    const std::uint64_t middle = good + (beyond - good) / 2;
+    (has_rows_of(middle - 1) ? good : beyond) = middle;
   }
+  frames_ = good;
+}
+
+bool ContactTablesReader::has_rows_of(std::uint64_t index) const {
+  return count_at(kFirstContact, index) + count_at(kContactCount, index) <= contacts_.rows &&
+         count_at(kFirstEnded, index) + count_at(kEndedCount, index) <= ended_.rows;
 }
 
 void ContactTablesReader::read_options(const hdf5::File& file) {
-  const hdf5::Handle group = hdf5::own(H5Gopen2(file.id.get(), layout::kContacts, H5P_DEFAULT),
-                                       file.path, "its contacts cannot be read", hdf5::kDamaged);
+  const hdf5::Handle group = hdf5::open_object(file, layout::kContacts);
   const auto minimum = hdf5::read_number(file, group.get(), layout::kMinimumPillars);
   constexpr double kMost = 0x1p53;
   if (minimum && *minimum >= 0 && *minimum <= kMost) {
@@ -97,13 +98,19 @@ void ContactTablesReader::require_rows(const Table& table, std::uint64_t first,
               hdf5::kDamaged);
 }
 
-FrameContacts ContactTablesReader::read(std::uint64_t index) const {
+FrameContacts ContactTablesReader::read(std::uint64_t index, std::uint64_t pillars) const {
   const std::uint64_t first_contact = count_at(kFirstContact, index);
   const std::uint64_t contacts = count_at(kContactCount, index);
   const std::uint64_t first_ended = count_at(kFirstEnded, index);
   const std::uint64_t ended = count_at(kEndedCount, index);
   require_rows(contacts_, first_contact, contacts);
   require_rows(ended_, first_ended, ended);
+  if (std::max(contacts, ended) > pillars) {
+    throw Error(path_.string(),
+                fmt::format("frame {} has {} contacts that are there or gone, and {} pillars",
+                            index, std::max(contacts, ended), pillars),
+                hdf5::kDamaged);
+  }
 
   FrameContacts frame;
   frame.contacts.resize(contacts);

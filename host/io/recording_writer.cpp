@@ -32,11 +32,11 @@ void require_no_frames_in(const std::filesystem::path& part) {
               "rename or remove it");
 }
 
-std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin,
+std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin, SenselType type,
                               const Calibration& calibration,
                               const RecordingWriter::Options& options) {
   check(skin, path.c_str());
-  check(calibration, skin, path.c_str());
+  check(calibration, skin, path.c_str(), type);
   if (options.flush_every == 0) throw Error(path.string(), "flush_every is 0", "flush every frame");
   require_no_frames_in(PartFile::part_of(path));
   return path;
@@ -75,7 +75,7 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
     : skin(frame_skin),
       type(sensel_type),
       options(writer_options),
-      path(checked(final_path, frame_skin, calibration, writer_options)),
+      path(checked(final_path, frame_skin, sensel_type, calibration, writer_options)),
       part(path),
       file(hdf5::create(part.path())) {
   hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));

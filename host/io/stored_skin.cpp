@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "io/hdf5_attribute.h"
-#include "io/hdf5_layout.h"
+#include "io/hdf5_links.h"
+#include "io/hdf5_plane.h"
 #include "io/recording_format.h"
 #include "pillarfield/error.h"
 
@@ -39,6 +40,22 @@ std::optional<PowerLaw> read_power_law(const hdf5::File& file, hid_t skin) {
   return PowerLaw{*exponent, *reference_counts};
 }
 
+/// A mask may be stored as numbers of any type.
+std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& skin,
+                                  const std::string& place) {
+  std::vector<std::uint8_t> mask(plane.size());
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    if (plane[i] != 0.0f && plane[i] != 1.0f) {
+      throw Error(place,
+                  fmt::format("calibration plane 'mask' is {} at row {}, column {}", plane[i],
+                              i / skin.cols, i % skin.cols),
+                  "it must be 0 or 1");
+    }
+    mask[i] = plane[i] == 1.0f ? 1 : 0;
+  }
+  return mask;
+}
+
 }  // namespace
 
 hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
@@ -59,8 +76,7 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
 
 hdf5::Handle open_skin(const hdf5::File& file) {
   if (!hdf5::exists(file, layout::kSkin)) return {};
-  return hdf5::own(H5Oopen(file.id.get(), layout::kSkin, H5P_DEFAULT), file.path,
-                   "/skin cannot be opened", hdf5::kDamaged);
+  return hdf5::open_object(file, layout::kSkin);
 }
 
 StoredSkin read_skin(const hdf5::File& file) {
@@ -85,20 +101,16 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
                     calibration.mask.data());
 }
 
-Calibration read_planes(const hdf5::File& file, const Skin& skin) {
+Calibration read_planes(const hdf5::File& file, const Skin& skin, std::optional<SenselType> type) {
   const auto plane = [&](const char* name) {
     if (!hdf5::exists(file, name)) return std::vector<float>();
     return hdf5::read_plane(file, name, skin.rows, skin.cols);
   };
   Calibration calibration;
   for (const auto& [name, member] : kFloatPlanes) calibration.*member = plane(name);
-  const std::vector<float> mask = plane(layout::kMask);
-  calibration.mask.resize(mask.size());
-  // What is neither 0 nor 1 becomes 2, which the check below refuses.
-  std::transform(mask.begin(), mask.end(), calibration.mask.begin(), [](float good) {
-    return static_cast<std::uint8_t>(good == 0.0f ? 0 : good == 1.0f ? 1 : 2);
-  });
-  check(calibration, skin, fmt::format("{}: {}", file.path.string(), layout::kCalibration));
+  const std::string place = fmt::format("{}: {}", file.path.string(), layout::kCalibration);
+  calibration.mask = mask_of(plane(layout::kMask), skin, place);
+  check(calibration, skin, place, type);
   return calibration;
 }
 

@@ -41,6 +41,7 @@ Opened open_source(const Options& options, double scale) {
     Progress progress;
     ProducerOptions wanted;
     wanted.device = options.device;
+    wanted.read.trust = options.trust_input;
     producer = open_producer(options.source, wanted, [&](double share) { progress.tell(share); });
   }
   for (const std::string& remark : producer->info().remarks) {
