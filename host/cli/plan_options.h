@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "pillarfield/read_options.h"
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield::cli {

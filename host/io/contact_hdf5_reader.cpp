@@ -17,6 +17,9 @@ namespace {
 
 namespace layout = force_format;
 
+/// Of a frame, so that a damaged file makes nobody ask for more than some hundred megabytes.
+constexpr std::uint64_t kMostContacts = 1'000'000;
+
 /// Places in kPatchRows.
 enum PatchRow : std::uint8_t { kFirstContact, kContactCount, kFirstEnded, kEndedCount };
 
@@ -98,18 +101,18 @@ void ContactTablesReader::require_rows(const Table& table, std::uint64_t first,
               hdf5::kDamaged);
 }
 
-FrameContacts ContactTablesReader::read(std::uint64_t index, std::uint64_t pillars) const {
+FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   const std::uint64_t first_contact = count_at(kFirstContact, index);
   const std::uint64_t contacts = count_at(kContactCount, index);
   const std::uint64_t first_ended = count_at(kFirstEnded, index);
   const std::uint64_t ended = count_at(kEndedCount, index);
   require_rows(contacts_, first_contact, contacts);
   require_rows(ended_, first_ended, ended);
-  if (std::max(contacts, ended) > pillars) {
-    throw Error(path_.string(),
-                fmt::format("frame {} has {} contacts that are there or gone, and {} pillars",
-                            index, std::max(contacts, ended), pillars),
-                hdf5::kDamaged);
+  if (std::max(contacts, ended) > kMostContacts) {
+    throw Error(
+        path_.string(),
+        fmt::format("frame {} claims to have {} contacts", index, std::max(contacts, ended)),
+        hdf5::kDamaged);
   }
 
   FrameContacts frame;

@@ -19,8 +19,8 @@ class ContactTablesReader {
   [[nodiscard]] const ContactOptions& options() const { return options_; }
 
   /// All of frame `index` < frames() but its time. Throws Error where the tables contradict each
-  /// other, or the frame has more contacts than its `pillars`.
-  [[nodiscard]] FrameContacts read(std::uint64_t index, std::uint64_t pillars) const;
+  /// other, or the frame claims to have more than a million contacts.
+  [[nodiscard]] FrameContacts read(std::uint64_t index) const;
 
  private:
   /// The datasets of a group, in the order of its columns, and how many rows all of them have.

@@ -181,8 +181,7 @@ FrameContacts ForceFileReader::read_contacts(std::uint64_t index) const {
   if (!state_->contacts) {
     throw Error(state_->file.path.string(), "holds no contacts", "solve with --contacts");
   }
-  FrameContacts contacts =
-      state_->contacts->read(index, std::uint64_t{state_->info.rows} * state_->info.cols);
+  FrameContacts contacts = state_->contacts->read(index);
   state_->time.get(index, H5T_NATIVE_DOUBLE, &contacts.time_s);
   return contacts;
 }

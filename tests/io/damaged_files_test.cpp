@@ -51,7 +51,7 @@ struct DamagedFile {
 
 const DamagedFile kRefused[] = {
     {"ext_link_fifo.h5", read_recording_whole, {"is a link", "another file"}},
-    {"fc_swmr_loop.h5", read_forces_whole, {"/contacts"}},
+    {"fc_swmr_loop.h5", read_forces_whole, {"/force/", "1099511627776"}},
     {"frames_2e62.h5", read_recording_whole, {"/frames/", "4611686018427387903"}},
     {"hang_variable_string.h5", read_recording_whole, {"does not come to an end"}},
     {"short_chunk.h5", read_recording_whole, {"/frames/raw", "inflates to 16 bytes", "20480"}},

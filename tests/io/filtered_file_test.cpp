@@ -55,7 +55,8 @@ void write_recording(const std::filesystem::path& path, const std::vector<hsize_
   const hid_t group = H5Gcreate2(file, "/frames", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 
   const hsize_t extent[] = {kFrames, kRows, kCols};
-  const hid_t space = H5Screate_simple(3, extent, nullptr);
+  const hsize_t most[] = {H5S_UNLIMITED, H5S_UNLIMITED, H5S_UNLIMITED};
+  const hid_t space = H5Screate_simple(3, extent, most);
   const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_chunk(layout, 3, chunk.data());
   filters(layout);

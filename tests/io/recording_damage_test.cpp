@@ -27,6 +27,9 @@ using io_test::write_bytes;
 constexpr std::uint32_t kSize = 6;  // sensel rows and columns
 constexpr std::uint64_t kFrames = 5;
 
+/// Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
+constexpr ReadOptions kTrusted = {.trust = true};
+
 /// A recording that has all a recording can have.
 void write_full_recording(const std::filesystem::path& path) {
   Skin skin;
@@ -120,9 +123,9 @@ const float kInfinity = std::numeric_limits<float>::infinity();
 const Damage kDamages[] = {
     {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no 'format'"}},
     {"other format", [](hid_t f) { set_text(f, "/", "format", "cheese"); }, {"'cheese'"}},
-    {"a force file",
+    {"a force file by its format alone",
      [](hid_t f) { set_text(f, "/", "format", "pillarfield-forces"); },
-     {"pillarfield-forces", "solved forces"}},
+     {"has no /force/shear_x"}},
     {"format a number", [](hid_t f) { set_number(f, "/", "format", 1); }, {"'format'", "string"}},
     {"no version",
      [](hid_t f) { remove_attribute(f, "/", "version"); },
@@ -356,7 +359,8 @@ TEST(RecordingDamage, ATruncatedFileIsAnErrorAtEveryLength) {
   const std::size_t step = whole.size() / 200;
   for (std::size_t size = 0; size < whole.size(); size += size < 64 ? 1 : step) {
     write_bytes(path, whole.substr(0, size));
-    EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }), {path.string()})) << size;
+    EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path, kTrusted); }), {path.string()}))
+        << size;
   }
 }
 
@@ -372,7 +376,7 @@ TEST(RecordingDamage, ABrokenByteNeverCrashes) {
     bytes[at] = static_cast<char>(io_test::number_at(trial, 1));
     write_bytes(path, bytes);
     try {
-      const auto source = open_frames(path);
+      const auto source = open_frames(path, kTrusted);
       FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
       for (std::uint64_t index = 0; index < source->frames(); ++index) source->read(index, frame);
     } catch (const Error& error) {
