@@ -183,6 +183,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.footer(kFooter);
   app.add_option("source", options.source, "Scene, recording, Tekscan export or force fields")
       ->required();
+  app.add_flag("--trust-input", options.trust_input,
+               "Do not try HDF5 files in a process of their own before they are read");
   add_texts(app, options);
   std::uint64_t frame = 1;
   auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1]")

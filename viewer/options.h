@@ -12,6 +12,7 @@ namespace pillarfield::viewer {
 /// The command line.
 struct Options {
   std::filesystem::path source;
+  bool trust_input = false;
   std::string device;  ///< of OpenCL, for solving
   std::string gpu;     ///< of Vulkan, for drawing
   std::uint32_t width = 1280;

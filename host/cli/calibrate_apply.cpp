@@ -34,8 +34,9 @@ void copy_frames(FrameSource& source, const ApplyCommand& command, RecordingWrit
 
 void run(const ApplyCommand& command) {
   check_step_output({command.recording}, command.step, OutputKind::recording);
-  const std::unique_ptr<FrameSource> source = open_for_step(command.recording);
-  const SkinCalibration calibration = read_calibration_file(command.step.calibration);
+  const std::unique_ptr<FrameSource> source = open_for_step(command.recording, command.step);
+  const SkinCalibration calibration =
+      read_calibration_file(command.step.calibration, command.step.read);
   require_fitting(calibration, source->skin(), command.recording);
   Skin skin = source->skin();
   Calibration planes = source->calibration();

@@ -24,7 +24,7 @@ struct FaultsCommand {
 
 FaultResult find_faults(const FaultsCommand& command) {
   check_step_output({command.frames}, command.step, OutputKind::calibration);
-  const std::unique_ptr<FrameSource> source = open_for_step(command.frames);
+  const std::unique_ptr<FrameSource> source = open_for_step(command.frames, command.step);
   FaultFinder finder(command.frames, source->skin(), source->sensel_type(),
                      calibration_before(command.step, *source, command.frames), command.faults);
   FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);

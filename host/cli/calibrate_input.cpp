@@ -6,6 +6,7 @@
 #include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/remarks.h"
+#include "cli/trust_option.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 
@@ -31,6 +32,7 @@ FrameStatistics statistics_of(FrameSource& source, const std::string& file,
 void add_step_options(CLI::App& command, StepOptions& options, const char* wrote) {
   command.add_option("-o,--output", options.output, wrote)->required();
   add_overwrite_option(command, options.replace);
+  add_trust_option(command, options.read);
   command.add_flag("--json", options.json, "Print the summary as JSON");
   command.add_flag("-q,--quiet", options.quiet, "Show no progress");
 }
@@ -48,8 +50,8 @@ void check_step_output(const std::vector<std::string>& files, const StepOptions&
   check_outputs(inputs, {{options.output, kind}}, options.replace);
 }
 
-std::unique_ptr<FrameSource> open_for_step(const std::string& file) {
-  std::unique_ptr<FrameSource> source = open_frames(file);
+std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
+  std::unique_ptr<FrameSource> source = open_frames(file, options.read);
   print_file_remarks(file, source->remarks());
   return source;
 }
@@ -58,7 +60,7 @@ SkinCalibration calibration_before(const StepOptions& options, const FrameSource
                                    const std::string& file) {
   SkinCalibration calibration = options.calibration.empty()
                                     ? blank_calibration(source.skin())
-                                    : read_calibration_file(options.calibration);
+                                    : read_calibration_file(options.calibration, options.read);
   require_fitting(calibration, source.skin(), file);
   mask_missing(calibration, source.calibration().mask);
   return calibration;
@@ -68,7 +70,7 @@ StepInput read_input(const std::vector<std::string>& files, const StepOptions& o
   check_step_output(files, options, OutputKind::calibration);
   StepInput input;
   for (const std::string& file : files) {
-    const std::unique_ptr<FrameSource> source = open_for_step(file);
+    const std::unique_ptr<FrameSource> source = open_for_step(file, options);
     if (input.files.empty()) input.before = calibration_before(options, *source, file);
     require_fitting(input.before, source->skin(), file);
     mask_missing(input.before, source->calibration().mask);

@@ -18,11 +18,12 @@ struct StepOptions {
   std::string calibration;  ///< file to go on from; empty where there is none
   std::string output;
   Replace replace = Replace::results;
+  ReadOptions read;
   bool json = false;
   bool quiet = false;
 };
 
-/// --output, --overwrite, --json and --quiet; `wrote` says what the output is.
+/// --output, --overwrite, --trust-input, --json and --quiet; `wrote` says what the output is.
 void add_step_options(CLI::App& command, StepOptions& options, const char* wrote);
 
 /// --calibration, which is needed.
@@ -31,10 +32,10 @@ void add_calibration_option(CLI::App& command, StepOptions& options);
 /// Throws Error where the step's output cannot be written, or is one of `files` of frames or the
 /// calibration that the step goes on from.
 void check_step_output(const std::vector<std::string>& files, const StepOptions& options,
-                  OutputKind kind);
+                       OutputKind kind);
 
 /// Opens frames and tells their remarks on standard error.
-std::unique_ptr<FrameSource> open_for_step(const std::string& file);
+std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options);
 
 /// The calibration that the options name, or a blank one for the skin of `source`; sensels that
 /// are missing in `source` are masked. Throws Error where the two do not fit.

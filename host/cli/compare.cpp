@@ -10,6 +10,7 @@
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/progress.h"
+#include "cli/trust_option.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/error.h"
@@ -23,6 +24,7 @@ namespace {
 struct CompareOptions {
   std::string forces;
   std::string recording;
+  ReadOptions read;
   bool json = false;
   bool quiet = false;
 };
@@ -154,8 +156,8 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
 }
 
 void compare(const CompareOptions& options) {
-  const ForceFileReader forces(options.forces);
-  const std::unique_ptr<FrameSource> recording = open_frames(options.recording);
+  const ForceFileReader forces(options.forces, options.read);
+  const std::unique_ptr<FrameSource> recording = open_frames(options.recording, options.read);
   const std::uint64_t frames = common_frames(forces, *recording, options);
   const ForceFileInfo& info = forces.info();
   ForceField solved(info.rows, info.cols);
@@ -193,6 +195,7 @@ void add_compare(CLI::App& app, Work& work) {
   command
       ->add_option("RECORDING", options->recording, "The recording they come from, with its truth")
       ->required();
+  add_trust_option(*command, options->read);
   command->add_flag("--json", options->json, "Print the table as JSON");
   command->add_flag("-q,--quiet", options->quiet, "Show no progress");
   command->callback([options, &work] { work = [options] { compare(*options); }; });

@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/json_text.h"
+#include "cli/trust_option.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -21,9 +22,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// A file is opened several times; it is probed once, before, unless it is trusted.
+constexpr ReadOptions kProbed = {.trust = true};
+
 struct InfoOptions {
   std::string file;
   std::string kernel;
+  ReadOptions read;
   bool devices = false;
   bool json = false;
 };
@@ -85,14 +90,12 @@ void add_skin(Json& facts, const Skin& skin) {
 }
 
 Json facts_of_frames(const std::string& file) {
-  const std::unique_ptr<FrameSource> source = open_frames(file);
+  const std::unique_ptr<FrameSource> source = open_frames(file, kProbed);
   Json facts = {{"format", source->format()}, {"frames", source->frames()}};
   facts["sensel_type"] = name_of(source->sensel_type());
   add_skin(facts, source->skin());
   if (source->frames() > 0) {
-    FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
-    const double first = source->read(0, frame);
-    facts["seconds"] = source->read(source->frames() - 1, frame) - first;
+    facts["seconds"] = source->time(source->frames() - 1) - source->time(0);
   }
   facts["calibration"] = plane_names(source->calibration());
   facts["truth"] = source->has_truth();
@@ -101,7 +104,7 @@ Json facts_of_frames(const std::string& file) {
 }
 
 Json facts_of_forces(const std::string& file) {
-  const ForceFileReader reader(file);
+  const ForceFileReader reader(file, kProbed);
   const ForceFileInfo& info = reader.info();
   return {{"format", "force field"},
           {"frames", reader.frames()},
@@ -124,7 +127,7 @@ Json facts_of_step(const CalibrationStep& step) {
 }
 
 Json facts_of_calibration(const std::string& file) {
-  const SkinCalibration calibration = read_calibration_file(file);
+  const SkinCalibration calibration = read_calibration_file(file, kProbed);
   Json facts = {{"format", "calibration"},
                 {"sensel_rows", calibration.rows},
                 {"sensel_cols", calibration.cols},
@@ -158,10 +161,11 @@ Json facts_of_scene(const std::string& file) {
   return facts;
 }
 
-Json facts_of(const std::string& file) {
+Json facts_of(const std::string& file, const ReadOptions& options) {
   if (file.ends_with(".toml")) return facts_of_scene(file);
-  if (is_calibration_file(file)) return facts_of_calibration(file);
-  return is_force_file(file) ? facts_of_forces(file) : facts_of_frames(file);
+  if (!options.trust) probe_file(file);
+  if (is_calibration_file(file, kProbed)) return facts_of_calibration(file);
+  return is_force_file(file, kProbed) ? facts_of_forces(file) : facts_of_frames(file);
 }
 
 void print_why_no_device() {
@@ -220,7 +224,7 @@ void info(const InfoOptions& options) {
   } else if (!options.kernel.empty()) {
     print_kernel(options.kernel);
   } else if (!options.file.empty()) {
-    print_facts(facts_of(options.file), options.json);
+    print_facts(facts_of(options.file, options.read), options.json);
   } else {
     print_facts({{"version", kVersion}, {"license", "MIT"}}, options.json);
     print_devices(options.json);
@@ -242,6 +246,7 @@ void add_info(CLI::App& app, Work& work) {
       "--kernel", options->kernel, "Print the stages of a scene and the OpenCL C compiled for it");
   file->excludes(devices)->excludes(kernel);
   devices->excludes(kernel);
+  add_trust_option(*command, options->read);
   command->add_flag("--json", options->json, "Print as JSON")->excludes(kernel);
   command->callback([options, &work] { work = [options] { info(*options); }; });
 }

@@ -173,7 +173,7 @@ void live(const LiveOptions& options) {
   report.source = options.source;
   report.schedule = schedule_of(options);
   report.deadline = deadline_of(options);
-  LiveFrames frames = open_live_frames(options.source);
+  LiveFrames frames = open_live_frames(options.source, options.plan.read);
   const SolverPlan plan = plan_of(options, frames);
   load(frames, report.schedule.frames, options.memory_limit_mib << 20U, options.quiet);
   report.frames_in_source = frames.in_source;

@@ -46,8 +46,8 @@ LiveFrames simulated(const std::string& file) {
       .loaded = {}};
 }
 
-LiveFrames recorded(const std::string& file) {
-  const std::shared_ptr<FrameSource> source = open_frames(file);
+LiveFrames recorded(const std::string& file, const ReadOptions& options) {
+  const std::shared_ptr<FrameSource> source = open_frames(file, options);
   print_file_remarks(file, source->remarks());
   if (source->frames() == 0) {
     throw Error(file, "it has no frames", "give a recording with one at least");
@@ -65,8 +65,8 @@ LiveFrames recorded(const std::string& file) {
 
 bool is_scene(const std::string& file) { return file.ends_with(".toml"); }
 
-LiveFrames open_live_frames(const std::string& file) {
-  return is_scene(file) ? simulated(file) : recorded(file);
+LiveFrames open_live_frames(const std::string& file, const ReadOptions& options) {
+  return is_scene(file) ? simulated(file) : recorded(file, options);
 }
 
 void load(LiveFrames& live, std::uint64_t most, std::uint64_t memory_bytes, bool quiet) {

@@ -7,6 +7,7 @@
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/frame.h"
+#include "pillarfield/read_options.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield::cli {
@@ -27,7 +28,7 @@ struct LiveFrames {
 
 /// Opens a scene, recording or Tekscan export; no frame is loaded yet. Remarks of the file go to
 /// standard error. Throws Error where it cannot be read or has no frames.
-[[nodiscard]] LiveFrames open_live_frames(const std::string& file);
+[[nodiscard]] LiveFrames open_live_frames(const std::string& file, const ReadOptions& options);
 
 /// Loads frames: as many as there are, `most` of them at most, and no more than fit into
 /// `memory_bytes`. Throws Error where not one fits.

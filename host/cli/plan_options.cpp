@@ -5,6 +5,7 @@
 
 #include "cli/choice.h"
 #include "cli/number_range.h"
+#include "cli/trust_option.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
@@ -37,8 +38,8 @@ std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
   return scene.baseline_time_s;
 }
 
-void apply_calibration(const std::string& file, const std::string& source, SolverPlan& plan) {
-  const SkinCalibration calibration = read_calibration_file(file);
+void apply_calibration(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
+  const SkinCalibration calibration = read_calibration_file(options.calibration, options.read);
   require_fitting(calibration, plan.skin, source);
   apply(calibration, plan.skin, plan.calibration);
 }
@@ -105,6 +106,7 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
                      "Take the sensor's constants and the parity test from a scene file");
   command.add_option("--calibration", options.calibration,
                      "Take planes and constants from a calibration made by calibrate");
+  add_trust_option(command, options.read);
   add_choice<Estimator>(
       command, "--estimator", options.estimator,
       {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"field", Estimator::field}},
@@ -145,7 +147,7 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
                    const std::function<double()>& frame_interval_s) {
   std::optional<double> baseline_time_s;
   if (!options.scene.empty()) baseline_time_s = apply_scene(options.scene, plan);
-  if (!options.calibration.empty()) apply_calibration(options.calibration, source, plan);
+  if (!options.calibration.empty()) apply_calibration(options, source, plan);
   apply_numbers(options, plan);
   if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
   if (options.estimator) plan.estimator = *options.estimator;

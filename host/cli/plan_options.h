@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "pillarfield/read_options.h"
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield::cli {
 
 /// What is computed and from which sensor, as far as the command line says.
 struct PlanOptions {
+  ReadOptions read;  ///< of the frames and the calibration
   std::string scene;
   std::string calibration;
   std::optional<Estimator> estimator;
@@ -30,7 +32,7 @@ struct PlanOptions {
   bool everything = false;
 };
 
-/// --scene, --calibration, --estimator, ... of every command that solves frames.
+/// --scene, --calibration, --trust-input, --estimator, ... of every command that solves frames.
 void add_plan_options(CLI::App& command, PlanOptions& options);
 
 /// The plan for frames of the skin, sensel type and calibration of `plan`: what the scene says of

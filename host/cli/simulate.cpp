@@ -6,9 +6,9 @@
 
 #include "cli/command.h"
 #include "cli/interrupt.h"
-#include "cli/output_options.h"
 #include "cli/json_text.h"
 #include "cli/number_range.h"
+#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/stopwatch.h"
 #include "pillarfield/printable.h"

@@ -8,8 +8,8 @@
 #include "cli/contact_output.h"
 #include "cli/device_options.h"
 #include "cli/interrupt.h"
-#include "cli/output_options.h"
 #include "cli/json_text.h"
+#include "cli/output_options.h"
 #include "cli/plan_options.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
@@ -44,10 +44,8 @@ struct SolveSummary {
 
 /// Seconds from one frame to the next; throws where the file does not tell.
 double frame_interval(const SolveOptions& options, FrameSource& source) {
-  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
   if (source.frames() >= 2) {
-    const double first = source.read(0, frame);
-    const double interval = (source.read(source.frames() - 1, frame) - first) /
+    const double interval = (source.time(source.frames() - 1) - source.time(0)) /
                             static_cast<double>(source.frames() - 1);
     if (interval > 0) return interval;
   }
@@ -211,7 +209,7 @@ void solve(SolveOptions options) {
   const Stopwatch watch;
   check(options.contacts, options.output);
   check_solve_outputs(options);
-  const std::unique_ptr<FrameSource> source = open_frames(options.input);
+  const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
   print_file_remarks(options.input, source->remarks());
   const SolverPlan plan = plan_of(options, *source);
   take_friction(plan, options.contacts.contacts);

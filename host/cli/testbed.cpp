@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include "cli/command.h"
-#include "cli/output_options.h"
 #include "cli/json_text.h"
 #include "cli/number_range.h"
+#include "cli/output_options.h"
 #include "pillarfield/printable.h"
 #include "testbed/figures.h"
 #include "testbed/magnitude.h"

@@ -36,12 +36,26 @@ std::size_t count_masked(const Calibration& calibration) {
       std::count(calibration.mask.begin(), calibration.mask.end(), std::uint8_t{0}));
 }
 
-void check(const Calibration& calibration, const Skin& skin, std::string_view where) {
-  check_plane(calibration.tare, "tare", skin, where, -kMaxCounts, kMaxCounts);
+double largest_plane_counts(SenselType type) {
+  switch (type) {
+    case SenselType::u8:
+      return 255;
+    case SenselType::u16:
+      return 65535;
+    case SenselType::f32:
+      break;
+  }
+  return kMaxPlaneCounts;
+}
+
+void check(const Calibration& calibration, const Skin& skin, std::string_view where,
+           std::optional<SenselType> type) {
+  const double largest = largest_plane_counts(type.value_or(SenselType::f32));
+  check_plane(calibration.tare, "tare", skin, where, -largest, largest);
   check_plane(calibration.gain, "gain", skin, where, kMinGain, kMaxGain);
-  check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, kMaxCounts);
+  check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, largest);
   check_plane(calibration.mask, "mask", skin, where, 0, 1);
-  check_plane(calibration.noise, "noise", skin, where, 0, kMaxNoiseCounts);
+  check_plane(calibration.noise, "noise", skin, where, 0, std::min(largest, kMaxNoiseCounts));
 }
 
 }  // namespace pillarfield

@@ -78,7 +78,7 @@ const char* name_of(Estimator estimator) {
 
 void check(const SolverPlan& plan, std::string_view where) {
   check(plan.skin, where);
-  check(plan.calibration, plan.skin, where);
+  check(plan.calibration, plan.skin, where, plan.sensel_type);
   check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
   check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
   if (plan.baseline_rate && !(*plan.baseline_rate > 0 && *plan.baseline_rate <= 1)) {

@@ -12,14 +12,14 @@
 #include "io/file_kind.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
+#include "io/hdf5_links.h"
+#include "io/hdf5_readers.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
-
-namespace layout = calibration_format;
 
 /// A history has some ten steps; a damaged file must not make anyone read for ever.
 constexpr int kMostSteps = 10000;
@@ -31,7 +31,9 @@ Skin size_of_skin(const SkinCalibration& calibration) {
   return skin;
 }
 
-std::string group_of_step(int number) { return fmt::format("{}/{}", layout::kHistory, number); }
+std::string group_of_step(int number) {
+  return fmt::format("{}/{}", calibration_format::kHistory, number);
+}
 
 // Writing
 
@@ -40,32 +42,34 @@ void write_step(const hdf5::File& file, const std::string& name, const Calibrati
   const auto write = [&](const char* attribute, const auto& value) {
     hdf5::write_attribute(file, group.get(), attribute, value);
   };
-  write(layout::kStep, step.step);
-  write(layout::kSources, fmt::format("{}", fmt::join(step.sources, "\n")));
+  write(calibration_format::kStep, step.step);
+  write(calibration_format::kSources, fmt::format("{}", fmt::join(step.sources, "\n")));
   constexpr std::uint64_t kMostFrames = std::numeric_limits<int>::max();
-  write(layout::kStepFrames, static_cast<int>(std::min(step.frames, kMostFrames)));
-  write(layout::kParameters, step.parameters);
-  write(layout::kDate, step.date_utc);
-  write(layout::kProgramVersion, step.program_version);
+  write(calibration_format::kStepFrames, static_cast<int>(std::min(step.frames, kMostFrames)));
+  write(calibration_format::kParameters, step.parameters);
+  write(calibration_format::kDate, step.date_utc);
+  write(calibration_format::kProgramVersion, step.program_version);
 }
 
 void write_history(const hdf5::File& file, const std::vector<CalibrationStep>& history) {
   if (history.empty()) return;
-  const hdf5::Handle group = hdf5::create_group(file, layout::kHistory);
+  const hdf5::Handle group = hdf5::create_group(file, calibration_format::kHistory);
   int number = 0;
   for (const CalibrationStep& step : history) write_step(file, group_of_step(++number), step);
 }
 
 void write_all(const hdf5::File& file, const SkinCalibration& calibration) {
-  hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));
-  hdf5::write_attribute(file, file.id.get(), "version", layout::kVersion);
+  hdf5::write_attribute(file, file.id.get(), "format", std::string(calibration_format::kName));
+  hdf5::write_attribute(file, file.id.get(), "version", calibration_format::kVersion);
   const hdf5::Handle skin =
       write_skin(file, {std::nullopt, calibration.counts_per_newton, calibration.threshold_counts,
                         std::nullopt, calibration.power_law});
-  hdf5::write_attribute(file, skin.get(), layout::kRows, static_cast<int>(calibration.rows));
-  hdf5::write_attribute(file, skin.get(), layout::kCols, static_cast<int>(calibration.cols));
+  hdf5::write_attribute(file, skin.get(), calibration_format::kRows,
+                        static_cast<int>(calibration.rows));
+  hdf5::write_attribute(file, skin.get(), calibration_format::kCols,
+                        static_cast<int>(calibration.cols));
   if (calibration.threshold_factor) {
-    hdf5::write_attribute(file, skin.get(), layout::kThresholdFactor,
+    hdf5::write_attribute(file, skin.get(), calibration_format::kThresholdFactor,
                           *calibration.threshold_factor);
   }
   write_planes(file, size_of_skin(calibration), calibration.planes);
@@ -96,21 +100,20 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 CalibrationStep read_step(const hdf5::File& file, const std::string& name) {
-  const hdf5::Handle group =
-      hdf5::own(H5Gopen2(file.id.get(), name.c_str(), H5P_DEFAULT), file.path,
-                fmt::format("{} cannot be opened", name), hdf5::kDamaged);
+  const hdf5::Handle group = hdf5::open_object(file, name.c_str());
   const auto text = [&](const char* attribute) {
     return hdf5::read_text(file, group.get(), attribute).value_or("");
   };
   CalibrationStep step;
-  step.step = text(layout::kStep);
-  step.sources = lines_of(text(layout::kSources));
-  const double frames = hdf5::read_number(file, group.get(), layout::kStepFrames).value_or(0);
+  step.step = text(calibration_format::kStep);
+  step.sources = lines_of(text(calibration_format::kSources));
+  const double frames =
+      hdf5::read_number(file, group.get(), calibration_format::kStepFrames).value_or(0);
   // Beyond 2^53 it is no count, and NaN is none either.
   step.frames = frames >= 0 && frames < 0x1p53 ? static_cast<std::uint64_t>(frames) : 0;
-  step.parameters = text(layout::kParameters);
-  step.date_utc = text(layout::kDate);
-  step.program_version = text(layout::kProgramVersion);
+  step.parameters = text(calibration_format::kParameters);
+  step.date_utc = text(calibration_format::kDate);
+  step.program_version = text(calibration_format::kProgramVersion);
   return step;
 }
 
@@ -126,34 +129,39 @@ std::vector<CalibrationStep> read_history(const hdf5::File& file) {
 
 }  // namespace
 
-bool is_calibration_file(const std::filesystem::path& path) {
+bool is_calibration_file(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
   try {
     if (kind_of(path) != FileKind::hdf5) return false;
-    const hdf5::File file = hdf5::open_to_read(path);
-    return hdf5::read_text(file, file.id.get(), "format") == layout::kName;
+    const hdf5::File file = open_probed(path, options);
+    return hdf5::read_text(file, file.id.get(), "format") == calibration_format::kName;
   } catch (const Error&) {
     return false;
   }
 }
 
-SkinCalibration read_calibration_file(const std::filesystem::path& path) {
+SkinCalibration read_calibration_file(const std::filesystem::path& path,
+                                      const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  const hdf5::File file = hdf5::open_to_read(path);
-  hdf5::require_format(file, layout::kName, layout::kVersion);
+  return read_calibration(open_probed(path, options));
+}
+
+SkinCalibration read_calibration(const hdf5::File& file) {
+  hdf5::require_format(file, calibration_format::kName, calibration_format::kVersion);
   const hdf5::Handle skin = open_skin(file);
-  if (!skin.valid()) throw Error(path.string(), "has no /skin", hdf5::kDamaged);
+  if (!skin.valid()) throw Error(file.path.string(), "has no /skin", hdf5::kDamaged);
   SkinCalibration calibration;
-  calibration.rows = read_size(file, skin.get(), layout::kRows);
-  calibration.cols = read_size(file, skin.get(), layout::kCols);
+  calibration.rows = read_size(file, skin.get(), calibration_format::kRows);
+  calibration.cols = read_size(file, skin.get(), calibration_format::kCols);
   const StoredSkin constants = read_skin(file);
   calibration.counts_per_newton = constants.counts_per_newton;
   calibration.threshold_counts = constants.threshold_counts;
   calibration.power_law = constants.power_law;
-  calibration.threshold_factor = hdf5::read_number(file, skin.get(), layout::kThresholdFactor);
+  calibration.threshold_factor =
+      hdf5::read_number(file, skin.get(), calibration_format::kThresholdFactor);
   calibration.planes = read_planes(file, size_of_skin(calibration));
   calibration.history = read_history(file);
-  check(calibration, path.c_str());
+  check(calibration, file.path.c_str());
   return calibration;
 }
 

@@ -8,9 +8,9 @@ namespace pillarfield {
 namespace {
 
 /// A line for the patch, for each contact and for each that ended.
-class CsvSink final : public ContactSink {
+class ContactCsvSink final : public ContactSink {
  public:
-  CsvSink(const std::filesystem::path& path, Replace replace);
+  ContactCsvSink(const std::filesystem::path& path, Replace replace);
 
   void append(const FrameContacts& frame) override;
   void finish() override { file_.finish(); }
@@ -26,35 +26,35 @@ class CsvSink final : public ContactSink {
   std::uint64_t frames_ = 0;
 };
 
-CsvSink::CsvSink(const std::filesystem::path& path, Replace replace)
+ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, Replace replace)
     : path_(path), file_(path, OutputKind::contact_table, replace) {
   file_.write("row,frame,time_s,id,parent,merged_into,first_time_s,age_s");
   for (const auto& column : quantity_columns()) file_.write(fmt::format(",{}", column.name));
   file_.write("\n");
 }
 
-void CsvSink::add_quantities(const ContactQuantities& quantities) {
+void ContactCsvSink::add_quantities(const ContactQuantities& quantities) {
   for (const auto& column : quantity_columns()) {
     file_.write(fmt::format(",{}", text_of(column, quantities, "")));
   }
   file_.write("\n");
 }
 
-void CsvSink::add_contact(const TrackedContact& contact) {
+void ContactCsvSink::add_contact(const TrackedContact& contact) {
   const std::string parent = contact.parent ? fmt::format("{}", *contact.parent) : "";
   file_.write(fmt::format("contact,{}{},{},,{},{}", frame_cells_, contact.id, parent,
                           contact.first_time_s, contact.age_s));
   add_quantities(contact.quantities);
 }
 
-void CsvSink::add_ended(const EndedContact& contact) {
+void ContactCsvSink::add_ended(const EndedContact& contact) {
   const std::string merged = contact.merged_into ? fmt::format("{}", *contact.merged_into) : "";
   file_.write(fmt::format("ended,{}{},,{},{},{}", frame_cells_, contact.id, merged,
                           contact.first_time_s, contact.last_time_s - contact.first_time_s));
   file_.write(std::string(quantity_columns().size(), ',') + "\n");
 }
 
-void CsvSink::append(const FrameContacts& frame) {
+void ContactCsvSink::append(const FrameContacts& frame) {
   file_.require_open();
   check(frame, path_);
   frame_cells_ = fmt::format("{},{},", frames_, frame.time_s);
@@ -70,7 +70,7 @@ void CsvSink::append(const FrameContacts& frame) {
 std::unique_ptr<ContactSink> create_contact_csv_sink(const std::filesystem::path& path,
                                                      const ContactFileInfo& /*info*/,
                                                      Replace replace) {
-  return std::make_unique<CsvSink>(path, replace);
+  return std::make_unique<ContactCsvSink>(path, replace);
 }
 
 }  // namespace pillarfield

@@ -9,12 +9,14 @@
 #include "io/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5_attribute.h"
+#include "io/hdf5_links.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
-namespace layout = force_format;
+/// Of a frame, so that a damaged file makes nobody ask for more than some hundred megabytes.
+constexpr std::uint64_t kMostContacts = 1'000'000;
 
 /// Places in kPatchRows.
 enum PatchRow : std::uint8_t { kFirstContact, kContactCount, kFirstEnded, kEndedCount };
@@ -35,49 +37,50 @@ void read_columns(std::span<const ContactColumn<Row>> columns, const hdf5::Store
 
 void ContactTablesReader::Table::open(const hdf5::File& file, const std::string& group,
                                       const char* name) {
-  columns.emplace_back(file, (group + "/" + name).c_str(), 0);
-  const H5T_class_t kind = columns.back().value_class();
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT) {
-    throw Error(file.path.string(), fmt::format("{} holds no numbers", columns.back().name()),
-                "docs/formats.md tells its type");
-  }
+  columns.emplace_back(file, group + "/" + name, 0);
   rows = columns.size() == 1 ? columns.back().frames() : std::min(rows, columns.back().frames());
 }
 
 ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.path) {
   read_options(file);
   for (const auto& column : identity_columns())
-    contacts_.open(file, layout::kContacts, column.name);
+    contacts_.open(file, force_format::kContacts, column.name);
   for (const auto& column : quantity_columns())
-    contacts_.open(file, layout::kContacts, column.name);
-  for (const char* name : layout::kPatchRows) patch_.open(file, layout::kPatch, name);
-  for (const auto& column : quantity_columns()) patch_.open(file, layout::kPatch, column.name);
-  for (const auto& column : ended_columns()) ended_.open(file, layout::kEnded, column.name);
-  count_frames(file.unclosed);
+    contacts_.open(file, force_format::kContacts, column.name);
+  for (const char* name : force_format::kPatchRows) patch_.open(file, force_format::kPatch, name);
+  for (const auto& column : quantity_columns())
+    patch_.open(file, force_format::kPatch, column.name);
+  for (const auto& column : ended_columns()) ended_.open(file, force_format::kEnded, column.name);
+  frames_ = patch_.rows;
+  if (file.unclosed) drop_frames_without_rows();
 }
 
-void ContactTablesReader::count_frames(bool unclosed) {
-  // Of a writer that was killed, the last frames may have told of rows that are not there.
-  frames_ = patch_.rows;
-  while (unclosed && frames_ > 0 &&
-         (count_at(kFirstContact, frames_ - 1) + count_at(kContactCount, frames_ - 1) >
-              contacts_.rows ||
-          count_at(kFirstEnded, frames_ - 1) + count_at(kEndedCount, frames_ - 1) > ended_.rows)) {
-    --frames_;
+/// Of a writer that was killed, the last frames may have told of rows that are not there. The rows
+/// of one frame lie behind those of the frame before.
+void ContactTablesReader::drop_frames_without_rows() {
+  std::uint64_t good = 0;
+  for (std::uint64_t beyond = frames_ + 1; beyond - good > 1;) {
+    const std::uint64_t middle = good + (beyond - good) / 2;
+    (has_rows_of(middle - 1) ? good : beyond) = middle;
   }
+  frames_ = good;
+}
+
+bool ContactTablesReader::has_rows_of(std::uint64_t index) const {
+  return count_at(kFirstContact, index) + count_at(kContactCount, index) <= contacts_.rows &&
+         count_at(kFirstEnded, index) + count_at(kEndedCount, index) <= ended_.rows;
 }
 
 void ContactTablesReader::read_options(const hdf5::File& file) {
-  const hdf5::Handle group = hdf5::own(H5Gopen2(file.id.get(), layout::kContacts, H5P_DEFAULT),
-                                       file.path, "its contacts cannot be read", hdf5::kDamaged);
-  const auto minimum = hdf5::read_number(file, group.get(), layout::kMinimumPillars);
+  const hdf5::Handle group = hdf5::open_object(file, force_format::kContacts);
+  const auto minimum = hdf5::read_number(file, group.get(), force_format::kMinimumPillars);
   constexpr double kMost = 0x1p53;
   if (minimum && *minimum >= 0 && *minimum <= kMost) {
     options_.minimum_pillars = static_cast<std::uint64_t>(*minimum);
   }
-  options_.friction = hdf5::read_number(file, group.get(), layout::kGivenFriction);
+  options_.friction = hdf5::read_number(file, group.get(), force_format::kGivenFriction);
   options_.reach_mm =
-      hdf5::read_number(file, group.get(), layout::kReach).value_or(options_.reach_mm);
+      hdf5::read_number(file, group.get(), force_format::kReach).value_or(options_.reach_mm);
   check(options_, file.path.string());
 }
 
@@ -104,6 +107,12 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   const std::uint64_t ended = count_at(kEndedCount, index);
   require_rows(contacts_, first_contact, contacts);
   require_rows(ended_, first_ended, ended);
+  if (std::max(contacts, ended) > kMostContacts) {
+    throw Error(
+        path_.string(),
+        fmt::format("frame {} claims to have {} contacts", index, std::max(contacts, ended)),
+        hdf5::kDamaged);
+  }
 
   FrameContacts frame;
   frame.contacts.resize(contacts);
@@ -118,8 +127,8 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
                frame.contacts, quantities);
   read_columns(ended_columns(), ended_.columns.data(), first_ended, frame.ended, itself);
   std::vector<ContactQuantities> patch(1);
-  read_columns(quantity_columns(), patch_.columns.data() + std::size(layout::kPatchRows), index,
-               patch, itself);
+  read_columns(quantity_columns(), patch_.columns.data() + std::size(force_format::kPatchRows),
+               index, patch, itself);
   frame.patch = patch[0];
   return frame;
 }

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "io/hdf5_file.h"
-#include "io/hdf5_frames.h"
+#include "io/hdf5_stored_frames.h"
 #include "pillarfield/contact_tracker.h"
 
 namespace pillarfield {
@@ -19,7 +19,7 @@ class ContactTablesReader {
   [[nodiscard]] const ContactOptions& options() const { return options_; }
 
   /// All of frame `index` < frames() but its time. Throws Error where the tables contradict each
-  /// other.
+  /// other, or the frame claims to have more than a million contacts.
   [[nodiscard]] FrameContacts read(std::uint64_t index) const;
 
  private:
@@ -32,7 +32,8 @@ class ContactTablesReader {
   };
 
   void read_options(const hdf5::File& file);
-  void count_frames(bool unclosed);
+  void drop_frames_without_rows();
+  [[nodiscard]] bool has_rows_of(std::uint64_t index) const;
   [[nodiscard]] std::uint64_t count_at(std::size_t column, std::uint64_t index) const;
   void require_rows(const Table& table, std::uint64_t first, std::uint64_t count) const;
 

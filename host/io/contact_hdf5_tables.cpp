@@ -9,8 +9,6 @@
 namespace pillarfield {
 namespace {
 
-namespace layout = force_format;
-
 hid_t stored_type(ColumnKind kind) {
   switch (kind) {
     case ColumnKind::number:
@@ -50,8 +48,8 @@ void Hdf5Table::add_column(const hdf5::File& file, const std::string& name, hid_
   const std::string path = group_ + "/" + name;
   columns_.push_back({{file, path.c_str(), stored_type, {}}, {}});
   const hid_t dataset = columns_.back().dataset.id();
-  if (!unit.empty()) hdf5::write_attribute(file, dataset, layout::kUnit, unit);
-  if (!words.empty()) hdf5::write_attribute(file, dataset, layout::kWords, words);
+  if (!unit.empty()) hdf5::write_attribute(file, dataset, force_format::kUnit, unit);
+  if (!words.empty()) hdf5::write_attribute(file, dataset, force_format::kWords, words);
 }
 
 void Hdf5Table::put(double value) {
@@ -72,25 +70,27 @@ void Hdf5Table::close() {
 }
 
 ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& options) {
-  contacts_ = {file, layout::kContacts};
-  const hdf5::Handle group = hdf5::own(H5Gopen2(file.id.get(), layout::kContacts, H5P_DEFAULT),
-                                       file.path, "its contacts cannot be written");
-  hdf5::write_attribute(file, group.get(), layout::kMinimumPillars,
+  contacts_ = {file, force_format::kContacts};
+  const hdf5::Handle group =
+      hdf5::own(H5Gopen2(file.id.get(), force_format::kContacts, H5P_DEFAULT), file.path,
+                "its contacts cannot be written");
+  hdf5::write_attribute(file, group.get(), force_format::kMinimumPillars,
                         static_cast<double>(options.minimum_pillars));
-  hdf5::write_attribute(file, group.get(), layout::kReach, options.reach_mm);
+  hdf5::write_attribute(file, group.get(), force_format::kReach, options.reach_mm);
   if (options.friction) {
-    hdf5::write_attribute(file, group.get(), layout::kGivenFriction, *options.friction);
+    hdf5::write_attribute(file, group.get(), force_format::kGivenFriction, *options.friction);
   }
-  contacts_.add_column(file, layout::kFrameColumn, H5T_STD_U64LE, "");
+  contacts_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
   add_columns(file, identity_columns(), contacts_);
   add_columns(file, quantity_columns(), contacts_);
 
-  patch_ = {file, layout::kPatch};
-  for (const char* name : layout::kPatchRows) patch_.add_column(file, name, H5T_STD_U64LE, "");
+  patch_ = {file, force_format::kPatch};
+  for (const char* name : force_format::kPatchRows)
+    patch_.add_column(file, name, H5T_STD_U64LE, "");
   add_columns(file, quantity_columns(), patch_);
 
-  ended_ = {file, layout::kEnded};
-  ended_.add_column(file, layout::kFrameColumn, H5T_STD_U64LE, "");
+  ended_ = {file, force_format::kEnded};
+  ended_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
   add_columns(file, ended_columns(), ended_);
 }
 

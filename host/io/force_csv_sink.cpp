@@ -11,9 +11,9 @@ namespace {
 
 /// One line per pillar with a status other than 0; numbers in the fewest digits that read back
 /// as the same value.
-class CsvSink final : public ForceSink {
+class ForceCsvSink final : public ForceSink {
  public:
-  CsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
+  ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
 
   void append(const ForceFieldView& forces, double time_s) override;
   void finish() override { file_.finish(); }
@@ -30,7 +30,8 @@ class CsvSink final : public ForceSink {
   std::uint64_t frames_ = 0;
 };
 
-CsvSink::CsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
+ForceCsvSink::ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info,
+                           Replace replace)
     : info_(info),
       further_(further_planes(info)),
       path_(path),
@@ -42,7 +43,7 @@ CsvSink::CsvSink(const std::filesystem::path& path, const ForceFileInfo& info, R
   file_.write("\n");
 }
 
-void CsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
+void ForceCsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
   line_.clear();
   line_.append(frame_cells_);
   const auto out = std::back_inserter(line_);
@@ -56,7 +57,7 @@ void CsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
   file_.write(std::string_view(line_.data(), line_.size()));
 }
 
-void CsvSink::append(const ForceFieldView& forces, double time_s) {
+void ForceCsvSink::append(const ForceFieldView& forces, double time_s) {
   file_.require_open();
   check(forces, time_s, info_, path_.string());
   frame_cells_ = fmt::format("{},{},", frames_, time_s);
@@ -70,7 +71,7 @@ void CsvSink::append(const ForceFieldView& forces, double time_s) {
 
 std::unique_ptr<ForceSink> create_csv_sink(const std::filesystem::path& path,
                                            const ForceFileInfo& info, Replace replace) {
-  return std::make_unique<CsvSink>(path, info, replace);
+  return std::make_unique<ForceCsvSink>(path, info, replace);
 }
 
 }  // namespace pillarfield

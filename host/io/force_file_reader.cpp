@@ -9,17 +9,20 @@
 #include "io/force_planes.h"
 #include "io/hdf5_attribute.h"
 #include "io/hdf5_file.h"
-#include "io/hdf5_frames.h"
+#include "io/hdf5_links.h"
+#include "io/hdf5_number_type.h"
+#include "io/hdf5_readers.h"
+#include "io/hdf5_stored_frames.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
 
-namespace layout = force_format;
+namespace {
 
-struct ForceFileReader::State {
-  explicit State(const std::filesystem::path& path);
+struct OpenForces {
+  explicit OpenForces(hdf5::File opened);
 
   void read_size();
   void read_info();
@@ -36,8 +39,6 @@ struct ForceFileReader::State {
   std::vector<std::string> remarks;
 };
 
-namespace {
-
 /// The angles are not: they follow from the force.
 bool is_read(const ForcePlane& plane) {
   return plane.group == "uncertainty" || plane.index < component_planes().size();
@@ -46,26 +47,27 @@ bool is_read(const ForcePlane& plane) {
 void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const char* kind_name,
                    const std::filesystem::path& path) {
   if (frames.value_class() == kind) return;
-  throw Error(path.string(), fmt::format("{} holds no {}", frames.name(), kind_name),
+  throw Error(path.string(),
+              fmt::format("{} holds no {} but {}", frames.name(), kind_name,
+                          hdf5::name_of_type(frames.type())),
               "docs/formats.md tells its type");
 }
 
-}  // namespace
-
-ForceFileReader::State::State(const std::filesystem::path& path) : file(hdf5::open_to_read(path)) {
-  hdf5::require_format(file, layout::kName, layout::kVersion);
-  info.angles = hdf5::exists(file, layout::kMagnitude);
-  info.uncertainty = hdf5::exists(file, layout::kUncertainty);
+OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
+  const std::filesystem::path& path = file.path;
+  hdf5::require_format(file, force_format::kName, force_format::kVersion);
+  info.angles = hdf5::exists(file, force_format::kMagnitude);
+  info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
   for (const ForcePlane& plane : all_planes(info)) {
     if (!is_read(plane)) continue;
-    planes.emplace_back(file, ("/" + plane.group + "/" + plane.name).c_str(), 2);
+    planes.emplace_back(file, "/" + plane.group + "/" + plane.name, 2);
     require_class(planes.back(), H5T_FLOAT, "floats", path);
   }
-  status = {file, layout::kStatus, 2};
+  status = {file, force_format::kStatus, 2};
   require_class(status, H5T_INTEGER, "integers", path);
-  time = {file, layout::kTime, 0};
+  time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
-  if (hdf5::exists(file, layout::kContacts)) {
+  if (hdf5::exists(file, force_format::kContacts)) {
     contacts.emplace(file);
     info.contacts = contacts->options();
   }
@@ -74,7 +76,7 @@ ForceFileReader::State::State(const std::filesystem::path& path) : file(hdf5::op
   count_frames();
 }
 
-void ForceFileReader::State::read_size() {
+void OpenForces::read_size() {
   const auto shape = status.shape();
   for (const hsize_t size : shape) {
     if (size >= 1 && size <= kMaxSensels / 2) continue;
@@ -91,12 +93,12 @@ void ForceFileReader::State::read_size() {
   info.cols = static_cast<std::uint32_t>(shape[1]);
 }
 
-void ForceFileReader::State::read_info() {
+void OpenForces::read_info() {
   const hid_t root = file.id.get();
-  info.estimator = hdf5::read_text(file, root, layout::kEstimator).value_or("");
-  info.device = hdf5::read_text(file, root, layout::kDevice).value_or("");
-  info.source = hdf5::read_text(file, root, layout::kSource).value_or("");
-  const auto pitch_mm = hdf5::read_number(file, root, layout::kPillarPitch);
+  info.estimator = hdf5::read_text(file, root, force_format::kEstimator).value_or("");
+  info.device = hdf5::read_text(file, root, force_format::kDevice).value_or("");
+  info.source = hdf5::read_text(file, root, force_format::kSource).value_or("");
+  const auto pitch_mm = hdf5::read_number(file, root, force_format::kPillarPitch);
   if (!pitch_mm) {
     info.pillar_pitch_mm = Skin().pillar_pitch_mm();
     remarks.push_back(fmt::format("The file gives no pillar pitch; {:.6g} mm are assumed.",
@@ -104,13 +106,13 @@ void ForceFileReader::State::read_info() {
     return;
   }
   if (!std::isfinite(*pitch_mm) || *pitch_mm <= 0) {
-    throw Error(file.path.string(), fmt::format("{} is {}", layout::kPillarPitch, *pitch_mm),
+    throw Error(file.path.string(), fmt::format("{} is {}", force_format::kPillarPitch, *pitch_mm),
                 "it must be above zero");
   }
   info.pillar_pitch_mm = *pitch_mm;
 }
 
-void ForceFileReader::State::count_frames() {
+void OpenForces::count_frames() {
   frames = std::min(time.frames(), status.frames());
   for (const auto& plane : planes) frames = std::min(frames, plane.frames());
   if (contacts) frames = std::min(frames, contacts->frames());
@@ -122,15 +124,23 @@ void ForceFileReader::State::count_frames() {
   }
 }
 
-void ForceFileReader::State::require_frame(std::uint64_t index) const {
+void OpenForces::require_frame(std::uint64_t index) const {
   if (index < frames) return;
   throw Error(file.path.string(), fmt::format("has no frame {}", index),
               fmt::format("it holds {} frames, counted from 0", frames));
 }
 
-ForceFileReader::ForceFileReader(const std::filesystem::path& path) {
+}  // namespace
+
+struct ForceFileReader::State : OpenForces {
+  using OpenForces::OpenForces;
+};
+
+void try_forces(hdf5::File file) { (void)OpenForces(std::move(file)); }
+
+ForceFileReader::ForceFileReader(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  state_ = std::make_unique<State>(path);
+  state_ = std::make_unique<State>(open_probed(path, options));
 }
 
 ForceFileReader::~ForceFileReader() = default;
@@ -174,12 +184,12 @@ FrameContacts ForceFileReader::read_contacts(std::uint64_t index) const {
   return contacts;
 }
 
-bool is_force_file(const std::filesystem::path& path) {
+bool is_force_file(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
   try {
     if (kind_of(path) != FileKind::hdf5) return false;
-    const hdf5::File file = hdf5::open_to_read(path);
-    return hdf5::read_text(file, file.id.get(), "format") == layout::kName;
+    const hdf5::File file = open_probed(path, options);
+    return hdf5::read_text(file, file.id.get(), "format") == force_format::kName;
   } catch (const Error&) {
     return false;
   }

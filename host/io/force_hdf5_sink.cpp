@@ -15,8 +15,6 @@
 namespace pillarfield {
 namespace {
 
-namespace layout = force_format;
-
 constexpr std::uint64_t kFlushEvery = 16;  // frames
 
 constexpr const char* kConvention =
@@ -74,28 +72,28 @@ Hdf5Sink::~Hdf5Sink() {
 
 void Hdf5Sink::write_info() {
   const hid_t root = file_.id.get();
-  hdf5::write_attribute(file_, root, "format", std::string(layout::kName));
-  hdf5::write_attribute(file_, root, "version", layout::kVersion);
-  hdf5::write_attribute(file_, root, layout::kUnit, std::string("N"));
-  hdf5::write_attribute(file_, root, layout::kSignConvention, std::string(kConvention));
-  hdf5::write_attribute(file_, root, layout::kEstimator, info_.estimator);
-  hdf5::write_attribute(file_, root, layout::kDevice, info_.device);
-  hdf5::write_attribute(file_, root, layout::kSource, info_.source);
-  hdf5::write_attribute(file_, root, layout::kProgramVersion, std::string(kVersion));
-  hdf5::write_attribute(file_, root, layout::kPillarPitch, info_.pillar_pitch_mm);
+  hdf5::write_attribute(file_, root, "format", std::string(force_format::kName));
+  hdf5::write_attribute(file_, root, "version", force_format::kVersion);
+  hdf5::write_attribute(file_, root, force_format::kUnit, std::string("N"));
+  hdf5::write_attribute(file_, root, force_format::kSignConvention, std::string(kConvention));
+  hdf5::write_attribute(file_, root, force_format::kEstimator, info_.estimator);
+  hdf5::write_attribute(file_, root, force_format::kDevice, info_.device);
+  hdf5::write_attribute(file_, root, force_format::kSource, info_.source);
+  hdf5::write_attribute(file_, root, force_format::kProgramVersion, std::string(kVersion));
+  hdf5::write_attribute(file_, root, force_format::kPillarPitch, info_.pillar_pitch_mm);
 }
 
 void Hdf5Sink::create_datasets() {
-  const hdf5::Handle force = hdf5::create_group(file_, layout::kForce);
+  const hdf5::Handle force = hdf5::create_group(file_, force_format::kForce);
   const hdf5::Handle uncertainty =
-      info_.uncertainty ? hdf5::create_group(file_, layout::kUncertainty) : hdf5::Handle();
+      info_.uncertainty ? hdf5::create_group(file_, force_format::kUncertainty) : hdf5::Handle();
   const hdf5::FrameShape shape = {info_.rows, info_.cols};
   for (const ForcePlane& plane : all_planes(info_)) {
     const std::string name = "/" + plane.group + "/" + plane.name;
     planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, shape);
   }
-  status_ = {file_, layout::kStatus, H5T_STD_U8LE, shape};
-  time_ = {file_, layout::kTime, H5T_IEEE_F64LE, {}};
+  status_ = {file_, force_format::kStatus, H5T_STD_U8LE, shape};
+  time_ = {file_, force_format::kTime, H5T_IEEE_F64LE, {}};
   if (info_.contacts) contacts_ = {file_, *info_.contacts};
 }
 

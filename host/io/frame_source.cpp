@@ -1,15 +1,17 @@
 #include "io/file_kind.h"
-#include "io/recording_reader.h"
+#include "io/hdf5_readers.h"
 #include "io/tekscan_source.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 
 namespace pillarfield {
 
-std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path) {
+std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
+                                         const ReadOptions& options) {
+  const hdf5::QuietErrors quiet;
   switch (kind_of(path)) {
     case FileKind::hdf5:
-      return open_recording(path);
+      return read_recording(open_probed(path, options));
     case FileKind::tekscan:
       return open_tekscan(path);
     case FileKind::other:

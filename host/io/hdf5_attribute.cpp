@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "io/hdf5_number_type.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {
@@ -94,11 +95,7 @@ void write_attribute(const File& file, hid_t object, const char* name, const std
 std::optional<double> read_number(const File& file, hid_t object, const char* name) {
   const auto attribute = open_single(file, object, name);
   if (!attribute) return std::nullopt;
-  const H5T_class_t kind = H5Tget_class(attribute->type.get());
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT) {
-    throw Error(file.path.string(), fmt::format("attribute '{}' is no number", name),
-                "store an integer or a float");
-  }
+  require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
   double value = 0;
   require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file.path, attribute->failure);
   return value;
@@ -108,7 +105,9 @@ std::optional<std::string> read_text(const File& file, hid_t object, const char*
   const auto attribute = open_single(file, object, name);
   if (!attribute) return std::nullopt;
   if (H5Tget_class(attribute->type.get()) != H5T_STRING) {
-    throw Error(file.path.string(), fmt::format("attribute '{}' is no string", name),
+    throw Error(file.path.string(),
+                fmt::format("attribute '{}' is no string but {}", name,
+                            name_of_type(attribute->type.get())),
                 "store a string");
   }
   const bool variable = H5Tis_variable_str(attribute->type.get()) > 0;

@@ -59,7 +59,7 @@ H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
 
 herr_t close_file(H5FD_t* file) {
   const std::unique_ptr<DriverFile> owned(&ours(file));
-  if (close(owned->descriptor) != 0 && owned->health->error_number == 0) {
+  if (::close(owned->descriptor) != 0 && owned->health->error_number == 0) {
     owned->health->error_number = errno;
   }
   return 0;

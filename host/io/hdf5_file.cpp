@@ -37,7 +37,7 @@ Handle reading_access(const std::filesystem::path& path, bool unclosed) {
 
 }  // namespace
 
-File open_to_read(const std::filesystem::path& path) {
+File open_to_read(const std::filesystem::path& path, bool probing) {
   if (kind_of(path) != FileKind::hdf5) throw Error(path.string(), "is no HDF5 file", kLayout);
   const WriterState state = writer_state(path);
   if (state == WriterState::abandoned) {
@@ -46,6 +46,7 @@ File open_to_read(const std::filesystem::path& path) {
   }
   File file;
   file.path = path;
+  file.probing = probing;
   file.unclosed = state == WriterState::swmr;
   const unsigned mode = H5F_ACC_RDONLY | (file.unclosed ? H5F_ACC_SWMR_READ : 0u);
   const Handle access = reading_access(path, file.unclosed);
@@ -106,18 +107,6 @@ void close(File& file) {
 Handle create_group(const File& file, const char* name) {
   return own(H5Gcreate2(file.id.get(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), file.path,
              kCannotWrite);
-}
-
-bool exists(const File& file, std::string_view path) {
-  // HDF5 wants to be asked link by link.
-  for (std::size_t end = 1; end != std::string_view::npos;) {
-    end = path.find('/', end + 1);
-    const std::string parent(path.substr(0, end));
-    const htri_t found = H5Lexists(file.id.get(), parent.c_str(), H5P_DEFAULT);
-    require(found, file.path, fmt::format("{} cannot be looked up", parent), kDamaged);
-    if (found == 0) return false;
-  }
-  return true;
 }
 
 }  // namespace pillarfield::hdf5

@@ -16,10 +16,13 @@ struct File {
   Handle id;
   std::shared_ptr<WriteHealth> health;  ///< of a file that was created
   bool unclosed = false;                ///< its writer was killed or still writes
+  bool probing = false;                 ///< see open_to_read
 };
 
-/// Opens a file to read it, as a SWMR reader where its writer has not closed it.
-[[nodiscard]] File open_to_read(const std::filesystem::path& path);
+/// Opens a file to read it, as a SWMR reader where its writer has not closed it. With `probing`,
+/// which is for the child process of probe_file(), those that read its datasets refuse frames
+/// beyond kMostProbedValues, and touch what they will read later.
+[[nodiscard]] File open_to_read(const std::filesystem::path& path, bool probing = false);
 
 /// Throws Error unless the root attributes `format` and `version` are these.
 void require_format(const File& file, std::string_view format, int version);
@@ -36,8 +39,5 @@ void close(File& file);
 
 /// Makes a group, all of whose parents exist.
 [[nodiscard]] Handle create_group(const File& file, const char* name);
-
-/// Whether there is an object of this absolute path; its groups may be absent too.
-[[nodiscard]] bool exists(const File& file, std::string_view path);
 
 }  // namespace pillarfield::hdf5

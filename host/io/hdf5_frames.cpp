@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "io/hdf5_layout.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {
@@ -121,40 +120,6 @@ void GrowingDataset::append(hid_t memory_type, const void* frames, std::size_t c
   require(H5Dwrite(dataset_.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, frames),
           path_, failure_);
   require_written(*health_, path_);
-}
-
-StoredFrames::StoredFrames(const File& file, const char* name, std::size_t frame_rank)
-    : path_(file.path), name_(name), dataset_(open_dataset(file, name)) {
-  type_ = own(H5Dget_type(dataset_.get()), path_, name_ + " has no type");
-  extent_ = extent_of(file, dataset_, name);
-  if (extent_.size() != frame_rank + 1) {
-    throw Error(path_.string(), fmt::format("{} has {} dimensions", name, extent_.size()),
-                fmt::format("it needs {}: frames first", frame_rank + 1));
-  }
-  require_within_file(file, dataset_, name);
-}
-
-H5T_class_t StoredFrames::value_class() const { return H5Tget_class(type_.get()); }
-bool StoredFrames::value_signed() const { return H5Tget_sign(type_.get()) == H5T_SGN_2; }
-std::size_t StoredFrames::value_bytes() const { return H5Tget_size(type_.get()); }
-
-void StoredFrames::get(std::uint64_t index, hid_t memory_type, void* frame) const {
-  const std::string failure = fmt::format("frame {} of {} cannot be read", index, name_);
-  const Handle source = frame_selection(path_, failure, extent_, index);
-  const Handle target = memory_selection(path_, failure, extent_, 1);
-  require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, frame),
-          path_, failure, kDamaged);
-}
-
-void StoredFrames::get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type,
-                           void* frames) const {
-  if (count == 0) return;
-  const std::string failure =
-      fmt::format("{} of {} from {} on cannot be read", count, name_, first);
-  const Handle source = frame_selection(path_, failure, extent_, first, count);
-  const Handle target = dense_frames(path_, failure, extent_, count);
-  require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, frames),
-          path_, failure, kDamaged);
 }
 
 }  // namespace pillarfield::hdf5

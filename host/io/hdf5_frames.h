@@ -40,35 +40,4 @@ class GrowingDataset {
   std::vector<hsize_t> extent_;  // of the whole dataset
 };
 
-/// A dataset [frames, ...] to read, with the length it had when it was opened.
-class StoredFrames {
- public:
-  StoredFrames() = default;
-
-  /// Throws Error where the dataset has not `frame_rank` dimensions beside the frames, or claims
-  /// more than its file can hold.
-  StoredFrames(const File& file, const char* name, std::size_t frame_rank);
-
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] std::uint64_t frames() const { return extent_[0]; }
-  [[nodiscard]] FrameShape shape() const { return {extent_.begin() + 1, extent_.end()}; }
-
-  [[nodiscard]] H5T_class_t value_class() const;
-  [[nodiscard]] bool value_signed() const;
-  [[nodiscard]] std::size_t value_bytes() const;
-
-  /// Reads frame `index` < frames(), dense, converted to `memory_type`.
-  void get(std::uint64_t index, hid_t memory_type, void* frame) const;
-
-  /// Reads `count` frames from `first` on, all below frames().
-  void get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type, void* frames) const;
-
- private:
-  std::filesystem::path path_;
-  std::string name_;
-  Handle dataset_;
-  Handle type_;
-  std::vector<hsize_t> extent_;
-};
-
 }  // namespace pillarfield::hdf5

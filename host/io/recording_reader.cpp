@@ -1,5 +1,3 @@
-#include "io/recording_reader.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +7,10 @@
 
 #include "io/file_source.h"
 #include "io/hdf5_file.h"
-#include "io/hdf5_frames.h"
+#include "io/hdf5_links.h"
+#include "io/hdf5_number_type.h"
+#include "io/hdf5_readers.h"
+#include "io/hdf5_stored_frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"
@@ -17,13 +18,12 @@
 namespace pillarfield {
 namespace {
 
-namespace layout = recording_format;
-
 class Recording final : public FileSource {
  public:
-  explicit Recording(const std::filesystem::path& path);
+  explicit Recording(hdf5::File file);
 
   [[nodiscard]] bool has_truth() const override { return !truth_.empty(); }
+  double time(std::uint64_t index) override;
   double read(std::uint64_t index, FrameBuffer& frame) override;
   void read_truth(std::uint64_t index, ForceField& truth) override;
 
@@ -41,30 +41,31 @@ class Recording final : public FileSource {
 };
 
 SenselType sensel_type_of(const hdf5::StoredFrames& raw, const std::filesystem::path& path) {
-  const H5T_class_t kind = raw.value_class();
-  const std::size_t bytes = raw.value_bytes();
-  if (kind == H5T_INTEGER && !raw.value_signed() && bytes == 1) return SenselType::u8;
-  if (kind == H5T_INTEGER && !raw.value_signed() && bytes == 2) return SenselType::u16;
-  if (kind == H5T_FLOAT && bytes == 4) return SenselType::f32;
-  throw Error(path.string(), fmt::format("{} is of no type that readings have", raw.name()),
+  const std::string type = hdf5::name_of_type(raw.type());
+  for (const SenselType each : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    if (type == name_of(each)) return each;
+  }
+  throw Error(path.string(), fmt::format("{} is {}, which readings are not", raw.name(), type),
               "store uint8, uint16 or float32");
 }
 
 void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
   if (frames.value_class() == H5T_FLOAT) return;
-  throw Error(path.string(), fmt::format("{} holds no floats", frames.name()), "store floats");
+  throw Error(
+      path.string(),
+      fmt::format("{} holds no floats but {}", frames.name(), hdf5::name_of_type(frames.type())),
+      "store floats");
 }
 
-Recording::Recording(const std::filesystem::path& path)
-    : FileSource(path, "recording"), file_(hdf5::open_to_read(path)) {
-  hdf5::require_format(file_, layout::kName, layout::kVersion);
-  raw_ = {file_, layout::kRaw, 2};
-  time_ = {file_, layout::kTime, 0};
-  require_floats(time_, path);
-  type_ = sensel_type_of(raw_, path);
+Recording::Recording(hdf5::File file) : FileSource(file.path, "recording"), file_(std::move(file)) {
+  hdf5::require_format(file_, recording_format::kName, recording_format::kVersion);
+  raw_ = {file_, recording_format::kRaw, 2};
+  time_ = {file_, recording_format::kTime, 0};
+  require_floats(time_, path_);
+  type_ = sensel_type_of(raw_, path_);
   read_size();
   take_skin();
-  calibration_ = read_planes(file_, skin_);
+  calibration_ = read_planes(file_, skin_, type_);
   open_truth();
   count_frames();
   remark_on_size();
@@ -78,7 +79,8 @@ void Recording::read_size() {
   const auto shape = raw_.shape();
   for (const hsize_t size : shape) {
     if (size >= 2 && size <= kMaxSensels) continue;
-    throw Error(place(layout::kRaw), fmt::format("its frames are {} x {}", shape[0], shape[1]),
+    throw Error(place(recording_format::kRaw),
+                fmt::format("its frames are {} x {}", shape[0], shape[1]),
                 fmt::format("rows and columns must lie in [2, {}]", kMaxSensels));
   }
   skin_.rows = static_cast<std::uint32_t>(shape[0]);
@@ -94,21 +96,21 @@ void Recording::take_skin() {
       remarks_.push_back(fmt::format("The file gives no {}; {} is assumed.", name, value));
     }
   };
-  take(layout::kPitch, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
-  take(layout::kCountsPerNewton, stored.counts_per_newton, skin_.counts_per_newton);
-  take(layout::kThreshold, stored.threshold_counts, skin_.threshold_counts);
+  take(recording_format::kPitch, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
+  take(recording_format::kCountsPerNewton, stored.counts_per_newton, skin_.counts_per_newton);
+  take(recording_format::kThreshold, stored.threshold_counts, skin_.threshold_counts);
   skin_.full_scale_counts = stored.full_scale_counts;
   skin_.power_law = stored.power_law;
-  check(skin_, place(layout::kSkin).c_str());
+  check(skin_, place(recording_format::kSkin).c_str());
 }
 
 void Recording::open_truth() {
-  if (!hdf5::exists(file_, layout::kTruth)) return;
-  for (const char* name : layout::kTruthPlanes) {
+  if (!hdf5::exists(file_, recording_format::kTruth)) return;
+  for (const char* name : recording_format::kTruthPlanes) {
     truth_.emplace_back(file_, name, 2);
     require_floats(truth_.back(), path_);
     const auto shape = truth_.back().shape();
-    if (shape == hdf5::FrameShape{skin_.pillar_rows(), skin_.pillar_cols()}) continue;
+    if (shape[0] == skin_.pillar_rows() && shape[1] == skin_.pillar_cols()) continue;
     throw Error(place(name), fmt::format("its frames are {} x {}", shape[0], shape[1]),
                 fmt::format("they need {} x {} pillars", skin_.pillar_rows(), skin_.pillar_cols()));
   }
@@ -133,17 +135,23 @@ void Recording::count_frames() {
   }
 }
 
-double Recording::read(std::uint64_t index, FrameBuffer& frame) {
+double Recording::time(std::uint64_t index) {
   const hdf5::QuietErrors quiet;
   require_frame(index);
-  require_fitting(frame);
   double time_s = 0;
   time_.get(index, H5T_NATIVE_DOUBLE, &time_s);
   if (!std::isfinite(time_s)) {
-    throw Error(place(layout::kTime), fmt::format("frame {} has the time {}", index, time_s),
-                "store finite seconds");
+    throw Error(place(recording_format::kTime),
+                fmt::format("frame {} has the time {}", index, time_s), "store finite seconds");
   }
-  raw_.get(index, layout::memory_type_of(type_), frame.bytes().data());
+  return time_s;
+}
+
+double Recording::read(std::uint64_t index, FrameBuffer& frame) {
+  const hdf5::QuietErrors quiet;
+  require_fitting(frame);
+  const double time_s = time(index);
+  raw_.get(index, recording_format::memory_type_of(type_), frame.bytes().data());
   return time_s;
 }
 
@@ -162,9 +170,8 @@ void Recording::read_truth(std::uint64_t index, ForceField& truth) {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_recording(const std::filesystem::path& path) {
-  const hdf5::QuietErrors quiet;
-  return std::make_unique<Recording>(path);
+std::unique_ptr<FrameSource> read_recording(hdf5::File file) {
+  return std::make_unique<Recording>(std::move(file));
 }
 
 }  // namespace pillarfield

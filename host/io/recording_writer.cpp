@@ -15,13 +15,11 @@
 namespace pillarfield {
 namespace {
 
-namespace layout = recording_format;
-
-std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin,
+std::filesystem::path checked(const std::filesystem::path& path, const Skin& skin, SenselType type,
                               const Calibration& calibration,
                               const RecordingWriter::Options& options) {
   check(skin, path.c_str());
-  check(calibration, skin, path.c_str());
+  check(calibration, skin, path.c_str(), type);
   if (options.flush_every == 0) throw Error(path.string(), "flush_every is 0", "flush every frame");
   return path;
 }
@@ -59,11 +57,11 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
     : skin(frame_skin),
       type(sensel_type),
       options(writer_options),
-      path(checked(final_path, frame_skin, calibration, writer_options)),
+      path(checked(final_path, frame_skin, sensel_type, calibration, writer_options)),
       part(path, OutputKind::recording, writer_options.replace),
       file(hdf5::create(part)) {
-  hdf5::write_attribute(file, file.id.get(), "format", std::string(layout::kName));
-  hdf5::write_attribute(file, file.id.get(), "version", layout::kVersion);
+  hdf5::write_attribute(file, file.id.get(), "format", std::string(recording_format::kName));
+  hdf5::write_attribute(file, file.id.get(), "version", recording_format::kVersion);
   write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
                     skin.full_scale_counts, skin.power_law});
   write_planes(file, skin, calibration);
@@ -77,14 +75,15 @@ RecordingWriter::State::~State() {
 }
 
 void RecordingWriter::State::create_datasets() {
-  const hdf5::Handle group = hdf5::create_group(file, layout::kFrames);
-  raw = {file, layout::kRaw, layout::stored_type_of(type), {skin.rows, skin.cols}};
-  time = {file, layout::kTime, H5T_IEEE_F64LE, {}};
+  const hdf5::Handle group = hdf5::create_group(file, recording_format::kFrames);
+  raw = {
+      file, recording_format::kRaw, recording_format::stored_type_of(type), {skin.rows, skin.cols}};
+  time = {file, recording_format::kTime, H5T_IEEE_F64LE, {}};
   if (!options.truth) return;
-  const hdf5::Handle truth_group = hdf5::create_group(file, layout::kTruth);
+  const hdf5::Handle truth_group = hdf5::create_group(file, recording_format::kTruth);
   for (std::size_t plane = 0; plane < truth.size(); ++plane) {
     truth[plane] = {file,
-                    layout::kTruthPlanes[plane],
+                    recording_format::kTruthPlanes[plane],
                     H5T_IEEE_F32LE,
                     {skin.pillar_rows(), skin.pillar_cols()}};
   }
@@ -139,7 +138,7 @@ void RecordingWriter::State::close() {
 }
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Skin& skin,
-                                 SenselType type, const Calibration& calibration,
+                                 SenselType type, SenselType type, const Calibration& calibration,
                                  const Options& options) {
   const hdf5::QuietErrors quiet;
   state_ = std::make_unique<State>(path, skin, type, calibration, options);
@@ -157,7 +156,7 @@ void RecordingWriter::append(const FrameView& frame, double time_s, const ForceF
   const hdf5::QuietErrors quiet;
   state_->require_open();
   state_->check_frame(frame, time_s, truth);
-  state_->raw.put(state_->frames, layout::memory_type_of(state_->type), frame.data,
+  state_->raw.put(state_->frames, recording_format::memory_type_of(state_->type), frame.data,
                   frame.row_stride);
   if (truth != nullptr) state_->put_truth(*truth);
   state_->time.put(state_->frames, H5T_NATIVE_DOUBLE, &time_s);

@@ -2,78 +2,93 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "io/hdf5_attribute.h"
-#include "io/hdf5_layout.h"
+#include "io/hdf5_links.h"
+#include "io/hdf5_plane.h"
 #include "io/recording_format.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
-namespace layout = recording_format;
-
 /// A plane of floats, its name in the file, and where it is kept.
 struct FloatPlane {
   const char* name;
   std::vector<float> Calibration::*member;
 };
-constexpr FloatPlane kFloatPlanes[] = {{layout::kTare, &Calibration::tare},
-                                       {layout::kGain, &Calibration::gain},
-                                       {layout::kDeadZone, &Calibration::dead_zone},
-                                       {layout::kNoise, &Calibration::noise}};
+constexpr FloatPlane kFloatPlanes[] = {{recording_format::kTare, &Calibration::tare},
+                                       {recording_format::kGain, &Calibration::gain},
+                                       {recording_format::kDeadZone, &Calibration::dead_zone},
+                                       {recording_format::kNoise, &Calibration::noise}};
 
 std::optional<PowerLaw> read_power_law(const hdf5::File& file, hid_t skin) {
-  const auto exponent = hdf5::read_number(file, skin, layout::kExponent);
-  const auto reference_counts = hdf5::read_number(file, skin, layout::kReference);
+  const auto exponent = hdf5::read_number(file, skin, recording_format::kExponent);
+  const auto reference_counts = hdf5::read_number(file, skin, recording_format::kReference);
   if (!exponent && !reference_counts) return std::nullopt;
   if (!exponent || !reference_counts) {
-    throw Error(
-        fmt::format("{}: {}", file.path.string(), layout::kSkin),
-        fmt::format("has no attribute '{}'", exponent ? layout::kReference : layout::kExponent),
-        "a power law needs both its numbers");
+    throw Error(fmt::format("{}: {}", file.path.string(), recording_format::kSkin),
+                fmt::format("has no attribute '{}'",
+                            exponent ? recording_format::kReference : recording_format::kExponent),
+                "a power law needs both its numbers");
   }
   return PowerLaw{*exponent, *reference_counts};
+}
+
+/// A mask may be stored as numbers of any type.
+std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& skin,
+                                  const std::string& place) {
+  std::vector<std::uint8_t> mask(plane.size());
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    if (plane[i] != 0.0f && plane[i] != 1.0f) {
+      throw Error(place,
+                  fmt::format("calibration plane 'mask' is {} at row {}, column {}", plane[i],
+                              i / skin.cols, i % skin.cols),
+                  "it must be 0 or 1");
+    }
+    mask[i] = plane[i] == 1.0f ? 1 : 0;
+  }
+  return mask;
 }
 
 }  // namespace
 
 hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
-  hdf5::Handle group = hdf5::create_group(file, layout::kSkin);
+  hdf5::Handle group = hdf5::create_group(file, recording_format::kSkin);
   const auto write = [&](const char* name, const std::optional<double>& value) {
     if (value) hdf5::write_attribute(file, group.get(), name, *value);
   };
-  write(layout::kPitch, skin.sensel_pitch_mm);
-  write(layout::kCountsPerNewton, skin.counts_per_newton);
-  write(layout::kThreshold, skin.threshold_counts);
-  write(layout::kFullScale, skin.full_scale_counts);
+  write(recording_format::kPitch, skin.sensel_pitch_mm);
+  write(recording_format::kCountsPerNewton, skin.counts_per_newton);
+  write(recording_format::kThreshold, skin.threshold_counts);
+  write(recording_format::kFullScale, skin.full_scale_counts);
   if (skin.power_law) {
-    write(layout::kExponent, skin.power_law->exponent);
-    write(layout::kReference, skin.power_law->reference_counts);
+    write(recording_format::kExponent, skin.power_law->exponent);
+    write(recording_format::kReference, skin.power_law->reference_counts);
   }
   return group;
 }
 
 hdf5::Handle open_skin(const hdf5::File& file) {
-  if (!hdf5::exists(file, layout::kSkin)) return {};
-  return hdf5::own(H5Oopen(file.id.get(), layout::kSkin, H5P_DEFAULT), file.path,
-                   "/skin cannot be opened", hdf5::kDamaged);
+  if (!hdf5::exists(file, recording_format::kSkin)) return {};
+  return hdf5::open_object(file, recording_format::kSkin);
 }
 
 StoredSkin read_skin(const hdf5::File& file) {
   const hdf5::Handle object = open_skin(file);
   if (!object.valid()) return {};
   const auto read = [&](const char* name) { return hdf5::read_number(file, object.get(), name); };
-  return {read(layout::kPitch), read(layout::kCountsPerNewton), read(layout::kThreshold),
-          read(layout::kFullScale), read_power_law(file, object.get())};
+  return {read(recording_format::kPitch), read(recording_format::kCountsPerNewton),
+          read(recording_format::kThreshold), read(recording_format::kFullScale),
+          read_power_law(file, object.get())};
 }
 
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration) {
   if (calibration.empty()) return;
-  const hdf5::Handle group = hdf5::create_group(file, layout::kCalibration);
+  const hdf5::Handle group = hdf5::create_group(file, recording_format::kCalibration);
   for (const auto& [name, member] : kFloatPlanes) {
     const std::vector<float>& plane = calibration.*member;
     if (plane.empty()) continue;
@@ -81,24 +96,21 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
                       plane.data());
   }
   if (calibration.mask.empty()) return;
-  hdf5::write_plane(file, layout::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows, skin.cols,
-                    calibration.mask.data());
+  hdf5::write_plane(file, recording_format::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows,
+                    skin.cols, calibration.mask.data());
 }
 
-Calibration read_planes(const hdf5::File& file, const Skin& skin) {
+Calibration read_planes(const hdf5::File& file, const Skin& skin, std::optional<SenselType> type) {
   const auto plane = [&](const char* name) {
     if (!hdf5::exists(file, name)) return std::vector<float>();
     return hdf5::read_plane(file, name, skin.rows, skin.cols);
   };
   Calibration calibration;
   for (const auto& [name, member] : kFloatPlanes) calibration.*member = plane(name);
-  const std::vector<float> mask = plane(layout::kMask);
-  calibration.mask.resize(mask.size());
-  // What is neither 0 nor 1 becomes 2, which the check below refuses.
-  std::transform(mask.begin(), mask.end(), calibration.mask.begin(), [](float good) {
-    return static_cast<std::uint8_t>(good == 0.0f ? 0 : good == 1.0f ? 1 : 2);
-  });
-  check(calibration, skin, fmt::format("{}: {}", file.path.string(), layout::kCalibration));
+  const std::string place =
+      fmt::format("{}: {}", file.path.string(), recording_format::kCalibration);
+  calibration.mask = mask_of(plane(recording_format::kMask), skin, place);
+  check(calibration, skin, place, type);
   return calibration;
 }
 

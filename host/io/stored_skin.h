@@ -31,8 +31,9 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);
 /// Makes the group /calibration with the planes that are not empty; none where all are.
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration);
 
-/// The planes that the file has, one value per sensel of `skin`. Throws Error where one is of
-/// another size or out of its range.
-[[nodiscard]] Calibration read_planes(const hdf5::File& file, const Skin& skin);
+/// The planes that the file has, one value per sensel of `skin`, whose readings are of this type
+/// where it is known. Throws Error where one is of another size or out of its range.
+[[nodiscard]] Calibration read_planes(const hdf5::File& file, const Skin& skin,
+                                      std::optional<SenselType> type = {});
 
 }  // namespace pillarfield

@@ -17,6 +17,7 @@ class Tekscan final : public FileSource {
  public:
   explicit Tekscan(const std::filesystem::path& path);
 
+  double time(std::uint64_t index) override;
   double read(std::uint64_t index, FrameBuffer& frame) override;
 
  private:
@@ -106,6 +107,11 @@ void Tekscan::remark_on_header(const TekscanHeader& header) {
   if (announced == frames_) return;
   remarks_.push_back(
       fmt::format("The header announces {} frames, and the file holds {}.", announced, frames_));
+}
+
+double Tekscan::time(std::uint64_t index) {
+  require_frame(index);
+  return times_s_[index];
 }
 
 double Tekscan::read(std::uint64_t index, FrameBuffer& frame) {

@@ -203,10 +203,12 @@ TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   write_calibration_file(directory / "whole.h5", full_calibration());
   const std::string whole = bytes_of(directory / "whole.h5");
   const auto path = directory / "broken.h5";
+  // Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
+  constexpr ReadOptions kTrusted = {.trust = true};
   const auto try_to_read = [&](const std::string& bytes) {
     write_bytes(path, bytes);
     try {
-      check(read_calibration_file(path), "read");
+      check(read_calibration_file(path, kTrusted), "read");
     } catch (const Error& error) {
       EXPECT_TRUE(has_all(error.what(), {path.string()}));
     }
@@ -218,7 +220,8 @@ TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   }
   for (std::size_t part = 1; part < 100; ++part) {
     write_bytes(path, whole.substr(0, whole.size() * part / 100));
-    EXPECT_TRUE(has_all(error_of([&] { (void)read_calibration_file(path); }), {path.string()}));
+    EXPECT_TRUE(
+        has_all(error_of([&] { (void)read_calibration_file(path, kTrusted); }), {path.string()}));
   }
 }
 

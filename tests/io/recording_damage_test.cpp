@@ -27,6 +27,9 @@ using io_test::write_bytes;
 constexpr std::uint32_t kSize = 6;  // sensel rows and columns
 constexpr std::uint64_t kFrames = 5;
 
+/// Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
+constexpr ReadOptions kTrusted = {.trust = true};
+
 /// A recording that has all a recording can have.
 void write_full_recording(const std::filesystem::path& path) {
   Skin skin;
@@ -120,9 +123,9 @@ const float kInfinity = std::numeric_limits<float>::infinity();
 const Damage kDamages[] = {
     {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no 'format'"}},
     {"other format", [](hid_t f) { set_text(f, "/", "format", "cheese"); }, {"'cheese'"}},
-    {"a force file",
+    {"a force file by its format alone",
      [](hid_t f) { set_text(f, "/", "format", "pillarfield-forces"); },
-     {"pillarfield-forces", "solved forces"}},
+     {"has no /force/shear_x"}},
     {"format a number", [](hid_t f) { set_number(f, "/", "format", 1); }, {"'format'", "string"}},
     {"no version",
      [](hid_t f) { remove_attribute(f, "/", "version"); },
@@ -162,12 +165,12 @@ const Damage kDamages[] = {
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_IEEE_F64LE, {1, 6, 6});
      },
-     {"/frames/raw", "uint8, uint16 or float32"}},
+     {"/frames/raw is float64", "uint8, uint16 or float32"}},
     {"raw text",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_C_S1, {1, 6, 6});
      },
-     {"/frames/raw", "uint8, uint16 or float32"}},
+     {"/frames/raw is no number but a string"}},
     {"time integer",
      [](hid_t f) { replace(f, "/frames/time", H5T_STD_I64LE, {5}); },
      {"/frames/time holds no floats"}},
@@ -219,12 +222,12 @@ const Damage kDamages[] = {
      {"/calibration/tare is 6 x 5", "6 x 6"}},
     {"tare of rank 1",
      [](hid_t f) { replace(f, "/calibration/tare", H5T_IEEE_F32LE, {36}); },
-     {"/calibration/tare is 36", "6 x 6"}},
+     {"/calibration/tare has 1 dimensions", "2"}},
     {"gain a text",
      [](hid_t f) {
        replace(f, "/calibration/gain", H5T_C_S1, {6, 6});
      },
-     {"/calibration/gain cannot be read"}},
+     {"/calibration/gain is no number but a string"}},
     {"tare NaN",
      [](hid_t f) { set_first(f, "/calibration/tare", kFloatNan); },
      {"tare", "row 1, column 1", "nan"}},
@@ -238,7 +241,27 @@ const Damage kDamages[] = {
     {"dead zone negative",
      [](hid_t f) { set_first(f, "/calibration/dead_zone", -1); },
      {"dead_zone", "is -1"}},
-    {"mask 2", [](hid_t f) { set_first(f, "/calibration/mask", 2); }, {"mask", "[0, 1]"}},
+    {"tare beyond any reading",
+     [](hid_t f) { set_first(f, "/calibration/tare", -1e30f); },
+     {"tare", "row 1, column 1", "[-255, 255]"}},
+    {"dead zone beyond any reading",
+     [](hid_t f) { set_first(f, "/calibration/dead_zone", 256); },
+     {"dead_zone' is 256", "row 1, column 1", "[0, 255]"}},
+    {"mask 2", [](hid_t f) { set_first(f, "/calibration/mask", 2); }, {"mask' is 2", "0 or 1"}},
+    {"mask NaN",
+     [](hid_t f) {
+       replace(f, "/calibration/mask", H5T_IEEE_F32LE, {6, 6});
+       set_first(f, "/calibration/mask", kFloatNan);
+     },
+     {"mask' is nan", "row 1, column 1", "0 or 1"}},
+    {"raw of 12 bits",
+     [](hid_t f) {
+       const hid_t type = H5Tcopy(H5T_STD_U16LE);
+       H5Tset_precision(type, 12);
+       replace(f, "/frames/raw", type, {1, 6, 6});
+       H5Tclose(type);
+     },
+     {"/frames/raw is no number but", "another layout"}},
     {"noise negative", [](hid_t f) { set_first(f, "/calibration/noise", -1); }, {"noise", "is -1"}},
     {"half a power law",
      [](hid_t f) { set_number(f, "/skin", "power_law_exponent", 1.2); },
@@ -336,7 +359,8 @@ TEST(RecordingDamage, ATruncatedFileIsAnErrorAtEveryLength) {
   const std::size_t step = whole.size() / 200;
   for (std::size_t size = 0; size < whole.size(); size += size < 64 ? 1 : step) {
     write_bytes(path, whole.substr(0, size));
-    EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }), {path.string()})) << size;
+    EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path, kTrusted); }), {path.string()}))
+        << size;
   }
 }
 
@@ -352,7 +376,7 @@ TEST(RecordingDamage, ABrokenByteNeverCrashes) {
     bytes[at] = static_cast<char>(io_test::number_at(trial, 1));
     write_bytes(path, bytes);
     try {
-      const auto source = open_frames(path);
+      const auto source = open_frames(path, kTrusted);
       FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
       for (std::uint64_t index = 0; index < source->frames(); ++index) source->read(index, frame);
     } catch (const Error& error) {

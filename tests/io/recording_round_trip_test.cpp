@@ -28,7 +28,7 @@ Skin skin_of(std::uint32_t rows, std::uint32_t cols) {
 }
 
 /// Each plane there or not, at random; values anywhere in their ranges.
-Calibration random_calibration(const Skin& skin, std::mt19937& random) {
+Calibration random_calibration(const Skin& skin, SenselType type, std::mt19937& random) {
   const auto coin = [&] { return std::bernoulli_distribution(0.5)(random); };
   const auto plane = [&](float low, float high) {
     std::vector<float> values(coin() ? skin.sensels() : 0);
@@ -36,10 +36,11 @@ Calibration random_calibration(const Skin& skin, std::mt19937& random) {
     return values;
   };
   Calibration calibration;
-  calibration.tare = plane(-1e6f, 1e6f);
+  const auto largest = static_cast<float>(largest_plane_counts(type));
+  calibration.tare = plane(-largest, largest);
   calibration.gain = plane(0.01f, 100.0f);
-  calibration.dead_zone = plane(0.0f, 1e9f);
-  calibration.noise = plane(0.0f, 1e6f);
+  calibration.dead_zone = plane(0.0f, largest);
+  calibration.noise = plane(0.0f, std::min(largest, 1e6f));
   calibration.mask.resize(coin() ? skin.sensels() : 0);
   for (auto& good : calibration.mask) good = coin() ? 1 : 0;
   return calibration;
@@ -117,7 +118,7 @@ TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {
       if (trial % 2 == 0) skin.full_scale_counts = 200 + pick(0, 10) / 3.0;
       if (trial % 3 == 0) skin.power_law = {1 + pick(0, 10) / 7.0, 50 + pick(0, 10) / 3.0};
       SCOPED_TRACE(testing::Message() << skin.rows << " x " << skin.cols << " " << name_of(type));
-      expect_round_trip(skin, type, random_calibration(skin, random), trial % 3 == 0,
+      expect_round_trip(skin, type, random_calibration(skin, type, random), trial % 3 == 0,
                         trial == 1 ? 0 : pick(1, 20));
     }
   }

@@ -98,7 +98,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                                               const ProducerOptions& options) {
-  std::unique_ptr<FrameSource> source = open_frames(path);
+  std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});
   if (source->frames() == 0) {
     throw Error(path.string(), "it has no frames", "give a recording with one at least");
   }
@@ -111,9 +111,8 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   plan.sensel_type = source->sensel_type();
   plan.calibration = source->calibration();
   plan = shown_plan(std::move(plan));
-  FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   info.rate_hz =
-      frame_rate(source->frames(), [&](std::uint64_t index) { return source->read(index, frame); });
+      frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
@@ -131,7 +130,8 @@ std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
                                              const ProducerOptions& options,
                                              const std::function<void(double)>& progress) {
   if (path.extension() == ".toml") return open_scene(path, options, progress);
-  if (is_force_file(path)) return std::make_unique<ForceFileProducer>(path);
+  if (!options.read.trust) probe_file(path);
+  if (is_force_file(path, {.trust = true})) return std::make_unique<ForceFileProducer>(path);
   return open_recording(path, options);
 }
 

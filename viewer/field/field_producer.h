@@ -10,6 +10,7 @@
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/read_options.h"
 #include "pillarfield/skin.h"
 #include "viewer/field/shown_contacts.h"
 #include "viewer/field/shown_field.h"
@@ -64,6 +65,7 @@ class FieldProducer {
 struct ProducerOptions {
   std::string device = {};  ///< as open_device() takes it
   Memory memory = Memory::automatic;
+  ReadOptions read = {};  ///< of a file, when it is opened first
   /// Frames of a scene are simulated beforehand, as many as it has and fit.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   std::uint64_t most_frames = 0;                              ///< of a scene; 0: all

@@ -13,6 +13,9 @@
 namespace pillarfield::viewer {
 namespace {
 
+/// open_producer() has probed the file, unless it is trusted.
+constexpr ReadOptions kProbed = {.trust = true};
+
 std::string solver_of(const ForceFileInfo& info) {
   if (info.estimator.empty()) return "not known";
   return info.device.empty() ? info.estimator
@@ -62,7 +65,10 @@ void fill(PlaneBlock& block, const ForceField& forces) {
 }  // namespace
 
 ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
-    : file_(path), reader_(path), info_(info_of(path, *reader_)), blocks_(kMostShown, [this] {
+    : file_(path),
+      reader_(std::in_place, path, kProbed),
+      info_(info_of(path, *reader_)),
+      blocks_(kMostShown, [this] {
         return std::make_unique<PlaneBlock>(info_.skin.pillar_rows(), info_.skin.pillar_cols(),
                                             info_.has_uncertainty);
       }) {
@@ -91,7 +97,7 @@ ShownContacts ForceFileProducer::contacts_of(const ShownField& field) {
 }
 
 void ForceFileProducer::open(const std::filesystem::path& path) {
-  ForceFileReader reader(path);
+  ForceFileReader reader(path, kProbed);
   const ForceFileInfo& found = reader.info();
   if (found.rows != info_.skin.pillar_rows() || found.cols != info_.skin.pillar_cols() ||
       found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {

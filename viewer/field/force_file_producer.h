@@ -14,7 +14,8 @@ namespace pillarfield::viewer {
 /// Fields as a file has them, with magnitude and angles computed from the forces.
 class ForceFileProducer final : public FieldProducer {
  public:
-  /// Throws Error where the file cannot be read or has no frames.
+  /// Of a file that is trusted or that probe_file() has passed. Throws Error where it cannot be
+  /// read or has no frames.
   explicit ForceFileProducer(const std::filesystem::path& path);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }

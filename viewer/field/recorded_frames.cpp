@@ -42,7 +42,7 @@ class RecordedFrames final : public FrameSupply {
 
  private:
   void open(const std::filesystem::path& path) {
-    std::unique_ptr<FrameSource> source = open_frames(path);
+    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // it was probed
     const Skin& skin = source->skin();
     if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {

@@ -10,6 +10,7 @@
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/read_options.h"
 
 namespace pillarfield {
 
@@ -53,12 +54,13 @@ class ForceSink {
 [[nodiscard]] OutputKind kind_of_force_file(const std::filesystem::path& path);
 
 /// Whether this is an HDF5 file that says it holds force fields; false where it cannot be read.
-[[nodiscard]] bool is_force_file(const std::filesystem::path& path);
+[[nodiscard]] bool is_force_file(const std::filesystem::path& path,
+                                 const ReadOptions& options = {});
 
 /// Reads "pillarfield-forces" files, also ones whose writer was killed.
 class ForceFileReader {
  public:
-  explicit ForceFileReader(const std::filesystem::path& path);
+  explicit ForceFileReader(const std::filesystem::path& path, const ReadOptions& options = {});
   ~ForceFileReader();
   ForceFileReader(ForceFileReader&&) noexcept;
   ForceFileReader& operator=(ForceFileReader&&) noexcept;

@@ -10,6 +10,7 @@
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/output_file.h"
+#include "pillarfield/read_options.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
@@ -26,6 +27,9 @@ class FrameSource {
   [[nodiscard]] virtual const Calibration& calibration() const = 0;
   [[nodiscard]] virtual bool has_truth() const = 0;
 
+  /// Time of frame `index`, seconds. Reads no readings.
+  virtual double time(std::uint64_t index) = 0;
+
   /// Reads frame `index` into `frame` (of this skin and type) and returns its time in seconds.
   virtual double read(std::uint64_t index, FrameBuffer& frame) = 0;
 
@@ -41,7 +45,8 @@ class FrameSource {
 /// Opens a recording (HDF5) or a Tekscan ASCII export, told apart by content, not by name. A
 /// recording whose writer was killed, or still writes, gives the frames flushed so far.
 /// Throws Error where the file is neither, is damaged, or holds values out of range.
-[[nodiscard]] std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path);
+[[nodiscard]] std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
+                                                       const ReadOptions& options = {});
 
 /// Writes a recording, format "pillarfield-recording" version 1 (docs/formats.md).
 ///

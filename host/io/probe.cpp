@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "io/calibration_format.h"
+#include "io/child_process.h"
+#include "io/file_kind.h"
+#include "io/force_format.h"
+#include "io/hdf5_attribute.h"
+#include "io/hdf5_file.h"
+#include "io/hdf5_readers.h"
+#include "io/recording_format.h"
+#include "pillarfield/error.h"
+#include "pillarfield/read_options.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr const char* kDamagedOrTrusted =
+    "the file is damaged; take another copy, or say that you trust it (--trust-input)";
+
+/// What the child answers: a letter, and after kRefused the text of an Error.
+constexpr char kReadable = 'k';
+constexpr char kRefused = 'e';
+constexpr char kNoMemory = 'm';
+
+void open_as_it_says(const std::filesystem::path& path) {
+  hdf5::File file = hdf5::open_to_read(path, true);
+  const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
+  if (format == recording_format::kName) {
+    (void)read_recording(std::move(file));
+  } else if (format == force_format::kName) {
+    try_forces(std::move(file));
+  } else if (format == calibration_format::kName) {
+    (void)read_calibration(file);
+  }
+}
+
+std::string answer_about(const std::filesystem::path& path) {
+  try {
+    const hdf5::QuietErrors quiet;
+    open_as_it_says(path);
+    return {kReadable};
+  } catch (const std::bad_alloc&) {
+    return {kNoMemory};
+  } catch (const std::exception& error) {
+    return kRefused + std::string(error.what());
+  }
+}
+
+/// HDF5 gives a second opener of a file what the first one has read, so nothing is left to try; and
+/// a child would share that state.
+bool is_open_already(const std::filesystem::path& path) {
+  struct stat wanted = {};
+  if (stat(path.c_str(), &wanted) != 0) return false;
+  const ssize_t files = H5Fget_obj_count(H5F_OBJ_ALL, H5F_OBJ_FILE);
+  if (files <= 0) return false;
+  std::vector<hid_t> ids(static_cast<std::size_t>(files));
+  const ssize_t found = H5Fget_obj_ids(H5F_OBJ_ALL, H5F_OBJ_FILE, ids.size(), ids.data());
+  for (ssize_t i = 0; i < found; ++i) {
+    char name[4096] = "";
+    struct stat open_file = {};
+    if (H5Fget_name(ids[static_cast<std::size_t>(i)], name, sizeof name) < 0) continue;
+    if (stat(name, &open_file) != 0) continue;
+    if (open_file.st_dev == wanted.st_dev && open_file.st_ino == wanted.st_ino) return true;
+  }
+  return false;
+}
+
+/// A fork while no other thread is in HDF5: HDF5 holds its lock while it calls back, and the child
+/// must not inherit one that nobody will free.
+int fork_within_hdf5() {
+  pid_t child = -1;
+  H5Piterate(
+      H5P_FILE_ACCESS, nullptr,
+      [](hid_t, const char*, void* result) {
+        *static_cast<pid_t*>(result) = fork();
+        return 1;
+      },
+      &child);
+  return child;
+}
+
+}  // namespace
+
+hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.trust) probe_file(path);
+  return hdf5::open_to_read(path);
+}
+
+void probe_file(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  if (kind_of(path) != FileKind::hdf5 || is_open_already(path)) return;
+  const ChildEnd end =
+      run_in_child(path.string(), {}, fork_within_hdf5, [&] { return answer_about(path); });
+  if (end.returned && end.text[0] == kReadable) return;
+  // The text has its place in it already.
+  if (end.returned && end.text[0] == kRefused) throw Error({}, end.text.substr(1));
+  if (end.returned) {
+    throw Error(path.string(), "opening it takes more than a gigabyte of memory",
+                kDamagedOrTrusted);
+  }
+  if (!end.in_time) {
+    throw Error(path.string(), "opening it does not come to an end", kDamagedOrTrusted);
+  }
+  throw Error(path.string(),
+              fmt::format("reading it crashes the HDF5 library (signal {}, {})", end.signal,
+                          strsignal(end.signal)),
+              kDamagedOrTrusted);
+}
+
+}  // namespace pillarfield

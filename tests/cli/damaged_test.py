@@ -1,0 +1,242 @@
+"""Damaged and hostile files through every command that reads one: one line, in time, in little memory.
+
+The files are those of fuzz/corpus, and others that are made here because they would be large.
+"""
+
+import os
+import pathlib
+import resource
+import subprocess
+import tempfile
+import time
+import unittest
+import zlib
+
+import h5py
+import numpy
+
+from command import PROGRAM, SCENES, SOURCE, run
+
+VIEWER = pathlib.Path(PROGRAM).with_name("pillarfield-viewer")
+CORPUS = sorted(file for file in (SOURCE / "fuzz/corpus").glob("*/*.h5")
+                if not file.name.startswith(("seed_", "hostile_")))
+SANITIZED = "asan" in pathlib.Path(PROGRAM).parts
+MEGABYTE = 1 << 20
+
+
+class Outcome:
+    """How a program ended, and what it took."""
+
+    def __init__(self, arguments, folder):
+        with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+            begin = time.monotonic()
+            process = subprocess.Popen([str(word) for word in arguments], stdout=out, stderr=err,
+                                       cwd=folder)
+            status, usage = self._wait(process, begin)
+            err.seek(0)
+            self.error = err.read().decode()
+        self.signal = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+        self.status = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None
+        self.seconds = usage.ru_utime + usage.ru_stime
+        self.megabytes = usage.ru_maxrss / 1024
+
+    @staticmethod
+    def _wait(process, begin):
+        while True:
+            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+            if pid != 0:
+                process.returncode = status
+                return status, usage
+            if time.monotonic() - begin > 60:
+                process.kill()
+            time.sleep(0.002)
+
+
+def begin_recording(path, **raw):
+    """A recording of which the caller makes the dataset /frames/raw by `raw`."""
+    file = h5py.File(path, "w")
+    file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
+    dataset = file.create_dataset("frames/raw", dtype="u1", **raw)
+    frames = dataset.shape[0]
+    if frames <= 10_000:
+        file["frames/time"] = numpy.arange(frames) / 100.0
+    else:
+        file.create_dataset("frames/time", (frames,), "f8", chunks=(1 << 20,), compression="gzip")
+    return file
+
+
+def fill_chunks(dataset):
+    """Gives every chunk of a gzip dataset the same zeros, compressed once."""
+    packed = zlib.compress(bytes(int(numpy.prod(dataset.chunks))), 9)
+    steps = [range(0, size, step) for size, step in zip(dataset.shape, dataset.chunks)]
+    for frame in steps[0]:
+        for row in steps[1]:
+            for col in steps[2]:
+                dataset.id.write_direct_chunk((frame, row, col), packed)
+
+
+def sparse_frame(path):
+    """One frame of 4.3 GB that nothing is stored of."""
+    size = 65534
+    layout = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
+    layout.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)
+    layout.set_fill_time(h5py.h5d.FILL_TIME_NEVER)
+    with h5py.File(path, "w") as file:
+        file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
+        file["frames/time"] = numpy.zeros(1)
+        space = h5py.h5s.create_simple((1, size, size))
+        h5py.h5d.create(file["frames"].id, b"raw", h5py.h5t.STD_U8LE, space, layout)
+
+
+def gzip_bomb(path):
+    """A megabyte that inflates to a frame of a gigabyte."""
+    with begin_recording(path, shape=(1, 32768, 32768), chunks=(1, 4096, 4096),
+                         compression="gzip") as file:
+        fill_chunks(file["frames/raw"])
+
+
+def gzip_planes(path):
+    """Planes of calibration that inflate to gigabytes, beside few readings."""
+    size = 32768
+    with h5py.File(path, "w") as file:
+        file.attrs["format"], file.attrs["version"] = "pillarfield-calibration", 1
+        skin = file.create_group("skin")
+        skin.attrs["rows"] = skin.attrs["cols"] = size
+        for name in ("tare", "gain", "dead_zone", "noise"):
+            plane = file.create_dataset(f"calibration/{name}", (size, size), "f4",
+                                        chunks=(2048, 2048), compression="gzip")
+            packed = zlib.compress(numpy.ones((2048, 2048), "f4").tobytes(), 9)
+            for row in range(0, size, 2048):
+                for col in range(0, size, 2048):
+                    plane.id.write_direct_chunk((row, col), packed)
+
+
+def frames_without_chunks(path, frames):
+    """So many frames, in gzip chunks that are not there."""
+    begin_recording(path, shape=(frames, 20, 20), chunks=(16, 20, 20), compression="gzip").close()
+
+
+def one_chunk(path):
+    """4,000 frames in one chunk of 256 MiB, which was inflated for each of them."""
+    with begin_recording(path, shape=(4000, 256, 262), chunks=(4000, 256, 262),
+                         compression="gzip") as file:
+        fill_chunks(file["frames/raw"])
+
+
+def link_chain(path):
+    """Soft links that lead to an external one."""
+    with h5py.File(path.with_name("other.h5"), "w") as other:
+        other["raw"], other["time"] = numpy.zeros((2, 4, 4), "u1"), numpy.arange(2.0)
+    with h5py.File(path, "w") as file:
+        file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
+        file["frames/time"] = numpy.arange(2.0)
+        file["elsewhere"] = h5py.ExternalLink("other.h5", "/raw")
+        file["soft"] = h5py.SoftLink("/elsewhere")
+        file["frames/raw"] = h5py.SoftLink("/soft")
+
+
+def external_group(path):
+    """A group of frames in another recording, which was read as if it were here."""
+    with h5py.File(path.with_name("other.h5"), "w") as other:
+        other["raw"], other["time"] = numpy.zeros((2, 4, 4), "u1"), numpy.arange(2.0)
+    with h5py.File(path, "w") as file:
+        file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
+        file["frames"] = h5py.ExternalLink("other.h5", "/")
+
+
+MADE = {
+    "sparse_frame": sparse_frame,
+    "gzip_bomb": gzip_bomb,
+    "gzip_planes": gzip_planes,
+    "frames_2e40": lambda path: frames_without_chunks(path, 1 << 40),
+    "frames_2e62": lambda path: frames_without_chunks(path, (1 << 62) - 1),
+    "one_chunk": one_chunk,
+    "link_chain": link_chain,
+    "external_group": external_group,
+}
+
+
+class DamagedTest(unittest.TestCase):
+    """Every file through every command."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.scratch.cleanup)
+        cls.folder = pathlib.Path(cls.scratch.name)
+        cls.recording, cls.forces = cls.folder / "good.h5", cls.folder / "good_forces.h5"
+        run("simulate", SCENES / "demo.toml", "-o", cls.recording, "-q", "--frames", 2)
+        run("solve", cls.recording, "-o", cls.forces, "-q")
+
+    def commands(self, file):
+        """The command lines that read `file`, and what each would write."""
+        yield [PROGRAM, "info", file], None
+        yield [PROGRAM, "solve", file, "-q", "-o", "out.h5"], "out.h5"
+        yield [PROGRAM, "solve", self.recording, "--calibration", file, "-q", "-o", "out.csv"], \
+            "out.csv"
+        yield [PROGRAM, "compare", file, self.recording, "-q"], None
+        yield [PROGRAM, "compare", self.forces, file, "-q"], None
+        yield [PROGRAM, "calibrate", "tare", file, "-q", "-o", "out.h5"], "out.h5"
+        if VIEWER.exists():
+            yield [VIEWER, file, "--headless", "--csv", "out.csv"], "out.csv"
+
+    def check(self, file):
+        """One line, exit 1, little memory and time, no output."""
+        before = sorted(os.listdir(self.folder))
+        for command, _ in self.commands(file):
+            with self.subTest(file=file.name, command=" ".join(map(str, command[1:]))):
+                outcome = Outcome(command, self.folder)
+                self.assertEqual(outcome.signal, 0, outcome.error)
+                self.assertEqual(outcome.status, 1, outcome.error)
+                self.assertEqual(outcome.error.count("\n"), 1, outcome.error)
+                self.assertTrue(outcome.error.startswith("pillarfield"), outcome.error)
+                self.assertEqual(sorted(os.listdir(self.folder)), before)
+                if SANITIZED:
+                    continue
+                self.assertLess(outcome.seconds, 5)
+                self.assertLess(outcome.megabytes, 1000)
+
+    def test_corpus(self):
+        """What fuzz/corpus holds."""
+        self.assertEqual(len(CORPUS), 11)
+        for file in CORPUS:
+            self.check(file)
+
+    def test_made(self):
+        """What is made here."""
+        for name, make in MADE.items():
+            file = self.folder / f"{name}.h5"
+            make(file)
+            self.check(file)
+            file.unlink()
+
+    def test_killed_writer_is_read(self):
+        """Probing does not refuse what a killed writer has flushed."""
+        part = self.folder / "killed.h5.part"
+        with h5py.File(part, "w", libver="latest") as file:
+            file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
+            raw = file.create_dataset("frames/raw", (0, 4, 4), "u1", maxshape=(None, 4, 4),
+                                      chunks=(2, 4, 4), compression="gzip")
+            times = file.create_dataset("frames/time", (0,), "f8", maxshape=(None,), chunks=(2,))
+            file.swmr_mode = True
+            raw.resize(5, 0)
+            times.resize(5, 0)
+            raw[:], times[:] = 7, numpy.arange(5.0)
+            file.flush()
+            outcome = run("info", part)
+        self.assertIn("frames               5", outcome.stdout)
+        part.unlink()
+
+    def test_trusted(self):
+        """A caller who trusts a file may have it probed by nobody."""
+        for command in (["info", self.recording], ["compare", self.forces, self.recording],
+                        ["solve", self.recording, "-o", self.folder / "t.csv", "-q"],
+                        ["calibrate", "tare", self.recording, "-o", self.folder / "t.h5", "-q"]):
+            run(*command, "--trust-input")
+        for name in ("t.csv", "t.h5"):
+            (self.folder / name).unlink(missing_ok=True)
+
+
+if __name__ == "__main__":
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    unittest.main()
