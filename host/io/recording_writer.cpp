@@ -138,7 +138,7 @@ void RecordingWriter::State::close() {
 }
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Skin& skin,
-                                 SenselType type, SenselType type, const Calibration& calibration,
+                                 SenselType type, const Calibration& calibration,
                                  const Options& options) {
   const hdf5::QuietErrors quiet;
   state_ = std::make_unique<State>(path, skin, type, calibration, options);

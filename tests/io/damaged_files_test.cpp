@@ -96,7 +96,7 @@ TEST(DamagedFiles, EndInEveryReader) {
   for (const DamagedFile& file : kRefused) {
     SCOPED_TRACE(file.name);
     const auto path = kDamagedFiles / file.name;
-    if (std::string(file.name).starts_with("hang")) continue;  // 2 s each
+    if (std::string(file.name).find("hang") != std::string::npos) continue;  // 2 s each
     EXPECT_FALSE(is_calibration_file(path));
     (void)is_force_file(path);
     EXPECT_THROW(read_forces_whole(path), Error);
