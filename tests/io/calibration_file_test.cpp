@@ -186,7 +186,7 @@ TEST(CalibrationFile, DamageIsToldInOneClearError) {
   const auto path = directory / "cal.h5";
   for (const Damage& damage : kDamages) {
     SCOPED_TRACE(damage.name);
-    write_calibration_file(path, full_calibration());
+    write_calibration_file(path, full_calibration(), Replace::anything);
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     ASSERT_GE(file, 0);
     damage.action(file);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <memory>
@@ -140,15 +141,17 @@ void Application::run() {
   if (options_.statistics) print_statistics();
 }
 
+/// A signal wakes no wait for events, so none is long.
 void Application::wait() {
+  constexpr double kLongestWaitS = 0.25;
   const bool minimised = window_.size().width == 0;
   const auto rest = redraws_.rest(Window::now_s());
   if (minimised) {
-    window_.wait(std::nullopt);
+    window_.wait(kLongestWaitS);
   } else if (rest && *rest <= 0) {
     window_.poll();
   } else {
-    window_.wait(rest);
+    window_.wait(std::min(rest.value_or(kLongestWaitS), kLongestWaitS));
   }
 }
 
@@ -323,7 +326,11 @@ void Application::begin_frames(FrameWriter::Kind kind) {
   const std::string quantity = info_of(session_.look.quantity).name;
   const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
                                                      : free_sequence_path(*place_.source, quantity);
-  check_outputs({options_.source}, {{path, OutputKind::video}}, Replace::nothing);
+  const PlannedOutput first =
+      kind == FrameWriter::Kind::video
+          ? PlannedOutput{path, OutputKind::video}
+          : PlannedOutput{numbered(path, 1, place_.source->frames), OutputKind::png};
+  check_outputs({options_.source}, {first}, Replace::nothing);
   const vk::Extent2D size = presenter_.painter().image().size();
   writer_ = std::make_unique<FrameWriter>(session_, kind, path, size.width, size.height);
 }

@@ -4,6 +4,7 @@
 #include <GLFW/glfw3.h>
 
 #include <cctype>
+#include <optional>
 #include <utility>
 
 #include "pillarfield/error.h"
@@ -169,13 +170,7 @@ void Window::show() { glfwShowWindow(window_); }
 void Window::poll() { glfwPollEvents(); }
 
 // NOLINTNEXTLINE(readability-convert-member-functions-to-static): as above
-void Window::wait(std::optional<double> seconds) {
-  if (seconds) {
-    glfwWaitEventsTimeout(*seconds);
-  } else {
-    glfwWaitEvents();
-  }
-}
+void Window::wait(double seconds) { glfwWaitEventsTimeout(seconds); }
 
 void Window::wake() { glfwPostEmptyEvent(); }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,10 +32,10 @@ class Window {
   [[nodiscard]] bool closes() const;        ///< somebody wants it closed
   void show();
 
-  void poll();                               ///< collects what happened
-  void wait(std::optional<double> seconds);  ///< the same, once something has happened
-  static void wake();                        ///< ends wait(); from any thread
-  [[nodiscard]] static double now_s();       ///< the clock of ButtonEvent::time_s
+  void poll();                          ///< collects what happened
+  void wait(double seconds);            ///< the same, once something has happened or then
+  static void wake();                   ///< ends wait(); from any thread
+  [[nodiscard]] static double now_s();  ///< the clock of ButtonEvent::time_s
 
   /// What was collected, and forgets it.
   [[nodiscard]] std::vector<InputEvent> take_events();

@@ -53,12 +53,11 @@ class Outputs(unittest.TestCase):
     def test_the_source_is_never_written(self):
         before = {path: path.read_bytes() for path in self.folder.iterdir()}
         for name in ("ball.toml", "rec.h5", "forces.h5"):
-            for output in ("", "soft_", "hard_", "./"):
-                for option in ("--png", "--csv"):
-                    for leave in ((), ("--overwrite",)):
-                        with self.subTest(name=name, output=output, option=option, leave=leave):
-                            self.assert_refused(name, option, output + name, *leave,
-                                                says="is a file that is read")
+            for output, option, leave in (("", "--png", ()), ("soft_", "--csv", ("--overwrite",)),
+                                          ("hard_", "--csv", ()), ("./", "--png", ("--overwrite",))):
+                with self.subTest(name=name, output=output, option=option):
+                    self.assert_refused(name, option, output + name, *leave,
+                                        says="is a file that is read")
         os.link(self.folder / "forces.h5", self.folder / "forces_02.png")
         os.link(self.folder / "forces.h5", self.folder / "forces.mp4")
         self.assert_refused("forces.h5", "--frames", "1:3", "--png", "forces.png",
@@ -94,7 +93,8 @@ class Outputs(unittest.TestCase):
             _, complaint = process.communicate(timeout=60)
         if "Vulkan" in complaint:
             self.skipTest(complaint)
-        lines = complaint.strip().splitlines()
+        # PoCL may have said something of its compiler before.
+        lines = [line for line in complaint.splitlines() if "pillarfield-viewer" in line]
         self.assertEqual((process.returncode, len(lines)), (1, 1), complaint)
         self.assertIn("interrupted after", lines[0])
         self.assertEqual(list(self.folder.glob("*.part")), [])

@@ -314,9 +314,12 @@ class WholeWindowTest(WindowTest):
         self.assertFalse(numpy.array_equal(*shots))
 
     def test_interrupt_ends_it(self):
-        window = self.open(SCENES / "spin.toml")
-        window.process.send_signal(signal.SIGTERM)
-        window.process.communicate(timeout=30)
+        for ending in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            window = self.open(SCENES / "spin.toml", "--paused")
+            self.screen.still_pixels()
+            window.process.send_signal(ending)
+            window.process.communicate(timeout=30)
+            self.assertEqual(window.process.returncode, 0)
 
     def test_without_a_display(self):
         environment = {name: value for (name, value) in os.environ.items() if name != "DISPLAY"}
