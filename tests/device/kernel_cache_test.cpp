@@ -199,7 +199,7 @@ TEST_F(KernelCacheTest, TemporaryDirectoriesOfKilledProcessesAreRemoved) {
   const pid_t child = fork();
   if (child == 0) {
     static_cast<void>(choose());
-    static_cast<void>(write(ready[1], "", 1));
+    if (write(ready[1], "", 1) != 1) _exit(1);
     pause();
   }
   char byte = 0;

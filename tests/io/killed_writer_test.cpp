@@ -14,11 +14,6 @@
 #include "tests/io/sample_contacts.h"
 #include "tests/io/sample_files.h"
 
-/// HDF5 1.10 does not free what it had made of an object's header when that turns out damaged.
-/// LeakSanitizer calls this function by its name.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
-
 namespace pillarfield {
 namespace {
 

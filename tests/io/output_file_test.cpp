@@ -96,7 +96,8 @@ void write_recording(const fs::path& path, std::uint64_t frames, bool finish = t
   if (finish) writer.finish();
 }
 
-void write_forces(const fs::path& path, std::uint64_t frames, Replace replace = Replace::results) {
+void write_some_forces(const fs::path& path, std::uint64_t frames,
+                       Replace replace = Replace::results) {
   const auto sink =
       create_force_sink(path, {2, 2, 1.25, "direct", "a device", "it", false}, replace);
   for (std::uint64_t index = 0; index < frames; ++index) {
@@ -170,7 +171,7 @@ TEST(OutputFile, ItsLockEndsWithAKilledProcess) {
   if (child == 0) {
     OutputFile file(directory / "a.csv", OutputKind::force_table);
     file.write("half");
-    static_cast<void>(!write(ready[1], "!", 1));
+    if (::write(ready[1], "!", 1) != 1) _exit(1);
     pause();
   }
   char byte = 0;
@@ -280,7 +281,7 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   write_bytes(directory / "a.csv.part", "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
   EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "Tekscan"}));
   fs::remove(directory / "a.csv.part");
-  write_forces(directory / "f.h5", 20);
+  write_some_forces(directory / "f.h5", 20);
   fs::rename(directory / "f.h5", directory / "a.csv.part");
   write_text(directory / "a.csv", "forces can be solved again", Replace::results);
   EXPECT_EQ(directory.names(), Names{"a.csv"});
@@ -312,7 +313,7 @@ TEST(OutputFile, WithoutLeaveOnlyEarlierResultsOfItsKindAreReplaced) {
   refused("holds a calibration");
   write_bytes(path, "DATA_TYPE MOVIE\nROWS 4\nCOLS 4\n");
   refused("Tekscan");
-  write_forces(directory / "f.h5", 1);
+  write_some_forces(directory / "f.h5", 1);
   fs::rename(directory / "f.h5", path);
   refused("holds force fields");
   write_recording(path, 1);
@@ -323,11 +324,12 @@ TEST(OutputFile, WithoutLeaveOnlyEarlierResultsOfItsKindAreReplaced) {
 TEST(OutputFile, EveryFormatReplacesItsOwnKind) {
   const TemporaryDirectory directory;
   for (const char* name : {"f.h5", "f.csv", "f.npy"}) {
-    write_forces(directory / name, 1);
-    write_forces(directory / name, 2);
+    write_some_forces(directory / name, 1);
+    write_some_forces(directory / name, 2);
     write_bytes(directory / name, "rubbish");
-    EXPECT_TRUE(has_all(error_of([&] { write_forces(directory / name, 1); }), {name, "exists"}));
-    write_forces(directory / name, 1, Replace::anything);
+    EXPECT_TRUE(
+        has_all(error_of([&] { write_some_forces(directory / name, 1); }), {name, "exists"}));
+    write_some_forces(directory / name, 1, Replace::anything);
   }
 }
 
@@ -393,8 +395,8 @@ TEST(OutputFile, IsOnTheDiskBeforeItHasItsNameAndItsFolderAfter) {
   EXPECT_EQ(calls_of([&] { write_text(directory / "a.csv", "", Replace::results); }), expected);
   EXPECT_EQ(calls_of([&] { write_recording(directory / "r.h5", 20); }), expected);
   EXPECT_EQ(calls_of([&] { write_recording(directory / "r.h5", 20); }), expected);
-  EXPECT_EQ(calls_of([&] { write_forces(directory / "f.h5", 20); }), expected);
-  EXPECT_EQ(calls_of([&] { write_forces(directory / "f.npy", 20); }), expected);
+  EXPECT_EQ(calls_of([&] { write_some_forces(directory / "f.h5", 20); }), expected);
+  EXPECT_EQ(calls_of([&] { write_some_forces(directory / "f.npy", 20); }), expected);
   EXPECT_EQ(calls_of([&] { write_calibration_file(directory / "c.h5", small_calibration()); }),
             expected);
 }

@@ -8,11 +8,6 @@
 #include "pillarfield/recording.h"
 #include "tests/io/sample_files.h"
 
-/// HDF5 1.10 does not free what it had made of an object's header when that turns out damaged.
-/// LeakSanitizer calls this function by its name.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
-
 namespace pillarfield {
 namespace {
 
@@ -25,7 +20,7 @@ using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
 constexpr std::uint32_t kSize = 6;  // sensel rows and columns
-constexpr std::uint64_t kFrames = 5;
+constexpr std::uint64_t kDamagedFrames = 5;
 
 /// Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
 constexpr ReadOptions kTrusted = {.trust = true};
@@ -41,7 +36,7 @@ void write_full_recording(const std::filesystem::path& path) {
                                    ones};
   RecordingWriter writer(path, skin, SenselType::u8, calibration, {.truth = true});
   FrameBuffer frame(SenselType::u8, kSize, kSize);
-  for (std::uint64_t index = 0; index < kFrames; ++index) {
+  for (std::uint64_t index = 0; index < kDamagedFrames; ++index) {
     fill_frame(index, frame);
     const ForceField truth = sample_forces(index, skin.pillar_rows(), skin.pillar_cols());
     writer.append(frame.view(), static_cast<double>(index), &truth);
@@ -51,7 +46,7 @@ void write_full_recording(const std::filesystem::path& path) {
 
 // What the cases below do to the file, in the words of the HDF5 library.
 
-void set_number(hid_t file, const char* object, const char* name, double value) {
+void set_number_in(hid_t file, const char* object, const char* name, double value) {
   H5Adelete_by_name(file, object, name, H5P_DEFAULT);
   const hid_t space = H5Screate(H5S_SCALAR);
   const hid_t attribute = H5Acreate_by_name(file, object, name, H5T_IEEE_F64BE, space, H5P_DEFAULT,
@@ -110,28 +105,34 @@ void change(const std::filesystem::path& path, const std::function<void(hid_t)>&
   ASSERT_GE(H5Fclose(file), 0);
 }
 
-struct Damage {
+struct RecordingDamage {
   std::string name;
   std::function<void(hid_t)> action;
   std::vector<std::string> message;
 };
 
-const double kNan = std::numeric_limits<double>::quiet_NaN();
+const double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 const float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
 
-const Damage kDamages[] = {
+const RecordingDamage kRecordingDamages[] = {
     {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no 'format'"}},
     {"other format", [](hid_t f) { set_text(f, "/", "format", "cheese"); }, {"'cheese'"}},
     {"a force file by its format alone",
      [](hid_t f) { set_text(f, "/", "format", "pillarfield-forces"); },
      {"has no /force/shear_x"}},
-    {"format a number", [](hid_t f) { set_number(f, "/", "format", 1); }, {"'format'", "string"}},
+    {"format a number",
+     [](hid_t f) { set_number_in(f, "/", "format", 1); },
+     {"'format'", "string"}},
     {"no version",
      [](hid_t f) { remove_attribute(f, "/", "version"); },
      {"no attribute 'version'"}},
-    {"version 2", [](hid_t f) { set_number(f, "/", "version", 2); }, {"version is 2", "version 1"}},
-    {"version NaN", [](hid_t f) { set_number(f, "/", "version", kNan); }, {"version is nan"}},
+    {"version 2",
+     [](hid_t f) { set_number_in(f, "/", "version", 2); },
+     {"version is 2", "version 1"}},
+    {"version NaN",
+     [](hid_t f) { set_number_in(f, "/", "version", kNoNumber); },
+     {"version is nan"}},
     {"version a text", [](hid_t f) { set_text(f, "/", "version", "1"); }, {"'version'", "number"}},
     {"no frames", [](hid_t f) { remove_link(f, "/frames"); }, {"has no /frames/raw"}},
     {"no raw", [](hid_t f) { remove_link(f, "/frames/raw"); }, {"has no /frames/raw"}},
@@ -198,19 +199,19 @@ const Damage kDamages[] = {
      [](hid_t f) { replace(f, "/frames/time", H5T_IEEE_F64LE, {1ull << 60}, {9}); },
      {"/frames/time", "more than the file"}},
     {"pitch NaN",
-     [](hid_t f) { set_number(f, "/skin", "sensel_pitch_mm", kNan); },
+     [](hid_t f) { set_number_in(f, "/skin", "sensel_pitch_mm", kNoNumber); },
      {"/skin", "sensel_pitch_mm is nan"}},
     {"counts per newton 0",
-     [](hid_t f) { set_number(f, "/skin", "counts_per_newton", 0); },
+     [](hid_t f) { set_number_in(f, "/skin", "counts_per_newton", 0); },
      {"/skin", "counts_per_newton is 0"}},
     {"threshold negative",
-     [](hid_t f) { set_number(f, "/skin", "threshold_counts", -1); },
+     [](hid_t f) { set_number_in(f, "/skin", "threshold_counts", -1); },
      {"threshold_counts is -1"}},
     {"full scale infinite",
-     [](hid_t f) { set_number(f, "/skin", "full_scale_counts", kInfinity); },
+     [](hid_t f) { set_number_in(f, "/skin", "full_scale_counts", kInfinity); },
      {"full_scale_counts is inf"}},
     {"full scale below threshold",
-     [](hid_t f) { set_number(f, "/skin", "threshold_counts", 300); },
+     [](hid_t f) { set_number_in(f, "/skin", "threshold_counts", 300); },
      {"full_scale_counts is 250"}},
     {"pitch a text",
      [](hid_t f) { set_text(f, "/skin", "sensel_pitch_mm", "wide"); },
@@ -264,12 +265,12 @@ const Damage kDamages[] = {
      {"/frames/raw is no number but", "another layout"}},
     {"noise negative", [](hid_t f) { set_first(f, "/calibration/noise", -1); }, {"noise", "is -1"}},
     {"half a power law",
-     [](hid_t f) { set_number(f, "/skin", "power_law_exponent", 1.2); },
+     [](hid_t f) { set_number_in(f, "/skin", "power_law_exponent", 1.2); },
      {"/skin", "'power_law_reference_counts'", "both"}},
     {"power law of exponent 9",
      [](hid_t f) {
-       set_number(f, "/skin", "power_law_exponent", 9);
-       set_number(f, "/skin", "power_law_reference_counts", 100);
+       set_number_in(f, "/skin", "power_law_exponent", 9);
+       set_number_in(f, "/skin", "power_law_reference_counts", 100);
      },
      {"/skin", "power_law_exponent is 9"}},
     {"truth of other size",
@@ -290,7 +291,7 @@ const Damage kDamages[] = {
 TEST(RecordingDamage, IsToldInOneClearError) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
-  for (const Damage& damage : kDamages) {
+  for (const RecordingDamage& damage : kRecordingDamages) {
     SCOPED_TRACE(damage.name);
     write_full_recording(path);
     change(path, damage.action);
@@ -306,7 +307,7 @@ TEST(RecordingDamage, OfATimeIsToldWhenItsFrameIsRead) {
   write_full_recording(path);
   change(path, [](hid_t file) {
     const hid_t dataset = H5Dopen2(file, "/frames/time", H5P_DEFAULT);
-    const double times[] = {0, 1, kNan, 3, 4};
+    const double times[] = {0, 1, kNoNumber, 3, 4};
     H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times);
     H5Dclose(dataset);
   });

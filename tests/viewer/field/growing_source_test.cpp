@@ -120,7 +120,7 @@ class Writer {
   /// Waits until it says that so many frames more are flushed, if it does not end before.
   void wait_for_flush() {
     char line[64];
-    static_cast<void>(std::fgets(line, sizeof line, pipe_));
+    EXPECT_NE(std::fgets(line, sizeof line, pipe_), nullptr);
   }
 
  private:
