@@ -95,7 +95,10 @@ Json facts_of_frames(const std::string& file) {
   facts["sensel_type"] = name_of(source->sensel_type());
   add_skin(facts, source->skin());
   if (source->frames() > 0) {
-    facts["seconds"] = source->time(source->frames() - 1) - source->time(0);
+    // The readings too: what info describes can be read.
+    FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
+    const double first = source->read(0, frame);
+    facts["seconds"] = source->read(source->frames() - 1, frame) - first;
   }
   facts["calibration"] = plane_names(source->calibration());
   facts["truth"] = source->has_truth();

@@ -37,12 +37,14 @@ constexpr bool kShadowMemory = false;
 
 constexpr int kAnswer = 3;  // descriptor of the child's end of the pipe
 
-void lower_limit(int resource, rlim_t soft, rlim_t hard) {
+/// `resource` is of an enumeration in some C libraries, and an int in others.
+template <class Resource>
+void lower_limit(Resource resource, rlim_t soft, rlim_t hard) {
   rlimit limit = {};
-  if (getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0) return;
+  if (getrlimit(resource, &limit) != 0) return;
   limit.rlim_max = std::min(limit.rlim_max, hard);
   limit.rlim_cur = std::min({limit.rlim_cur, soft, limit.rlim_max});
-  setrlimit(static_cast<__rlimit_resource_t>(resource), &limit);
+  setrlimit(resource, &limit);
 }
 
 /// Bytes of addresses that this process has; 0 where that is not known.

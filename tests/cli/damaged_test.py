@@ -34,7 +34,9 @@ class Outcome:
                                        cwd=folder)
             status, usage = self._wait(process, begin)
             err.seek(0)
-            self.error = err.read().decode()
+            # PoCL lets its compiler say so where a kernel is not in its cache yet.
+            lines = err.read().decode().splitlines(keepends=True)
+            self.error = "".join(line for line in lines if "warnings generated." not in line)
         self.signal = os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
         self.status = os.WEXITSTATUS(status) if os.WIFEXITED(status) else None
         self.seconds = usage.ru_utime + usage.ru_stime
@@ -165,7 +167,7 @@ class DamagedTest(unittest.TestCase):
         cls.addClassCleanup(cls.scratch.cleanup)
         cls.folder = pathlib.Path(cls.scratch.name)
         cls.recording, cls.forces = cls.folder / "good.h5", cls.folder / "good_forces.h5"
-        run("simulate", SCENES / "demo.toml", "-o", cls.recording, "-q", "--frames", 2)
+        run("simulate", SCENES / "demo.toml", "-o", cls.recording, "-q", "--frames", 12)
         run("solve", cls.recording, "-o", cls.forces, "-q")
 
     def commands(self, file):
@@ -231,7 +233,8 @@ class DamagedTest(unittest.TestCase):
         """A caller who trusts a file may have it probed by nobody."""
         for command in (["info", self.recording], ["compare", self.forces, self.recording],
                         ["solve", self.recording, "-o", self.folder / "t.csv", "-q"],
-                        ["calibrate", "tare", self.recording, "-o", self.folder / "t.h5", "-q"]):
+                        ["calibrate", "tare", self.recording, "--preloaded", "-q", "-o",
+                         self.folder / "t.h5"]):
             run(*command, "--trust-input")
         for name in ("t.csv", "t.h5"):
             (self.folder / name).unlink(missing_ok=True)
