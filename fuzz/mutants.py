@@ -210,8 +210,8 @@ def work(number):
             kept = folder / f"{number}_{seed.kind}_{re.sub(r'[^a-z0-9]+', '_', outcome.lower())}_{seed.name}"
             kept.write_bytes(data)
             with open(f"{kept}.txt", "ab") as report:
-                report.write(f"{' '.join(words)}\n{outcome}; {run.seconds:.1f} s, {run.processor:.1f} s of processor time, "
-                             f"{run.kilobytes} kB\n".encode())
+                report.write(f"{' '.join(words)}\n{outcome}; {run.seconds:.1f} s, "
+                             f"{run.processor:.1f} s of processor time, {run.kilobytes} kB\n".encode())
                 report.write(run.output[-2000:] + run.errors[-2000:])
         results.append((seed.kind, command, outcome, run.seconds, run.processor, run.kilobytes, kept))
     return results
