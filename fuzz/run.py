@@ -122,7 +122,7 @@ def top_of(stack, owners=(OURS, HDF5)):
 
 
 def kind_of(report):
-    for pattern in (r"ERROR: AddressSanitizer: ([\w-]+)", r"runtime error: (.{1,80})",
+    for pattern in (r"ERROR: AddressSanitizer: ([\w-]+(?: allocation size)?)", r"runtime error: (.{1,80})",
                     r"ERROR: libFuzzer: ([\w-]+)"):
         match = re.search(pattern, report)
         if match:
