@@ -6,8 +6,8 @@ namespace pillarfield::fuzz {
 
 void read_calibration(const std::filesystem::path& path,
                       [[maybe_unused]] const ReadOptions& options) {
-  (void)is_calibration_file(path PILLARFIELD_FUZZ_OPTIONS(options));
-  const SkinCalibration calibration = read_calibration_file(path PILLARFIELD_FUZZ_OPTIONS(options));
+  (void)is_calibration_file(path, options);
+  const SkinCalibration calibration = read_calibration_file(path, options);
   SolverPlan plan;
   plan.skin.rows = calibration.rows;
   plan.skin.cols = calibration.cols;

@@ -6,8 +6,8 @@
 namespace pillarfield::fuzz {
 
 void read_forces(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
-  (void)is_force_file(path PILLARFIELD_FUZZ_OPTIONS(options));
-  const ForceFileReader reader(path PILLARFIELD_FUZZ_OPTIONS(options));
+  (void)is_force_file(path, options);
+  const ForceFileReader reader(path, options);
   const ForceFileInfo& info = reader.info();
   if (std::uint64_t{info.rows} * info.cols > kMostRead) return;
   ForceField forces(info.rows, info.cols);

@@ -19,7 +19,7 @@ SolverPlan plan_of_source(const FrameSource& source) {
 }  // namespace
 
 void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
-  const auto source = open_frames(path PILLARFIELD_FUZZ_OPTIONS(options));
+  const auto source = open_frames(path, options);
   const Skin& skin = source->skin();
   if (skin.sensels() > kMostRead) return;
   const SolverPlan plan = plan_of_source(*source);

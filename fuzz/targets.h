@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "fuzz/read_options.h"
+#include "pillarfield/read_options.h"
 
 namespace pillarfield::fuzz {
 
