@@ -48,7 +48,8 @@ const DamagedFile kRefused[] = {
     {"recording/ext_link_fifo.h5", read_recording_whole, {"is a link", "another file"}},
     {"forces/fc_swmr_loop.h5", read_forces_whole, {"/force/", "1099511627776"}},
     {"recording/frames_2e62.h5", read_recording_whole, {"/frames/", "4611686018427387903"}},
-    {"recording/hang_variable_string.h5", read_recording_whole, {"does not come to an end"}},
+    // HDF5 reads a text from beside its heap: what it finds there is chance, or it never ends.
+    {"recording/hang_variable_string.h5", read_recording_whole, {}},
     {"recording/short_chunk.h5",
      read_recording_whole,
      {"/frames/raw", "inflates to 16 bytes", "20480"}},

@@ -293,6 +293,7 @@ TEST(RecordingDamage, IsToldInOneClearError) {
   const auto path = directory / "r.h5";
   for (const RecordingDamage& damage : kRecordingDamages) {
     SCOPED_TRACE(damage.name);
+    std::filesystem::remove(path);  // What is no recording any more is not replaced unasked.
     write_full_recording(path);
     change(path, damage.action);
     const std::string error = error_of([&] { (void)open_frames(path); });
