@@ -12,8 +12,9 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr int kFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
-                       ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_BordersInnerV;
+constexpr int kTableFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
+                            ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit |
+                            ImGuiTableFlags_BordersInnerV;
 constexpr std::size_t kMostRows = 9;  ///< seen at a time
 
 /// Columns stand where they are, whatever the numbers.
@@ -77,7 +78,7 @@ std::optional<std::size_t> contact_table(const PanelInk& ink, const ShownContact
   const ImGuiStyle& style = ImGui::GetStyle();
   const float row = static_cast<float>(ink.line) + 2 * style.CellPadding.y;
   const float height = row * static_cast<float>(rows) + style.ScrollbarSize + 2;
-  if (!ImGui::BeginTable("contacts", static_cast<int>(kContactColumns), kFlags,
+  if (!ImGui::BeginTable("contacts", static_cast<int>(kContactColumns), kTableFlags,
                          ImVec2(0, height))) {
     return std::nullopt;
   }

@@ -21,7 +21,7 @@ Target::Target(const gpu::Device& device, vk::RenderPass render_pass, vk::Extent
 }
 
 vk::raii::RenderPass Target::make_render_pass(const gpu::Device& device) {
-  using Layout = vk::ImageLayout;
+  using ImageLayout = vk::ImageLayout;
   using Load = vk::AttachmentLoadOp;
   using Store = vk::AttachmentStoreOp;
   using Stage = vk::PipelineStageFlagBits;
@@ -29,12 +29,13 @@ vk::raii::RenderPass Target::make_render_pass(const gpu::Device& device) {
   const std::array attachments{
       vk::AttachmentDescription({}, kFormat, vk::SampleCountFlagBits::e1, Load::eClear,
                                 Store::eStore, Load::eDontCare, Store::eDontCare,
-                                Layout::eUndefined, Layout::eTransferSrcOptimal),
+                                ImageLayout::eUndefined, ImageLayout::eTransferSrcOptimal),
       vk::AttachmentDescription({}, kDepthFormat, vk::SampleCountFlagBits::e1, Load::eClear,
                                 Store::eDontCare, Load::eDontCare, Store::eDontCare,
-                                Layout::eUndefined, Layout::eDepthStencilAttachmentOptimal)};
-  const vk::AttachmentReference colour(0, Layout::eColorAttachmentOptimal);
-  const vk::AttachmentReference depth(1, Layout::eDepthStencilAttachmentOptimal);
+                                ImageLayout::eUndefined,
+                                ImageLayout::eDepthStencilAttachmentOptimal)};
+  const vk::AttachmentReference colour(0, ImageLayout::eColorAttachmentOptimal);
+  const vk::AttachmentReference depth(1, ImageLayout::eDepthStencilAttachmentOptimal);
   const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, nullptr, colour,
                                        nullptr, &depth);
   const auto draws =
