@@ -8,7 +8,7 @@
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
 #include "viewer/app/app.h"
-#include "viewer/gpu/vulkan.h"
+#include "viewer/gpu/lost.h"
 #include "viewer/headless.h"
 
 namespace {
@@ -45,9 +45,10 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
     return complain("out of memory; take a smaller patch, or fewer frames");
-  } catch (const vk::DeviceLostError&) {
-    return complain("the graphics device was lost; start again, or choose another with --gpu");
   } catch (const std::exception& error) {
+    if (pillarfield::viewer::gpu::is_device_lost(error)) {
+      return complain("the graphics device was lost; start again, or choose another with --gpu");
+    }
     return complain_of(error);
   } catch (...) {
     return complain("an unknown failure; please report it");
