@@ -8,12 +8,12 @@
 #              All others are run with sanitizers by `./dev test --all`.
 # The target `default_tests` builds what `./dev test` runs, `all_tests` the rest too.
 
-# PoCL keeps compiled kernels in the build tree, not in the user's home; graphics drivers look for a
-# folder of the user's session.
-file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/pocl_cache)
-file(CHMOD ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/pocl_cache
+# Compiled kernels are kept in the build tree, not in the user's home (where others can write the tree,
+# each program compiles its own); graphics drivers look for a folder of the user's session.
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/cache)
+file(CHMOD ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/cache
   PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
-set(PILLARFIELD_TEST_ENVIRONMENT "POCL_CACHE_DIR=${PROJECT_BINARY_DIR}/pocl_cache"
+set(PILLARFIELD_TEST_ENVIRONMENT "XDG_CACHE_HOME=${PROJECT_BINARY_DIR}/cache"
   "XDG_RUNTIME_DIR=${PROJECT_BINARY_DIR}/session")
 set(PILLARFIELD_TEST_PREFIX "")
 # At exit LeakSanitizer stops all threads, and dies of it now and then where they are PoCL's. Leaks are
