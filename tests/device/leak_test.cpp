@@ -1,5 +1,6 @@
-// What a processor takes it gives back. LeakSanitizer cannot say so beside PoCL's threads, so the heap is
-// measured: one that kept a plane, a frame or a kernel would grow by far more than is allowed here.
+// What a processor takes it gives back. LeakSanitizer cannot say so beside PoCL's threads, so the
+// heap is measured: one that kept a plane, a frame or a kernel would grow by far more than is
+// allowed here.
 
 #include <gtest/gtest.h>
 #include <malloc.h>
