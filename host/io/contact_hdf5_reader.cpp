@@ -55,7 +55,7 @@ ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.pa
   if (file.unclosed) drop_frames_without_rows();
 }
 
-/// Of a writer that was killed, the last frames may have told of rows that are not there. The rows
+/// Of a writer that was killed, the last frames may name rows that are not there. The rows
 /// of one frame lie behind those of the frame before.
 void ContactTablesReader::drop_frames_without_rows() {
   std::uint64_t good = 0;

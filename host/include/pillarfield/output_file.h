@@ -30,7 +30,7 @@ enum class OutputKind : std::uint8_t {
 /// What an output may replace under its name; an empty file in any case but `nothing`.
 enum class Replace : std::uint8_t {
   nothing,
-  results,   ///< an earlier result of the same kind, told by its content. Recordings, calibrations
+  results,   ///< an earlier result of the same kind, by its content. Recordings, calibrations
              ///< and texts are no results: they cannot be made again.
   anything,  ///< any regular file
 };
