@@ -41,7 +41,7 @@ std::vector<Opponent> opponents() {
   return all;
 }
 
-SolverPlan plan_of(std::uint32_t rows, std::uint32_t cols, double threshold) {
+SolverPlan small_plan(std::uint32_t rows, std::uint32_t cols, double threshold) {
   SolverPlan plan;
   plan.skin.rows = rows;
   plan.skin.cols = cols;
@@ -79,7 +79,7 @@ TEST_P(EveryOpponent, SolvesFramesOfAllRegions) {
 
 TEST_P(EveryOpponent, SolvesSkinsOfEveryWidth) {
   for (std::uint32_t cols = 2; cols <= 300; ++cols) {
-    const SolverPlan plan = plan_of(7, cols, 0);
+    const SolverPlan plan = small_plan(7, cols, 0);
     expect_host_bits(plan, random_frame(plan.skin, cols).view());
   }
 }
@@ -88,7 +88,7 @@ TEST_P(EveryOpponent, SolvesSkinsOfEveryWidth) {
 TEST_P(EveryOpponent, SolvesWithThresholdAndNoise) {
   for (const double threshold : {1.0, 5.0, 11.0, 200.0, 254.0}) {
     for (const double noise : {-1.0, 0.0, 0.4, 3.0, 1000.0}) {
-      SolverPlan plan = plan_of(60, 401, threshold);
+      SolverPlan plan = small_plan(60, 401, threshold);
       if (noise >= 0) plan.noise_counts = noise;
       const auto seed = static_cast<std::uint32_t>(threshold + noise + 1);
       expect_host_bits(plan, random_frame(plan.skin, seed).view());
@@ -97,7 +97,7 @@ TEST_P(EveryOpponent, SolvesWithThresholdAndNoise) {
 }
 
 TEST_P(EveryOpponent, ThreadsShareTheRows) {
-  const SolverPlan plan = plan_of(2 * 11, 2 * 70, 0);
+  const SolverPlan plan = small_plan(2 * 11, 2 * 70, 0);
   const FrameBuffer frame = random_frame(plan.skin, 5);
   for (const int threads : {2, 3, 16}) expect_host_bits(plan, frame.view(), threads);
 }
@@ -116,9 +116,9 @@ INSTANTIATE_TEST_SUITE_P(Opponents, EveryOpponent, testing::ValuesIn(opponents()
                          [](const auto& opponent) { return std::string(opponent.param.name); });
 
 TEST(Vectorised, TakesWholeThresholdsOnly) {
-  EXPECT_NO_THROW(require_whole_threshold(bare_solve(plan_of(2, 2, 3))));
-  EXPECT_THROW(require_whole_threshold(bare_solve(plan_of(2, 2, 2.5))), Error);
-  EXPECT_THROW(require_whole_threshold(bare_solve(plan_of(2, 2, 256))), Error);
+  EXPECT_NO_THROW(require_whole_threshold(bare_solve(small_plan(2, 2, 3))));
+  EXPECT_THROW(require_whole_threshold(bare_solve(small_plan(2, 2, 2.5))), Error);
+  EXPECT_THROW(require_whole_threshold(bare_solve(small_plan(2, 2, 256))), Error);
 }
 
 TEST(BareSolve, RefusesWhatOpponentsCannot) {
@@ -136,7 +136,7 @@ TEST(BareSolve, RefusesWhatOpponentsCannot) {
 
 /// What holds opponents to our result notices when they differ.
 TEST(Agreement, NoticesASingleBit) {
-  const SolverPlan plan = plan_of(20, 20, 0);
+  const SolverPlan plan = small_plan(20, 20, 0);
   const FrameBuffer frame = random_frame(plan.skin, 1);
   const ForceField ours = solve_on_host(plan, frame.view());
   ForceField theirs = ours;
