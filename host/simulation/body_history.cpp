@@ -21,9 +21,6 @@ struct Turn {
       : cosine(std::cos(angle_deg * std::numbers::pi / 180)),
         sine(std::sin(angle_deg * std::numbers::pi / 180)) {}
 
-  [[nodiscard]] PlaneVector apply(const PlaneVector& v) const {
-    return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y};
-  }
   [[nodiscard]] PlaneVector undo(const PlaneVector& v) const {
     return {cosine * v.x + sine * v.y, cosine * v.y - sine * v.x};
   }
@@ -153,7 +150,7 @@ NormalContact BodyHistory::press(const BodyKey& pose) {
   if (std::ranges::none_of(height.values, [](double h) { return std::isfinite(h); })) {
     throw Error(
         place(pose),
-        fmt::format("it lies between the cells of {} mm that bear the load", grid_.cell_mm()),
+        fmt::format("it lies between the cells of {:.4g} mm that bear the load", grid_.cell_mm()),
         "make the body larger than a cell");
   }
   std::optional<NormalContact> normal =
@@ -198,14 +195,16 @@ CellVectors BodyHistory::rub(const BodyKey& pose, const NormalContact& normal) {
 CellVectors BodyHistory::drive(const BodyKey& pose, const CellBox& contact) {
   CellVectors drive_mm(contact);
   if (!touches_) return drive_mm;
-  const Turn before(pose_.angle_deg);
-  const Turn after(pose.angle_deg);
-  for_each_place(grid_, contact, pose, [&](std::size_t index, const PlaneVector& at) {
-    const PlaneVector from = before.apply(at);
-    const PlaneVector to = after.apply(at);
-    drive_mm.x.values[index] = (pose.x_mm - pose_.x_mm) + (to.x - from.x);
-    drive_mm.y.values[index] = (pose.y_mm - pose_.y_mm) + (to.y - from.y);
-  });
+  const double turn = (pose.angle_deg - pose_.angle_deg) * std::numbers::pi / 180;
+  const double middle_x = (pose.x_mm + pose_.x_mm) / 2;
+  const double middle_y = (pose.y_mm + pose_.y_mm) / 2;
+  std::size_t index = 0;
+  for (std::int64_t row = contact.first_row; row < contact.end_row(); ++row) {
+    for (std::int64_t col = contact.first_col; col < contact.end_col(); ++col, ++index) {
+      drive_mm.x.values[index] = pose.x_mm - pose_.x_mm - turn * (grid_.y_mm(row) - middle_y);
+      drive_mm.y.values[index] = pose.y_mm - pose_.y_mm + turn * (grid_.x_mm(col) - middle_x);
+    }
+  }
   add_elastic_shear(drive_mm, pose);
   return drive_mm;
 }

@@ -212,7 +212,7 @@ std::optional<NormalContact> solve_normal_contact(const CellField& height_mm, do
     }
     window = hull(window, needed);
   }
-  contact.approach_mm = approach - lowest;
+  contact.approach_mm = approach + lowest;
   contact.contact = box_where(contact.pressure, [](double p) { return p > 0; });
   return contact;
 }

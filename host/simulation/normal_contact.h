@@ -9,7 +9,7 @@ namespace pillarfield {
 
 /// How a rigid body without friction lies on the half-space under a load (H7).
 struct NormalContact {
-  double approach_mm = 0;  ///< how far the body's lowest point is below the undeformed surface
+  double approach_mm = 0;  ///< how far height 0 is below the undeformed surface
   CellField pressure;      ///< over πE*, zero or more; its box holds the whole contact
   CellBox contact;         ///< the cells that bear pressure
   int iterations = 0;
@@ -23,7 +23,7 @@ inline constexpr double kGapTolerance = 1e-5;
 inline constexpr int kMostPressIterations = 2000;
 
 /// Finds the pressure whose sum over the cells is `sum` (> 0) under a body whose surface is
-/// `height_mm` above its lowest point; infinite where there is no body. Bound-constrained conjugate
+/// at `height_mm`, of any origin; infinite where there is no body. Bound-constrained conjugate
 /// gradients of Polonsky and Keer (Wear 231, 1999, 206-219), on the cells that the body reaches.
 /// The sum is met to rounding. Unset where no cell is below the body, or where
 /// kMostPressIterations did not suffice.

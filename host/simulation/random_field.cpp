@@ -49,6 +49,14 @@ void RandomField::filter(Amplitude amplitude) {
                  [](const Complex& value) { return value.real(); });
 }
 
+/// Makes the root mean square 1.
+void RandomField::normalise() {
+  double squares = 0;
+  for (const double value : values_) squares += value * value;
+  const double rms = std::sqrt(squares / static_cast<double>(values_.size()));
+  for (double& value : values_) value /= rms;
+}
+
 RandomField RandomField::self_affine(const Noise& noise, double spacing_mm, double longest_mm,
                                      double exponent) {
   RandomField field(noise, spacing_mm);
@@ -59,19 +67,15 @@ RandomField RandomField::self_affine(const Noise& noise, double spacing_mm, doub
   field.filter([=](double k) {
     return k >= low * (1 - 1e-9) && k <= high ? std::pow(k / low, -1 - exponent) : 0.0;
   });
-  double squares = 0;
-  for (const double value : field.values_) squares += value * value;
-  const double rms = std::sqrt(squares / static_cast<double>(field.values_.size()));
-  for (double& value : field.values_) value /= rms;
+  field.normalise();
   return field;
 }
 
 RandomField RandomField::smooth(const Noise& noise, double length_mm) {
   RandomField field(noise, length_mm / 8);
   field.filter([=](double k) { return k > 0 ? std::exp(-k * k * length_mm * length_mm / 8) : 0; });
-  double most = 0;
-  for (const double value : field.values_) most = std::max(most, std::abs(value));
-  for (double& value : field.values_) value /= most;
+  field.normalise();
+  for (double& value : field.values_) value = std::erf(value / std::numbers::sqrt2);
   return field;
 }
 

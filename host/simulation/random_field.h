@@ -23,7 +23,8 @@ class RandomField {
   [[nodiscard]] static RandomField self_affine(const Noise& noise, double spacing_mm,
                                                double longest_mm, double exponent);
 
-  /// Correlated over `length_mm` as exp(−(d/length)²); between −1 and 1, one of which it reaches.
+  /// Gaussian noise f correlated as exp(−(d/length)²), made even: erf(f/√2), so that every value
+  /// between −1 and 1 is as likely.
   [[nodiscard]] static RandomField smooth(const Noise& noise, double length_mm);
 
   [[nodiscard]] double at(double x_mm, double y_mm) const;
@@ -32,6 +33,7 @@ class RandomField {
   RandomField(const Noise& noise, double spacing_mm);
   template <class Amplitude>
   void filter(Amplitude amplitude);
+  void normalise();
   [[nodiscard]] double value(std::int64_t row, std::int64_t col) const;
 
   double spacing_mm_;
