@@ -201,7 +201,8 @@ TEST(ShippedScenes, AreTheOnesOfTheDocumentation) {
   }
 }
 
-/// The truth's total load is that of the contacts and bodies, so none of them reaches beyond the skin.
+/// The truth's total load is that of the contacts and bodies, so none of them reaches beyond the
+/// skin.
 void expect_whole_load(const Scene& scene, double time_s, const ForceField& truth) {
   const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load);
   if (!contacts) return;
@@ -336,8 +337,8 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
   for (const auto& [quantity, required, applies] : kBodyQuantities) {
     keys.emplace_back(quantity.key);
   }
-  for (const char* key : {"modulus_kpa", "radii_mm", "height_map", "height_map_size_mm", "substeps",
-                          "angle_deg"}) {
+  for (const char* key :
+       {"modulus_kpa", "radii_mm", "height_map", "height_map_size_mm", "substeps", "angle_deg"}) {
     keys.emplace_back(key);
   }
   for (const auto& [quantity, required, applies] : kContactQuantities) {
