@@ -31,9 +31,9 @@ void clear(ForceField& field) {
   std::fill(field.status.begin(), field.status.end(), std::uint8_t{0});
 }
 
-void add_forces(const PillarForces& forces, ForceField& field) {
+void add_forces(const BodyForces& forces, ForceField& field) {
   const auto add = [](double force_n, float& to) { to = static_cast<float>(to + force_n); };
-  for (const PillarForce& force : forces) {
+  for (const BodyForce& force : forces) {
     add(force.shear_x, field.shear_x[force.pillar]);
     add(force.shear_y, field.shear_y[force.pillar]);
     add(force.normal, field.normal[force.pillar]);

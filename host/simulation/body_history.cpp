@@ -74,7 +74,7 @@ BodyHistory::BodyHistory(const Scene& scene, std::size_t number)
       surface_(body_, scene.skin.pillar_pitch_mm(), scene.seed, number),
       half_spaces_(grid_.cell_mm()) {}
 
-std::shared_ptr<const PillarForces> BodyHistory::forces(std::uint64_t frame) {
+std::shared_ptr<const BodyForces> BodyHistory::forces(std::uint64_t frame) {
   frame = std::min(frame, last_frame_);
   // Frames that are solved need not wait for those that are not.
   if (SharedForces known = solved(frame)) return known;
@@ -122,9 +122,9 @@ void BodyHistory::step_to(const BodyKey& pose) {
   if (touches) {
     const NormalContact normal = press(pose);
     shear = rub(pose, normal);
-    forces = std::make_shared<const PillarForces>(on_pillars(normal, shear));
+    forces = std::make_shared<const BodyForces>(on_pillars(normal, shear));
   } else {
-    forces = std::make_shared<const PillarForces>();
+    forces = std::make_shared<const BodyForces>();
   }
   pose_ = pose;
   shear_ = std::move(shear);
@@ -230,14 +230,14 @@ void BodyHistory::add_elastic_shear(CellVectors& drive_mm, const BodyKey& pose) 
   }
 }
 
-PillarForces BodyHistory::on_pillars(const NormalContact& normal, const CellVectors& shear) const {
+BodyForces BodyHistory::on_pillars(const NormalContact& normal, const CellVectors& shear) const {
   const CellBox& contact = normal.contact;
   const CellBox pillars =
       intersection({pillar_of(contact.first_row), pillar_of(contact.first_col),
                     pillar_of(contact.end_row() - 1) - pillar_of(contact.first_row) + 1,
                     pillar_of(contact.end_col() - 1) - pillar_of(contact.first_col) + 1},
                    {0, 0, pillar_rows_, pillar_cols_});
-  PillarForces forces;
+  BodyForces forces;
   forces.reserve(pillars.cells());
   for (std::int64_t row = pillars.first_row; row < pillars.end_row(); ++row) {
     for (std::int64_t col = pillars.first_col; col < pillars.end_col(); ++col) {

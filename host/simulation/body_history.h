@@ -18,13 +18,13 @@
 namespace pillarfield {
 
 /// What a body does to one pillar, newtons; the signs are those of ForceField.
-struct PillarForce {
+struct BodyForce {
   std::size_t pillar;  ///< row times columns plus column
   double shear_x;
   double shear_y;
   double normal;
 };
-using PillarForces = std::vector<PillarForce>;
+using BodyForces = std::vector<BodyForce>;
 
 /// The forces of a body on the pillars, frame by frame. A frame depends on those before it, which
 /// are solved when one is asked for and kept, so the order of the calls does not matter. Several
@@ -36,10 +36,10 @@ class BodyHistory {
 
   /// Of a frame, in order of pillars; what lies outside the skin is left out. Throws Error where
   /// the contact cannot be solved, and where is_interrupted().
-  [[nodiscard]] std::shared_ptr<const PillarForces> forces(std::uint64_t frame);
+  [[nodiscard]] std::shared_ptr<const BodyForces> forces(std::uint64_t frame);
 
  private:
-  using SharedForces = std::shared_ptr<const PillarForces>;
+  using SharedForces = std::shared_ptr<const BodyForces>;
 
   [[nodiscard]] SharedForces solved(std::uint64_t frame) const;
   [[nodiscard]] SharedForces next_frame();
@@ -48,8 +48,7 @@ class BodyHistory {
   [[nodiscard]] CellVectors rub(const BodyKey& pose, const NormalContact& normal);
   [[nodiscard]] CellVectors drive(const BodyKey& pose, const CellBox& contact);
   void add_elastic_shear(CellVectors& drive_mm, const BodyKey& pose);
-  [[nodiscard]] PillarForces on_pillars(const NormalContact& normal,
-                                        const CellVectors& shear) const;
+  [[nodiscard]] BodyForces on_pillars(const NormalContact& normal, const CellVectors& shear) const;
   [[nodiscard]] std::string place(const BodyKey& pose) const;
 
   Body body_;

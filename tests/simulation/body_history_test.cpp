@@ -60,9 +60,9 @@ struct Resultant {
   double normal = 0;
 };
 
-Resultant resultant(const PillarForces& forces) {
+Resultant resultant(const BodyForces& forces) {
   Resultant sum;
-  for (const PillarForce& force : forces) {
+  for (const BodyForce& force : forces) {
     sum.shear_x += force.shear_x;
     sum.shear_y += force.shear_y;
     sum.normal += force.normal;
@@ -77,7 +77,7 @@ TEST(BodyHistory, CarriesTheLoadAndNeverMoreShearThanFriction) {
     const auto forces = history.forces(frame);
     const double load = state_at(body, static_cast<double>(frame) / 10).load_n;
     EXPECT_NEAR(resultant(*forces).normal, load, 1e-12 * load) << frame;
-    for (const PillarForce& force : *forces) {
+    for (const BodyForce& force : *forces) {
       ASSERT_GT(force.normal, 0);
       ASSERT_LE(std::hypot(force.shear_x, force.shear_y),
                 body.friction * force.normal * (1 + 1e-9));
@@ -90,7 +90,7 @@ TEST(BodyHistory, PressingAloneMakesNoShear) {
   body.path = {{0, 0, 0, 0, 2}, {0.3, 0, 0, 0, 9}};
   BodyHistory history(scene_of(body), 0);
   for (std::uint64_t frame = 0; frame < 5; ++frame) {
-    for (const PillarForce& force : *history.forces(frame)) {
+    for (const BodyForce& force : *history.forces(frame)) {
       ASSERT_EQ(force.shear_x, 0);
       ASSERT_EQ(force.shear_y, 0);
     }
@@ -112,7 +112,7 @@ TEST(BodyHistory, ShearFollowsTheBody) {
   body.path = {{0, 0, 0, 0, 6}, {0.1, 0, 0, 60, 6}};
   BodyHistory turned(scene_of(body), 0);
   double torque = 0;
-  for (const PillarForce& force : *turned.forces(1)) {
+  for (const BodyForce& force : *turned.forces(1)) {
     const double x = static_cast<double>(force.pillar % 26) - 12.5;
     const double y = 12.5 - static_cast<double>(force.pillar / 26);
     torque += (x * force.shear_y - y * force.shear_x) * scene.skin.pillar_pitch_mm();
@@ -223,7 +223,7 @@ TEST(BodyHistory, FrictionVariesOverTheBody) {
   BodyHistory history(scene, 0);
   double least = 9;
   double most = 0;
-  for (const PillarForce& force : *history.forces(1)) {
+  for (const BodyForce& force : *history.forces(1)) {
     const double ratio = std::hypot(force.shear_x, force.shear_y) / force.normal;
     least = std::min(least, ratio);
     most = std::max(most, ratio);
@@ -246,8 +246,8 @@ TEST(BodyHistory, RoughnessIsTheSeeds) {
   const auto other = BodyHistory(scene, 0).forces(0);
   scene.bodies[0].roughness_um = 0;
   const auto smooth = BodyHistory(scene, 0).forces(0);
-  const auto highest = [](const PillarForces& forces) {
-    return std::ranges::max(forces, {}, &PillarForce::normal).normal;
+  const auto highest = [](const BodyForces& forces) {
+    return std::ranges::max(forces, {}, &BodyForce::normal).normal;
   };
   EXPECT_EQ(highest(*rough), highest(*again));
   EXPECT_NE(highest(*rough), highest(*other));

@@ -173,7 +173,7 @@ Body map_body(const std::filesystem::path& file) {
   return body;
 }
 
-PillarForces forces_of(const Body& body) {
+BodyForces forces_of(const Body& body) {
   Scene scene;
   scene.skin.rows = 44;
   scene.skin.cols = 44;
@@ -185,11 +185,11 @@ void expect_like_ball(const Body& body, double tolerance_n) {
   Body ball;
   ball.radius_mm = kRadiusMm;
   ball.path = body.path;
-  const PillarForces expected = forces_of(ball);
+  const BodyForces expected = forces_of(ball);
   std::vector<double> all(22 * 22);
-  for (const PillarForce& force : forces_of(body)) all[force.pillar] = force.normal;
+  for (const BodyForce& force : forces_of(body)) all[force.pillar] = force.normal;
   double most = 0;
-  for (const PillarForce& force : expected) {
+  for (const BodyForce& force : expected) {
     most = std::max(most, force.normal);
     EXPECT_NEAR(all[force.pillar], force.normal, tolerance_n) << force.pillar;
   }
