@@ -11,33 +11,33 @@
 namespace pillarfield {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr std::int64_t kCells = 64;
-constexpr double kCellMm = 0.3;
-constexpr double kContactMm = 9;
-constexpr double kFriction = 0.8;
+constexpr std::int64_t kRubbedCells = 64;
+constexpr double kRubbedCellMm = 0.3;
+constexpr double kRubbedRadiusMm = 9;
+constexpr double kRubbedFriction = 0.8;
 constexpr double kPeak = 0.01;  ///< of the pressure over πE*
 
 double place(std::int64_t index) {
-  return (static_cast<double>(index) - static_cast<double>(kCells - 1) / 2) * kCellMm;
+  return (static_cast<double>(index) - static_cast<double>(kRubbedCells - 1) / 2) * kRubbedCellMm;
 }
 
 /// Calls `visit(index, x, y)` for each cell.
 template <class Visit>
 void for_each_cell(Visit visit) {
   std::size_t index = 0;
-  for (std::int64_t row = 0; row < kCells; ++row) {
-    for (std::int64_t col = 0; col < kCells; ++col, ++index) visit(index, place(col), -place(row));
+  for (std::int64_t row = 0; row < kRubbedCells; ++row) {
+    for (std::int64_t col = 0; col < kRubbedCells; ++col, ++index)
+      visit(index, place(col), -place(row));
   }
 }
 
 /// Hertz's pressure times the friction, and what is rubbed on it step by step.
 class Rubbed {
  public:
-  Rubbed() : limit_(CellBox{0, 0, kCells, kCells}), shear_(limit_.box) {
+  Rubbed() : limit_(CellBox{0, 0, kRubbedCells, kRubbedCells}), shear_(limit_.box) {
     for_each_cell([&](std::size_t i, double x, double y) {
-      const double rest = 1 - (x * x + y * y) / (kContactMm * kContactMm);
-      limit_.values[i] = rest > 0 ? kFriction * kPeak * std::sqrt(rest) : 0;
+      const double rest = 1 - (x * x + y * y) / (kRubbedRadiusMm * kRubbedRadiusMm);
+      limit_.values[i] = rest > 0 ? kRubbedFriction * kPeak * std::sqrt(rest) : 0;
     });
   }
 
@@ -77,7 +77,7 @@ class Rubbed {
     double cells = 0;
     for_each_cell(
         [&](std::size_t i, double, double) { cells += limit_.values[i] > 0 && counts(i); });
-    return std::sqrt(cells / kPi) * kCellMm;
+    return std::sqrt(cells / std::numbers::pi) * kRubbedCellMm;
   }
 
   [[nodiscard]] double stick_radius() const {
@@ -93,12 +93,12 @@ class Rubbed {
 
   CellField limit_;
   CellVectors shear_;
-  HalfSpaces surfaces_{kCellMm};
+  HalfSpaces surfaces_{kRubbedCellMm};
 };
 
 /// Mindlin's displacement at which Q = µP, with ν = 1/2: 3µP(2 − ν)/(16Ga), G = E*/4.
 double sliding_displacement_mm(double full_sum) {
-  return 9.0 / 8 * kPi * full_sum * kCellMm * kCellMm / kContactMm;
+  return 9.0 / 8 * std::numbers::pi * full_sum * kRubbedCellMm * kRubbedCellMm / kRubbedRadiusMm;
 }
 
 TEST(FrictionContact, PartialSlipIsCattaneosAndMindlins) {
@@ -108,7 +108,7 @@ TEST(FrictionContact, PartialSlipIsCattaneosAndMindlins) {
         sliding_displacement_mm(ball.full()) * (1 - std::pow(1 - ratio, 2.0 / 3));
     const int iterations = ball.step([&](double, double) { return PlaneVector{displacement, 0}; });
     const double found = ball.pull_x() / ball.full();
-    const double stick = ball.stick_radius() / kContactMm;
+    const double stick = ball.stick_radius() / kRubbedRadiusMm;
     const std::string name = "ratio_" + std::to_string(ratio);
     RecordProperty(name + "_found", std::to_string(found));
     RecordProperty(name + "_stick", std::to_string(stick));
@@ -124,18 +124,19 @@ TEST(FrictionContact, PartialSlipHasTheKnownTraction) {
   Rubbed ball;
   const double displacement = sliding_displacement_mm(ball.full()) * (1 - std::pow(0.4, 2.0 / 3));
   ball.step([&](double, double) { return PlaneVector{0, displacement}; });
-  const double stick_mm = kContactMm * std::cbrt(1 - ball.pull_y() / ball.full());
+  const double stick_mm = kRubbedRadiusMm * std::cbrt(1 - ball.pull_y() / ball.full());
   double squares = 0;
   double cells = 0;
   for_each_cell([&](std::size_t i, double x, double y) {
     if (!(ball.limit().values[i] > 0)) return;
     const double rest = 1 - (x * x + y * y) / (stick_mm * stick_mm);
-    const double less = rest > 0 ? kFriction * kPeak * stick_mm / kContactMm * std::sqrt(rest) : 0;
+    const double less =
+        rest > 0 ? kRubbedFriction * kPeak * stick_mm / kRubbedRadiusMm * std::sqrt(rest) : 0;
     const double error = ball.shear().y.values[i] - (ball.limit().values[i] - less);
     squares += error * error;
     ++cells;
   });
-  const double rms = std::sqrt(squares / cells) / (kFriction * kPeak);
+  const double rms = std::sqrt(squares / cells) / (kRubbedFriction * kPeak);
   RecordProperty("rms_over_peak", std::to_string(rms));
   EXPECT_LT(rms, 0.01);
 }
@@ -143,17 +144,17 @@ TEST(FrictionContact, PartialSlipHasTheKnownTraction) {
 /// Lubkin's torsion (J. Appl. Mech. 18, 1951, 183-187), derived as a superposition of punches
 /// (H12, H13): the angle at which the stick radius is c, over µΣp'·cell².
 double torsion_angle(double stick_mm) {
-  const double k = std::sqrt(1 - stick_mm * stick_mm / (kContactMm * kContactMm));
-  return 3 / (kContactMm * kContactMm) * (std::comp_ellint_1(k) - std::comp_ellint_2(k));
+  const double k = std::sqrt(1 - stick_mm * stick_mm / (kRubbedRadiusMm * kRubbedRadiusMm));
+  return 3 / (kRubbedRadiusMm * kRubbedRadiusMm) * (std::comp_ellint_1(k) - std::comp_ellint_2(k));
 }
 
 /// The torque over µP: of each punch (16/3) G s³ dβ, by parts, with the trapezoidal rule.
 double torsion_torque_mm(double stick_mm) {
   // G over P/(πE*) is π/4 in the units of torsion_angle().
-  constexpr double kStiffness = 16.0 / 3 / 4 / kPi;
+  constexpr double kStiffness = 16.0 / 3 / 4 / std::numbers::pi;
   constexpr int kParts = 20000;
   double integral = 0;
-  const double width = (kContactMm - stick_mm) / kParts;
+  const double width = (kRubbedRadiusMm - stick_mm) / kParts;
   for (int i = 0; i < kParts; ++i) {
     const double s = stick_mm + (i + 0.5) * width;
     integral += 3 * s * s * torsion_angle(s) * width;
@@ -163,18 +164,18 @@ double torsion_torque_mm(double stick_mm) {
 
 TEST(FrictionContact, TorsionIsLubkins) {
   // Full sliding, (3π/16) µPa, checks the formula.
-  EXPECT_NEAR(torsion_torque_mm(1e-6), 3 * kPi / 16 * kContactMm, 1e-3);
+  EXPECT_NEAR(torsion_torque_mm(1e-6), 3 * std::numbers::pi / 16 * kRubbedRadiusMm, 1e-3);
   for (const double share : {0.9, 0.7, 0.4}) {
     Rubbed ball;
-    const double stick_mm = share * kContactMm;
-    const double angle = torsion_angle(stick_mm) * ball.full() * kCellMm * kCellMm;
+    const double stick_mm = share * kRubbedRadiusMm;
+    const double angle = torsion_angle(stick_mm) * ball.full() * kRubbedCellMm * kRubbedCellMm;
     ball.step([&](double x, double y) { return PlaneVector{-angle * y, angle * x}; });
     const double torque = ball.torque() / ball.full();
     const std::string name = "stick_" + std::to_string(share);
-    RecordProperty(name + "_found", std::to_string(ball.stick_radius() / kContactMm));
+    RecordProperty(name + "_found", std::to_string(ball.stick_radius() / kRubbedRadiusMm));
     RecordProperty(name + "_torque_over_lubkin",
                    std::to_string(torque / torsion_torque_mm(stick_mm)));
-    EXPECT_NEAR(ball.stick_radius() / kContactMm, share, 0.02);
+    EXPECT_NEAR(ball.stick_radius() / kRubbedRadiusMm, share, 0.02);
     EXPECT_NEAR(torque / torsion_torque_mm(stick_mm), 1, 0.01) << share;
     EXPECT_NEAR(ball.pull_x() / ball.full(), 0, 1e-6);
   }
@@ -185,8 +186,10 @@ TEST(FrictionContact, SlidingFarTakesAllOfTheFrictionAlongTheWay) {
   const double far = 100 * sliding_displacement_mm(ball.full());
   ball.step([&](double, double) { return PlaneVector{0.6 * far, -0.8 * far}; });
   for_each_cell([&](std::size_t i, double, double) {
-    EXPECT_NEAR(ball.shear().x.values[i], 0.6 * ball.limit().values[i], 0.02 * kFriction * kPeak);
-    EXPECT_NEAR(ball.shear().y.values[i], -0.8 * ball.limit().values[i], 0.02 * kFriction * kPeak);
+    EXPECT_NEAR(ball.shear().x.values[i], 0.6 * ball.limit().values[i],
+                0.02 * kRubbedFriction * kPeak);
+    EXPECT_NEAR(ball.shear().y.values[i], -0.8 * ball.limit().values[i],
+                0.02 * kRubbedFriction * kPeak);
   });
   EXPECT_EQ(ball.stick_radius(), 0);
 }
@@ -221,10 +224,10 @@ TEST(FrictionContact, AReversalLeavesAnAnnulusOfCounterSlip) {
     const double x = ball.shear().x.values[i];
     return x > 0 || std::hypot(x, ball.shear().y.values[i]) < 0.999 * ball.limit().values[i];
   });
-  RecordProperty("inner_over_contact", std::to_string(inner / kContactMm));
-  EXPECT_NEAR(inner / kContactMm, std::cbrt(1 - (pulled - left) / 2), 0.02);
+  RecordProperty("inner_over_contact", std::to_string(inner / kRubbedRadiusMm));
+  EXPECT_NEAR(inner / kRubbedRadiusMm, std::cbrt(1 - (pulled - left) / 2), 0.02);
   // Shear still points ahead in the ring that slipped first and never counter-slipped.
-  EXPECT_GT(std::ranges::max(ball.shear().x.values), 0.1 * kFriction * kPeak);
+  EXPECT_GT(std::ranges::max(ball.shear().x.values), 0.1 * kRubbedFriction * kPeak);
 }
 
 }  // namespace

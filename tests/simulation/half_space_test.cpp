@@ -25,7 +25,7 @@ double integral_over_cell(double dx, double dy, Kernel kernel) {
   return sum / (kPoints * kPoints);
 }
 
-constexpr double kCellMm = 0.25;
+constexpr double kKernelCellMm = 0.25;
 
 struct UnitCell {
   explicit UnitCell(const CellBox& box, std::int64_t row, std::int64_t col)
@@ -40,11 +40,11 @@ struct UnitCell {
 
 TEST(HalfSpace, ACellUnderItsOwnTractionMovesByTheKnownMean) {
   const CellBox box = {0, 0, 9, 7};
-  HalfSpace surface(9, 7, kCellMm);
+  HalfSpace surface(9, 7, kKernelCellMm);
   UnitCell cell(box, 4, 3);
   surface.press(cell.loaded, cell.x);
   // The integral of 1/r over a unit square about its middle.
-  const double mean = 4 * std::log(1 + std::sqrt(2.0)) * kCellMm;
+  const double mean = 4 * std::log(1 + std::sqrt(2.0)) * kKernelCellMm;
   EXPECT_NEAR(cell.x.values[cell.x.index(4, 3)], mean, 1e-12);
   surface.shear(cell.loaded, cell.unloaded, cell.x, cell.y);
   EXPECT_NEAR(cell.x.values[cell.x.index(4, 3)], 1.5 * mean, 1e-12);
@@ -53,7 +53,7 @@ TEST(HalfSpace, ACellUnderItsOwnTractionMovesByTheKnownMean) {
 
 TEST(HalfSpace, OtherCellsMoveAsBoussinesqAndCerrutiSay) {
   const CellBox box = {-3, 5, 11, 14};
-  HalfSpace surface(11, 14, kCellMm);
+  HalfSpace surface(11, 14, kKernelCellMm);
   UnitCell cell(box, -2, 6);
   CellField depth(box);
   surface.press(cell.loaded, depth);
@@ -65,7 +65,9 @@ TEST(HalfSpace, OtherCellsMoveAsBoussinesqAndCerrutiSay) {
     const auto dx = static_cast<double>(col - 6);
     const auto dy = static_cast<double>(-2 - row);  // rows count downwards
     const std::size_t i = depth.index(row, col);
-    const auto mean = [&](auto kernel) { return kCellMm * integral_over_cell(dx, dy, kernel); };
+    const auto mean = [&](auto kernel) {
+      return kKernelCellMm * integral_over_cell(dx, dy, kernel);
+    };
     const double z = mean([](double, double, double r) { return 1 / r; });
     const double xx = mean([](double x, double, double r) { return x * x / (r * r * r); });
     const double yy = mean([](double, double y, double r) { return y * y / (r * r * r); });
@@ -94,8 +96,8 @@ TEST(HalfSpace, PaddingToAnySizeGivesTheSame) {
   CellField y(box);
   for (double& value : x.values) value = uniform(random);
   for (double& value : y.values) value = uniform(random);
-  HalfSpace tight(13, 10, kCellMm);
-  HalfSpace wide(40, 30, kCellMm);
+  HalfSpace tight(13, 10, kKernelCellMm);
+  HalfSpace wide(40, 30, kKernelCellMm);
   CellField tight_x(box);
   CellField tight_y(box);
   CellField wide_x(box);
@@ -115,7 +117,7 @@ TEST(HalfSpace, PaddingToAnySizeGivesTheSame) {
 
 TEST(HalfSpace, TheMostShearIsABound) {
   const CellBox box = {0, 0, 24, 24};
-  HalfSpaces surfaces(kCellMm);
+  HalfSpaces surfaces(kKernelCellMm);
   HalfSpace& surface = surfaces.for_box(box);
   CellField ones(box);
   std::fill(ones.values.begin(), ones.values.end(), 1.0);

@@ -30,7 +30,7 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
 
 std::vector<std::byte> as_bytes(const std::string& text) {
   std::vector<std::byte> bytes(text.size());
-  std::memcpy(bytes.data(), text.data(), text.size());
+  std::ranges::transform(text, bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
   return bytes;
 }
 
@@ -59,7 +59,7 @@ std::string npy_of(const std::string& descr, const std::string& shape, const std
   return npy("{'descr': '" + descr + "', 'fortran_order': False, 'shape': " + shape + ", }", data);
 }
 
-HeightMap parsed(const std::string& file) { return parse_npy(as_bytes(file), "a.npy"); }
+HeightMap parsed_npy(const std::string& file) { return parse_npy(as_bytes(file), "a.npy"); }
 
 const std::vector<double> kSmall = {0, 1, 2, 3, 4, 5};
 
@@ -70,21 +70,21 @@ void expect_small(const HeightMap& map) {
 }
 
 TEST(HeightMap, ReadsEveryTypeOfNumpy) {
-  expect_small(parsed(npy_of("|u1", "(2, 3)", numbers_of<std::uint8_t>(kSmall))));
-  expect_small(parsed(npy_of("|i1", "(2, 3)", numbers_of<std::int8_t>(kSmall))));
-  expect_small(parsed(npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall))));
-  expect_small(parsed(npy_of("<i2", "(2, 3)", numbers_of<std::int16_t>(kSmall))));
-  expect_small(parsed(npy_of("<u4", "(2, 3)", numbers_of<std::uint32_t>(kSmall))));
-  expect_small(parsed(npy_of("<i4", "(2, 3)", numbers_of<std::int32_t>(kSmall))));
-  expect_small(parsed(npy_of("<i8", "(2, 3)", numbers_of<std::int64_t>(kSmall))));
-  expect_small(parsed(npy_of("<f4", "(2, 3)", numbers_of<float>(kSmall))));
-  expect_small(parsed(npy_of("<f8", "(2, 3)", numbers_of<double>(kSmall))));
-  expect_small(parsed(npy("{'shape': (2, 3), 'fortran_order': True, 'descr': '<f8'}",
-                          numbers_of<double>({0, 3, 1, 4, 2, 5}))));
+  expect_small(parsed_npy(npy_of("|u1", "(2, 3)", numbers_of<std::uint8_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("|i1", "(2, 3)", numbers_of<std::int8_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<i2", "(2, 3)", numbers_of<std::int16_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<u4", "(2, 3)", numbers_of<std::uint32_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<i4", "(2, 3)", numbers_of<std::int32_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<i8", "(2, 3)", numbers_of<std::int64_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<f4", "(2, 3)", numbers_of<float>(kSmall))));
+  expect_small(parsed_npy(npy_of("<f8", "(2, 3)", numbers_of<double>(kSmall))));
+  expect_small(parsed_npy(npy("{'shape': (2, 3), 'fortran_order': True, 'descr': '<f8'}",
+                              numbers_of<double>({0, 3, 1, 4, 2, 5}))));
 }
 
 TEST(HeightMap, AFlatOneIsAllTop) {
-  const HeightMap map = parsed(npy_of("<f4", "(2, 2)", numbers_of<float>({7, 7, 7, 7})));
+  const HeightMap map = parsed_npy(npy_of("<f4", "(2, 2)", numbers_of<float>({7, 7, 7, 7})));
   EXPECT_EQ(map.heights, std::vector<double>(4, 1));
 }
 
@@ -92,7 +92,7 @@ TEST(HeightMap, RefusesOtherFilesOfNumpyInOneLine) {
   const std::string six = numbers_of<double>(kSmall);
   const std::string save = "; save a two-dimensional array with numpy.save()";
   const auto refused = [](const std::string& file) {
-    return message_of([&] { static_cast<void>(parsed(file)); });
+    return message_of([&] { static_cast<void>(parsed_npy(file)); });
   };
   EXPECT_EQ(refused(""), "a.npy: is no .npy file" + save);
   EXPECT_EQ(refused("root:x:0:0:root:/root:/bin/bash"), "a.npy: is no .npy file" + save);
@@ -129,14 +129,14 @@ TEST(HeightMap, RefusesOtherFilesOfNumpyInOneLine) {
 TEST(HeightMap, DamagedFilesEndInAnError) {
   const std::string good = npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall));
   for (std::size_t length = 0; length < good.size(); ++length) {
-    EXPECT_THROW(static_cast<void>(parsed(good.substr(0, length))), Error) << length;
+    EXPECT_THROW(static_cast<void>(parsed_npy(good.substr(0, length))), Error) << length;
   }
   for (std::size_t at = 0; at < good.size(); ++at) {
     for (const char byte : {'\0', '\x7f', '\xff', '9', '\'', '('}) {
       std::string changed = good;
       changed[at] = byte;
       try {
-        static_cast<void>(parsed(changed));
+        static_cast<void>(parsed_npy(changed));
       } catch (const Error&) {
         continue;
       }
@@ -158,17 +158,17 @@ std::vector<double> ball_relief(std::size_t side, double size_mm, double radius_
   return heights;
 }
 
-constexpr std::size_t kSide = 201;
-constexpr double kSizeMm = 20;
-constexpr double kRadiusMm = 25;
+constexpr std::size_t kMapSide = 201;
+constexpr double kMapSizeMm = 20;
+constexpr double kBallRadiusMm = 25;
 
 Body map_body(const std::filesystem::path& file) {
-  const std::vector<double> relief = ball_relief(kSide, kSizeMm, kRadiusMm);
+  const std::vector<double> relief = ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm);
   Body body;
   body.shape = BodyShape::height_map;
   body.height_map = file;
-  body.height_map_size_mm = {kSizeMm, kSizeMm};
-  body.height_map_depth_mm = relief[kSide / 2 * kSide + kSide / 2] - relief[0];
+  body.height_map_size_mm = {kMapSizeMm, kMapSizeMm};
+  body.height_map_depth_mm = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - relief[0];
   body.path = {{0, 0.7, -1.1, 30, 8}};
   return body;
 }
@@ -183,7 +183,7 @@ BodyForces forces_of(const Body& body) {
 
 void expect_like_ball(const Body& body, double tolerance_n) {
   Body ball;
-  ball.radius_mm = kRadiusMm;
+  ball.radius_mm = kBallRadiusMm;
   ball.path = body.path;
   const BodyForces expected = forces_of(ball);
   std::vector<double> all(22 * 22);
@@ -198,25 +198,25 @@ void expect_like_ball(const Body& body, double tolerance_n) {
 
 TEST(HeightMap, OfABallInNumpyPressesAsTheBall) {
   const auto file = scratch("ball.npy");
-  write_bytes(
-      file, npy_of("<f4", "(201, 201)", numbers_of<float>(ball_relief(kSide, kSizeMm, kRadiusMm))));
+  write_bytes(file, npy_of("<f4", "(201, 201)",
+                           numbers_of<float>(ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm))));
   expect_like_ball(map_body(file), 2e-3);
   std::filesystem::remove(file);
 }
 
 TEST(HeightMap, OfABallAsAPictureOf16BitsPressesAsTheBall) {
   const auto file = scratch("ball.png");
-  const std::vector<double> relief = ball_relief(kSide, kSizeMm, kRadiusMm);
+  const std::vector<double> relief = ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm);
   const double low = relief[0];
-  const double range = relief[kSide / 2 * kSide + kSide / 2] - low;
+  const double range = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - low;
   std::vector<std::uint16_t> samples;
   for (const double height : relief) {
     samples.push_back(static_cast<std::uint16_t>(std::lround((height - low) / range * 65535)));
   }
   png_image image = {};
   image.version = PNG_IMAGE_VERSION;
-  image.width = kSide;
-  image.height = kSide;
+  image.width = kMapSide;
+  image.height = kMapSide;
   image.format = PNG_FORMAT_LINEAR_Y;
   ASSERT_TRUE(png_image_write_to_file(&image, file.c_str(), 0, samples.data(), 0, nullptr));
   expect_like_ball(map_body(file), 2e-3);

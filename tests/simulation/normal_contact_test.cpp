@@ -12,8 +12,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kCellMm = 0.3;
+constexpr double kPressedCellMm = 0.3;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// `height(x, y)` on a square of cells about the origin.
@@ -23,8 +22,9 @@ CellField body_of(std::int64_t cells, Height height) {
   const double middle = static_cast<double>(cells - 1) / 2;
   for (std::int64_t row = 0; row < cells; ++row) {
     for (std::int64_t col = 0; col < cells; ++col) {
-      field.values[field.index(row, col)] = height((static_cast<double>(col) - middle) * kCellMm,
-                                                   (middle - static_cast<double>(row)) * kCellMm);
+      field.values[field.index(row, col)] =
+          height((static_cast<double>(col) - middle) * kPressedCellMm,
+                 (middle - static_cast<double>(row)) * kPressedCellMm);
     }
   }
   return field;
@@ -42,11 +42,11 @@ double sum_of(const CellField& field) {
 
 double contact_area_mm2(const NormalContact& contact) {
   const auto cells = std::ranges::count_if(contact.pressure.values, [](double p) { return p > 0; });
-  return static_cast<double>(cells) * kCellMm * kCellMm;
+  return static_cast<double>(cells) * kPressedCellMm * kPressedCellMm;
 }
 
 NormalContact solved(const CellField& height, double sum) {
-  HalfSpaces surfaces(kCellMm);
+  HalfSpaces surfaces(kPressedCellMm);
   const auto contact = solve_normal_contact(height, sum, surfaces);
   EXPECT_TRUE(contact);
   return contact.value_or(NormalContact());
@@ -54,7 +54,8 @@ NormalContact solved(const CellField& height, double sum) {
 
 /// Hertz: P = 4/3 E* a³/R. A sum of pressures over πE* is P / (πE* cell²).
 double hertz_sum(double radius_mm, double contact_mm) {
-  return 4 * contact_mm * contact_mm * contact_mm / (3 * kPi * radius_mm * kCellMm * kCellMm);
+  return 4 * contact_mm * contact_mm * contact_mm /
+         (3 * std::numbers::pi * radius_mm * kPressedCellMm * kPressedCellMm);
 }
 
 TEST(NormalContact, ASphereIsHertzs) {
@@ -64,7 +65,7 @@ TEST(NormalContact, ASphereIsHertzs) {
   const NormalContact contact = solved(paraboloid(kRadiusMm, kRadiusMm), sum);
   EXPECT_NEAR(sum_of(contact.pressure), sum, 1e-12 * sum);
   EXPECT_NEAR(contact.approach_mm, kContactMm * kContactMm / kRadiusMm, 2e-3);
-  const double peak = 2 * kContactMm / (kPi * kPi * kRadiusMm);
+  const double peak = 2 * kContactMm / (std::numbers::pi * std::numbers::pi * kRadiusMm);
   const double highest = std::ranges::max(contact.pressure.values);
   double squares = 0;
   double cells = 0;
@@ -89,8 +90,9 @@ TEST(NormalContact, TheAreaGrowsAsTheTwoThirdsPowerOfTheLoad) {
   const CellField ball = paraboloid(60, 60);
   for (const double contact_mm : {4.0, 7.0, 12.0}) {
     const NormalContact contact = solved(ball, hertz_sum(60, contact_mm));
-    const double rim = 2 * kPi * contact_mm * kCellMm;  // a cell more or less around the rim
-    EXPECT_NEAR(contact_area_mm2(contact), kPi * contact_mm * contact_mm, 0.35 * rim);
+    const double rim =
+        2 * std::numbers::pi * contact_mm * kPressedCellMm;  // a cell more or less around the rim
+    EXPECT_NEAR(contact_area_mm2(contact), std::numbers::pi * contact_mm * contact_mm, 0.35 * rim);
   }
 }
 
@@ -107,11 +109,14 @@ TEST(NormalContact, AnEllipsoidHasHertzsEllipse) {
   // 1/(2R'') = p₀ b (a²/b² E − K) / (E* e² a²), Johnson (4.26); P = 2/3 π a b p₀.
   const double p0 = e * e * kLongMm * kLongMm / (2 * kAcrossMm) /
                     (kShortMm * ((kLongMm * kLongMm) / (kShortMm * kShortMm) * l - k));
-  const double sum = 2.0 / 3 * kLongMm * kShortMm * p0 / (kCellMm * kCellMm);
+  const double sum = 2.0 / 3 * kLongMm * kShortMm * p0 / (kPressedCellMm * kPressedCellMm);
   const NormalContact contact = solved(paraboloid(kAcrossMm * ratio, kAcrossMm), sum);
-  EXPECT_NEAR(static_cast<double>(contact.contact.cols) * kCellMm, 2 * kLongMm, 2.5 * kCellMm);
-  EXPECT_NEAR(static_cast<double>(contact.contact.rows) * kCellMm, 2 * kShortMm, 2.5 * kCellMm);
-  EXPECT_NEAR(std::ranges::max(contact.pressure.values), p0 / kPi, 5e-3 * p0 / kPi);
+  EXPECT_NEAR(static_cast<double>(contact.contact.cols) * kPressedCellMm, 2 * kLongMm,
+              2.5 * kPressedCellMm);
+  EXPECT_NEAR(static_cast<double>(contact.contact.rows) * kPressedCellMm, 2 * kShortMm,
+              2.5 * kPressedCellMm);
+  EXPECT_NEAR(std::ranges::max(contact.pressure.values), p0 / std::numbers::pi,
+              5e-3 * p0 / std::numbers::pi);
 }
 
 /// Johnson (3.36): P = 2aE*δ.
@@ -120,9 +125,9 @@ TEST(NormalContact, AFlatPunchSinksInProportionToItsLoad) {
   const CellField punch =
       body_of(70, [](double x, double y) { return std::hypot(x, y) > kRadiusMm ? kNone : 0.0; });
   const NormalContact contact = solved(punch, 3);
-  const double radius = std::sqrt(contact_area_mm2(contact) / kPi);
+  const double radius = std::sqrt(contact_area_mm2(contact) / std::numbers::pi);
   EXPECT_NEAR(radius, kRadiusMm, 0.02 * kRadiusMm);
-  const double load = 3 * kCellMm * kCellMm * kPi;  // over E*
+  const double load = 3 * kPressedCellMm * kPressedCellMm * std::numbers::pi;  // over E*
   EXPECT_NEAR(contact.approach_mm, load / (2 * radius), 0.012 * load / (2 * radius));
 }
 
@@ -131,10 +136,10 @@ TEST(NormalContact, AConeIsSneddons) {
   constexpr double kSlope = 0.05;
   constexpr double kContactMm = 10;
   const CellField cone = body_of(120, [](double x, double y) { return kSlope * std::hypot(x, y); });
-  const double sum = kContactMm * kContactMm * kSlope / (2 * kCellMm * kCellMm);
+  const double sum = kContactMm * kContactMm * kSlope / (2 * kPressedCellMm * kPressedCellMm);
   const NormalContact contact = solved(cone, sum);
-  EXPECT_NEAR(contact_area_mm2(contact), kPi * kContactMm * kContactMm, 6);
-  EXPECT_NEAR(contact.approach_mm, kPi / 2 * kContactMm * kSlope, 0.01);
+  EXPECT_NEAR(contact_area_mm2(contact), std::numbers::pi * kContactMm * kContactMm, 6);
+  EXPECT_NEAR(contact.approach_mm, std::numbers::pi / 2 * kContactMm * kSlope, 0.01);
 }
 
 /// Two hills far apart: the window holds both, though the first guess may be of one.
@@ -168,7 +173,7 @@ TEST(NormalContact, OneCellBearsASmallLoadAlone) {
 }
 
 TEST(NormalContact, WithoutABodyThereIsNone) {
-  HalfSpaces surfaces(kCellMm);
+  HalfSpaces surfaces(kPressedCellMm);
   const CellField nothing = body_of(5, [](double, double) { return kNone; });
   EXPECT_FALSE(solve_normal_contact(nothing, 1, surfaces));
 }

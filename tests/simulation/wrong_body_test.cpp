@@ -15,10 +15,10 @@ std::string scene_text(const std::string& body, const std::string& more = "") {
   return "skin.size_mm = [40, 40]\n[[body]]\n" + body + "\n" + more;
 }
 
-Scene parsed(const std::string& text) { return parse_scene(text, "folder/s.toml"); }
+Scene parsed_scene(const std::string& text) { return parse_scene(text, "folder/s.toml"); }
 
 TEST(BodyOfAScene, EveryKeyIsRead) {
-  const Scene scene = parsed(
+  const Scene scene = parsed_scene(
       "[skin]\nsize_mm = [40, 40]\nmodulus_kpa = 250\n"
       "[[body]]\nshape = \"height_map\"\nheight_map = \"maps/key.png\"\n"
       "height_map_size_mm = [30, 10]\nheight_map_depth_mm = 2\nroughness_um = 12\n"
@@ -58,7 +58,7 @@ TEST(BodyOfAScene, EveryKeyIsRead) {
 
 /// A scene is read without its height maps, a simulator is not made without them.
 TEST(BodyOfAScene, HeightMapsAreOpenedBySimulatorsAlone) {
-  const Scene scene = parsed(scene_text(
+  const Scene scene = parsed_scene(scene_text(
       "shape = \"height_map\"\nheight_map = \"/nowhere/key.npy\"\nheight_map_size_mm = [9, 9]\n"
       "height_map_depth_mm = 1\nfriction = 1\nposition_mm = [0, 0]\nload_n = 1"));
   EXPECT_EQ(scene.bodies[0].height_map, "/nowhere/key.npy");
@@ -137,7 +137,7 @@ TEST(WrongBody, IsRefusedInOneLine) {
   };
   for (const auto& [text, message] : table) {
     const std::string is =
-        core_test::message_of([&] { static_cast<void>(parsed(scene_text(text))); });
+        core_test::message_of([&] { static_cast<void>(parsed_scene(scene_text(text))); });
     EXPECT_EQ(is, message) << text;
     EXPECT_EQ(is.find('\n'), std::string::npos);
   }
@@ -148,14 +148,16 @@ TEST(WrongBody, ALongPathAndAChartAreRefused) {
       "shape = \"sphere\"\nradius_mm = 9\nfriction = 1\nsubsteps = 5\n"
       "path = [{ time_s = 0, position_mm = [0, 0], load_n = 1 },\n"
       "{ time_s = 1000, position_mm = [1, 0], load_n = 1 }]";
-  EXPECT_NO_THROW(static_cast<void>(parsed(scene_text(ball))));
-  EXPECT_EQ(core_test::message_of(
-                [&] { static_cast<void>(parsed(scene_text(ball, "[time]\nframes = 5000"))); }),
+  EXPECT_NO_THROW(static_cast<void>(parsed_scene(scene_text(ball))));
+  EXPECT_EQ(core_test::message_of([&] {
+              static_cast<void>(parsed_scene(scene_text(ball, "[time]\nframes = 5000")));
+            }),
             "folder/s.toml: body 1: it takes 25000 steps; its path may have 20000: fewer frames, "
             "substeps or seconds");
-  EXPECT_EQ(core_test::message_of([&] { static_cast<void>(parsed("[chart]\n[[body]]\n" + ball)); }),
-            "folder/s.toml:1: key 'chart' in the scene comes with [[body]]; allowed: one of the "
-            "two");
+  EXPECT_EQ(
+      core_test::message_of([&] { static_cast<void>(parsed_scene("[chart]\n[[body]]\n" + ball)); }),
+      "folder/s.toml:1: key 'chart' in the scene comes with [[body]]; allowed: one of the "
+      "two");
 }
 
 }  // namespace
