@@ -122,7 +122,7 @@ class NpyHeaderReader {
 
   const NpyType* type() {
     const std::string_view descr = quoted_text();
-    const auto known = std::ranges::find(kNpyTypes, descr, &NpyType::descr);
+    const auto* const known = std::ranges::find(kNpyTypes, descr, &NpyType::descr);
     if (known == kNpyTypes.end()) {
       fail(fmt::format("has numbers of type '{:.20}', not little-endian whole numbers or floats",
                        descr));
