@@ -16,7 +16,7 @@ install(TARGETS pillarfield)
 install(DIRECTORY host/include/pillarfield "${PROJECT_BINARY_DIR}/include/pillarfield"
   TYPE INCLUDE FILES_MATCHING PATTERN "*.h")
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/pillarfield
-  FILES_MATCHING PATTERN "*.toml")
+  FILES_MATCHING PATTERN "*.toml" PATTERN "*.png")
 install(FILES LICENSE TYPE DOC)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pillarfield)

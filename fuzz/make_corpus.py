@@ -111,7 +111,29 @@ magnitudes_n = [0.1, 0.5]
 counts_per_newton = 100
 """
 
-SCENES = {"sliding": SCENE, "all": SCENE_OF_ALL, "chart": SCENE_CHART,
+SCENE_OF_A_BODY = """title = "A rough ball that is dragged"
+
+[skin]
+pillars = [8, 8]
+modulus_kpa = 300
+
+[time]
+rate_hz = 10
+frames = 3
+
+[[body]]
+shape = "sphere"
+radius_mm = 9
+roughness_um = 30
+roughness_exponent = 0.7
+friction = 0.8
+friction_variation = 0.2
+path = [
+  { time_s = 0, position_mm = [-0.5, 0], load_n = 1 },
+  { time_s = 0.2, position_mm = [0.5, 0.2], angle_deg = 10, load_n = 2 },
+]
+"""
+SCENES = {"sliding": SCENE, "all": SCENE_OF_ALL, "chart": SCENE_CHART, "body": SCENE_OF_A_BODY,
           "empty": "[skin]\npillars = [1, 1]\n",
           "control": 'title = "\\u001b[2J\\n"\n[skin]\npillars = [2, 2]\n'}
 

@@ -11,7 +11,20 @@ namespace {
 constexpr std::uint64_t kMostSensels = 1 << 12;
 constexpr std::uint64_t kMostWork = 1 << 14;
 
+/// Whether a body's contact is of a few pillars, solved in a few steps, and no file is its shape.
+bool is_small(const Body& body, const Scene& scene) {
+  constexpr double kMostPillars = 8;
+  constexpr double kMostSteps = 2;
+  const double most_mm = kMostPillars * scene.skin.pillar_pitch_mm();
+  const double reach_mm = std::max({body.radius_mm, body.radii_mm[0], body.radii_mm[1],
+                                    body.shape == BodyShape::cylinder ? body.length_mm : 0});
+  const double steps = body.path.back().time_s * scene.rate_hz * body.substeps;
+  return body.shape != BodyShape::height_map && reach_mm <= most_mm && steps <= kMostSteps;
+}
+
 bool is_small(const Scene& scene) {
+  if (scene.bodies.size() > 1) return false;
+  if (!scene.bodies.empty() && !is_small(scene.bodies.front(), scene)) return false;
   const auto* const contacts = std::get_if<std::vector<Contact>>(&scene.load);
   const std::uint64_t each = contacts == nullptr ? 1 : contacts->size();
   return scene.skin.sensels() <= kMostSensels && scene.skin.sensels() * each <= kMostWork;

@@ -150,6 +150,15 @@ Json facts_of_calibration(const std::string& file) {
   return facts;
 }
 
+void add_bodies(Json& facts, const Scene& scene) {
+  facts["bodies"] = scene.bodies.size();
+  facts["modulus_kpa"] = scene.modulus_kpa;
+  facts["height_maps"] = Json::array();
+  for (const Body& body : scene.bodies) {
+    if (!body.height_map.empty()) facts["height_maps"].push_back(body.height_map.string());
+  }
+}
+
 Json facts_of_scene(const std::string& file) {
   const Scene scene = load_scene(file);
   Json facts = {{"format", "scene"},
@@ -160,6 +169,7 @@ Json facts_of_scene(const std::string& file) {
   if (const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load)) {
     facts["contacts"] = contacts->size();
   }
+  if (!scene.bodies.empty()) add_bodies(facts, scene);
   add_skin(facts, scene.skin);
   return facts;
 }

@@ -27,6 +27,8 @@ enum class Stream : std::uint32_t {
   drift,
   positioner,
   probe,
+  roughness,
+  friction,
 };
 
 /// A row of sensels in a frame.

@@ -8,6 +8,7 @@
 
 #include "core/chart.h"
 #include "pillarfield/error.h"
+#include "simulation/body_path.h"
 
 namespace pillarfield {
 namespace {
@@ -32,7 +33,8 @@ void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string
                           largest));
 }
 
-void check_path(const std::vector<ContactKey>& path, const std::string& where) {
+template <class Key>
+void check_path(const std::vector<Key>& path, const std::string& where) {
   if (path.empty()) throw Error(where, "path is empty", "it needs a key at least");
   for (std::size_t i = 0; i < path.size(); ++i) {
     check_range(where, "time_s", path[i].time_s, kPathTimeS);
@@ -54,6 +56,66 @@ void check_contact(const Contact& contact, const std::string& where) {
     check_range(where, quantity.key, contact.*quantity.member, quantity.range);
   }
   check_path(contact.path, where);
+}
+
+void check_edge(const Body& body, const std::string& where) {
+  const double most = body.shape == BodyShape::cylinder ? body.length_mm / 2 : body.radius_mm;
+  if (body.edge_radius_mm <= most) return;
+  throw Error(
+      where, fmt::format("edge_radius_mm is {}", body.edge_radius_mm),
+      body.shape == BodyShape::cylinder ? "it may be half of length_mm" : "it may be radius_mm");
+}
+
+void check_height_map(const Body& body, const Skin& skin, const std::string& where) {
+  if (body.height_map.empty()) throw Error(where, "height_map is missing", "name a file");
+  const double most_mm = (kMaxContactPillars - 1) * skin.pillar_pitch_mm();
+  for (const double size : body.height_map_size_mm) {
+    check_range(where, "height_map_size_mm", size, kBodySizeMm);
+    if (size <= most_mm) continue;
+    throw Error(where, fmt::format("height_map_size_mm is {}", size),
+                fmt::format("on this skin it may be {:.6g}", most_mm));
+  }
+}
+
+void check_steps(const Body& body, const Scene& scene, const std::string& where) {
+  check_range(where, "substeps", body.substeps, {1, kMaxSubsteps});
+  const double steps = steps_of(body, scene.rate_hz, scene.frames);
+  if (steps <= static_cast<double>(kMaxBodySteps)) return;
+  throw Error(
+      where, fmt::format("it takes {:.0f} steps", steps),
+      fmt::format("its path may have {}: fewer frames, substeps or seconds", kMaxBodySteps));
+}
+
+void check_body(const Body& body, const Scene& scene, const std::string& where) {
+  for (const auto& [quantity, required, applies] : kBodyQuantities) {
+    if (!applies(body.shape)) continue;
+    check_range(where, quantity.key, body.*quantity.member, quantity.range);
+  }
+  if (body.shape == BodyShape::ellipsoid) {
+    for (const double radius : body.radii_mm) check_range(where, "radii_mm", radius, kBodySizeMm);
+  }
+  if (body.shape == BodyShape::cylinder || body.shape == BodyShape::punch) check_edge(body, where);
+  if (body.shape == BodyShape::height_map) check_height_map(body, scene.skin, where);
+  check_path(body.path, where);
+  for (const BodyKey& key : body.path) {
+    check_range(where, "angle_deg", key.angle_deg, kPathAngleDeg);
+  }
+  check_steps(body, scene, where);
+}
+
+void check_bodies(const Scene& scene, const char* where) {
+  check_range(where, "modulus_kpa", scene.modulus_kpa, kModulusKpa);
+  if (scene.bodies.size() > kMaxBodies) {
+    throw Error(where, fmt::format("the scene has {} bodies", scene.bodies.size()),
+                fmt::format("it may have {}", kMaxBodies));
+  }
+  if (!scene.bodies.empty() && std::holds_alternative<Chart>(scene.load)) {
+    throw Error(where, "the scene has bodies and a chart", "leave one of them out");
+  }
+  int number = 0;
+  for (const Body& body : scene.bodies) {
+    check_body(body, scene, fmt::format("{}: body {}", where, ++number));
+  }
 }
 
 void check_chart(const Chart& chart, const Skin& skin, const std::string& where) {
@@ -118,6 +180,7 @@ void check(const Scene& scene, const char* where) {
   if (scene.baseline_time_s) {
     check_range(where, "baseline_time_s", *scene.baseline_time_s, kBaselineTimeS);
   }
+  check_bodies(scene, where);
   if (const Chart* chart = std::get_if<Chart>(&scene.load)) {
     check_chart(*chart, scene.skin, where);
     return;

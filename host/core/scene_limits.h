@@ -90,9 +90,53 @@ inline constexpr std::array<ContactQuantity, 6> kContactQuantities = {{
      [](ContactShape, ContactMotion motion) { return sticks(motion); }},
 }};
 
+/// A number of a body, and the shapes that have it.
+struct BodyQuantity {
+  Quantity<Body> quantity;
+  bool required = false;
+  bool (*applies)(BodyShape shape) = nullptr;
+};
+
+/// Whether a body of this shape has a single radius.
+[[nodiscard]] constexpr bool has_radius(BodyShape shape) {
+  return shape == BodyShape::sphere || shape == BodyShape::cylinder || shape == BodyShape::punch;
+}
+
+inline constexpr Range kBodySizeMm = {1e-2, 1e4};
+inline constexpr std::array<BodyQuantity, 10> kBodyQuantities = {{
+    {{"radius_mm", &Body::radius_mm, kBodySizeMm}, true, has_radius},
+    {{"length_mm", &Body::length_mm, kBodySizeMm},
+     true,
+     [](BodyShape shape) { return shape == BodyShape::cylinder; }},
+    {{"edge_radius_mm", &Body::edge_radius_mm, {0, 1e4}},
+     false,
+     [](BodyShape shape) { return shape == BodyShape::cylinder || shape == BodyShape::punch; }},
+    {{"height_map_depth_mm", &Body::height_map_depth_mm, {0, 1e3, true}},
+     true,
+     [](BodyShape shape) { return shape == BodyShape::height_map; }},
+    {{"roughness_um", &Body::roughness_um, {0, 1e4}}, false, [](BodyShape) { return true; }},
+    {{"roughness_exponent", &Body::roughness_exponent, {0, 1, true}},
+     false,
+     [](BodyShape) { return true; }},
+    {{"roughness_length_mm", &Body::roughness_length_mm, kBodySizeMm},
+     false,
+     [](BodyShape) { return true; }},
+    {{"friction", &Body::friction, {0, 10}}, true, [](BodyShape) { return true; }},
+    {{"friction_variation", &Body::friction_variation, {0, 1}},
+     false,
+     [](BodyShape) { return true; }},
+    {{"friction_variation_length_mm", &Body::friction_variation_length_mm, kBodySizeMm},
+     false,
+     [](BodyShape) { return true; }},
+}};
+inline constexpr std::int64_t kMaxSubsteps = 1000;
+inline constexpr std::size_t kMaxBodies = 100;
+inline constexpr Range kModulusKpa = {1, 1e6};
+
 inline constexpr Range kPathTimeS = {0, 1e9};
 inline constexpr Range kPathPositionMm = {-1e6, 1e6};
 inline constexpr Range kPathLoadN = {0, 1e6};
+inline constexpr Range kPathAngleDeg = {-1e6, 1e6};
 
 inline constexpr Range kRateHz = {1e-6, 1e6};
 inline constexpr std::uint32_t kMaxFrames = 100'000'000;
@@ -124,6 +168,14 @@ inline constexpr std::array<Named<ContactMotion>, 5> kMotions = {{
     {"partial_slip", ContactMotion::partial_slip},
     {"spin", ContactMotion::spin},
     {"roll", ContactMotion::roll},
+}};
+
+inline constexpr std::array<Named<BodyShape>, 5> kBodyShapes = {{
+    {"sphere", BodyShape::sphere},
+    {"ellipsoid", BodyShape::ellipsoid},
+    {"cylinder", BodyShape::cylinder},
+    {"punch", BodyShape::punch},
+    {"height_map", BodyShape::height_map},
 }};
 
 inline constexpr std::array<Named<Estimator>, 3> kEstimators = {{

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +7,9 @@
 #include <limits>
 #include <system_error>
 
+#include "core/body_section.h"
 #include "core/chart.h"
+#include "core/named_value.h"
 #include "core/scene_limits.h"
 #include "core/toml_depth.h"
 #include "core/toml_section.h"
@@ -25,27 +26,6 @@ void read_quantities(TomlSection& section, const std::array<Quantity<Part>, coun
   for (const auto& [key, member, range] : quantities) {
     if (const auto value = section.number(key, range)) part.*member = *value;
   }
-}
-
-/// "sphere", "flat_punch", ... as a message lists them.
-template <class Names>
-std::string quoted(const Names& names) {
-  std::vector<std::string> all;
-  all.reserve(names.size());
-  for (const auto& name : names) all.push_back(fmt::format("\"{}\"", name.name));
-  return fmt::format("{}", fmt::join(all, ", "));
-}
-
-/// The value that a name stands for; unset where the key is absent.
-template <class Value, std::size_t count>
-std::optional<Value> read_name(TomlSection& section, std::string_view key,
-                               const std::array<Named<Value>, count>& names) {
-  const std::optional<std::string> text = section.text(key);
-  if (!text) return std::nullopt;
-  for (const auto& [name, value] : names) {
-    if (name == *text) return value;
-  }
-  section.fail(key, fmt::format("is \"{:.40}\"", *text), quoted(names));
 }
 
 // [sensor]
@@ -195,6 +175,7 @@ Chart read_chart(TomlSection section, Skin& skin) {
 
 void read_skin(TomlSection section, Scene& scene) {
   read_quantities(section, kSkinQuantities, scene.skin);
+  scene.modulus_kpa = section.number("modulus_kpa", kModulusKpa).value_or(scene.modulus_kpa);
   if (!std::holds_alternative<Chart>(scene.load)) read_size(section, scene.skin);
   for (const std::string_view key : {"size_mm", "pillars"}) {
     if (!std::holds_alternative<Chart>(scene.load) || !section.has(key)) continue;
@@ -300,12 +281,15 @@ Contact read_contact(TomlSection& section) {
 
 // The whole
 
-/// What touches the skin: a chart, or contacts, of which there may be none.
-void read_load(TomlSection& root, Scene& scene) {
+/// What touches the skin: a chart, or contacts and bodies, of which there may be none. `folder` is
+/// where height maps are.
+void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& scene) {
   TomlSection chart = root.table("chart");
   auto contacts = root.tables("contact", "[[contact]]");
+  auto bodies = root.tables("body", "[[body]]");
   if (chart.is_present() && contacts)
     root.fail("chart", "comes with [[contact]]", "one of the two");
+  if (chart.is_present() && bodies) root.fail("chart", "comes with [[body]]", "one of the two");
   if (chart.is_present()) {
     scene.load = read_chart(std::move(chart), scene.skin);
     return;
@@ -315,12 +299,14 @@ void read_load(TomlSection& root, Scene& scene) {
     for (TomlSection& contact : *contacts) load.push_back(read_contact(contact));
   }
   scene.load = std::move(load);
+  if (!bodies) return;
+  for (TomlSection& body : *bodies) scene.bodies.push_back(read_body(body, folder));
 }
 
-Scene read_scene(TomlSection root) {
+Scene read_scene(TomlSection root, const std::filesystem::path& folder) {
   Scene scene;
   scene.title = root.text("title").value_or("");
-  read_load(root, scene);
+  read_load(root, folder, scene);
   read_skin(root.table("skin"), scene);
   read_sensor(root.table("sensor"), scene);
   read_time(root.table("time"), scene);
@@ -335,7 +321,8 @@ Scene parse_scene(std::string_view text, const std::string& name) {
   check_key_depth(text, name);
   try {
     const toml::table table = toml::parse(text, name);
-    Scene scene = read_scene(TomlSection(&table, "the scene", name));
+    Scene scene = read_scene(TomlSection(&table, "the scene", name),
+                             std::filesystem::path(name).parent_path());
     check(scene, name.c_str());
     return scene;
   } catch (const toml::parse_error& error) {

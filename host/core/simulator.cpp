@@ -13,6 +13,7 @@
 #include "core/scene_limits.h"
 #include "core/sensor.h"
 #include "pillarfield/error.h"
+#include "simulation/body_history.h"
 
 namespace pillarfield {
 namespace {
@@ -28,6 +29,15 @@ void clear(ForceField& field) {
     std::fill(plane->begin(), plane->end(), 0.0F);
   }
   std::fill(field.status.begin(), field.status.end(), std::uint8_t{0});
+}
+
+void add_forces(const BodyForces& forces, ForceField& field) {
+  const auto add = [](double force_n, float& to) { to = static_cast<float>(to + force_n); };
+  for (const BodyForce& force : forces) {
+    add(force.shear_x, field.shear_x[force.pillar]);
+    add(force.shear_y, field.shear_y[force.pillar]);
+    add(force.normal, field.normal[force.pillar]);
+  }
 }
 
 /// The model's V of the two sensel rows under a row of pillars, counts.
@@ -62,18 +72,26 @@ void read_pillars(std::uint32_t row, double counts_per_newton, ForceField& truth
 struct Simulator::State {
   explicit State(Scene given) : scene(checked(std::move(given))), sensor(scene) {
     if (const Chart* chart = std::get_if<Chart>(&scene.load)) chart_truth = chart_forces(*chart);
+    for (std::size_t number = 0; number < scene.bodies.size(); ++number) {
+      bodies.push_back(std::make_unique<BodyHistory>(scene, number));
+    }
   }
 
   /// Fills the three planes of force, and clears the status bytes.
-  void load(double time_s, ForceField& truth) const {
+  void load(std::uint64_t index, ForceField& truth) const {
     if (std::holds_alternative<Chart>(scene.load)) {
       truth = chart_truth;
       return;
     }
     clear(truth);
     for (const Contact& contact : std::get<std::vector<Contact>>(scene.load)) {
-      add_contact(contact, state_at(contact, time_s), scene.skin.pillar_pitch_mm(), truth);
+      add_contact(contact, state_at(contact, time_of(index)), scene.skin.pillar_pitch_mm(), truth);
     }
+    for (const std::unique_ptr<BodyHistory>& body : bodies) add_forces(*body->forces(index), truth);
+  }
+
+  [[nodiscard]] double time_of(std::uint64_t index) const {
+    return static_cast<double>(index) / scene.rate_hz;
   }
 
   void check_buffers(const FrameView& raw, const ForceField& truth) const {
@@ -93,6 +111,7 @@ struct Simulator::State {
   Scene scene;
   Sensor sensor;
   ForceField chart_truth;  ///< empty where the load is not a chart
+  std::vector<std::unique_ptr<BodyHistory>> bodies;
 };
 
 Simulator::Simulator(Scene scene) : state_(std::make_unique<State>(std::move(scene))) {}
@@ -104,13 +123,11 @@ const Scene& Simulator::scene() const { return state_->scene; }
 SenselType Simulator::sensel_type() const { return state_->sensor.sensel_type(); }
 const Calibration& Simulator::calibration() const { return state_->sensor.calibration(); }
 
-double Simulator::time_of(std::uint64_t index) const {
-  return static_cast<double>(index) / state_->scene.rate_hz;
-}
+double Simulator::time_of(std::uint64_t index) const { return state_->time_of(index); }
 
 void Simulator::render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const {
   state_->check_buffers(raw.view(), truth);
-  state_->load(time_of(index), truth);
+  state_->load(index, truth);
   const Skin& skin = state_->scene.skin;
   SignalRows signals(skin.cols);
   for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {

@@ -14,6 +14,7 @@
 #include "core/scene_limits.h"
 #include "pillarfield/error.h"
 #include "pillarfield/simulator.h"
+#include "simulation/body_path.h"
 
 namespace pillarfield {
 namespace {
@@ -200,12 +201,14 @@ TEST(ShippedScenes, AreTheOnesOfTheDocumentation) {
   }
 }
 
-/// The truth's total load is that of the contacts, so none of them reaches beyond the skin.
+/// The truth's total load is that of the contacts and bodies, so none of them reaches beyond the
+/// skin.
 void expect_whole_load(const Scene& scene, double time_s, const ForceField& truth) {
   const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load);
   if (!contacts) return;
   double load = 0;
   for (const Contact& contact : *contacts) load += state_at(contact, time_s).load_n;
+  for (const Body& body : scene.bodies) load += state_at(body, time_s).load_n;
   double sum = 0;
   for (const float normal : truth.normal) sum += double{normal};
   EXPECT_NEAR(sum, load, 1e-6 * load);
@@ -331,6 +334,13 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "uncertainty"};
   for (const auto& quantity : kSkinQuantities) keys.emplace_back(quantity.key);
   for (const auto& quantity : kSensorQuantities) keys.emplace_back(quantity.key);
+  for (const auto& [quantity, required, applies] : kBodyQuantities) {
+    keys.emplace_back(quantity.key);
+  }
+  for (const char* key :
+       {"modulus_kpa", "radii_mm", "height_map", "height_map_size_mm", "substeps", "angle_deg"}) {
+    keys.emplace_back(key);
+  }
   for (const auto& [quantity, required, applies] : kContactQuantities) {
     keys.emplace_back(quantity.key);
   }

@@ -38,7 +38,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
   const std::vector<WrongScene> table = {
       {"sise = 3",
        "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, chart, "
-       "contact, skin, sensor, time, solver"},
+       "contact, body, skin, sensor, time, solver"},
       {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",

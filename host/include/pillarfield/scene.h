@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "pillarfield/body.h"
 #include "pillarfield/contact.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/solver_plan.h"
@@ -52,12 +53,15 @@ struct Scene {
   bool uncertainty = false;
   std::optional<double> baseline_time_s;  ///< time constant with which the tare follows a drift
   std::variant<std::vector<Contact>, Chart> load;
+  std::vector<Body> bodies;   ///< beside contacts, not beside a chart
+  double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies; incompressible
 };
 
 /// Sets what a scene asks of the solver, and the sensor's noise where the scene has any.
 void set_solver(SolverPlan& plan, const Scene& scene);
 
-/// Reads a scene from a TOML file. Throws Error with file, line, key and the allowed values.
+/// Reads a scene from a TOML file. Throws Error with file, line, key and the allowed values. Height
+/// maps are not opened; their paths, given relative to the scene's folder, have it before them.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
 /// The same from text; `name` stands for the file in messages.

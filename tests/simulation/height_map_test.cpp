@@ -1,0 +1,293 @@
+#include "simulation/height_map.h"
+
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "simulation/body_history.h"
+#include "tests/core/message.h"
+
+namespace pillarfield {
+namespace {
+
+using core_test::message_of;
+
+std::filesystem::path scratch(const std::string& name) {
+  return std::filesystem::path(testing::TempDir()) / ("pillarfield_" + name);
+}
+
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+std::vector<std::byte> as_bytes(const std::string& text) {
+  std::vector<std::byte> bytes(text.size());
+  std::ranges::transform(text, bytes.begin(), [](char c) { return static_cast<std::byte>(c); });
+  return bytes;
+}
+
+template <class Number>
+std::string numbers_of(const std::vector<double>& values) {
+  std::string bytes(values.size() * sizeof(Number), '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const auto number = static_cast<Number>(values[i]);
+    std::memcpy(&bytes[i * sizeof number], &number, sizeof number);
+  }
+  return bytes;
+}
+
+/// As numpy.save() writes it, padded to 64 bytes.
+std::string npy(const std::string& dictionary, const std::string& data) {
+  std::string header = dictionary;
+  header.append(63 - (10 + header.size()) % 64, ' ').push_back('\n');
+  std::string file = "\x93NUMPY";
+  file += {'\x01', '\0'};
+  file.push_back(static_cast<char>(header.size() & 255U));
+  file.push_back(static_cast<char>(header.size() >> 8U));
+  return file + header + data;
+}
+
+std::string npy_of(const std::string& descr, const std::string& shape, const std::string& data) {
+  return npy("{'descr': '" + descr + "', 'fortran_order': False, 'shape': " + shape + ", }", data);
+}
+
+HeightMap parsed_npy(const std::string& file) { return parse_npy(as_bytes(file), "a.npy"); }
+
+const std::vector<double> kSmall = {0, 1, 2, 3, 4, 5};
+
+void expect_small(const HeightMap& map) {
+  ASSERT_EQ(map.rows, 2U);
+  ASSERT_EQ(map.cols, 3U);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(map.heights[i], kSmall[i] / 5);
+}
+
+TEST(HeightMap, ReadsEveryTypeOfNumpy) {
+  expect_small(parsed_npy(npy_of("|u1", "(2, 3)", numbers_of<std::uint8_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("|i1", "(2, 3)", numbers_of<std::int8_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<i2", "(2, 3)", numbers_of<std::int16_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<u4", "(2, 3)", numbers_of<std::uint32_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<i4", "(2, 3)", numbers_of<std::int32_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<i8", "(2, 3)", numbers_of<std::int64_t>(kSmall))));
+  expect_small(parsed_npy(npy_of("<f4", "(2, 3)", numbers_of<float>(kSmall))));
+  expect_small(parsed_npy(npy_of("<f8", "(2, 3)", numbers_of<double>(kSmall))));
+  expect_small(parsed_npy(npy("{'shape': (2, 3), 'fortran_order': True, 'descr': '<f8'}",
+                              numbers_of<double>({0, 3, 1, 4, 2, 5}))));
+}
+
+TEST(HeightMap, AFlatOneIsAllTop) {
+  const HeightMap map = parsed_npy(npy_of("<f4", "(2, 2)", numbers_of<float>({7, 7, 7, 7})));
+  EXPECT_EQ(map.heights, std::vector<double>(4, 1));
+}
+
+TEST(HeightMap, RefusesOtherFilesOfNumpyInOneLine) {
+  const std::string six = numbers_of<double>(kSmall);
+  const std::string save = "; save a two-dimensional array with numpy.save()";
+  const auto refused = [](const std::string& file) {
+    return message_of([&] { static_cast<void>(parsed_npy(file)); });
+  };
+  EXPECT_EQ(refused(""), "a.npy: is no .npy file" + save);
+  EXPECT_EQ(refused("root:x:0:0:root:/root:/bin/bash"), "a.npy: is no .npy file" + save);
+  EXPECT_EQ(refused(npy_of(">f8", "(2, 3)", six)),
+            "a.npy: has numbers of type '>f8', not little-endian whole numbers or floats" + save);
+  EXPECT_EQ(refused(npy_of("|O", "(2, 3)", six)),
+            "a.npy: has numbers of type '|O', not little-endian whole numbers or floats" + save);
+  EXPECT_EQ(refused(npy_of("<f8", "(6,)", six)),
+            "a.npy: has a shape that is not two whole numbers" + save);
+  EXPECT_EQ(refused(npy_of("<f8", "(2, 3, 1)", six)),
+            "a.npy: has a shape that is not two whole numbers" + save);
+  EXPECT_EQ(refused(npy_of("<f8", "(1, 6)", six)),
+            "a.npy: has 1 rows or columns, not 2 to 4096" + save);
+  EXPECT_EQ(refused(npy_of("<f8", "(2, 99999999999999999999999)", six)),
+            "a.npy: has a shape that is not two whole numbers" + save);
+  EXPECT_EQ(refused(npy_of("<f8", "(4096, 4097)", six)),
+            "a.npy: has 4097 rows or columns, not 2 to 4096" + save);
+  EXPECT_EQ(refused(npy_of("<f8", "(2, 4)", six)),
+            "a.npy: has 48 bytes of numbers, not the 64 of its header; save the array again");
+  EXPECT_EQ(refused(npy("{'descr': '<f8', 'shape': (2, 3)}", six)),
+            "a.npy: has a header that is not complete" + save);
+  EXPECT_EQ(refused(npy("{'descr': '<f8', 'descr': '<f8'}", six)),
+            "a.npy: has a key twice in its header" + save);
+  EXPECT_EQ(refused(npy("{'evil': '<f8'}", six)), "a.npy: has an unknown key in its header" + save);
+  EXPECT_EQ(refused(npy("{'fortran_order': 1}", six)),
+            "a.npy: has a header whose fortran_order is neither True nor False" + save);
+  EXPECT_EQ(refused(npy("[]", six)), "a.npy: has a header that is no dictionary" + save);
+  const double nan = std::nan("");
+  EXPECT_EQ(refused(npy_of("<f8", "(2, 3)", numbers_of<double>({0, 1, 2, 3, nan, 5}))),
+            "a.npy: row 1, column 1 is nan; heights must be finite");
+}
+
+/// Every file that is cut short, and every one with a byte changed, is read or refused.
+TEST(HeightMap, DamagedFilesEndInAnError) {
+  const std::string good = npy_of("<u2", "(2, 3)", numbers_of<std::uint16_t>(kSmall));
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    EXPECT_THROW(static_cast<void>(parsed_npy(good.substr(0, length))), Error) << length;
+  }
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    for (const char byte : {'\0', '\x7f', '\xff', '9', '\'', '('}) {
+      std::string changed = good;
+      changed[at] = byte;
+      try {
+        static_cast<void>(parsed_npy(changed));
+      } catch (const Error&) {
+        continue;
+      }
+    }
+  }
+}
+
+/// A ball's relief, as a function of where a pixel's middle is.
+std::vector<double> ball_relief(std::size_t side, double size_mm, double radius_mm) {
+  std::vector<double> heights;
+  for (std::size_t row = 0; row < side; ++row) {
+    for (std::size_t col = 0; col < side; ++col) {
+      const auto at = [&](std::size_t i) {
+        return ((static_cast<double>(i) + 0.5) / static_cast<double>(side) - 0.5) * size_mm;
+      };
+      heights.push_back(std::sqrt(radius_mm * radius_mm - at(row) * at(row) - at(col) * at(col)));
+    }
+  }
+  return heights;
+}
+
+constexpr std::size_t kMapSide = 201;
+constexpr double kMapSizeMm = 20;
+constexpr double kBallRadiusMm = 25;
+
+Body map_body(const std::filesystem::path& file) {
+  const std::vector<double> relief = ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm);
+  Body body;
+  body.shape = BodyShape::height_map;
+  body.height_map = file;
+  body.height_map_size_mm = {kMapSizeMm, kMapSizeMm};
+  body.height_map_depth_mm = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - relief[0];
+  body.path = {{0, 0.7, -1.1, 30, 8}};
+  return body;
+}
+
+BodyForces forces_of(const Body& body) {
+  Scene scene;
+  scene.skin.rows = 44;
+  scene.skin.cols = 44;
+  scene.bodies = {body};
+  return *BodyHistory(scene, 0).forces(0);
+}
+
+void expect_like_ball(const Body& body, double tolerance_n) {
+  Body ball;
+  ball.radius_mm = kBallRadiusMm;
+  ball.path = body.path;
+  const BodyForces expected = forces_of(ball);
+  std::vector<double> all(22 * 22);
+  for (const BodyForce& force : forces_of(body)) all[force.pillar] = force.normal;
+  double most = 0;
+  for (const BodyForce& force : expected) {
+    most = std::max(most, force.normal);
+    EXPECT_NEAR(all[force.pillar], force.normal, tolerance_n) << force.pillar;
+  }
+  EXPECT_GT(most, 50 * tolerance_n);
+}
+
+TEST(HeightMap, OfABallInNumpyPressesAsTheBall) {
+  const auto file = scratch("ball.npy");
+  write_bytes(file, npy_of("<f4", "(201, 201)",
+                           numbers_of<float>(ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm))));
+  expect_like_ball(map_body(file), 2e-3);
+  std::filesystem::remove(file);
+}
+
+TEST(HeightMap, OfABallAsAPictureOf16BitsPressesAsTheBall) {
+  const auto file = scratch("ball.png");
+  const std::vector<double> relief = ball_relief(kMapSide, kMapSizeMm, kBallRadiusMm);
+  const double low = relief[0];
+  const double range = relief[kMapSide / 2 * kMapSide + kMapSide / 2] - low;
+  std::vector<std::uint16_t> samples;
+  for (const double height : relief) {
+    samples.push_back(static_cast<std::uint16_t>(std::lround((height - low) / range * 65535)));
+  }
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = kMapSide;
+  image.height = kMapSide;
+  image.format = PNG_FORMAT_LINEAR_Y;
+  ASSERT_TRUE(png_image_write_to_file(&image, file.c_str(), 0, samples.data(), 0, nullptr));
+  expect_like_ball(map_body(file), 2e-3);
+  std::filesystem::remove(file);
+}
+
+std::string png_bytes(png_uint_32 format, png_uint_32 side) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = side;
+  image.height = side;
+  image.format = format;
+  std::vector<png_byte> samples(std::size_t{side} * side * PNG_IMAGE_PIXEL_SIZE(format));
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<png_byte>(i * 7);
+  png_alloc_size_t size = 0;
+  png_image_write_to_memory(&image, nullptr, &size, 0, samples.data(), 0, nullptr);
+  std::string bytes(size, '\0');
+  png_image_write_to_memory(&image, bytes.data(), &size, 0, samples.data(), 0, nullptr);
+  bytes.resize(size);
+  return bytes;
+}
+
+HeightMap parsed_png(const std::string& file) { return parse_png(as_bytes(file), "a.png"); }
+
+TEST(HeightMap, ReadsGreyOf8BitsRowByRow) {
+  const HeightMap map = parsed_png(png_bytes(PNG_FORMAT_GRAY, 3));
+  ASSERT_EQ(map.rows, 3U);
+  for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(map.heights[i], static_cast<double>(i) / 8);
+}
+
+TEST(HeightMap, RefusesOtherPicturesInOneLine) {
+  const auto refused = [](const std::string& file) {
+    return message_of([&] { static_cast<void>(parsed_png(file)); });
+  };
+  EXPECT_EQ(refused(png_bytes(PNG_FORMAT_RGB, 3)),
+            "a.png: the picture is not grey of 8 or 16 bits; convert it to that");
+  EXPECT_EQ(refused(png_bytes(PNG_FORMAT_GA, 3)),
+            "a.png: the picture is not grey of 8 or 16 bits; convert it to that");
+  EXPECT_EQ(refused(png_bytes(PNG_FORMAT_GRAY, 1)),
+            "a.png: the picture has 1 x 1 pixels; a height map has 2 x 2 at least");
+  EXPECT_TRUE(refused("\x89PNG").starts_with("a.png: is no picture that can be read: "));
+  EXPECT_TRUE(refused("").starts_with("a.png: is no picture that can be read: "));
+  const std::string good = png_bytes(PNG_FORMAT_GRAY, 20);
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    EXPECT_THROW(static_cast<void>(parsed_png(good.substr(0, length))), Error) << length;
+  }
+  for (std::size_t at = 0; at < good.size(); ++at) {
+    std::string changed = good;
+    changed[at] = static_cast<char>(changed[at] ^ '\x41');
+    try {
+      static_cast<void>(parsed_png(changed));
+    } catch (const Error&) {
+      continue;
+    }
+  }
+}
+
+TEST(HeightMap, OnlyRegularFilesWithAKnownEndingAreOpened) {
+  const auto refused = [](const std::filesystem::path& path) {
+    return message_of([&] { static_cast<void>(read_height_map(path)); });
+  };
+  EXPECT_EQ(refused("/nowhere/a.npy"),
+            "/nowhere/a.npy: the height map cannot be read; name a .npy or .png file");
+  EXPECT_EQ(refused("/dev/zero"),
+            "/dev/zero: is no height map; name a file that ends in .npy or .png");
+  const auto folder = scratch("folder.png");
+  std::filesystem::create_directory(folder);
+  EXPECT_EQ(refused(folder),
+            folder.string() + ": the height map cannot be read; name a .npy or .png file");
+  std::filesystem::remove(folder);
+}
+
+}  // namespace
+}  // namespace pillarfield
