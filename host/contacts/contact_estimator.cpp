@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
+#include "core/status_word.h"
+#include "core/wide.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -14,18 +17,18 @@ namespace maths = single_precision;
 
 /// Of a contact so many pillars are asked at most, evenly spread, and so many rows and columns for
 /// its edge: what they tell is the same, and large contacts take no longer.
-constexpr std::uint32_t kMostAsked = 512;
-constexpr std::uint32_t kMostEdges = 64;
-constexpr std::uint32_t kMostPredicted = 64;
+constexpr std::uint32_t kMostAsked = 96;
+constexpr std::uint32_t kMostEdges = 16;
+constexpr std::uint32_t kMostPredicted = 16;
 
 /// The edge of a contact lies so far beyond the centre of its outermost pillars, in pillars.
 constexpr double kEdge = 0.25;
 
+/// Above all frictions.
+constexpr double kNoCeiling = 1e3;
+
 /// How far a contact may jump from frame to frame and still be the same.
 constexpr double kReachMm = 10;
-
-/// Threads share runs in such lots.
-constexpr std::size_t kRunsTogether = 64;
 
 /// Where the noise is not known, the threshold is taken to be so many deviations.
 constexpr double kThresholdDeviations = 4;
@@ -44,13 +47,14 @@ float* floats_or_null(std::vector<float>& plane) { return plane.empty() ? nullpt
 /// Sensels 1 to 4 of the direction of a determined pillar's shear lift beyond this ratio (C4).
 double ceiling_of(double shear_x, double shear_y) {
   const double least = std::min(std::abs(shear_x + shear_y), std::abs(shear_y - shear_x));
-  const double shear = std::hypot(shear_x, shear_y);
-  return least > 0 ? std::numbers::sqrt2 * shear / least : 1e3;
+  const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y);
+  return least > 0 ? std::numbers::sqrt2 * shear / least : kNoCeiling;
 }
 
 double ratio_at(const maths::Segment& segment, double normal) {
+  const double fixed = segment.fixed;
   const double moving = std::max(segment.moving - std::numbers::sqrt2 * normal, 0.0);
-  return std::hypot(static_cast<double>(segment.fixed), moving) / normal;
+  return std::sqrt(fixed * fixed + moving * moving) / normal;
 }
 
 /// The normal force that a pillar has or may have at most, N.
@@ -80,9 +84,11 @@ void ContactEstimator::resolve(ForceField& field) {
   auto& uncertainty = field.uncertainty;
   resolve({field.shear_x.data(), field.shear_y.data(), field.normal.data(), field.status.data(),
            nullptr, nullptr, nullptr, floats_or_null(uncertainty[Uncertainty::shear_x]),
-           floats_or_null(uncertainty[Uncertainty::shear_y]), floats_or_null(uncertainty[Uncertainty::normal]),
+           floats_or_null(uncertainty[Uncertainty::shear_y]),
+           floats_or_null(uncertainty[Uncertainty::normal]),
            floats_or_null(uncertainty[Uncertainty::theta_low]),
-           floats_or_null(uncertainty[Uncertainty::theta_high]), floats_or_null(uncertainty[Uncertainty::phi_low]),
+           floats_or_null(uncertainty[Uncertainty::theta_high]),
+           floats_or_null(uncertainty[Uncertainty::phi_low]),
            floats_or_null(uncertainty[Uncertainty::phi_high]),
            floats_or_null(uncertainty[Uncertainty::magnitude_low]),
            floats_or_null(uncertainty[Uncertainty::magnitude_high]), field.rows, field.cols});
@@ -94,15 +100,10 @@ void ContactEstimator::resolve(const maths::Field& field, const SilentBlocks& id
   contacts_.assign(map_.contacts(), {});
   friction_.assign(map_.contacts(), {});
   team_->run(map_.contacts(), [&](std::size_t contact, std::size_t member) {
-    learn(field, static_cast<std::uint32_t>(contact), workspaces_[member]);
-  });
-  const std::span<const ContactRun> runs = map_.runs();
-  team_->run((runs.size() + kRunsTogether - 1) / kRunsTogether, [&](std::size_t lot, std::size_t) {
-    const std::size_t first = lot * kRunsTogether;
-    for (const ContactRun& run :
-         runs.subspan(first, std::min(kRunsTogether, runs.size() - first))) {
-      if (contacts_[run.contact].any_ambiguous) estimate(field, run);
-    }
+    const auto number = static_cast<std::uint32_t>(contact);
+    learn(field, number, workspaces_[member]);
+    if (!contacts_[contact].any_ambiguous) return;
+    estimate(field, number);
   });
 }
 
@@ -144,7 +145,7 @@ void ContactEstimator::learn(const maths::Field& field, std::uint32_t number, Wo
   FrictionCurve log_likelihood{};
   likelihood_.add_slip_or_stick(work.ratios, parameters_.effective_pillars, log_likelihood);
   likelihood_.add_lower_bounds(work.bounds, parameters_.effective_pillars, log_likelihood);
-  if (contact.any_ambiguous) {
+  if (!work.ambiguous.empty()) {
     contact.pressure = PressureRegression::fit(work.samples);
     if (contact.pressure) predict(field, contact, work);
     likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
@@ -156,6 +157,12 @@ void ContactEstimator::learn(const maths::Field& field, std::uint32_t number, Wo
         static_cast<float>(belief.quantile((static_cast<double>(i) + 0.5) / Contact::kNodes));
   }
   friction_[number] = {belief.quantile(0.5), belief.spread()};
+}
+
+/// Of a ratio of shear to a normal force, relative.
+double ContactEstimator::deviation_of_ratio(double normal) const {
+  const double noise = parameters_.noise_of_ratio * noise_n_ / normal;
+  return std::sqrt(noise * noise + parameters_.ratio_deviation * parameters_.ratio_deviation);
 }
 
 /// Collects what sampled pillars of a contact show.
@@ -209,10 +216,8 @@ void ContactEstimator::gather(const maths::Field& field, Contact& contact,
         if (!(normal > least) || (status & status::kAmbiguous) != 0) continue;
         const double x = field.shear_x[index];
         const double y = field.shear_y[index];
-        work.ratios.push_back({std::hypot(x, y) / normal,
-                               std::hypot(parameters_.noise_of_ratio * noise_n_ / normal,
-                                          parameters_.ratio_deviation),
-                               ceiling_of(x, y)});
+        work.ratios.push_back(
+            {std::sqrt(x * x + y * y) / normal, deviation_of_ratio(normal), ceiling_of(x, y)});
       }
     }
     skip = col - run.end;
@@ -221,7 +226,7 @@ void ContactEstimator::gather(const maths::Field& field, Contact& contact,
     // Those that were passed over may still be ambiguous.
     contact.any_ambiguous = true;
   }
-  if (contact.any_ambiguous && !work.samples.empty()) {
+  if (!work.ambiguous.empty() && !work.samples.empty()) {
     add_edges(field, contact, runs, 1.0 / step, peak, work);
   }
 }
@@ -310,45 +315,108 @@ void ContactEstimator::predict(const maths::Field& field, const Contact& contact
     const double steepness = std::abs(std::log(ratio_at(segment, normal * (1 + kStep)) /
                                                ratio_at(segment, normal * (1 - kStep)))) /
                              (2 * kStep);
-    const double noise = parameters_.noise_of_ratio * noise_n_ / normal;
     work.predicted.push_back(
-        {ratio,
-         std::hypot(std::hypot(deviation / normal * steepness, parameters_.ratio_deviation), noise),
-         1e3});
+        {ratio, std::hypot(deviation / normal * steepness, deviation_of_ratio(normal)),
+         kNoCeiling});
   }
 }
 
-void ContactEstimator::estimate(const maths::Field& field, const ContactRun& run) const {
-  const Contact& contact = contacts_[run.contact];
-  for (std::uint32_t col = run.first; col < run.end; ++col) {
-    const std::uint32_t index = run.row * cols_ + col;
-    if (!maths::is_open(field.status[index]) || !(field.normal[index] > 0)) continue;
-    write(field, contact, index, run.row, col);
+/// What readings leave of a lot of ambiguous pillars, and what is estimated of them.
+struct ContactEstimator::Batch {
+  static constexpr std::size_t kPillars = 32;
+  using Values = std::array<float, kPillars>;
+  std::array<std::uint32_t, kPillars> index{};
+  std::array<maths::Segment, kPillars> segments{};
+  Values fixed{};
+  Values moving{};
+  Values high{};
+  Values mean{};    ///< of the normal force, N
+  Values square{};  ///< its mean square, N²
+  std::size_t pillars = 0;
+};
+
+namespace {
+
+using Values = std::array<float, 32>;
+
+/// Mean and mean square of normal forces over frictions of equal probability, at which pillars slip
+/// or, with a probability, stick (C8).
+PF_WIDE void average(const Values& fixed, const Values& moving, const Values& high,
+                     std::span<const float> nodes, float sticks, Values& mean, Values& square) {
+  constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
+  mean.fill(0);
+  square.fill(0);
+  const float share = 1.0F / static_cast<float>(nodes.size());
+  for (const float friction : nodes) {
+    const float excess = friction * friction - 2;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const float total = fixed[i] * fixed[i] + moving[i] * moving[i];
+      const float under = 2 * moving[i] * moving[i] + excess * total;
+      const float free = total / (kRoot2 * moving[i] + std::sqrt(under > 0 ? under : 0.0F));
+      const float slip = free < high[i] ? free : high[i];
+      const float sum = slip + high[i];
+      mean[i] += share * ((1 - sticks) * slip + sticks * 0.5F * sum);
+      square[i] += share * ((1 - sticks) * slip * slip +
+                            sticks * (slip * sum + high[i] * high[i]) * (1.0F / 3));
+    }
   }
 }
 
-/// The posterior mean of one ambiguous pillar (C8), and its deviation.
-void ContactEstimator::write(const maths::Field& field, const Contact& contact, std::uint32_t index,
-                             std::uint32_t row, std::uint32_t col) const {
+}  // namespace
+
+/// Estimates the ambiguous pillars of a contact, some at a time.
+void ContactEstimator::estimate(const maths::Field& field, std::uint32_t number) const {
+  const Contact& contact = contacts_[number];
+  Batch batch;
+  const auto finish = [&] {
+    for (std::size_t i = batch.pillars; i < Batch::kPillars; ++i) {
+      batch.fixed[i] = batch.moving[i] = batch.high[i] = 1;
+    }
+    average(batch.fixed, batch.moving, batch.high, contact.nodes,
+            static_cast<float>(parameters_.ambiguous_sticks), batch.mean, batch.square);
+    for (std::size_t i = 0; i < batch.pillars; ++i) write(field, contact, batch, i);
+    batch.pillars = 0;
+  };
+  const auto add = [&](std::uint32_t index) {
+    if (!maths::is_open(field.status[index]) || !(field.normal[index] > 0)) return;
+    const maths::Segment segment =
+        maths::segment_of(maths::force_of_field(field, index),
+                          maths::moves_vertically(maths::Bits{field.status[index]}));
+    batch.index[batch.pillars] = index;
+    batch.segments[batch.pillars] = segment;
+    batch.fixed[batch.pillars] = segment.fixed;
+    batch.moving[batch.pillars] = segment.moving;
+    batch.high[batch.pillars] = segment.high;
+    if (++batch.pillars == Batch::kPillars) finish();
+  };
+  for (const ContactRun& run : map_.runs(number)) {
+    std::uint32_t index = run.row * cols_ + run.first;
+    const std::uint32_t end = run.row * cols_ + run.end;
+    // Most pillars are not ambiguous: eight are passed over at a time.
+    for (; index + kWordBytes <= end; index += kWordBytes) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, field.status + index, kWordBytes);
+      if ((word & (status::kAmbiguous * kEachByte)) == 0) continue;
+      for (std::uint32_t i = 0; i < kWordBytes; ++i) add(index + i);
+    }
+    for (; index < end; ++index) add(index);
+  }
+  if (batch.pillars > 0) finish();
+}
+
+/// The posterior mean of one ambiguous pillar's normal force, and its deviation (C9).
+void ContactEstimator::write(const maths::Field& field, const Contact& contact, const Batch& batch,
+                             std::size_t i) const {
+  const std::uint32_t index = batch.index[i];
   const maths::Force point = maths::force_of_field(field, index);
   const maths::Mask vertical = maths::moves_vertically(maths::Bits{field.status[index]});
-  const maths::Segment segment = maths::segment_of(point, vertical);
-  const double high = segment.high;
-  double mean = 0;
-  double square = 0;
-  const double sticks = parameters_.ambiguous_sticks;
-  for (const float friction : contact.nodes) {
-    const double slip = std::min<double>(maths::normal_at_ratio(segment, friction), high);
-    mean += (1 - sticks) * slip + sticks * 0.5 * (slip + high);
-    square +=
-        (1 - sticks) * slip * slip + sticks * (slip * slip + slip * high + high * high) * (1.0 / 3);
-  }
-  mean /= Contact::kNodes;
-  square /= Contact::kNodes;
-  double variance = std::max(square - mean * mean, 0.0) + 0.5 * noise_n_ * noise_n_;
+  const double high = batch.high[i];
+  double mean = batch.mean[i];
+  double variance = std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n_ * noise_n_;
   if (contact.pressure) {
-    const PressureRegression::Prediction predicted = contact.pressure->at(
-        (col - contact.centre_col) / contact.scale, (row - contact.centre_row) / contact.scale);
+    const PressureRegression::Prediction predicted =
+        contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,
+                             (index / cols_ - contact.centre_row) / contact.scale);
     if (predicted.square > 0) {
       const double normal = std::min(std::sqrt(predicted.square), high + noise_n_);
       const double factor = parameters_.regression_factor;

@@ -67,6 +67,8 @@ class ContactEstimator {
     bool any_ambiguous = false;
   };
 
+  struct Batch;
+
   void match();
   void learn(const single_precision::Field& field, std::uint32_t contact, Workspace& work);
   void gather(const single_precision::Field& field, Contact& contact,
@@ -74,10 +76,11 @@ class ContactEstimator {
   void add_edges(const single_precision::Field& field, const Contact& contact,
                  std::span<const ContactRun> runs, double weight, double peak_n,
                  Workspace& work) const;
+  [[nodiscard]] double deviation_of_ratio(double normal) const;
   void predict(const single_precision::Field& field, const Contact& contact, Workspace& work) const;
-  void estimate(const single_precision::Field& field, const ContactRun& run) const;
-  void write(const single_precision::Field& field, const Contact& contact, std::uint32_t index,
-             std::uint32_t row, std::uint32_t col) const;
+  void estimate(const single_precision::Field& field, std::uint32_t number) const;
+  void write(const single_precision::Field& field, const Contact& contact, const Batch& batch,
+             std::size_t i) const;
 
   ContactParameters parameters_;
   FrictionLikelihood likelihood_;

@@ -11,9 +11,9 @@ namespace pillarfield {
 
 /// The grid on which friction coefficients are weighed: equal steps of their logarithm.
 struct FrictionGrid {
-  static constexpr std::size_t kPoints = 240;
+  static constexpr std::size_t kPoints = 160;
   static constexpr double kLeast = 0.1;
-  static constexpr double kStep = 0.0192;  ///< of the logarithm; the last point is 9.9
+  static constexpr double kStep = 0.029;  ///< of the logarithm; the last point is 10
 
   /// The nearest point to a ratio; the first or the last beyond the ends, the first for NaN.
   [[nodiscard]] static std::size_t nearest(double ratio);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/wide.h"
+
 namespace pillarfield {
 namespace {
 
@@ -12,8 +14,11 @@ constexpr std::size_t kPoints = FrictionGrid::kPoints;
 /// Ratios from which likelihoods are densities: a pillar that follows no rule has one of these.
 constexpr double kOutlierRange = 6;
 
-/// So many factors of at least kOutlierRange's density have a product that is a normal number.
-constexpr std::size_t kFactors = 48;
+/// So many factors, which are 1e-4 at least and 100 at most, have a product that a double holds.
+constexpr std::size_t kFactors = 64;
+
+using Factors = std::array<double, kPoints>;
+using Powers = std::array<float, kPoints>;
 
 double normal_cumulative(double deviations) {
   return 0.5 * std::erfc(-deviations / std::numbers::sqrt2);
@@ -24,7 +29,7 @@ class LogProduct {
  public:
   LogProduct() { product_.fill(1); }
 
-  FrictionCurve& next() {
+  Factors& next() {
     if (factors_++ == kFactors) flush();
     return product_;
   }
@@ -38,15 +43,42 @@ class LogProduct {
   void flush() {
     for (std::size_t i = 0; i < kPoints; ++i) {
       logarithm_[i] += std::log(product_[i]);
-      product_[i] = 1;
     }
+    product_.fill(1);
     factors_ = 1;
   }
 
-  FrictionCurve product_{};
+  Factors product_{};
   FrictionCurve logarithm_{};
   std::size_t factors_ = 0;
 };
+
+/// One pillar's likelihood of slipping at a point's friction or sticking below it (C3).
+struct SlipOrStick {
+  const float* density;
+  const float* cumulative;
+  const float* below_ceiling;
+  float slip;
+  float stick;
+  float least_factor;
+  float outlier;
+};
+
+PF_WIDE void multiply(Factors& product, const SlipOrStick& pillar, const Powers& stick_factor) {
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const float factor =
+        stick_factor[i] > pillar.least_factor ? stick_factor[i] : pillar.least_factor;
+    const float likelihood = pillar.slip * pillar.density[i] * pillar.below_ceiling[i] +
+                             pillar.stick * factor * pillar.cumulative[i] + pillar.outlier;
+    product[i] *= static_cast<double>(likelihood);
+  }
+}
+
+PF_WIDE void multiply(Factors& product, const float* cumulative, float outliers) {
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    product[i] *= static_cast<double>(cumulative[i] * (1 - outliers) + outliers);
+  }
+}
 
 double weight_of(std::size_t pillars, double effective) {
   return std::min(1.0, effective / static_cast<double>(pillars));
@@ -63,24 +95,24 @@ FrictionLikelihood::FrictionLikelihood(const ContactParameters& parameters)
     for (std::size_t i = 0; i < width.density.size(); ++i) {
       const double points = static_cast<double>(i) - static_cast<double>(kPoints);
       const double deviations = points * FrictionGrid::kStep / width.deviation;
-      width.density[i] = scale * std::exp(-0.5 * deviations * deviations);
-      width.cumulative[i] = normal_cumulative(deviations);
+      width.density[i] = static_cast<float>(scale * std::exp(-0.5 * deviations * deviations));
+      width.cumulative[i] = static_cast<float>(normal_cumulative(deviations));
     }
   }
   for (std::size_t i = 0; i < below_ceiling_.size(); ++i) {
     const double points = static_cast<double>(i) - static_cast<double>(kPoints);
-    below_ceiling_[i] =
-        normal_cumulative(-points * FrictionGrid::kStep / parameters.ceiling_deviation);
+    below_ceiling_[i] = static_cast<float>(
+        normal_cumulative(-points * FrictionGrid::kStep / parameters.ceiling_deviation));
   }
   for (std::size_t i = 0; i < kPoints; ++i) {
-    stick_factor_[i] =
-        std::pow(FrictionGrid::at(static_cast<double>(i)), -parameters.stick_exponent);
+    stick_factor_[i] = static_cast<float>(
+        std::pow(FrictionGrid::at(static_cast<double>(i)), -parameters.stick_exponent));
   }
 }
 
 const FrictionLikelihood::Width& FrictionLikelihood::width_of(double deviation) const {
   for (const Width& width : widths_) {
-    if (deviation <= width.deviation * 1.19) return width;
+    if (deviation <= width.deviation * 1.19) return width;  // Nearer than the next, 1.41 as wide.
   }
   return widths_.back();
 }
@@ -90,22 +122,18 @@ void FrictionLikelihood::add_slip_or_stick(const std::vector<ShownRatio>& pillar
   if (pillars.empty()) return;
   const double slips = parameters_.slip_probability * (1 - parameters_.outliers);
   const double sticks = (1 - parameters_.slip_probability) * (1 - parameters_.outliers);
-  const double outlier = parameters_.outliers / kOutlierRange;
   LogProduct product;
   for (const ShownRatio& pillar : pillars) {
     const Width& width = width_of(pillar.deviation);
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
-    const double* const density = width.density.data() + at;
-    const double* const cumulative = width.cumulative.data() + at;
-    const double* const below =
-        below_ceiling_.data() + kPoints - FrictionGrid::nearest(pillar.ceiling);
-    const double slip = slips / std::max(pillar.ratio, FrictionGrid::kLeast);
-    const double least = std::pow(pillar.ceiling, -parameters_.stick_exponent);
-    FrictionCurve& likelihood = product.next();
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      const double stick = sticks * std::max(stick_factor_[i], least);
-      likelihood[i] *= slip * density[i] * below[i] + stick * cumulative[i] + outlier;
-    }
+    const std::size_t at_ceiling = kPoints - FrictionGrid::nearest(pillar.ceiling);
+    multiply(product.next(),
+             {width.density.data() + at, width.cumulative.data() + at,
+              below_ceiling_.data() + at_ceiling,
+              static_cast<float>(slips / std::max(pillar.ratio, FrictionGrid::kLeast)),
+              static_cast<float>(sticks), stick_factor_[FrictionGrid::nearest(pillar.ceiling)],
+              static_cast<float>(parameters_.outliers / kOutlierRange)},
+             stick_factor_);
   }
   product.add_to(log_likelihood, weight_of(pillars.size(), effective));
 }
@@ -115,12 +143,9 @@ void FrictionLikelihood::add_lower_bounds(const std::vector<ShownRatio>& pillars
   if (pillars.empty()) return;
   LogProduct product;
   for (const ShownRatio& pillar : pillars) {
-    const double* const cumulative = width_of(pillar.deviation).cumulative.data() + kPoints -
-                                     FrictionGrid::nearest(pillar.ratio);
-    FrictionCurve& likelihood = product.next();
-    for (std::size_t i = 0; i < kPoints; ++i) {
-      likelihood[i] *= cumulative[i] * (1 - parameters_.outliers) + parameters_.outliers;
-    }
+    const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
+    multiply(product.next(), width_of(pillar.deviation).cumulative.data() + at,
+             static_cast<float>(parameters_.outliers));
   }
   product.add_to(log_likelihood, weight_of(pillars.size(), effective));
 }

@@ -32,7 +32,7 @@ class FrictionLikelihood {
 
  private:
   /// Values at differences of points of the grid: at j + kPoints for the point `nearest + j`.
-  using Differences = std::array<double, 2 * FrictionGrid::kPoints>;
+  using Differences = std::array<float, 2 * FrictionGrid::kPoints>;
 
   /// A standard deviation that ratios are rounded up to.
   struct Width {
@@ -47,7 +47,8 @@ class FrictionLikelihood {
   ContactParameters parameters_;
   std::array<Width, kWidths> widths_;
   Differences below_ceiling_{};
-  FrictionCurve stick_factor_{};  ///< friction to the power of minus stick_exponent
+  std::array<float, FrictionGrid::kPoints>
+      stick_factor_{};  ///< friction to the power of minus stick_exponent
 };
 
 }  // namespace pillarfield
