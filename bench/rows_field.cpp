@@ -72,7 +72,9 @@ constexpr What kWhat[] = {{"direct", Estimator::direct, true, false},
                           {"direct_and_contacts", Estimator::direct, true, true},
                           {"neither", Estimator::field, false, false},
                           {"field", Estimator::field, true, false},
-                          {"field_and_contacts", Estimator::field, true, true}};
+                          {"field_and_contacts", Estimator::field, true, true},
+                          {"contact", Estimator::contact, true, false},
+                          {"contact_and_contacts", Estimator::contact, true, true}};
 
 /// Shares of pillars: in contact, and of these of those that leave their force open.
 void tell_pillars(const ForceFieldView& forces, Measurement& measured) {

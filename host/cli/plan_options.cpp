@@ -68,9 +68,22 @@ void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s
 void add_evidence_options(CLI::App& command, PlanOptions& options) {
   command
       .add_option("--friction", options.friction,
-                  "--estimator field: no pillar's shear exceeds this many times its normal force; "
-                  "also the friction of contacts [not known]")
+                  "The friction coefficient of all contacts. --estimator contact: to 3 %; field: "
+                  "no pillar's shear exceeds this many times its normal force [not known]")
       ->check(number_range(1e-6, 100).description("RATIO"));
+  command
+      .add_option("--friction-bound", options.friction_bound,
+                  "--estimator contact: no friction coefficient is larger [not known]")
+      ->check(number_range(0.1, 100).description("RATIO"));
+  command
+      .add_option("--friction-prior", options.friction_prior,
+                  "--estimator contact: friction coefficients before any reading, log-normal, "
+                  "MEDIAN,SPREAD [1,0.5]")
+      ->expected(2)
+      ->delimiter(',')
+      ->check(number_range(0.01, 9.9).description("NUMBER"));
+  command.add_flag("--unrelated-frames", options.unrelated_frames,
+                   "--estimator contact: what a contact showed in earlier frames does not count");
   command.add_flag("--slips", options.slips,
                    "--estimator field: every pillar slips, at that friction");
   command.add_flag("--frames-close", options.frames_close,
@@ -83,8 +96,35 @@ void add_evidence_options(CLI::App& command, PlanOptions& options) {
       ->check(whole_number_range(0, 1000).description("NUMBER"));
 }
 
+void apply_friction(const PlanOptions& options, const std::string& source,
+                    FrictionKnowledge& friction) {
+  if (options.slips || options.frames_close || options.sweeps) {
+    throw Error(source, "--slips, --frames-close and --sweeps are of the field estimator",
+                "leave them out, or add --estimator field");
+  }
+  if (options.friction) friction.given = options.friction;
+  if (options.friction_bound) friction.bound = options.friction_bound;
+  if (!options.friction_prior.empty()) {
+    friction.median = options.friction_prior[0];
+    friction.spread = options.friction_prior[1];
+  }
+  if (options.unrelated_frames) friction.memory = false;
+}
+
 /// Applies what is said of the evidence; it is of no use to other estimators.
 void apply_evidence(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
+  const bool of_contact =
+      options.friction_bound || !options.friction_prior.empty() || options.unrelated_frames;
+  if (of_contact && plan.estimator != Estimator::contact) {
+    throw Error(source,
+                "--friction-bound, --friction-prior and --unrelated-frames say what is known of "
+                "friction, and nothing asks for it",
+                "add --estimator contact");
+  }
+  if (plan.estimator == Estimator::contact) {
+    apply_friction(options, source, plan.friction);
+    return;
+  }
   const bool said = options.friction || options.slips || options.frames_close || options.sweeps;
   if (!said) return;
   if (plan.estimator != Estimator::field) {
@@ -109,9 +149,12 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
   add_trust_option(command, options.read);
   add_choice<Estimator>(
       command, "--estimator", options.estimator,
-      {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"field", Estimator::field}},
-      "How forces are estimated: direct; the paper's equations; or field, which "
-      "resolves ambiguous pillars by their contacts [direct]");
+      {{"direct", Estimator::direct},
+       {"paper", Estimator::paper},
+       {"field", Estimator::field},
+       {"contact", Estimator::contact}},
+      "How forces are estimated: direct; the paper's equations; contact, which estimates ambiguous "
+      "pillars by the friction of their contact; or field, by its shape [direct]");
   add_evidence_options(command, options);
   command
       .add_option("--outputs", options.outputs,

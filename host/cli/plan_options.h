@@ -18,6 +18,9 @@ struct PlanOptions {
   std::string calibration;
   std::optional<Estimator> estimator;
   std::optional<double> friction;
+  std::optional<double> friction_bound;
+  std::vector<double> friction_prior;  ///< empty, or median and spread
+  bool unrelated_frames = false;
   bool slips = false;
   bool frames_close = false;
   std::optional<int> sweeps;

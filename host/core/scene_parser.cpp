@@ -94,6 +94,17 @@ void read_evidence(TomlSection& section, FieldEvidence& evidence) {
   }
 }
 
+/// What the contact estimator knows of friction.
+void read_friction(TomlSection& section, FrictionKnowledge& friction) {
+  friction.given = section.number("friction", kFrictions);
+  friction.bound = section.number("friction_bound", kFrictionBound);
+  if (const auto prior = section.numbers("friction_prior", 2, {kFrictions.low, kFrictions.high})) {
+    friction.median = (*prior)[0];
+    friction.spread = (*prior)[1];
+  }
+  friction.memory = section.flag("memory").value_or(friction.memory);
+}
+
 void read_solver(TomlSection section, Scene& scene) {
   scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
   scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
@@ -105,6 +116,7 @@ void read_solver(TomlSection section, Scene& scene) {
                  R"(estimator = "direct" or "field")");
   }
   if (scene.estimator == Estimator::field) read_evidence(section, scene.field);
+  if (scene.estimator == Estimator::contact) read_friction(section, scene.friction);
   section.finish();
 }
 

@@ -50,12 +50,30 @@ void check(const FieldEvidence& evidence, std::string_view where) {
   }
 }
 
+void check(const FrictionKnowledge& friction, std::string_view where) {
+  const auto require = [&](const char* name, double value, double least, double most) {
+    if (value >= least && value <= most) return;
+    throw Error(where, fmt::format("{} is {}", name, value),
+                fmt::format("it must lie in [{}, {}]", least, most));
+  };
+  require("the median of the friction's prior", friction.median, kFrictions.low, kFrictions.high);
+  require("the spread of the friction's prior", friction.spread, kPriorSpread.low,
+          kPriorSpread.high);
+  if (friction.given) {
+    require("the friction", *friction.given, kFrictions.low, kFrictions.high);
+  }
+  if (friction.bound) {
+    require("the bound of the friction", *friction.bound, kFrictionBound.low, kFrictionBound.high);
+  }
+}
+
 }  // namespace
 
 void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.parity_tolerance_counts = scene.parity_tolerance_counts;
   plan.estimator = scene.estimator;
   plan.field = scene.field;
+  plan.friction = scene.friction;
   plan.angles = scene.angles;
   plan.uncertainty = scene.uncertainty;
   if (scene.baseline_time_s) {
@@ -71,9 +89,11 @@ const char* name_of(Estimator estimator) {
     case Estimator::paper:
       return "paper";
     case Estimator::field:
+      return "field";
+    case Estimator::contact:
       break;
   }
-  return "field";
+  return "contact";
 }
 
 void check(const SolverPlan& plan, std::string_view where) {
@@ -93,6 +113,13 @@ void check(const SolverPlan& plan, std::string_view where) {
     check(plan.field, where);
     if (plan.half_output) {
       throw Error(where, "the field estimator has no results of half precision",
+                  "leave out half_output (--half), or take the direct estimator");
+    }
+  }
+  if (plan.estimator == Estimator::contact) {
+    check(plan.friction, where);
+    if (plan.half_output) {
+      throw Error(where, "the contact estimator has no results of half precision",
                   "leave out half_output (--half), or take the direct estimator");
     }
   }

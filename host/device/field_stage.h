@@ -39,6 +39,10 @@ std::unique_ptr<FieldStage> device_field_stage(Device::State& device, const Solv
 /// the contacts.
 std::unique_ptr<FieldStage> host_field_stage(const Device::State& device, const SolverPlan& plan);
 
+/// The contact estimator, by the host on the host's side of the planes, which is where its results
+/// are wanted: the same bits whatever the device.
+std::unique_ptr<FieldStage> contact_stage(const Device::State& device, const SolverPlan& plan);
+
 /// The OpenCL C of the field estimator, complete; `groups` as above.
 [[nodiscard]] std::string field_kernel_source(bool groups);
 

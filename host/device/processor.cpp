@@ -116,7 +116,9 @@ struct Processor::State {
       slots.push_back(
           std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
-    if (wanted.estimator == Estimator::field) {
+    if (wanted.estimator == Estimator::contact) {
+      field = contact_stage(device.state(), wanted);
+    } else if (wanted.estimator == Estimator::field) {
       field = make_field_stage(device.state(), wanted, options.contacts, shares_memory);
     }
     warm_up();

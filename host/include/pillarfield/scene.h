@@ -49,6 +49,7 @@ struct Scene {
   std::optional<double> parity_tolerance_counts;  ///< see SolverPlan, as the three that follow
   Estimator estimator = Estimator::direct;
   FieldEvidence field;
+  FrictionKnowledge friction;
   bool angles = false;
   bool uncertainty = false;
   std::optional<double> baseline_time_s;  ///< time constant with which the tare follows a drift

@@ -15,6 +15,8 @@ enum class Estimator : std::uint8_t {
            ///< (docs/derivations/direct_solve.md)
   paper,   ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
   field,   ///< direct, then ambiguous pillars with their contact's help (docs/derivations/field.md)
+  contact,  ///< direct, then ambiguous pillars by what is believed of their contact's friction
+            ///< (docs/derivations/contact.md)
 };
 
 /// What `Estimator::field` may go by where readings leave a force open. Each piece of evidence is
@@ -29,7 +31,20 @@ struct FieldEvidence {
   int sweeps = 8;             ///< of the relaxation of the pressure, 0 to 1000: speed against error
 };
 
-/// "direct", "paper" or "field".
+/// What `Estimator::contact` knows of friction coefficients before any reading: a log-normal
+/// distribution, the same for all contacts (docs/derivations/contact.md, C1).
+struct FrictionKnowledge {
+  double median = 1;    ///< [0.1, 9.9]
+  double spread = 0.5;  ///< standard deviation of the logarithm, [0.01, 3]
+  /// The friction itself, [0.1, 9.9], to 3 %; it takes the place of median and spread. Unset: not
+  /// known.
+  std::optional<double> given;
+  std::optional<double> bound;  ///< no friction is larger, [0.1, 100]; unset: not known
+  bool memory =
+      true;  ///< what a contact showed counts in the next frame; false: frames are unrelated
+};
+
+/// "direct", "paper", "field" or "contact".
 [[nodiscard]] const char* name_of(Estimator estimator);
 
 /// What is computed, and from which sensor. Each member that is set or not empty adds its
@@ -45,7 +60,8 @@ struct SolverPlan {
   /// where the calibration has no noise plane of its own. Unset without one: noise is not known.
   std::optional<double> noise_counts;
   Estimator estimator = Estimator::direct;
-  FieldEvidence field;  ///< for `Estimator::field`
+  FieldEvidence field;         ///< for `Estimator::field`
+  FrictionKnowledge friction;  ///< for `Estimator::contact`
   /// Share of its distance from the reading that the tare of an untouched sensel takes over after
   /// each frame, (0, 1]; unset: the tare stays. Untouched is a sensel whose pillar and the eight
   /// around it have no usable and no saturated sensel in that frame.

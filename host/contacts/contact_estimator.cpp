@@ -1,0 +1,456 @@
+#include "contacts/contact_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include "core/status_word.h"
+#include "core/wide.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+namespace maths = single_precision;
+
+/// Of a contact so many pillars are asked at most, evenly spread, and so many rows and columns for
+/// its edge: what they tell is the same, and large contacts take no longer.
+constexpr std::uint32_t kMostAsked = 96;
+constexpr std::uint32_t kMostEdges = 16;
+constexpr std::uint32_t kMostPredicted = 16;
+
+/// The edge of a contact lies so far beyond the centre of its outermost pillars, in pillars.
+constexpr double kEdge = 0.25;
+
+/// Above all frictions.
+constexpr double kNoCeiling = 1e3;
+
+/// How far a contact may jump from frame to frame and still be the same.
+constexpr double kReachMm = 10;
+
+/// Where the noise is not known, the threshold is taken to be so many deviations.
+constexpr double kThresholdDeviations = 4;
+
+constexpr double kNormal95 = 1.96;
+
+double noise_of(const SolverPlan& plan) {
+  const bool known = plan.noise_counts || !plan.calibration.noise.empty();
+  const double counts =
+      known ? reading_noise(plan) : plan.skin.threshold_counts / kThresholdDeviations;
+  return counts / plan.skin.counts_per_newton;
+}
+
+float* floats_or_null(std::vector<float>& plane) { return plane.empty() ? nullptr : plane.data(); }
+
+/// Sensels 1 to 4 of the direction of a determined pillar's shear lift beyond this ratio (C4).
+double ceiling_of(double shear_x, double shear_y) {
+  const double least = std::min(std::abs(shear_x + shear_y), std::abs(shear_y - shear_x));
+  const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y);
+  return least > 0 ? std::numbers::sqrt2 * shear / least : kNoCeiling;
+}
+
+double ratio_at(const maths::Segment& segment, double normal) {
+  const double fixed = segment.fixed;
+  const double moving = std::max(segment.moving - std::numbers::sqrt2 * normal, 0.0);
+  return std::sqrt(fixed * fixed + moving * moving) / normal;
+}
+
+/// The normal force that a pillar has or may have at most, N.
+double most_normal(const maths::Field& field, std::uint32_t index) {
+  const std::uint8_t status = field.status[index];
+  const double normal = field.normal[index];
+  if (maths::is_determined(status)) return std::max(normal, 0.0);
+  return maths::is_open(status) ? 2 * normal : 0;
+}
+
+}  // namespace
+
+ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
+                                   const ContactParameters& parameters)
+    : parameters_(parameters),
+      likelihood_(parameters),
+      prior_(plan.friction),
+      remember_(plan.friction.memory),
+      pitch_mm_(plan.skin.pillar_pitch_mm()),
+      noise_n_(noise_of(plan)),
+      rows_(plan.skin.pillar_rows()),
+      cols_(plan.skin.pillar_cols()),
+      workspaces_(threads),
+      team_(std::make_unique<WorkTeam>(threads)) {}
+
+void ContactEstimator::resolve(ForceField& field) {
+  auto& uncertainty = field.uncertainty;
+  resolve({field.shear_x.data(), field.shear_y.data(), field.normal.data(), field.status.data(),
+           nullptr, nullptr, nullptr, floats_or_null(uncertainty[Uncertainty::shear_x]),
+           floats_or_null(uncertainty[Uncertainty::shear_y]),
+           floats_or_null(uncertainty[Uncertainty::normal]),
+           floats_or_null(uncertainty[Uncertainty::theta_low]),
+           floats_or_null(uncertainty[Uncertainty::theta_high]),
+           floats_or_null(uncertainty[Uncertainty::phi_low]),
+           floats_or_null(uncertainty[Uncertainty::phi_high]),
+           floats_or_null(uncertainty[Uncertainty::magnitude_low]),
+           floats_or_null(uncertainty[Uncertainty::magnitude_high]), field.rows, field.cols});
+}
+
+void ContactEstimator::resolve(const maths::Field& field, const SilentBlocks& idle) {
+  map_.find({field.status, std::size_t{rows_} * cols_}, rows_, cols_, idle);
+  match();
+  contacts_.assign(map_.contacts(), {});
+  friction_.assign(map_.contacts(), {});
+  team_->run(map_.contacts(), [&](std::size_t contact, std::size_t member) {
+    const auto number = static_cast<std::uint32_t>(contact);
+    learn(field, number, workspaces_[member]);
+    if (!contacts_[contact].any_ambiguous) return;
+    estimate(field, number);
+  });
+}
+
+/// Hands each contact the belief of the one that it was a frame before.
+void ContactEstimator::match() {
+  std::swap(beliefs_, beliefs_before_);
+  beliefs_.assign(map_.contacts(), prior_);
+  if (!remember_) return;
+  std::swap(traces_, traces_before_);
+  traces_.runs.assign(map_.runs_by_row().begin(), map_.runs_by_row().end());
+  traces_.ids.assign(map_.contacts(), 0);
+  traces_.centres.clear();
+  for (std::uint32_t contact = 0; contact < map_.contacts(); ++contact) {
+    double pillars = 0;
+    double row = 0;
+    double col = 0;
+    for (const ContactRun& run : map_.runs(contact)) {
+      const double length = run.end - run.first;
+      pillars += length;
+      row += length * run.row;
+      col += length * 0.5 * (run.first + run.end - 1.0);
+    }
+    traces_.centres.push_back({pitch_mm_ * col / pillars, -pitch_mm_ * row / pillars});
+  }
+  const ContactMatches matches = match_contacts(traces_before_, traces_, kReachMm);
+  for (std::uint32_t contact = 0; contact < map_.contacts(); ++contact) {
+    const std::uint32_t before = matches.earlier[contact] != kNoContact ? matches.earlier[contact]
+                                                                        : matches.parents[contact];
+    if (before == kNoContact) continue;
+    beliefs_[contact] = beliefs_before_[before].carried(prior_, parameters_.forgetting);
+  }
+}
+
+/// Brings what is believed of a contact's friction up to date with a frame.
+void ContactEstimator::learn(const maths::Field& field, std::uint32_t number, Workspace& work) {
+  Contact& contact = contacts_[number];
+  FrictionBelief& belief = beliefs_[number];
+  gather(field, contact, map_.runs(number), work);
+  FrictionCurve log_likelihood{};
+  likelihood_.add_slip_or_stick(work.ratios, parameters_.effective_pillars, log_likelihood);
+  likelihood_.add_lower_bounds(work.bounds, parameters_.effective_pillars, log_likelihood);
+  if (!work.ambiguous.empty()) {
+    contact.pressure = PressureRegression::fit(work.samples);
+    if (contact.pressure) predict(field, contact, work);
+    likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
+                                  log_likelihood);
+  }
+  if (!work.ratios.empty() || !work.bounds.empty()) belief.update(log_likelihood);
+  for (std::size_t i = 0; i < Contact::kNodes; ++i) {
+    contact.nodes[i] =
+        static_cast<float>(belief.quantile((static_cast<double>(i) + 0.5) / Contact::kNodes));
+  }
+  friction_[number] = {belief.quantile(0.5), belief.spread()};
+}
+
+/// Of a ratio of shear to a normal force, relative.
+double ContactEstimator::deviation_of_ratio(double normal) const {
+  const double noise = parameters_.noise_of_ratio * noise_n_ / normal;
+  return std::sqrt(noise * noise + parameters_.ratio_deviation * parameters_.ratio_deviation);
+}
+
+/// Collects what sampled pillars of a contact show.
+void ContactEstimator::gather(const maths::Field& field, Contact& contact,
+                              std::span<const ContactRun> runs, Workspace& work) const {
+  work.ratios.clear();
+  work.bounds.clear();
+  work.predicted.clear();
+  work.samples.clear();
+  work.ambiguous.clear();
+  std::uint32_t pillars = 0;
+  std::uint32_t first_col = cols_;
+  std::uint32_t end_col = 0;
+  for (const ContactRun& run : runs) {
+    pillars += run.end - run.first;
+    first_col = std::min(first_col, run.first);
+    end_col = std::max(end_col, run.end);
+  }
+  const double height = runs.back().row - runs.front().row + 1;
+  contact.centre_row = 0.5 * (runs.front().row + runs.back().row);
+  contact.centre_col = 0.5 * (first_col + end_col - 1.0);
+  contact.scale = 0.5 * std::max<double>(height, end_col - first_col) + 1;
+  const std::uint32_t step = (pillars + kMostAsked - 1) / kMostAsked;
+  const double least = parameters_.least_normal * noise_n_;
+  double peak = 0;
+  std::uint32_t skip = 0;
+  for (const ContactRun& run : runs) {
+    std::uint32_t col = run.first + skip;
+    for (; col < run.end; col += step) {
+      const std::uint32_t index = run.row * cols_ + col;
+      const std::uint8_t status = field.status[index];
+      const double normal = field.normal[index];
+      if (!(normal > 0)) continue;
+      if (maths::is_open(status)) {
+        contact.any_ambiguous = true;
+        work.ambiguous.push_back(index);
+        const double high = 2 * normal;
+        peak = std::max(peak, high);
+        if (!(high > least)) continue;
+        const maths::Segment segment = maths::segment_of(
+            maths::force_of_field(field, index), maths::moves_vertically(maths::Bits{status}));
+        work.bounds.push_back(
+            {ratio_at(segment, high),
+             std::hypot(parameters_.noise_of_ratio * noise_n_ / high, parameters_.ratio_deviation),
+             0});
+      } else if (maths::is_determined(status)) {
+        peak = std::max(peak, normal);
+        work.samples.push_back({(col - contact.centre_col) / contact.scale,
+                                (run.row - contact.centre_row) / contact.scale, normal * normal,
+                                1});
+        if (!(normal > least) || (status & status::kAmbiguous) != 0) continue;
+        const double x = field.shear_x[index];
+        const double y = field.shear_y[index];
+        work.ratios.push_back(
+            {std::sqrt(x * x + y * y) / normal, deviation_of_ratio(normal), ceiling_of(x, y)});
+      }
+    }
+    skip = col - run.end;
+  }
+  if (!contact.any_ambiguous && step > 1) {
+    // Those that were passed over may still be ambiguous.
+    contact.any_ambiguous = true;
+  }
+  if (!work.ambiguous.empty() && !work.samples.empty()) {
+    add_edges(field, contact, runs, 1.0 / step, peak, work);
+  }
+}
+
+/// The normal force vanishes at a contact's edge, unless its outermost pillars bear much (C7).
+void ContactEstimator::add_edges(const maths::Field& field, const Contact& contact,
+                                 std::span<const ContactRun> runs, double weight, double peak_n,
+                                 Workspace& work) const {
+  const auto add = [&](std::uint32_t row, std::uint32_t col, int down, int right, double each) {
+    const std::uint32_t index = row * cols_ + col;
+    double most = most_normal(field, index);
+    const std::int64_t inner_row = std::int64_t{row} - down;
+    const std::int64_t inner_col = std::int64_t{col} - right;
+    if (inner_row >= 0 && inner_row < rows_ && inner_col >= 0 && inner_col < cols_) {
+      most = std::max(most, most_normal(field, static_cast<std::uint32_t>(inner_row) * cols_ +
+                                                   static_cast<std::uint32_t>(inner_col)));
+    }
+    const double rest = std::max(1 - most / peak_n, 0.0);
+    work.samples.push_back({(col + kEdge * right - contact.centre_col) / contact.scale,
+                            (row + kEdge * down - contact.centre_row) / contact.scale, 0,
+                            each * rest * rest});
+  };
+  const std::uint32_t first_row = runs.front().row;
+  const std::uint32_t rows = runs.back().row - first_row + 1;
+  const std::uint32_t row_step = (rows + kMostEdges - 1) / kMostEdges;
+  for (std::size_t i = 0; i < runs.size();) {
+    std::size_t end = i + 1;
+    while (end < runs.size() && runs[end].row == runs[i].row) ++end;
+    if ((runs[i].row - first_row) % row_step == 0) {
+      if (runs[i].first > 0) add(runs[i].row, runs[i].first, 0, -1, weight * row_step);
+      if (runs[end - 1].end < cols_)
+        add(runs[i].row, runs[end - 1].end - 1, 0, 1, weight * row_step);
+    }
+    i = end;
+  }
+  std::uint32_t first_col = cols_;
+  std::uint32_t end_col = 0;
+  for (const ContactRun& run : runs) {
+    first_col = std::min(first_col, run.first);
+    end_col = std::max(end_col, run.end);
+  }
+  const std::uint32_t col_step = (end_col - first_col + kMostEdges - 1) / kMostEdges;
+  const std::uint32_t columns = (end_col - first_col + col_step - 1) / col_step;
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  work.top.assign(columns, kNone);
+  work.bottom.assign(columns, 0);
+  for (const ContactRun& run : runs) {
+    const std::uint32_t from = (run.first - first_col + col_step - 1) / col_step;
+    for (std::uint32_t i = from; i < columns && first_col + i * col_step < run.end; ++i) {
+      if (work.top[i] == kNone) work.top[i] = run.row;
+      work.bottom[i] = run.row;
+    }
+  }
+  for (std::uint32_t i = 0; i < columns; ++i) {
+    if (work.top[i] == kNone) continue;
+    const std::uint32_t col = first_col + i * col_step;
+    if (work.top[i] > 0) add(work.top[i], col, -1, 0, weight * col_step);
+    if (work.bottom[i] + 1 < rows_) add(work.bottom[i], col, 1, 0, weight * col_step);
+  }
+}
+
+/// What the regression of the pressure predicts of ambiguous pillars tells of the friction, too.
+void ContactEstimator::predict(const maths::Field& field, const Contact& contact,
+                               Workspace& work) const {
+  constexpr double kMostDeviation = 0.35;  // of a prediction that is heard, relative
+  constexpr double kStep = 0.02;
+  const std::size_t step = (work.ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
+  for (std::size_t i = 0; i < work.ambiguous.size(); i += step) {
+    const std::uint32_t index = work.ambiguous[i];
+    const maths::Segment segment =
+        maths::segment_of(maths::force_of_field(field, index),
+                          maths::moves_vertically(maths::Bits{field.status[index]}));
+    const PressureRegression::Prediction square =
+        contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,
+                             (index / cols_ - contact.centre_row) / contact.scale);
+    if (!(square.square > 0)) continue;
+    const double normal = std::min(std::sqrt(square.square), segment.high + noise_n_);
+    const double factor = parameters_.regression_factor;
+    const double deviation = std::sqrt(
+        factor * factor * square.variance / (4 * square.square) + noise_n_ * noise_n_ +
+        parameters_.prediction_deviation * parameters_.prediction_deviation * normal * normal);
+    if (!(deviation < kMostDeviation * normal && normal > parameters_.least_normal * noise_n_)) {
+      continue;
+    }
+    const double ratio = ratio_at(segment, normal);
+    const double steepness = std::abs(std::log(ratio_at(segment, normal * (1 + kStep)) /
+                                               ratio_at(segment, normal * (1 - kStep)))) /
+                             (2 * kStep);
+    work.predicted.push_back(
+        {ratio, std::hypot(deviation / normal * steepness, deviation_of_ratio(normal)),
+         kNoCeiling});
+  }
+}
+
+/// What readings leave of a lot of ambiguous pillars, and what is estimated of them.
+struct ContactEstimator::Batch {
+  static constexpr std::size_t kPillars = 32;
+  using Values = std::array<float, kPillars>;
+  std::array<std::uint32_t, kPillars> index{};
+  std::array<maths::Segment, kPillars> segments{};
+  Values fixed{};
+  Values moving{};
+  Values high{};
+  Values mean{};    ///< of the normal force, N
+  Values square{};  ///< its mean square, N²
+  std::size_t pillars = 0;
+};
+
+namespace {
+
+using Values = std::array<float, 32>;
+
+/// Mean and mean square of normal forces over frictions of equal probability, at which pillars slip
+/// or, with a probability, stick (C8).
+PF_WIDE void average(const Values& fixed, const Values& moving, const Values& high,
+                     std::span<const float> nodes, float sticks, Values& mean, Values& square) {
+  constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
+  mean.fill(0);
+  square.fill(0);
+  const float share = 1.0F / static_cast<float>(nodes.size());
+  for (const float friction : nodes) {
+    const float excess = friction * friction - 2;
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const float total = fixed[i] * fixed[i] + moving[i] * moving[i];
+      const float under = 2 * moving[i] * moving[i] + excess * total;
+      const float free = total / (kRoot2 * moving[i] + std::sqrt(under > 0 ? under : 0.0F));
+      const float slip = free < high[i] ? free : high[i];
+      const float sum = slip + high[i];
+      mean[i] += share * ((1 - sticks) * slip + sticks * 0.5F * sum);
+      square[i] += share * ((1 - sticks) * slip * slip +
+                            sticks * (slip * sum + high[i] * high[i]) * (1.0F / 3));
+    }
+  }
+}
+
+}  // namespace
+
+/// Estimates the ambiguous pillars of a contact, some at a time.
+void ContactEstimator::estimate(const maths::Field& field, std::uint32_t number) const {
+  const Contact& contact = contacts_[number];
+  Batch batch;
+  const auto finish = [&] {
+    for (std::size_t i = batch.pillars; i < Batch::kPillars; ++i) {
+      batch.fixed[i] = batch.moving[i] = batch.high[i] = 1;
+    }
+    average(batch.fixed, batch.moving, batch.high, contact.nodes,
+            static_cast<float>(parameters_.ambiguous_sticks), batch.mean, batch.square);
+    for (std::size_t i = 0; i < batch.pillars; ++i) write(field, contact, batch, i);
+    batch.pillars = 0;
+  };
+  const auto add = [&](std::uint32_t index) {
+    if (!maths::is_open(field.status[index]) || !(field.normal[index] > 0)) return;
+    const maths::Segment segment =
+        maths::segment_of(maths::force_of_field(field, index),
+                          maths::moves_vertically(maths::Bits{field.status[index]}));
+    batch.index[batch.pillars] = index;
+    batch.segments[batch.pillars] = segment;
+    batch.fixed[batch.pillars] = segment.fixed;
+    batch.moving[batch.pillars] = segment.moving;
+    batch.high[batch.pillars] = segment.high;
+    if (++batch.pillars == Batch::kPillars) finish();
+  };
+  for (const ContactRun& run : map_.runs(number)) {
+    std::uint32_t index = run.row * cols_ + run.first;
+    const std::uint32_t end = run.row * cols_ + run.end;
+    // Most pillars are not ambiguous: eight are passed over at a time.
+    for (; index + kWordBytes <= end; index += kWordBytes) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, field.status + index, kWordBytes);
+      if ((word & (status::kAmbiguous * kEachByte)) == 0) continue;
+      for (std::uint32_t i = 0; i < kWordBytes; ++i) add(index + i);
+    }
+    for (; index < end; ++index) add(index);
+  }
+  if (batch.pillars > 0) finish();
+}
+
+/// The posterior mean of one ambiguous pillar's normal force, and its deviation (C9).
+void ContactEstimator::write(const maths::Field& field, const Contact& contact, const Batch& batch,
+                             std::size_t i) const {
+  const std::uint32_t index = batch.index[i];
+  const maths::Force point = maths::force_of_field(field, index);
+  const maths::Mask vertical = maths::moves_vertically(maths::Bits{field.status[index]});
+  const double high = batch.high[i];
+  double mean = batch.mean[i];
+  double variance = std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n_ * noise_n_;
+  if (contact.pressure) {
+    const PressureRegression::Prediction predicted =
+        contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,
+                             (index / cols_ - contact.centre_row) / contact.scale);
+    if (predicted.square > 0) {
+      const double normal = std::min(std::sqrt(predicted.square), high + noise_n_);
+      const double factor = parameters_.regression_factor;
+      const double other =
+          factor * factor * predicted.variance / (4 * predicted.square) + noise_n_ * noise_n_ +
+          parameters_.prediction_deviation * parameters_.prediction_deviation * normal * normal;
+      const double weight = variance / (variance + other);
+      mean += weight * (normal - mean);
+      variance *= 1 - weight;
+    }
+  }
+  mean = std::min(mean, high);
+  const double deviation = std::sqrt(variance);
+  const bool resolved = deviation < parameters_.resolved_deviation * high;
+  const auto normal = static_cast<float>(mean);
+  const maths::Force force = maths::force_on_segment(point, vertical, normal);
+  field.shear_x[index] = force.shear_x;
+  field.shear_y[index] = force.shear_y;
+  field.normal[index] = force.normal;
+  if (resolved) field.status[index] |= PF_STATUS_FROM_NEIGHBOURS;
+  if (field.magnitude != nullptr) {
+    const maths::Direction direction = maths::direction_of(force);
+    field.magnitude[index] = direction.magnitude;
+    field.theta[index] = direction.theta;
+    field.phi[index] = direction.phi;
+  }
+  if (field.deviation_normal == nullptr) return;
+  const auto low_n = static_cast<float>(std::max(mean - kNormal95 * deviation, 0.0));
+  const auto high_n = static_cast<float>(std::min(mean + kNormal95 * deviation, high));
+  maths::write_ends(field, index, maths::force_on_segment(point, vertical, low_n),
+                    maths::force_on_segment(point, vertical, high_n));
+  field.deviation_normal[index] = static_cast<float>(deviation);
+  const auto moving = static_cast<float>(std::hypot(std::numbers::sqrt2 * deviation, noise_n_));
+  (vertical ? field.deviation_y : field.deviation_x)[index] = moving;
+}
+
+}  // namespace pillarfield

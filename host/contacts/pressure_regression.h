@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace pillarfield {
+
+/// A robust regression of the squared normal force of a contact's pillars, which is a polynomial of
+/// degree 2 in the place under a smooth body (Hertz; docs/derivations/contact.md, C6).
+class PressureRegression {
+ public:
+  struct Sample {
+    double x;  ///< place, of about 1 in size
+    double y;
+    double square;  ///< N²
+    double weight;  ///< 0 or more
+  };
+  struct Prediction {
+    double square;    ///< N², may be negative
+    double variance;  ///< N⁴
+  };
+
+  /// Fits; unset where there are too few samples, or they lie on a line.
+  static std::optional<PressureRegression> fit(const std::vector<Sample>& samples);
+
+  [[nodiscard]] Prediction at(double x, double y) const;
+
+ private:
+  static constexpr std::size_t kTerms = 6;
+  using Terms = std::array<double, kTerms>;
+  using Matrix = std::array<Terms, kTerms>;
+
+  static Terms terms_of(double x, double y) { return {1, x, y, x * x, x * y, y * y}; }
+  static bool factorise(Matrix& matrix);
+  static void forward(const Matrix& factor, Terms& values);
+  static void backward(const Matrix& factor, Terms& values);
+
+  Terms coefficients_{};
+  Matrix factor_{};         ///< Cholesky's, lower triangle
+  double mean_square_ = 0;  ///< of the residual
+};
+
+}  // namespace pillarfield
