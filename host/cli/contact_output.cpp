@@ -45,7 +45,9 @@ void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
 }
 
 void take_friction(const SolverPlan& plan, ContactOptions& contacts) {
-  if (!contacts.friction) contacts.friction = plan.field.friction;
+  if (contacts.friction) return;
+  contacts.friction =
+      plan.estimator == Estimator::contact ? plan.friction.given : plan.field.friction;
 }
 
 void check(const ContactOutputOptions& options, const std::string& output) {

@@ -24,6 +24,9 @@ constexpr std::uint32_t kMostPredicted = 16;
 /// The edge of a contact lies so far beyond the centre of its outermost pillars, in pillars.
 constexpr double kEdge = 0.25;
 
+/// Larger normal forces, N, are none; their squares would not be numbers.
+constexpr double kMostNormal = 1e15;
+
 /// Above all frictions.
 constexpr double kNoCeiling = 1e3;
 
@@ -195,7 +198,7 @@ void ContactEstimator::gather(const maths::Field& field, Contact& contact,
       const std::uint32_t index = run.row * cols_ + col;
       const std::uint8_t status = field.status[index];
       const double normal = field.normal[index];
-      if (!(normal > 0)) continue;
+      if (!(normal > 0 && normal < kMostNormal)) continue;
       if (maths::is_open(status)) {
         contact.any_ambiguous = true;
         work.ambiguous.push_back(index);
@@ -378,7 +381,8 @@ void ContactEstimator::estimate(const maths::Field& field, std::uint32_t number)
     batch.pillars = 0;
   };
   const auto add = [&](std::uint32_t index) {
-    if (!maths::is_open(field.status[index]) || !(field.normal[index] > 0)) return;
+    if (!maths::is_open(field.status[index])) return;
+    if (!(field.normal[index] > 0 && field.normal[index] < kMostNormal)) return;
     const maths::Segment segment =
         maths::segment_of(maths::force_of_field(field, index),
                           maths::moves_vertically(maths::Bits{field.status[index]}));
@@ -412,7 +416,9 @@ void ContactEstimator::write(const maths::Field& field, const Contact& contact, 
   const maths::Mask vertical = maths::moves_vertically(maths::Bits{field.status[index]});
   const double high = batch.high[i];
   double mean = batch.mean[i];
-  double variance = std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n_ * noise_n_;
+  const double own = parameters_.ratio_deviation * mean;  // a pillar is not quite at the friction
+  double variance =
+      std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n_ * noise_n_ + own * own;
   if (contact.pressure) {
     const PressureRegression::Prediction predicted =
         contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,

@@ -130,7 +130,7 @@ void FrictionLikelihood::add_slip_or_stick(const std::vector<ShownRatio>& pillar
     multiply(product.next(),
              {width.density.data() + at, width.cumulative.data() + at,
               below_ceiling_.data() + at_ceiling,
-              static_cast<float>(slips / std::max(pillar.ratio, FrictionGrid::kLeast)),
+              static_cast<float>(slips / std::max(FrictionGrid::kLeast, pillar.ratio)),
               static_cast<float>(sticks), stick_factor_[FrictionGrid::nearest(pillar.ceiling)],
               static_cast<float>(parameters_.outliers / kOutlierRange)},
              stick_factor_);

@@ -98,9 +98,14 @@ void read_evidence(TomlSection& section, FieldEvidence& evidence) {
 void read_friction(TomlSection& section, FrictionKnowledge& friction) {
   friction.given = section.number("friction", kFrictions);
   friction.bound = section.number("friction_bound", kFrictionBound);
-  if (const auto prior = section.numbers("friction_prior", 2, {kFrictions.low, kFrictions.high})) {
+  if (const auto prior =
+          section.numbers("friction_prior", 2, {kPriorSpread.low, kFrictions.high})) {
     friction.median = (*prior)[0];
     friction.spread = (*prior)[1];
+    if (friction.median < kFrictions.low || friction.spread > kPriorSpread.high) {
+      section.fail("friction_prior", "has a median below 0.1 or a spread above 3",
+                   "friction_prior = [1.0, 0.5]");
+    }
   }
   friction.memory = section.flag("memory").value_or(friction.memory);
 }
@@ -113,7 +118,7 @@ void read_solver(TomlSection section, Scene& scene) {
   scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
   if (scene.uncertainty && scene.estimator == Estimator::paper) {
     section.fail("uncertainty", "comes with the paper's estimator, which has none",
-                 R"(estimator = "direct" or "field")");
+                 R"(estimator = "direct" or "contact")");
   }
   if (scene.estimator == Estimator::field) read_evidence(section, scene.field);
   if (scene.estimator == Estimator::contact) read_friction(section, scene.friction);

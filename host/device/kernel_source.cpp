@@ -165,6 +165,7 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   stages.emplace_back(plan.half_output ? "store_half" : "store");
   if (plan.baseline_rate) stages.emplace_back("follow_baseline");
   if (plan.estimator == Estimator::field) stages.emplace_back("resolve_field");
+  if (plan.estimator == Estimator::contact) stages.emplace_back("estimate_contacts");
   return stages;
 }
 

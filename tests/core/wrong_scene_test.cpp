@@ -86,7 +86,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "field")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
        "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
-       "allowed: estimator = \"direct\" or \"field\""},
+       "allowed: estimator = \"direct\" or \"contact\""},
       {"[solver]\nparity_tolerance_counts = true",
        "s.toml:3: key 'parity_tolerance_counts' in [solver] is true; allowed: a number in [0, "
        "1e+33]"},

@@ -33,7 +33,7 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_readings = true;
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
-  info.friction = plan.field.friction;
+  info.friction = plan.estimator == Estimator::contact ? plan.friction.given : plan.field.friction;
   info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
                             processor.shares_memory() ? "zero copy" : "staged");
 }
@@ -78,7 +78,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   if (scene.baseline_time_s) {
     info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
   }
-  if (scene.field.frames_close) {
+  if (remembers(scene.estimator, scene.field, scene.friction)) {
     info.remarks.emplace_back(
         "Frames that are played know of the one before, one that is jumped to is solved by "
         "itself.");

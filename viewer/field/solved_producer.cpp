@@ -18,6 +18,11 @@ struct Held {
 
 }  // namespace
 
+bool remembers(Estimator estimator, const FieldEvidence& field, const FrictionKnowledge& friction) {
+  return (estimator == Estimator::field && field.frames_close) ||
+         (estimator == Estimator::contact && friction.memory);
+}
+
 SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   plan.angles = true;
@@ -30,12 +35,13 @@ SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> sup
                                const SolverPlan& plan, Processor processor)
     : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
   info_.frames = supply_->frames();
-  if (plan.estimator != Estimator::field || !plan.field.frames_close) return;
+  if (!remembers(plan.estimator, plan.field, plan.friction)) return;
   silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
 
 void SolvedProducer::forget_the_frame_before() {
-  // What was known of a pillar is of use in the next frame alone, and of a silent one nothing is.
+  // What was known of a pillar or a contact is of use in the next frame alone, and an idle one has
+  // neither.
   processor_.submit(silence_->view());
   static_cast<void>(processor_.receive());
 }

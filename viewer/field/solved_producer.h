@@ -11,6 +11,10 @@
 
 namespace pillarfield::viewer {
 
+/// Whether frames are estimated with the help of the frame before.
+[[nodiscard]] bool remembers(Estimator estimator, const FieldEvidence& field,
+                             const FrictionKnowledge& friction);
+
 /// What a source asks of the solver, and what there is to show for it: angles always, uncertainty
 /// where the noise is known and the estimator can tell.
 [[nodiscard]] SolverPlan shown_plan(SolverPlan plan);

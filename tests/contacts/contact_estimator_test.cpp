@@ -1,0 +1,338 @@
+// The estimator `contact` on contacts that a boundary-element solver makes, as small as a
+// fingertip: what it gains over the paper's midpoint, what it may not touch, and hard cases by
+// name.
+
+#include "contacts/contact_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "core/host_solve.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+/// A body on 26 x 26 pillars that is pressed, dragged until it slides, and dragged another way.
+Scene dragged(const Body& shape, double friction) {
+  Scene scene;
+  scene.skin.rows = 52;
+  scene.skin.cols = 52;
+  scene.skin.threshold_counts = 2;
+  scene.skin.counts_per_newton = 160;
+  scene.sensor.noise_counts = 0.5;
+  scene.frames = 12;
+  scene.rate_hz = 10;
+  scene.modulus_kpa = 400;
+  Body body = shape;
+  body.friction = friction;
+  body.path = {{0.0, -1, 0.5, 0, 6},
+               {0.2, -1, 0.5, 0, 14},
+               {0.6, 0.4 * friction, 1, 5, 14},
+               {0.8, 3, 1.3, 5, 16},
+               {1.1, 3.5, -2, 5, 12}};
+  scene.bodies = {body};
+  return scene;
+}
+
+/// A body that is pressed and then turned, there and back.
+Scene turned(const Body& shape, double friction) {
+  Scene scene = dragged(shape, friction);
+  scene.bodies[0].path = {
+      {0.0, 0, 0, 0, 6}, {0.2, 0, 0, 0, 14}, {0.7, 0, 0, 40, 14}, {1.1, 0, 0, 10, 14}};
+  return scene;
+}
+
+Body fingertip() {
+  Body body;
+  body.shape = BodyShape::ellipsoid;
+  body.radii_mm = {14, 9, 8};
+  return body;
+}
+
+Body ball() {
+  Body body;
+  body.radius_mm = 14;
+  return body;
+}
+
+Body punch() {
+  Body body;
+  body.shape = BodyShape::punch;
+  body.radius_mm = 6;
+  body.edge_radius_mm = 2;
+  return body;
+}
+
+SolverPlan plan_of(const Scene& scene, Estimator estimator) {
+  SolverPlan plan;
+  plan.skin = scene.skin;
+  plan.sensel_type = SenselType::f32;
+  plan.estimator = estimator;
+  plan.noise_counts = scene.sensor.noise_counts;
+  plan.uncertainty = estimator != Estimator::paper;
+  return plan;
+}
+
+bool is_ambiguous_pair(std::uint8_t bits) { return region_of(bits) == Region::three; }
+
+/// Errors over the pillars of region 3 of a recording.
+struct Errors {
+  double squares = 0;  ///< of the force vector, counts²
+  double held = 0;     ///< true normal forces within 1.96 deviations
+  double pillars = 0;
+
+  [[nodiscard]] double rms() const { return std::sqrt(squares / pillars); }
+  [[nodiscard]] double coverage() const { return held / pillars; }
+};
+
+using Solve = std::function<ForceField(const FrameView&)>;
+
+Errors errors_of(const Scene& scene, const Solve& solve) {
+  const Simulator simulator(scene);
+  FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
+  ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
+  Errors errors;
+  const double counts = scene.skin.counts_per_newton;
+  for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
+    simulator.render(frame, raw, truth);
+    const ForceField solved = solve(raw.view());
+    for (std::size_t i = 0; i < solved.pillars(); ++i) {
+      if (!is_ambiguous_pair(solved.status[i])) continue;
+      const double x = solved.shear_x[i] - truth.shear_x[i];
+      const double y = solved.shear_y[i] - truth.shear_y[i];
+      const double normal = solved.normal[i] - truth.normal[i];
+      errors.squares += counts * counts * (x * x + y * y + normal * normal);
+      errors.pillars += 1;
+      const auto& deviation = solved.uncertainty[Uncertainty::normal];
+      if (!deviation.empty() && std::abs(normal) < 1.96 * deviation[i]) errors.held += 1;
+    }
+  }
+  return errors;
+}
+
+Errors paper_errors(const Scene& scene) {
+  const SolverPlan plan = plan_of(scene, Estimator::paper);
+  return errors_of(scene, [&](const FrameView& frame) { return solve_on_host(plan, frame); });
+}
+
+/// Frame after frame, with the memory of contacts.
+Errors contact_errors(const Scene& scene, const FrictionKnowledge& friction = {}) {
+  SolverPlan direct = plan_of(scene, Estimator::direct);
+  SolverPlan plan = plan_of(scene, Estimator::contact);
+  plan.friction = friction;
+  ContactEstimator estimator(plan);
+  return errors_of(scene, [&](const FrameView& frame) {
+    ForceField field = solve_on_host(direct, frame);
+    estimator.resolve(field);
+    return field;
+  });
+}
+
+struct Case {
+  const char* name;
+  Scene (*motion)(const Body&, double);
+  Body (*body)();
+  double friction;
+};
+
+constexpr Case kCases[] = {
+    {"fingertip dragged", dragged, fingertip, 1.2}, {"fingertip dragged", dragged, fingertip, 1.6},
+    {"fingertip dragged", dragged, fingertip, 2.2}, {"fingertip turned", turned, fingertip, 1.6},
+    {"fingertip turned", turned, fingertip, 2.2},   {"ball dragged", dragged, ball, 1.6},
+    {"ball dragged", dragged, ball, 2.2},           {"ball turned", turned, ball, 1.6},
+    {"punch dragged", dragged, punch, 1.6},         {"punch turned", turned, punch, 2.2},
+};
+
+/// The error relative to the paper's midpoint of each recording, and what the stated deviations
+/// hold of all of them.
+TEST(ContactEstimator, BeatsThePapersMidpointAndHoldsTheTruth) {
+  Errors all;
+  for (const Case& each : kCases) {
+    SCOPED_TRACE(std::string(each.name) + " at " + std::to_string(each.friction));
+    const Scene scene = each.motion(each.body(), each.friction);
+    const Errors paper = paper_errors(scene);
+    const Errors contact = contact_errors(scene);
+    ASSERT_GT(contact.pillars, 30);
+    EXPECT_LT(contact.rms(), 0.45 * paper.rms());
+    all.squares += contact.squares;
+    all.held += contact.held;
+    all.pillars += contact.pillars;
+  }
+  EXPECT_GT(all.coverage(), 0.93);
+  EXPECT_LT(all.rms(), 2);
+}
+
+TEST(ContactEstimator, AGivenFrictionHelpsAndALooseBoundDoesNotHarm) {
+  const Scene scene = dragged(ball(), 1.8);
+  const double alone = contact_errors(scene).rms();
+  FrictionKnowledge given;
+  given.given = 1.8;
+  EXPECT_LT(contact_errors(scene, given).rms(), 1.02 * alone);
+  for (const double bound : {2.5, 4.0, 8.0}) {
+    FrictionKnowledge bounded;
+    bounded.bound = bound;
+    EXPECT_LT(contact_errors(scene, bounded).rms(), 1.02 * alone) << bound;
+  }
+}
+
+TEST(ContactEstimator, RemembersWhatAContactShowed) {
+  const Scene scene = dragged(ball(), 1.6);
+  FrictionKnowledge unrelated;
+  unrelated.memory = false;
+  EXPECT_LT(contact_errors(scene).rms(), contact_errors(scene, unrelated).rms());
+}
+
+class OneFrame : public testing::Test {
+ protected:
+  OneFrame() : scene_(dragged(fingertip(), 1.8)), simulator_(scene_) {
+    FrameBuffer raw(simulator_.sensel_type(), scene_.skin.rows, scene_.skin.cols);
+    ForceField truth(26, 26);
+    simulator_.render(6, raw, truth);
+    direct_ = solve_on_host(plan_of(scene_, Estimator::direct), raw.view());
+    contact_ = solve_on_host(plan_of(scene_, Estimator::contact), raw.view());
+  }
+
+  Scene scene_;
+  Simulator simulator_;
+  ForceField direct_;
+  ForceField contact_;
+};
+
+TEST_F(OneFrame, ChangesNothingButAmbiguousPillars) {
+  int changed = 0;
+  for (std::size_t i = 0; i < direct_.pillars(); ++i) {
+    if (is_ambiguous_pair(direct_.status[i])) {
+      changed += contact_.normal[i] != direct_.normal[i];
+      continue;
+    }
+    EXPECT_EQ(contact_.normal[i], direct_.normal[i]);
+    EXPECT_EQ(contact_.shear_x[i], direct_.shear_x[i]);
+    EXPECT_EQ(contact_.shear_y[i], direct_.shear_y[i]);
+    EXPECT_EQ(contact_.status[i], direct_.status[i]);
+  }
+  EXPECT_GE(changed, 10);
+}
+
+/// The force stays on the segment: the readings of the usable sensels are explained.
+TEST_F(OneFrame, ExplainsTheReadings) {
+  for (std::size_t i = 0; i < direct_.pillars(); ++i) {
+    if (!is_ambiguous_pair(direct_.status[i])) continue;
+    const bool vertical = (direct_.status[i] & 15) == 3 || (direct_.status[i] & 15) == 12;
+    const auto& fixed = vertical ? &ForceField::shear_x : &ForceField::shear_y;
+    const auto& moving = vertical ? &ForceField::shear_y : &ForceField::shear_x;
+    EXPECT_EQ((contact_.*fixed)[i], (direct_.*fixed)[i]);
+    EXPECT_NEAR(std::abs((contact_.*moving)[i]) + std::sqrt(2.0) * contact_.normal[i],
+                std::abs((direct_.*moving)[i]) + std::sqrt(2.0) * direct_.normal[i], 1e-5);
+    EXPECT_GT(contact_.normal[i], 0);
+  }
+}
+
+TEST_F(OneFrame, HasTheSameBitsWithAnyNumberOfThreads) {
+  Scene scene = scene_;
+  scene.bodies.push_back(scene.bodies[0]);
+  for (auto& key : scene.bodies[1].path) key.y_mm += 11;
+  const Simulator simulator(scene);
+  FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
+  ForceField truth(26, 26);
+  std::vector<ContactEstimator> estimators;
+  for (const std::size_t threads : {1U, 2U, 5U}) {
+    estimators.emplace_back(plan_of(scene, Estimator::contact), threads);
+  }
+  for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
+    simulator.render(frame, raw, truth);
+    const ForceField direct = solve_on_host(plan_of(scene, Estimator::direct), raw.view());
+    std::vector<ForceField> solved;
+    for (ContactEstimator& estimator : estimators) {
+      solved.push_back(direct);
+      estimator.resolve(solved.back());
+    }
+    for (const ForceField& other : solved) {
+      EXPECT_EQ(other.normal, solved[0].normal);
+      EXPECT_EQ(other.shear_x, solved[0].shear_x);
+      EXPECT_EQ(other.status, solved[0].status);
+      for (std::size_t plane = 0; plane < kUncertaintyPlanes; ++plane) {
+        const auto which = static_cast<Uncertainty>(plane);
+        EXPECT_EQ(other.uncertainty[which], solved[0].uncertainty[which]);
+      }
+    }
+  }
+}
+
+/// Forces of any size: the same scene in other units.
+TEST_F(OneFrame, ScalesWithTheForces) {
+  ForceField scaled = direct_;
+  constexpr float kScale = 1024;
+  for (auto* plane : {&scaled.shear_x, &scaled.shear_y, &scaled.normal}) {
+    for (float& value : *plane) value *= kScale;
+  }
+  SolverPlan plan = plan_of(scene_, Estimator::contact);
+  plan.skin.counts_per_newton /= kScale;
+  ContactEstimator(plan).resolve(scaled);
+  for (std::size_t i = 0; i < scaled.pillars(); ++i) {
+    EXPECT_NEAR(scaled.normal[i], kScale * contact_.normal[i], 1e-3 * kScale * contact_.normal[i]);
+  }
+}
+
+TEST_F(OneFrame, StaysFiniteOnAnyPlanes) {
+  const float kStrange[] = {0,
+                            -1,
+                            1e-38F,
+                            1e30F,
+                            std::numeric_limits<float>::infinity(),
+                            std::numeric_limits<float>::quiet_NaN()};
+  ContactEstimator estimator(plan_of(scene_, Estimator::contact));
+  for (const float value : kStrange) {
+    ForceField broken = direct_;
+    for (std::size_t i = 0; i < broken.pillars(); i += 3) {
+      broken.normal[i] = value;
+      broken.shear_x[(i + 1) % broken.pillars()] = value;
+      broken.status[i] = static_cast<std::uint8_t>(i);
+    }
+    estimator.resolve(broken);
+    // And what follows is not spoilt.
+    ForceField next = direct_;
+    estimator.resolve(next);
+    for (const float normal : next.normal) EXPECT_TRUE(std::isfinite(normal));
+    for (const ContactFriction& each : estimator.friction()) {
+      EXPECT_TRUE(std::isfinite(each.median) && std::isfinite(each.spread));
+    }
+  }
+}
+
+/// One pillar alone: all that is known is the prior and that its readings need so much friction.
+TEST(ContactEstimator, OnePillarHasThePriorsForce) {
+  SolverPlan plan;
+  plan.skin.rows = plan.skin.cols = 10;
+  plan.skin.counts_per_newton = 1;
+  plan.skin.threshold_counts = 2;
+  plan.sensel_type = SenselType::f32;
+  plan.noise_counts = 0.5;
+  plan.estimator = Estimator::contact;
+  std::vector<float> readings(100, 0);
+  // It slips to the right at a friction of 1.8 with a normal force of 40 counts.
+  const auto reading = static_cast<float>(40 * (1 + 1.8 / std::sqrt(2.0)));
+  readings[4 * 10 + 5] = readings[5 * 10 + 5] = reading;
+  const ForceField field = solve_on_host(plan, {readings.data(), SenselType::f32, 10, 10, 10});
+  EXPECT_GT(field.normal[12], 0.75 * reading / 2);
+  EXPECT_LT(field.normal[12], 1.02 * reading / 2);
+}
+
+TEST(ContactEstimator, NothingIsAContactOnAnIdleSkin) {
+  SolverPlan plan;
+  plan.skin.rows = plan.skin.cols = 10;
+  ContactEstimator estimator(plan);
+  ForceField field(5, 5);
+  for (int frame = 0; frame < 3; ++frame) estimator.resolve(field);
+  EXPECT_EQ(estimator.contacts().contacts(), 0U);
+  EXPECT_TRUE(estimator.friction().empty());
+}
+
+}  // namespace
+}  // namespace pillarfield
