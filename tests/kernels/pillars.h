@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "pillarfield/solver_plan.h"
 #include "precisions.h"
 
 /// Pillars to test with: sensels in any state, solved, and random ones.
