@@ -51,6 +51,7 @@ struct Constants {
         full_scale(plan.skin.full_scale_counts.value_or(0)),
         doubt(region_doubt(plan)),
         noise(reading_noise(plan)),
+        segment_point(plan.segment_point),
         tare(plan.calibration.tare.data()),
         gain(plan.calibration.gain.data()),
         dead_zone(plan.calibration.dead_zone.data()),
@@ -62,6 +63,7 @@ struct Constants {
   double full_scale;
   double doubt;
   double noise;
+  double segment_point;
   maths::ForceScale scale{};
   const float* tare;
   const float* gain;
@@ -117,7 +119,7 @@ void solve_uncertainty(const Constants& is, const std::array<std::size_t, 4>& se
     return stages.calibration ? is.noise * is.gain[sensels[n]] : is.noise;
   };
   const maths::Force deviations = maths::force_deviations(
-      pillar, diagonals, {noise(0), noise(1), noise(2), noise(3)}, is.scale);
+      pillar, diagonals, sum, {noise(0), noise(1), noise(2), noise(3)}, is.segment_point, is.scale);
   const maths::DirectionInterval ends =
       maths::direction_interval(pillar, diagonals, sum, direction, is.scale);
   to.planes_from(kFirst, index, deviations.shear_x, deviations.shear_y, deviations.normal,
@@ -133,7 +135,7 @@ void solve_pillar(const Constants& is, const Reading* readings,
   };
   const maths::Pillar pillar = {sensel(0), sensel(1), sensel(2), sensel(3)};
   const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
-  const maths::ParitySum sum = maths::parity_sum(diagonals);
+  const maths::ParitySum sum = maths::parity_sum(diagonals, is.segment_point);
   const maths::Force force = stages.paper ? maths::paper_force(pillar, diagonals, sum, is.scale)
                                           : maths::direct_force(diagonals, sum, is.scale);
   to.planes_from(0, index, force.shear_x, force.shear_y, force.normal);

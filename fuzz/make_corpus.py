@@ -69,6 +69,7 @@ frames = 3
 seed = 7
 [solver]
 estimator = "field"
+segment_point = 0.5
 angles = true
 parity_tolerance_counts = 8
 [[contact]]

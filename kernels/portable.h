@@ -1,10 +1,11 @@
 /* The only file that knows the language, the precision and the number of lanes.
  *
- * It gives kernels/maths five types and four macros. The same text then compiles four ways:
+ * It gives kernels/maths six types and four macros. The same text then compiles four ways:
  *
  *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
  *   Real     float, or floatN of lanes  floatN         float                  double
  *   Counts   as Real                    shortN         float                  double
+ *   Fraction as Real                    short          float                  double
  *   Mask     int, or intN               shortN         bool                   bool
  *   Bits     char, or charN             charN          int                    int
  *   Word     uint, or uintN             uintN          std::uint32_t          none
@@ -14,6 +15,7 @@
  *   PF_BITS(x)    the integer x in every lane
  *   PF_WORD(x)    as well
  *   halved(c)    c / 2
+ *   fraction_of(c, f)  c times f, of a Fraction, where c is not negative
  *   real_of(c)    c as Real
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
@@ -23,7 +25,8 @@
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
- * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, and of
+ * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, a Fraction
+ * is the number n of 1 - 1 / 2^n, and of
  * maths only pillar_model.h, sensel.h, direct_solve.h and half.h are of use.
  *
  * kernels/field, which is of contacts and not of lanes, is written with these, and with float,
@@ -81,11 +84,17 @@ static inline Real real_of_word(Word word) { return PF_JOIN(as_float, PF_LANES)(
 
 #ifdef PF_WHOLE
 typedef PF_JOIN(short, PF_LANES) Counts;
+typedef short Fraction;
 static inline Counts halved(Counts counts) { return counts >> 1; }
+static inline Counts fraction_of(Counts counts, Fraction fraction) {
+  return counts - (counts >> (Counts)(fraction));
+}
 static inline Real real_of(Counts counts) { return PF_JOIN(convert_float, PF_LANES)(counts); }
 #else
 typedef Real Counts;
+typedef Real Fraction;
 static inline Counts halved(Counts counts) { return 0.5f * counts; }
+static inline Counts fraction_of(Counts counts, Fraction fraction) { return fraction * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 #endif
 /* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
@@ -147,11 +156,13 @@ static inline Word word_of(Real value) { return std::bit_cast<Word>(value); }
 static inline Real real_of_word(Word word) { return std::bit_cast<Real>(word); }
 #endif
 using Counts = Real;
+using Fraction = Real;
 using Mask = bool;
 using Bits = int;
 #define PF_COUNTS(x) (static_cast<Counts>(x))
 #define PF_BITS(x) (x)
 static inline Counts halved(Counts counts) { return PF_REAL(0.5) * counts; }
+static inline Counts fraction_of(Counts counts, Fraction fraction) { return fraction * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }

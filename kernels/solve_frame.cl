@@ -15,6 +15,8 @@
  *   PF_POWER_EXPONENT               stage: readings are straightened by a power law, with
  *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
+ *   PF_SEGMENT_POINT                where on a segment the force is reported, in (0, 1]; with
+ *                                   PF_WHOLE the number n of 1 - 1 / 2^n
  *   PF_DOUBT                        counts by which noise may shift what parity says
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
  *   PF_ANGLES                       stage: magnitude, theta and phi are written too
@@ -112,7 +114,7 @@ PF_INLINE Noise noise_of(Block block, Input input) {
 /* From corrected sensels to the results. */
 PF_INLINE Solution solve_pillars(Pillar pillar, Block block, Input input) {
   const Diagonals diagonals = pillar_diagonals(pillar);
-  const ParitySum sum = parity_sum(diagonals);
+  const ParitySum sum = parity_sum(diagonals, (Fraction)(PF_SEGMENT_POINT));
   Solution solution;
   solution.force = estimate(pillar, diagonals, sum);
   solution.status = status_of(pillar, diagonals, sum);
@@ -121,7 +123,8 @@ PF_INLINE Solution solve_pillars(Pillar pillar, Block block, Input input) {
 #endif
 #ifdef PF_UNCERTAINTY
   const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
-  solution.deviations = force_deviations(pillar, diagonals, noise_of(block, input), scale);
+  solution.deviations = force_deviations(pillar, diagonals, sum, noise_of(block, input),
+                                         (Real)(PF_SEGMENT_POINT), scale);
   solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale);
 #endif
   return solution;

@@ -52,7 +52,7 @@ of three unknowns have one solution, and both estimators find it.
 
 In the grey strips two things happen. A sensel that is usable by luck reads too much, and one that is silent tells a little that
 the solve does not use: a hump at the border of regions 1 and 2. And next to region 3 a third reading that noise hides makes
-the force ambiguous, so that its estimate jumps to the middle of a segment (dashed). At the strip's edge that is one force in 740, yet it
+the force ambiguous, so that its estimate jumps to the segment point (dashed). At the strip's edge that is one force in 740, yet it
 adds {misread:.0f} % to the error at φ = 22.5°; at five standard deviations it is nothing (B6).
 )";
 

@@ -117,9 +117,9 @@ three standard deviations of noise allowed. Errors are RMS: paper / direct befor
 Once z is known, no felt force is given a wrong region without a warning, and the ends hold the truth. Where three or
 four sensels are usable, what is left of the force's error is noise: {gain:.0f} times less at F k = 10 z. Elsewhere the
 force is ambiguous, known or not. Over all directions the floor is region 3, a third of the hemisphere (as are regions 1
-and 2), where two readings leave one number open. There the paper's choice, half way in θ, has the smaller RMS under
-large forces ({paper:.3f} of F against {direct:.3f}): the middle of the segment of forces is chosen to halve the worst case, and costs
-that much on average.
+and 2), where two readings leave one number open. There the paper's choice, half way in θ, and the segment point have
+RMS errors of {paper:.3f} and {direct:.3f} of F under large forces from all directions alike; but directions near the skin take a friction
+that hardly any contact has, and the segment point is chosen for frictions of 1.2 to 3.
 )";
 
 }  // namespace

@@ -184,7 +184,7 @@ usable, as in the paper. Each of regions 1, 2 and 3 takes a third of the hemisph
 ![Contours of equal ratio in region 3.12](pictures/accuracy/figure_4_contours.png)
 
 **Figure 4.** Equation (5) over region 3.12: what two readings of a given ratio leave open. The white dot is the paper's choice at R = 2,
-half way in θ; the diamond is ours, the middle of the segment of forces.
+half way in θ; the diamond is ours, 7/8 of the largest normal force.
 
 ![Half-widths against the ratio of readings](pictures/accuracy/figure_5_uncertainty.png)
 

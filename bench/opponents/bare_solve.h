@@ -15,7 +15,8 @@ struct BareSolve {
   float normal_scale = 0;  ///< N per count
 };
 
-/// Throws Error where the plan asks for more than that: another type, estimator, stage or result.
+/// Throws Error where the plan asks for more than that: another type, estimator, stage, result or
+/// segment point.
 BareSolve bare_solve(const SolverPlan& plan);
 
 /// Where results go: planes [pillar rows, pillar cols].

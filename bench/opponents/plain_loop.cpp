@@ -23,7 +23,7 @@ void solve_rows_plainly(const BareSolve& solve, const FrameView& frame, std::uin
       const maths::Pillar pillar = {sensel(top[2 * col + 1]), sensel(top[2 * col]),
                                     sensel(bottom[2 * col]), sensel(bottom[2 * col + 1])};
       const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
-      const maths::ParitySum sum = maths::parity_sum(diagonals);
+      const maths::ParitySum sum = maths::parity_sum(diagonals, static_cast<float>(kSegmentPoint));
       const maths::Force force = maths::direct_force(diagonals, sum, scale);
       const std::size_t index = row * cols + col;
       to.shear_x[index] = force.shear_x;

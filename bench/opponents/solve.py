@@ -15,6 +15,7 @@ import time
 import numpy as np
 
 HALF = np.float32(0.5)
+SEGMENT_POINT = np.float32(0.875)
 
 
 def difference(p, q, p_usable, q_usable, parity_sum):
@@ -43,7 +44,9 @@ def solve(frame, threshold, counts_per_newton):
     high = np.where(rising_full, np.where(falling_full, HALF * (rising + falling), rising),
                     np.where(falling_full, falling,
                              np.where(any_usable, np.minimum(rising, falling), np.float32(0))))
-    parity_sum = np.where(determined, high, HALF * high)
+    on_segment = (u1 | u3) & (u2 | u4)
+    part = np.where(on_segment, SEGMENT_POINT, HALF)
+    parity_sum = np.where(determined, high, part * high)
     along_rising = difference(v1, v3, u1, u3, parity_sum)
     along_falling = difference(v2, v4, u2, u4, parity_sum)
 

@@ -7,14 +7,14 @@
 #include <cstring>
 
 #include "bench/opponents/ask_ahead.h"
-#include "bench/opponents/half_counts.h"
+#include "bench/opponents/eighth_counts.h"
 
 #define PF_AVX2 __attribute__((target("avx2"))) inline
 
 namespace pillarfield::bench {
 namespace {
 
-/// Forces in half counts and status bytes, all as int16, of 16 pillars.
+/// Forces in eighths of a count and status bytes, all as int16, of 16 pillars.
 struct Solved {
   __m256i shear_x;
   __m256i shear_y;
@@ -31,11 +31,11 @@ PF_AVX2 __m256i bit_where(__m256i mask, short bit) {
   return _mm256_and_si256(mask, _mm256_set1_epi16(bit));
 }
 
-/// 2 (V_p - V_q) of a diagonal, in half counts, when the doubled parity sum is `sum`.
+/// V_p - V_q of a diagonal of parity sum `sum`, both in eighths of a count.
 PF_AVX2 __m256i difference(__m256i p, __m256i q, __m256i p_usable, __m256i q_usable, __m256i sum) {
-  const __m256i by_p = _mm256_sub_epi16(_mm256_slli_epi16(p, 2), sum);
-  const __m256i by_q = _mm256_sub_epi16(sum, _mm256_slli_epi16(q, 2));
-  const __m256i both = _mm256_slli_epi16(_mm256_sub_epi16(p, q), 1);
+  const __m256i by_p = _mm256_sub_epi16(_mm256_slli_epi16(p, 4), sum);
+  const __m256i by_q = _mm256_sub_epi16(sum, _mm256_slli_epi16(q, 4));
+  const __m256i both = _mm256_slli_epi16(_mm256_sub_epi16(p, q), 3);
   const __m256i without_p = _mm256_and_si256(q_usable, by_q);
   const __m256i with_p = choose(q_usable, both, by_p);
   return choose(p_usable, with_p, without_p);
@@ -43,14 +43,14 @@ PF_AVX2 __m256i difference(__m256i p, __m256i q, __m256i p_usable, __m256i q_usa
 
 /// Whether a full diagonal of parity sum `sum` leaves more than -doubt for the silent one of p, q.
 PF_AVX2 __m256i may_press(__m256i one_usable, __m256i p, __m256i q, __m256i sum,
-                          const HalfCounts& solve) {
+                          const EighthCounts& solve) {
   // The usable one of the two is the larger: it is above the threshold, at which the other stands.
   const __m256i left = _mm256_sub_epi16(sum, _mm256_max_epi16(p, q));
   return _mm256_and_si256(one_usable, _mm256_cmpgt_epi16(left, _mm256_set1_epi16(solve.doubt)));
 }
 
 /// `top` and `bottom` are 32 readings each.
-PF_AVX2 Solved solve_16(__m256i top, __m256i bottom, const HalfCounts& solve) {
+PF_AVX2 Solved solve_16(__m256i top, __m256i bottom, const EighthCounts& solve) {
   const __m256i low_bytes = _mm256_set1_epi16(0xFF);
   const __m256i threshold = _mm256_set1_epi16(solve.threshold);
   const __m256i r1 = _mm256_srli_epi16(top, 8);
@@ -73,13 +73,17 @@ PF_AVX2 Solved solve_16(__m256i top, __m256i bottom, const HalfCounts& solve) {
   const __m256i rising_any = _mm256_or_si256(u1, u3);
   const __m256i falling_any = _mm256_or_si256(u2, u4);
   const __m256i any = _mm256_or_si256(rising_any, falling_any);
-  // An undetermined sum is half of its bound; this is twice that.
+  // An undetermined sum is 7/8 of its bound on a segment, else half of it.
   const __m256i bound = _mm256_and_si256(any, _mm256_min_epi16(rising, falling));
+  const __m256i on_segment = _mm256_and_si256(rising_any, falling_any);
+  const __m256i point = choose(on_segment, _mm256_sub_epi16(_mm256_slli_epi16(bound, 3), bound),
+                               _mm256_slli_epi16(bound, 2));
   // What a full diagonal says, or the bound; the other diagonal's word where only that is full.
   const __m256i by_rising = choose(rising_full, rising, falling);
   const __m256i by_falling = choose(falling_full, falling, rising);
   const __m256i determined = _mm256_or_si256(rising_full, falling_full);
-  const __m256i sum = choose(determined, _mm256_add_epi16(by_rising, by_falling), bound);
+  const __m256i both = _mm256_slli_epi16(_mm256_add_epi16(by_rising, by_falling), 2);
+  const __m256i sum = choose(determined, both, point);
 
   const __m256i along_rising = difference(v1, v3, u1, u3, sum);
   const __m256i along_falling = difference(v2, v4, u2, u4, sum);
@@ -107,16 +111,16 @@ PF_AVX2 Solved solve_16(__m256i top, __m256i bottom, const HalfCounts& solve) {
 }
 
 /// 8 of 16 forces.
-PF_AVX2 __m256 newtons(__m128i half_counts, float scale) {
-  const __m256i wide = _mm256_cvtepi16_epi32(half_counts);
+PF_AVX2 __m256 newtons(__m128i eighths, float scale) {
+  const __m256i wide = _mm256_cvtepi16_epi32(eighths);
   return _mm256_mul_ps(_mm256_cvtepi32_ps(wide), _mm256_set1_ps(scale));
 }
 
 /// 16 forces of a plane.
 template <bool streaming>
-PF_AVX2 void store_plane(float* plane, __m256i half_counts, float scale) {
-  const __m256 low = newtons(_mm256_castsi256_si128(half_counts), scale);
-  const __m256 high = newtons(_mm256_extracti128_si256(half_counts, 1), scale);
+PF_AVX2 void store_plane(float* plane, __m256i eighths, float scale) {
+  const __m256 low = newtons(_mm256_castsi256_si128(eighths), scale);
+  const __m256 high = newtons(_mm256_extracti128_si256(eighths, 1), scale);
   if (streaming) {
     _mm256_stream_ps(plane, low);
     _mm256_stream_ps(plane + 8, high);
@@ -127,7 +131,7 @@ PF_AVX2 void store_plane(float* plane, __m256i half_counts, float scale) {
 }
 
 template <bool streaming>
-PF_AVX2 void store_forces(const ForcePlanes& to, const Solved& solved, const HalfCounts& solve) {
+PF_AVX2 void store_forces(const ForcePlanes& to, const Solved& solved, const EighthCounts& solve) {
   store_plane<streaming>(to.shear_x, solved.shear_x, solve.shear_scale);
   store_plane<streaming>(to.shear_y, solved.shear_y, solve.shear_scale);
   store_plane<streaming>(to.normal, solved.normal, solve.normal_scale);
@@ -139,8 +143,8 @@ PF_AVX2 __m256i load(const std::uint8_t* readings) {
 
 /// 32 pillars.
 template <bool streaming>
-PF_AVX2 void solve_32(const std::uint8_t* top, const std::uint8_t* bottom, const HalfCounts& solve,
-                      const ForcePlanes& to) {
+PF_AVX2 void solve_32(const std::uint8_t* top, const std::uint8_t* bottom,
+                      const EighthCounts& solve, const ForcePlanes& to) {
   const Solved low = solve_16(load(top), load(bottom), solve);
   store_forces<streaming>(to, low, solve);
   const Solved high = solve_16(load(top + 32), load(bottom + 32), solve);
@@ -164,7 +168,7 @@ struct Row {
 };
 
 /// `count` pillars, at most 32, by way of memory in which there is room for all.
-PF_AVX2 void solve_some(const Row& row, std::size_t count, const HalfCounts& solve) {
+PF_AVX2 void solve_some(const Row& row, std::size_t count, const EighthCounts& solve) {
   std::array<std::uint8_t, 64> top{};
   std::array<std::uint8_t, 64> bottom{};
   std::array<std::array<float, 32>, 3> forces{};
@@ -187,7 +191,7 @@ PF_AVX2 Row from(const Row& row, std::size_t col) {
 /// `head` pillars lie before the first whole half line of the row.
 template <bool streaming>
 PF_AVX2 void solve_row(const Row& row, std::uint32_t head, std::uint32_t cols,
-                       const HalfCounts& solve) {
+                       const EighthCounts& solve) {
   std::uint32_t col = head < cols ? head : cols;
   solve_some(row, col, solve);
   for (; col + 32 <= cols; col += 32) {
@@ -202,7 +206,7 @@ template <bool streaming>
 __attribute__((target("avx2"))) void solve_rows(const BareSolve& solve, const FrameView& frame,
                                                 std::uint32_t first, std::uint32_t last,
                                                 const ForcePlanes& to) {
-  const HalfCounts constants(solve);
+  const EighthCounts constants(solve);
   const auto* const readings = static_cast<const std::uint8_t*>(frame.data);
   const std::uint32_t cols = frame.cols / 2;
   for (std::size_t row = first; row < last; ++row) {

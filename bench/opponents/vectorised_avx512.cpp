@@ -4,14 +4,14 @@
 #include <immintrin.h>
 
 #include "bench/opponents/ask_ahead.h"
-#include "bench/opponents/half_counts.h"
+#include "bench/opponents/eighth_counts.h"
 
 #define PF_AVX512 __attribute__((target("avx512f,avx512bw,avx512vl"))) inline
 
 namespace pillarfield::bench {
 namespace {
 
-/// Forces in half counts and status bytes of 32 pillars.
+/// Forces in eighths of a count and status bytes of 32 pillars.
 struct Solved {
   __m512i shear_x;  ///< int16
   __m512i shear_y;
@@ -24,12 +24,12 @@ PF_AVX512 __m256i bit_where(__mmask32 where, char bit) {
   return _mm256_maskz_set1_epi8(where, bit);
 }
 
-/// 2 (V_p - V_q) of a diagonal, in half counts, when the doubled parity sum is `sum`.
+/// V_p - V_q of a diagonal of parity sum `sum`, both in eighths of a count.
 PF_AVX512 __m512i difference(__m512i p, __m512i q, __mmask32 p_usable, __mmask32 q_usable,
                              __m512i sum) {
-  const __m512i by_p = _mm512_sub_epi16(_mm512_slli_epi16(p, 2), sum);
-  const __m512i by_q = _mm512_sub_epi16(sum, _mm512_slli_epi16(q, 2));
-  const __m512i both = _mm512_slli_epi16(_mm512_sub_epi16(p, q), 1);
+  const __m512i by_p = _mm512_sub_epi16(_mm512_slli_epi16(p, 4), sum);
+  const __m512i by_q = _mm512_sub_epi16(sum, _mm512_slli_epi16(q, 4));
+  const __m512i both = _mm512_slli_epi16(_mm512_sub_epi16(p, q), 3);
   const __m512i by_one =
       _mm512_mask_mov_epi16(_mm512_maskz_mov_epi16(p_usable, by_p), ~p_usable & q_usable, by_q);
   return _mm512_mask_mov_epi16(by_one, p_usable & q_usable, both);
@@ -37,14 +37,14 @@ PF_AVX512 __m512i difference(__m512i p, __m512i q, __mmask32 p_usable, __mmask32
 
 /// Whether a full diagonal of parity sum `sum` leaves more than -doubt for the silent one of p, q.
 PF_AVX512 __mmask32 may_press(__mmask32 one_usable, __m512i p, __m512i q, __m512i sum,
-                              const HalfCounts& solve) {
+                              const EighthCounts& solve) {
   // The usable one of the two is the larger: it is above the threshold, at which the other stands.
   const __m512i left = _mm512_sub_epi16(sum, _mm512_max_epi16(p, q));
   return _mm512_mask_cmpgt_epi16_mask(one_usable, left, _mm512_set1_epi16(solve.doubt));
 }
 
 /// `top` and `bottom` are 64 readings each.
-PF_AVX512 Solved solve_32(__m512i top, __m512i bottom, const HalfCounts& solve) {
+PF_AVX512 Solved solve_32(__m512i top, __m512i bottom, const EighthCounts& solve) {
   const __m512i low_bytes = _mm512_set1_epi16(0xFF);
   const __m512i threshold = _mm512_set1_epi16(solve.threshold);
   const __m512i r1 = _mm512_srli_epi16(top, 8);
@@ -65,11 +65,15 @@ PF_AVX512 Solved solve_32(__m512i top, __m512i bottom, const HalfCounts& solve) 
   const __mmask32 rising_full = u1 & u3;
   const __mmask32 falling_full = u2 & u4;
   const __mmask32 any = u1 | u2 | u3 | u4;
-  // An undetermined sum is half of its bound; this is twice that.
+  // An undetermined sum is 7/8 of its bound on a segment, else half of it.
   const __m512i bound = _mm512_maskz_min_epi16(any, rising, falling);
-  __m512i sum = _mm512_mask_slli_epi16(bound, rising_full, rising, 1);
-  sum = _mm512_mask_slli_epi16(sum, falling_full, falling, 1);
-  sum = _mm512_mask_add_epi16(sum, rising_full & falling_full, rising, falling);
+  const __mmask32 on_segment = (u1 | u3) & (u2 | u4);
+  __m512i sum = _mm512_slli_epi16(bound, 2);
+  sum = _mm512_mask_sub_epi16(sum, on_segment, _mm512_slli_epi16(bound, 3), bound);
+  sum = _mm512_mask_slli_epi16(sum, rising_full, rising, 3);
+  sum = _mm512_mask_slli_epi16(sum, falling_full, falling, 3);
+  const __m512i mean = _mm512_slli_epi16(_mm512_add_epi16(rising, falling), 2);
+  sum = _mm512_mask_mov_epi16(sum, rising_full & falling_full, mean);
 
   const __m512i along_rising = difference(v1, v3, u1, u3, sum);
   const __m512i along_falling = difference(v2, v4, u2, u4, sum);
@@ -92,41 +96,41 @@ PF_AVX512 Solved solve_32(__m512i top, __m512i bottom, const HalfCounts& solve) 
   return solved;
 }
 
-PF_AVX512 __m512 newtons_low(__m512i half_counts, __m512 scale) {
-  const __m512i wide = _mm512_cvtepi16_epi32(_mm512_castsi512_si256(half_counts));
+PF_AVX512 __m512 newtons_low(__m512i eighths, __m512 scale) {
+  const __m512i wide = _mm512_cvtepi16_epi32(_mm512_castsi512_si256(eighths));
   return _mm512_mul_ps(_mm512_cvtepi32_ps(wide), scale);
 }
 
-PF_AVX512 __m512 newtons_high(__m512i half_counts, __m512 scale) {
-  const __m512i wide = _mm512_cvtepi16_epi32(_mm512_extracti64x4_epi64(half_counts, 1));
+PF_AVX512 __m512 newtons_high(__m512i eighths, __m512 scale) {
+  const __m512i wide = _mm512_cvtepi16_epi32(_mm512_extracti64x4_epi64(eighths, 1));
   return _mm512_mul_ps(_mm512_cvtepi32_ps(wide), scale);
 }
 
 /// 32 forces of a plane.
 template <bool streaming>
-PF_AVX512 void store_all(float* plane, __m512i half_counts, float newtons) {
+PF_AVX512 void store_all(float* plane, __m512i eighths, float newtons) {
   const __m512 scale = _mm512_set1_ps(newtons);
   if (streaming) {
-    _mm512_stream_ps(plane, newtons_low(half_counts, scale));
-    _mm512_stream_ps(plane + 16, newtons_high(half_counts, scale));
+    _mm512_stream_ps(plane, newtons_low(eighths, scale));
+    _mm512_stream_ps(plane + 16, newtons_high(eighths, scale));
   } else {
-    _mm512_storeu_ps(plane, newtons_low(half_counts, scale));
-    _mm512_storeu_ps(plane + 16, newtons_high(half_counts, scale));
+    _mm512_storeu_ps(plane, newtons_low(eighths, scale));
+    _mm512_storeu_ps(plane + 16, newtons_high(eighths, scale));
   }
 }
 
 /// Those of them that `which` names.
-PF_AVX512 void store_some(float* plane, __m512i half_counts, float newtons, __mmask32 which) {
+PF_AVX512 void store_some(float* plane, __m512i eighths, float newtons, __mmask32 which) {
   const __m512 scale = _mm512_set1_ps(newtons);
-  _mm512_mask_storeu_ps(plane, static_cast<__mmask16>(which), newtons_low(half_counts, scale));
+  _mm512_mask_storeu_ps(plane, static_cast<__mmask16>(which), newtons_low(eighths, scale));
   _mm512_mask_storeu_ps(plane + 16, static_cast<__mmask16>(which >> 16),
-                        newtons_high(half_counts, scale));
+                        newtons_high(eighths, scale));
 }
 
 /// 64 pillars: whole cache lines of every plane where `to` is at the beginning of one.
 template <bool streaming>
 PF_AVX512 void solve_64(const std::uint8_t* top, const std::uint8_t* bottom,
-                        const HalfCounts& solve, const ForcePlanes& to) {
+                        const EighthCounts& solve, const ForcePlanes& to) {
   const Solved low = solve_32(_mm512_loadu_si512(top), _mm512_loadu_si512(bottom), solve);
   store_all<streaming>(to.shear_x, low.shear_x, solve.shear_scale);
   store_all<streaming>(to.shear_y, low.shear_y, solve.shear_scale);
@@ -146,7 +150,7 @@ PF_AVX512 void solve_64(const std::uint8_t* top, const std::uint8_t* bottom,
 
 /// `count` pillars, below 33.
 PF_AVX512 void solve_some(const std::uint8_t* top, const std::uint8_t* bottom, std::uint32_t count,
-                          const HalfCounts& solve, const ForcePlanes& to) {
+                          const EighthCounts& solve, const ForcePlanes& to) {
   const auto which = static_cast<__mmask32>((std::uint64_t{1} << count) - 1);
   const __mmask64 sensels = count == 32 ? ~__mmask64{0} : (__mmask64{1} << 2 * count) - 1;
   const Solved solved = solve_32(_mm512_maskz_loadu_epi8(sensels, top),
@@ -171,7 +175,7 @@ PF_AVX512 Row from(const Row& row, std::size_t col) {
 
 /// The pillars from `col` to before `end`, whichever lines they lie in.
 PF_AVX512 void solve_range(const Row& row, std::uint32_t col, std::uint32_t end,
-                           const HalfCounts& solve) {
+                           const EighthCounts& solve) {
   while (col < end) {
     const std::uint32_t count = end - col < 32 ? end - col : 32;
     const Row rest = from(row, col);
@@ -183,7 +187,7 @@ PF_AVX512 void solve_range(const Row& row, std::uint32_t col, std::uint32_t end,
 /// `head` pillars lie before the first whole line of the row.
 template <bool streaming>
 PF_AVX512 void solve_row(const Row& row, std::uint32_t head, std::uint32_t cols,
-                         const HalfCounts& solve) {
+                         const EighthCounts& solve) {
   std::uint32_t col = head < cols ? head : cols;
   solve_range(row, 0, col, solve);
   for (; col + 64 <= cols; col += 64) {
@@ -200,7 +204,7 @@ __attribute__((target("avx512f,avx512bw,avx512vl"))) void solve_rows(const BareS
                                                                      std::uint32_t first,
                                                                      std::uint32_t last,
                                                                      const ForcePlanes& to) {
-  const HalfCounts constants(solve);
+  const EighthCounts constants(solve);
   const auto* const readings = static_cast<const std::uint8_t*>(frame.data);
   const std::uint32_t cols = frame.cols / 2;
   for (std::size_t row = first; row < last; ++row) {

@@ -109,18 +109,20 @@ Json facts_of_frames(const std::string& file) {
 Json facts_of_forces(const std::string& file) {
   const ForceFileReader reader(file, kProbed);
   const ForceFileInfo& info = reader.info();
-  return {{"format", "force field"},
-          {"frames", reader.frames()},
-          {"pillar_rows", info.rows},
-          {"pillar_cols", info.cols},
-          {"pillar_pitch_mm", info.pillar_pitch_mm},
-          {"estimator", info.estimator},
-          {"device", info.device},
-          {"source", info.source},
-          {"angles", info.angles},
-          {"uncertainty", info.uncertainty},
-          {"contacts", info.contacts.has_value()},
-          {"remarks", reader.remarks()}};
+  Json facts = {{"format", "force field"},
+                {"frames", reader.frames()},
+                {"pillar_rows", info.rows},
+                {"pillar_cols", info.cols},
+                {"pillar_pitch_mm", info.pillar_pitch_mm},
+                {"estimator", info.estimator},
+                {"device", info.device},
+                {"source", info.source},
+                {"angles", info.angles},
+                {"uncertainty", info.uncertainty},
+                {"contacts", info.contacts.has_value()},
+                {"remarks", reader.remarks()}};
+  if (info.segment_point) facts["segment_point"] = *info.segment_point;
+  return facts;
 }
 
 Json facts_of_step(const CalibrationStep& step) {

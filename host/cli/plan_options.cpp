@@ -139,6 +139,16 @@ void apply_evidence(const PlanOptions& options, const std::string& source, Solve
   if (options.sweeps) plan.field.sweeps = *options.sweeps;
 }
 
+/// Applies the point of the segment; the paper's equations have one of their own.
+void apply_segment_point(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
+  if (!options.segment_point) return;
+  if (plan.estimator == Estimator::paper) {
+    throw Error(source, "--segment-point is of no use to the paper's estimator",
+                "leave it out, or take --estimator direct or field");
+  }
+  plan.segment_point = *options.segment_point;
+}
+
 }  // namespace
 
 void add_plan_options(CLI::App& command, PlanOptions& options) {
@@ -155,6 +165,12 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
        {"contact", Estimator::contact}},
       "How forces are estimated: direct; the paper's equations; contact, which estimates ambiguous "
       "pillars by the friction of their contact; or field, by its shape [direct]");
+  command
+      .add_option("--segment-point", options.segment_point,
+                  "Where the force of a pillar with two adjacent usable sensels is put, as a "
+                  "fraction of the largest normal force that its readings allow; 0.5: the middle, "
+                  "whose largest error is the least [0.875]")
+      ->check(number_range(1e-6, 1).description("FRACTION"));
   add_evidence_options(command, options);
   command
       .add_option("--outputs", options.outputs,
@@ -194,6 +210,7 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
   apply_numbers(options, plan);
   if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
   if (options.estimator) plan.estimator = *options.estimator;
+  apply_segment_point(options, source, plan);
   apply_evidence(options, source, plan);
   if (!options.outputs.empty()) {
     plan.angles = asks_for(options, "angles");

@@ -17,6 +17,7 @@ struct PlanOptions {
   std::string scene;
   std::string calibration;
   std::optional<Estimator> estimator;
+  std::optional<double> segment_point;
   std::optional<double> friction;
   std::optional<double> friction_bound;
   std::vector<double> friction_prior;  ///< empty, or median and spread

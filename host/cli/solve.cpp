@@ -69,6 +69,7 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.cols = plan.skin.pillar_cols();
   info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
   info.estimator = name_of(plan.estimator);
+  if (plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
   info.device = device.info().name;
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;

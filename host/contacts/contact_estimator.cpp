@@ -60,14 +60,6 @@ double ratio_at(const maths::Segment& segment, double normal) {
   return std::sqrt(fixed * fixed + moving * moving) / normal;
 }
 
-/// The normal force that a pillar has or may have at most, N.
-double most_normal(const maths::Field& field, std::uint32_t index) {
-  const std::uint8_t status = field.status[index];
-  const double normal = field.normal[index];
-  if (maths::is_determined(status)) return std::max(normal, 0.0);
-  return maths::is_open(status) ? 2 * normal : 0;
-}
-
 }  // namespace
 
 ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
@@ -78,6 +70,7 @@ ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
       remember_(plan.friction.memory),
       pitch_mm_(plan.skin.pillar_pitch_mm()),
       noise_n_(noise_of(plan)),
+      segment_point_(static_cast<float>(plan.segment_point)),
       rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
       workspaces_(threads),
@@ -162,6 +155,20 @@ void ContactEstimator::learn(const maths::Field& field, std::uint32_t number, Wo
   friction_[number] = {belief.quantile(0.5), belief.spread()};
 }
 
+maths::Segment ContactEstimator::segment_of(const maths::Field& field, std::uint32_t index) const {
+  return maths::segment_of(maths::force_of_field(field, index),
+                           maths::moves_vertically(maths::Bits{field.status[index]}),
+                           segment_point_);
+}
+
+/// The normal force that a pillar has or may have at most, N.
+double ContactEstimator::most_normal(const maths::Field& field, std::uint32_t index) const {
+  const std::uint8_t status = field.status[index];
+  const double normal = field.normal[index];
+  if (maths::is_determined(status)) return std::max(normal, 0.0);
+  return maths::is_open(status) ? normal / segment_point_ : 0;
+}
+
 /// Of a ratio of shear to a normal force, relative.
 double ContactEstimator::deviation_of_ratio(double normal) const {
   const double noise = parameters_.noise_of_ratio * noise_n_ / normal;
@@ -202,11 +209,10 @@ void ContactEstimator::gather(const maths::Field& field, Contact& contact,
       if (maths::is_open(status)) {
         contact.any_ambiguous = true;
         work.ambiguous.push_back(index);
-        const double high = 2 * normal;
+        const maths::Segment segment = segment_of(field, index);
+        const double high = segment.high;
         peak = std::max(peak, high);
         if (!(high > least)) continue;
-        const maths::Segment segment = maths::segment_of(
-            maths::force_of_field(field, index), maths::moves_vertically(maths::Bits{status}));
         work.bounds.push_back(
             {ratio_at(segment, high),
              std::hypot(parameters_.noise_of_ratio * noise_n_ / high, parameters_.ratio_deviation),
@@ -299,9 +305,7 @@ void ContactEstimator::predict(const maths::Field& field, const Contact& contact
   const std::size_t step = (work.ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
   for (std::size_t i = 0; i < work.ambiguous.size(); i += step) {
     const std::uint32_t index = work.ambiguous[i];
-    const maths::Segment segment =
-        maths::segment_of(maths::force_of_field(field, index),
-                          maths::moves_vertically(maths::Bits{field.status[index]}));
+    const maths::Segment segment = segment_of(field, index);
     const PressureRegression::Prediction square =
         contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,
                              (index / cols_ - contact.centre_row) / contact.scale);
@@ -383,9 +387,7 @@ void ContactEstimator::estimate(const maths::Field& field, std::uint32_t number)
   const auto add = [&](std::uint32_t index) {
     if (!maths::is_open(field.status[index])) return;
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormal)) return;
-    const maths::Segment segment =
-        maths::segment_of(maths::force_of_field(field, index),
-                          maths::moves_vertically(maths::Bits{field.status[index]}));
+    const maths::Segment segment = segment_of(field, index);
     batch.index[batch.pillars] = index;
     batch.segments[batch.pillars] = segment;
     batch.fixed[batch.pillars] = segment.fixed;

@@ -76,6 +76,9 @@ class ContactEstimator {
   void add_edges(const single_precision::Field& field, const Contact& contact,
                  std::span<const ContactRun> runs, double weight, double peak_n,
                  Workspace& work) const;
+  [[nodiscard]] single_precision::Segment segment_of(const single_precision::Field& field,
+                                                     std::uint32_t index) const;
+  [[nodiscard]] double most_normal(const single_precision::Field& field, std::uint32_t index) const;
   [[nodiscard]] double deviation_of_ratio(double normal) const;
   void predict(const single_precision::Field& field, const Contact& contact, Workspace& work) const;
   void estimate(const single_precision::Field& field, std::uint32_t number) const;
@@ -87,7 +90,8 @@ class ContactEstimator {
   FrictionBelief prior_;
   bool remember_;
   double pitch_mm_;
-  double noise_n_;  ///< of a reading
+  double noise_n_;       ///< of a reading
+  float segment_point_;  ///< where the direct solve has put ambiguous forces
   std::uint32_t rows_;
   std::uint32_t cols_;
   ContactMap map_;

@@ -31,6 +31,7 @@ maths::FieldSettings settings_of(const SolverPlan& plan) {
   settings.shape = plan.field.shape ? 1U : 0U;
   settings.slip = plan.field.slip ? 1U : 0U;
   settings.sweeps = static_cast<std::uint32_t>(plan.field.sweeps);
+  settings.segment_point = static_cast<float>(plan.segment_point);
   return settings;
 }
 

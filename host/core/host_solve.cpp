@@ -20,7 +20,8 @@ class PillarSolver {
       : plan_(plan),
         sensel_(plan, frame),
         field_(field),
-        doubt_(static_cast<float>(region_doubt(plan))) {
+        doubt_(static_cast<float>(region_doubt(plan))),
+        segment_point_(static_cast<float>(plan.segment_point)) {
     const ForceScale scale = force_scale(plan.skin.counts_per_newton);
     scale_ = {static_cast<float>(scale.shear), static_cast<float>(scale.normal)};
     if (!plan.uncertainty) return;
@@ -30,7 +31,7 @@ class PillarSolver {
   void solve(std::size_t row, std::size_t col) {
     const maths::Pillar pillar = sensel_.pillar(row, col);
     const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
-    const maths::ParitySum sum = maths::parity_sum(diagonals);
+    const maths::ParitySum sum = maths::parity_sum(diagonals, segment_point_);
     const std::size_t index = row * field_.cols + col;
     const maths::Force force = plan_.estimator == Estimator::paper
                                    ? maths::paper_force(pillar, diagonals, sum, scale_)
@@ -44,7 +45,7 @@ class PillarSolver {
     const std::size_t left = 2 * col;
     const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
                                 sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
-    store(maths::force_deviations(pillar, diagonals, noise, scale_), index);
+    store(maths::force_deviations(pillar, diagonals, sum, noise, segment_point_, scale_), index);
     const maths::Direction direction = maths::direction_of(force);
     store(maths::direction_interval(pillar, diagonals, sum, direction, scale_), index);
   }
@@ -81,6 +82,7 @@ class PillarSolver {
   SenselReader sensel_;
   ForceField& field_;
   float doubt_;
+  float segment_point_;
   maths::ForceScale scale_{};
 };
 

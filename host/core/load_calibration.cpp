@@ -49,8 +49,10 @@ class Press {
   [[nodiscard]] const std::string& name() const { return name_; }
 
   /// By a calibration that differs from that of the constructor in its constants only.
-  [[nodiscard]] ForceField solve(const SkinCalibration& calibration) const {
+  [[nodiscard]] ForceField solve(const SkinCalibration& calibration,
+                                 double segment_point = kSegmentPoint) const {
     SolverPlan plan = plan_;
+    plan.segment_point = segment_point;
     plan.skin.threshold_counts = calibration.threshold_counts.value_or(plan.skin.threshold_counts);
     plan.skin.power_law = calibration.power_law;
     plan.skin.counts_per_newton = 1;
@@ -67,7 +69,7 @@ class Press {
 /// The normal force of a field, in the units of its planes.
 struct NormalSum {
   double all = 0;
-  double open = 0;  ///< of pillars whose parity sum is only known to lie in [0, twice its middle]
+  double open = 0;  ///< of pillars whose parity sum is only known to lie in an interval from 0
   std::uint64_t touched = 0;
   std::uint64_t saturated = 0;
 };
@@ -222,7 +224,9 @@ LoadResult result_of(const std::vector<Press>& presses, SkinCalibration calibrat
     const double relative = sum.all / (k * press.load_n()) - 1;
     squares += relative * relative;
     log_least += std::log(std::max(0.0, sum.all - sum.open) / press.load_n());
-    log_most += std::log((sum.all + sum.open) / press.load_n());
+    // With all intervals at their middle, twice that is the upper end.
+    const NormalSum middle = sum_normal(press.solve(calibration, 0.5));
+    log_most += std::log((middle.all + middle.open) / press.load_n());
     result.loads.push_back({press.load_n(), sum.all / k, sum.open / sum.all, sum.saturated});
   }
   const auto count = static_cast<double>(presses.size());

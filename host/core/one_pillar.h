@@ -60,10 +60,10 @@ typename PillarMaths<Real>::Sensel prepare_sensel(Real raw, const PillarSensor& 
 }
 
 /// One pillar from the raw readings of its sensels 1 to 4, counts, in float or double: the very
-/// functions that the kernels call.
+/// functions that the kernels call. `segment_point` is that of SolverPlan.
 template <class Real>
 PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const PillarSensor& sensor,
-                                     Estimator estimator) {
+                                     Estimator estimator, double segment_point = kSegmentPoint) {
   const typename PillarMaths<Real>::Pillar pillar = {
       prepare_sensel(raw[0], sensor), prepare_sensel(raw[1], sensor),
       prepare_sensel(raw[2], sensor), prepare_sensel(raw[3], sensor)};
@@ -73,13 +73,15 @@ PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const Pilla
   const auto noise = static_cast<Real>(sensor.noise_counts);
   const auto doubt = static_cast<Real>(region_doubt(sensor.noise_counts));
   const auto diagonals = pillar_diagonals(pillar);
-  const auto sum = parity_sum(diagonals);
+  const auto point = static_cast<Real>(segment_point);
+  const auto sum = parity_sum(diagonals, point);
   PillarEstimate<Real> estimate{};
   estimate.force = estimator == Estimator::paper ? paper_force(pillar, diagonals, sum, scale)
                                                  : direct_force(diagonals, sum, scale);
   estimate.direction = direction_of(estimate.force);
   estimate.status = direct_status(pillar, diagonals, sum, doubt);
-  estimate.deviations = force_deviations(pillar, diagonals, {noise, noise, noise, noise}, scale);
+  estimate.deviations =
+      force_deviations(pillar, diagonals, sum, {noise, noise, noise, noise}, point, scale);
   const auto direct = direction_of(direct_force(diagonals, sum, scale));
   estimate.interval = direction_interval(pillar, diagonals, sum, direct, scale);
   return estimate;

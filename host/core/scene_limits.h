@@ -142,6 +142,7 @@ inline constexpr Range kRateHz = {1e-6, 1e6};
 inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
 inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
+inline constexpr Range kSegmentPoints = {0, 1, true};
 inline constexpr Range kFriction = {0, 100, true};
 inline constexpr Range kFrictions = {0.1, 9.9};  ///< of Estimator::contact
 inline constexpr Range kPriorSpread = {0.01, 3};

@@ -72,6 +72,7 @@ void check(const FrictionKnowledge& friction, std::string_view where) {
 void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.parity_tolerance_counts = scene.parity_tolerance_counts;
   plan.estimator = scene.estimator;
+  plan.segment_point = scene.segment_point;
   plan.field = scene.field;
   plan.friction = scene.friction;
   plan.angles = scene.angles;
@@ -101,6 +102,10 @@ void check(const SolverPlan& plan, std::string_view where) {
   check(plan.calibration, plan.skin, where, plan.sensel_type);
   check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
   check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
+  if (!(plan.segment_point > 0 && plan.segment_point <= 1)) {
+    throw Error(where, fmt::format("segment_point is {}", plan.segment_point),
+                "it must lie in (0, 1]");
+  }
   if (plan.baseline_rate && !(*plan.baseline_rate > 0 && *plan.baseline_rate <= 1)) {
     throw Error(where, fmt::format("baseline_rate is {}", *plan.baseline_rate),
                 "it must lie in (0, 1]");

@@ -137,6 +137,7 @@ cl_uint DeviceFieldStage::set_field(cl::Kernel& kernel, const SlotMemory& memory
   kernel.setArg(argument++, cl_uint{settings.shape});
   kernel.setArg(argument++, cl_uint{settings.slip});
   kernel.setArg(argument++, cl_uint{settings.sweeps});
+  kernel.setArg(argument++, settings.segment_point);
   kernel.setArg(argument++, past_normal_);
   kernel.setArg(argument++, past_deviation_);
   kernel.setArg(argument++, past_frame_);

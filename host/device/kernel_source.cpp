@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "core/force_scale.h"
@@ -25,15 +26,25 @@ struct Definition {
 /// A constant as the device gets it: rounded to single precision, then exact.
 std::string hex_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
 
-/// Whole numbers stand for quarters of a count: readings are whole counts, a threshold is whole or
-/// a half, and the middle of an interval halves their sum.
-constexpr int kQuarters = 4;
+/// Whole numbers stand for sixteenths of a count: readings are whole counts, a threshold is whole
+/// or a half, and so is their sum, of which the segment point leaves an eighth at least.
+constexpr int kUnitsPerCount = 16;
 
-/// Counts beyond which a constant is like any larger one to readings of 8 bits, and thresholds are
-/// not made whole: eight of them fit into 16 bits as quarters.
+/// Thresholds beyond are not made whole: four of them fit into 16 bits.
+constexpr double kLargestWholeThreshold = 500;
+
+/// Counts beyond which a constant is like any larger one to readings of 8 bits; it fits as well.
 constexpr double kManyCounts = 1000;
 
-/// Whether all that the solve of a plan computes in counts is a whole number of quarters, and no
+/// The segment point as programs of whole numbers take it: n where it is 1 - 1 / 2^n.
+std::optional<int> whole_segment_point(const SolverPlan& plan) {
+  for (int n = 1; n <= 3; ++n) {
+    if (plan.segment_point == 1 - std::ldexp(1.0, -n)) return n;
+  }
+  return std::nullopt;
+}
+
+/// Whether all that the solve of a plan computes in counts is a whole number of sixteenths, and no
 /// sensel is missing (docs/derivations/direct_solve.md, section 6).
 bool is_whole(const SolverPlan& plan) {
   const Calibration& calibration = plan.calibration;
@@ -41,11 +52,13 @@ bool is_whole(const SolverPlan& plan) {
   const bool corrects = !calibration.tare.empty() || !calibration.gain.empty() ||
                         !calibration.dead_zone.empty() || !calibration.mask.empty() ||
                         plan.baseline_rate || plan.skin.power_law;
-  const bool halves = threshold <= kManyCounts && 2 * threshold == std::floor(2 * threshold);
+  const bool halves =
+      threshold <= kLargestWholeThreshold && 2 * threshold == std::floor(2 * threshold);
   const bool saturates_below =
       plan.skin.full_scale_counts && static_cast<float>(*plan.skin.full_scale_counts) <= threshold;
   return plan.sensel_type == SenselType::u8 && plan.estimator != Estimator::paper && !corrects &&
-         !plan.angles && !plan.uncertainty && halves && !saturates_below;
+         !plan.angles && !plan.uncertainty && halves && !saturates_below &&
+         whole_segment_point(plan);
 }
 
 /// A constant in counts with which readings and what is made of them are compared. As a whole
@@ -61,8 +74,8 @@ class CountsMacro {
  private:
   [[nodiscard]] std::string text(double value, double (*round)(double)) const {
     if (!whole_) return hex_float(value);
-    const double quarters = kQuarters * std::min<double>(static_cast<float>(value), kManyCounts);
-    return fmt::format("{}", static_cast<int>(round(quarters)));
+    const double units = kUnitsPerCount * std::min<double>(static_cast<float>(value), kManyCounts);
+    return fmt::format("{}", static_cast<int>(round(units)));
   }
 
   bool whole_;
@@ -73,7 +86,7 @@ std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
   const Skin& skin = plan.skin;
   const Calibration& calibration = plan.calibration;
   const ForceScale scale = force_scale(skin.counts_per_newton);
-  const int units_per_count = whole ? kQuarters : 1;
+  const int units_per_count = whole ? kUnitsPerCount : 1;
   const CountsMacro counts(whole);
   std::vector<Definition> all;
   const auto add = [&](bool wanted, const char* macro, std::string value, const char* stage) {
@@ -81,7 +94,7 @@ std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
   };
   const bool floating = plan.sensel_type == SenselType::f32;
   add(true, "PF_SENSEL", sensel_macro(plan.sensel_type), "load");
-  add(whole, "PF_WHOLE", fmt::format("{}", kQuarters), nullptr);
+  add(whole, "PF_WHOLE", fmt::format("{}", kUnitsPerCount), nullptr);
   add(floating, "PF_LARGEST_READING", hex_float(kMaxCounts), "reject_absurd");
   add(!calibration.mask.empty(), "PF_MASK", "", "mask");
   if (skin.full_scale_counts) {
@@ -101,6 +114,10 @@ std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
       paper ? "paper_solve" : "direct_solve");
   add(true, "PF_NORMAL_SCALE", hex_float(scale.normal / units_per_count), nullptr);
   add(paper, "PF_PAPER", "", nullptr);
+  add(true, "PF_SEGMENT_POINT",
+      whole ? fmt::format("{}", *whole_segment_point(plan))
+            : hex_float(plan.segment_point),
+      nullptr);
   add(true, "PF_DOUBT", counts.from(region_doubt(plan)), nullptr);
   if (plan.parity_tolerance_counts) {
     add(true, "PF_PARITY_TOLERANCE", counts.above(*plan.parity_tolerance_counts), "parity_test");

@@ -96,6 +96,7 @@ void OpenForces::read_size() {
 void OpenForces::read_info() {
   const hid_t root = file.id.get();
   info.estimator = hdf5::read_text(file, root, force_format::kEstimator).value_or("");
+  info.segment_point = hdf5::read_number(file, root, force_format::kSegmentPoint);
   info.device = hdf5::read_text(file, root, force_format::kDevice).value_or("");
   info.source = hdf5::read_text(file, root, force_format::kSource).value_or("");
   const auto pitch_mm = hdf5::read_number(file, root, force_format::kPillarPitch);

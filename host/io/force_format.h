@@ -9,6 +9,7 @@ inline constexpr int kVersion = 1;
 inline constexpr const char* kUnit = "unit";
 inline constexpr const char* kSignConvention = "sign_convention";
 inline constexpr const char* kEstimator = "estimator";
+inline constexpr const char* kSegmentPoint = "segment_point";
 inline constexpr const char* kDevice = "device";
 inline constexpr const char* kSource = "source";
 inline constexpr const char* kProgramVersion = "program_version";

@@ -77,6 +77,9 @@ void Hdf5Sink::write_info() {
   hdf5::write_attribute(file_, root, force_format::kUnit, std::string("N"));
   hdf5::write_attribute(file_, root, force_format::kSignConvention, std::string(kConvention));
   hdf5::write_attribute(file_, root, force_format::kEstimator, info_.estimator);
+  if (info_.segment_point) {
+    hdf5::write_attribute(file_, root, force_format::kSegmentPoint, *info_.segment_point);
+  }
   hdf5::write_attribute(file_, root, force_format::kDevice, info_.device);
   hdf5::write_attribute(file_, root, force_format::kSource, info_.source);
   hdf5::write_attribute(file_, root, force_format::kProgramVersion, std::string(kVersion));

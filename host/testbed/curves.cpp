@@ -40,7 +40,7 @@ std::vector<Angles> contour(double ratio, int points) {
   const maths::Diagonals diagonals =
       maths::pillar_diagonals({prepare_sensel(raw[0], sensor), prepare_sensel(raw[1], sensor),
                                prepare_sensel(raw[2], sensor), prepare_sensel(raw[3], sensor)});
-  const maths::ParitySum sum = maths::parity_sum(diagonals);
+  const maths::ParitySum sum = maths::parity_sum(diagonals, kSegmentPoint);
   const ForceScale scale = force_scale(sensor.counts_per_newton);
   std::vector<Angles> contour;
   for (int i = 0; i < points; ++i) {
@@ -51,7 +51,7 @@ std::vector<Angles> contour(double ratio, int points) {
   return contour;
 }
 
-Angles middle_of_contour(double ratio, Estimator estimator) {
+Angles point_on_contour(double ratio, Estimator estimator) {
   return angles_of(estimate(ratio, estimator).direction);
 }
 

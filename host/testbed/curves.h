@@ -52,9 +52,9 @@ inline constexpr std::array<RegionLabel, 4> kCornerLabels = {{
 /// from theta = pi/2 to the region's border: a contour of the paper's equation (5). `points` >= 2.
 [[nodiscard]] std::vector<Angles> contour(double ratio, int points);
 
-/// Where on that contour an estimator puts the force: the paper's half way in theta, or the middle
-/// of the segment of forces.
-[[nodiscard]] Angles middle_of_contour(double ratio, Estimator estimator);
+/// Where on that contour an estimator puts the force: the paper's half way in theta, or the segment
+/// point.
+[[nodiscard]] Angles point_on_contour(double ratio, Estimator estimator);
 
 /// Half of what theta and phi range over along that contour, rad; the same for any two adjacent
 /// sensels.

@@ -96,7 +96,7 @@ plot $border using 1:4:(pi/2) with filledcurves fillcolor '#FAE6BE', \
      $names index 0 using 1:2:3 with labels left offset 0.7,-0.4, \
      '' index 1 using 1:2:3 with labels center offset 0,-0.8, \
      '' index 2 using 1:2:3 with labels right offset -0.7,-0.4, \
-     $direct using 1:2 with points linetype 4 pointsize 1.3 title 'middle of forces (direct)', \
+     $direct using 1:2 with points linetype 4 pointsize 1.3 title '7/8 of the segment (direct)', \
      $paper using 1:2 with points pointtype 7 pointsize 1.2 linecolor '#ffffff', \
      '' using 1:2 with points linetype 1 pointsize 1.2 title 'half way in θ (paper)'
 )";
@@ -142,9 +142,9 @@ std::string contours() {
   return data_block("contours", lines) + data_block("names", names);
 }
 
-std::string middle_of_ratio_2() {
-  return data_block("paper", line_of(middle_of_contour(2, Estimator::paper))) +
-         data_block("direct", line_of(middle_of_contour(2, Estimator::direct)));
+std::string points_of_ratio_2() {
+  return data_block("paper", line_of(point_on_contour(2, Estimator::paper))) +
+         data_block("direct", line_of(point_on_contour(2, Estimator::direct)));
 }
 
 constexpr const char* kUncertaintyScript = R"(
@@ -215,7 +215,7 @@ void draw_regions(const std::filesystem::path& stem, Replace replace) {
 }
 
 void draw_contours(const std::filesystem::path& stem, Replace replace) {
-  gnuplot::draw(stem, border_of_region_312() + contours() + middle_of_ratio_2() + kContoursScript,
+  gnuplot::draw(stem, border_of_region_312() + contours() + points_of_ratio_2() + kContoursScript,
                 {}, replace);
 }
 

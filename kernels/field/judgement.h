@@ -165,13 +165,13 @@ static inline void write_deviations(Field field, uint index, Segment segment, Ma
 /* Writes what was judged of a pillar, or what is recalled of it where nothing resolved it. */
 static inline void write_judgement(Field field, Past past, uint index, Segment segment,
                                    Judgement judgement, bool resolved, float noise) {
-  const Force middle = force_of_field(field, index);
+  const Force point = force_of_field(field, index);
   const Mask vertical = moves_vertically((Bits)field.status[index]);
   if (!resolved) resolved = recalled_normal(segment, past, index, noise, &judgement);
   if (resolved) {
     keep_for_next(past, index, judgement.normal, deviation_of(judgement));
   }
-  const Force force = force_on_segment(middle, vertical, judgement.normal);
+  const Force force = force_on_segment(point, vertical, judgement.normal);
   field.shear_x[index] = force.shear_x;
   field.shear_y[index] = force.shear_y;
   field.normal[index] = force.normal;
@@ -183,8 +183,8 @@ static inline void write_judgement(Field field, Past past, uint index, Segment s
     field.phi[index] = direction.phi;
   }
   if (field.deviation_normal == 0) return;
-  write_ends(field, index, force_on_segment(middle, vertical, judgement.low),
-             force_on_segment(middle, vertical, judgement.high));
+  write_ends(field, index, force_on_segment(point, vertical, judgement.low),
+             force_on_segment(point, vertical, judgement.high));
   if (resolved) write_deviations(field, index, segment, vertical, judgement, noise);
 }
 

@@ -20,11 +20,12 @@ static inline Verdict resolve_contact(Tile tile, Scratch scratch, Field field, P
   return course.verdict;
 }
 
-/* The middle that a pillar keeps where its contact is not resolved, by itself (F4, F6). */
+/* The middle of theta, for a pillar whose contact is not resolved, by itself (F4, F6). */
 static inline void resolve_alone(Field field, Past past, uint index, FieldSettings settings) {
-  const Force middle = force_of_field(field, index);
-  if (!(middle.normal > 0.0f)) return;
-  const Segment segment = segment_of(middle, moves_vertically((Bits)field.status[index]));
+  const Force point = force_of_field(field, index);
+  if (!(point.normal > 0.0f)) return;
+  const Segment segment =
+      segment_of(point, moves_vertically((Bits)field.status[index]), settings.segment_point);
   const Verdict verdict =
       verdict_by(settings.slips != 0 ? PF_BY_FRICTION : PF_BY_NOTHING, settings.friction);
   const Judgement judgement = judged_normal(segment, verdict, settings, 0.0f);

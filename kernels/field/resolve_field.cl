@@ -8,7 +8,8 @@
       global float *theta_high, global float *phi_low, global float *phi_high,                    \
       global float *magnitude_low, global float *magnitude_high, uint rows, uint cols,            \
       float noise, float quiet, float friction, uint slips, uint shape, uint slip, uint sweeps,   \
-      global float *past_normal, global float *past_deviation, global uint *past_frame, uint now
+      float segment_point, global float *past_normal, global float *past_deviation,               \
+      global uint *past_frame, uint now
 #define PF_FIELD                                                                                   \
   {                                                                                                \
     shear_x, shear_y, normal, status, magnitude, theta, phi, deviation_x, deviation_y,             \
@@ -18,7 +19,7 @@
 #define PF_PAST \
   { past_normal, past_deviation, past_frame, now }
 #define PF_FIELD_SETTINGS \
-  { noise, quiet, friction, slips, shape, slip, sweeps }
+  { noise, quiet, friction, slips, shape, slip, sweeps, segment_point }
 
 /* A work-group resolves a contact; its work-items share the lines of the box.
  *

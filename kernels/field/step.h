@@ -48,7 +48,7 @@ static inline void take_step(const Contact* contact, Course* course) {
       clear_tile(tile, cells, contact->field, share);
       break;
     case PF_LOAD_BOX:
-      load_tile(tile, cells, contact->field, contact->runs, share);
+      load_tile(tile, cells, contact->field, contact->runs, settings.segment_point, share);
       break;
     case PF_SUMMARISE_LINES:
       summarise_lines(tile, cells, scratch.lines, share);

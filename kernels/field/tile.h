@@ -134,11 +134,11 @@ static inline void clear_tile(Tile tile, Cells cells, Field field, Share share) 
   }
 }
 
-static inline void load_cell(Cells cells, uint cell, Field field, uint index) {
+static inline void load_cell(Cells cells, uint cell, Field field, uint index, float segment_point) {
   const uchar status = field.status[index];
   const Force force = force_of_field(field, index);
   if (is_open(status) && force.normal > 0.0f) {
-    const Segment segment = segment_of(force, moves_vertically((Bits)status));
+    const Segment segment = segment_of(force, moves_vertically((Bits)status), segment_point);
     cells.kind[cell] = PF_CELL_AMBIGUOUS;
     cells.top[cell] = segment.high;
     cells.fixed[cell] = segment.fixed;
@@ -152,12 +152,12 @@ static inline void load_cell(Cells cells, uint cell, Field field, uint index) {
 
 /* Fills the contact's own cells. */
 static inline void load_tile(Tile tile, Cells cells, Field field, PF_GLOBAL const Run* runs,
-                             Share share) {
+                             float segment_point, Share share) {
   for (uint at = share.first; at < tile.runs; at += share.step) {
     const Run run = runs[tile.first_run + at];
     for (uint col = run.first; col < run.end; ++col) {
       load_cell(cells, cell_at(tile, run.row - tile.row, col - tile.col), field,
-                run.row * field.cols + col);
+                run.row * field.cols + col, segment_point);
     }
   }
 }

@@ -10,6 +10,7 @@ typedef struct {
   uint shape;     /* the pressure's shape may be used */
   uint slip;      /* friction may be learnt */
   uint sweeps;
+  float segment_point; /* where on a segment the direct solve reports the force */
 } FieldSettings;
 
 /* How a contact was resolved. */

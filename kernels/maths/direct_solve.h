@@ -34,7 +34,7 @@ typedef struct {
 typedef struct {
   Counts low;
   Counts high;
-  Counts middle;
+  Counts point;   /* of the interval, at which the force is reported (D10) */
   Mask ambiguous; /* low is below high */
 } ParitySum;
 
@@ -82,6 +82,8 @@ static inline Diagonals pillar_diagonals(Pillar pillar) {
   return diagonals;
 }
 
+static inline Mask one_stands(Diagonal d) { return d.p_stands || d.q_stands; }
+
 /* The upper end of the interval where no diagonal is full (D5): the least that a diagonal without a
  * missing sensel allows. Where both have one, nothing bounds the sum; the interval then is the one
  * about the smallest force that explains the readings. Zero without contact: nothing stands. */
@@ -89,8 +91,8 @@ static inline Counts parity_bound(Diagonal a, Diagonal b) {
   const Counts a_sum = a.p + a.q;
   const Counts b_sum = b.p + b.q;
   const Counts least = a_sum < b_sum ? a_sum : b_sum;
-  const Mask a_stands = a.p_stands || a.q_stands;
-  const Mask b_stands = b.p_stands || b.q_stands;
+  const Mask a_stands = one_stands(a);
+  const Mask b_stands = one_stands(b);
 #ifdef PF_WHOLE /* No sensel is missing. */
   const Counts bound = least;
 #else
@@ -101,8 +103,19 @@ static inline Counts parity_bound(Diagonal a, Diagonal b) {
   return (a_stands || b_stands) ? bound : PF_COUNTS(0);
 }
 
-/* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5). */
-static inline ParitySum parity_sum(Diagonals diagonals) {
+/* Whether the interval is that of a segment of forces whose upper end a reading sets: a sensel of
+ * each diagonal stands, and a diagonal bounds the sum. Of use where no diagonal is full. (D10) */
+static inline Mask has_segment(Diagonal a, Diagonal b) {
+#ifdef PF_WHOLE /* No sensel is missing. */
+  return one_stands(a) && one_stands(b);
+#else
+  return one_stands(a) && one_stands(b) && !(a.open && b.open);
+#endif
+}
+
+/* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5),
+ * of which `segment_point` is reported on a segment and the middle elsewhere (D10). */
+static inline ParitySum parity_sum(Diagonals diagonals, Fraction segment_point) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Counts a_sum = a.p + a.q;
@@ -114,7 +127,8 @@ static inline ParitySum parity_sum(Diagonals diagonals) {
   ParitySum sum;
   sum.low = determined ? measured : PF_COUNTS(0);
   sum.high = determined ? measured : bound;
-  sum.middle = determined ? measured : halved(bound);
+  const Counts point = has_segment(a, b) ? fraction_of(bound, segment_point) : halved(bound);
+  sum.point = determined ? measured : point;
   sum.ambiguous = !determined && (bound > PF_COUNTS(0));
   return sum;
 }
@@ -128,7 +142,7 @@ static inline Counts filled_q(Diagonal d, Counts sum) { return d.q_stands ? d.q 
  * (D3). */
 static inline Counts diagonal_difference(Diagonal d, Counts sum) {
   const Counts difference = filled_p(d, sum) - filled_q(d, sum);
-  return (d.p_stands || d.q_stands) ? difference : PF_COUNTS(0);
+  return one_stands(d) ? difference : PF_COUNTS(0);
 }
 
 /* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 every sum of the
@@ -144,10 +158,10 @@ static inline Force force_at(Diagonals diagonals, Counts sum, ForceScale scale) 
   return force;
 }
 
-/* The force on a pillar: the middle of the interval, which halves the worst error in region 3.
- * Regions 1 and 2: within 4 ULP of the magnitude, float or double. */
+/* The force on a pillar, in region 3 at the segment point. Regions 1 and 2: within 4 ULP of the
+ * magnitude, float or double. */
 static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale scale) {
-  return force_at(diagonals, sum.middle, scale);
+  return force_at(diagonals, sum.point, scale);
 }
 
 static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
@@ -199,7 +213,7 @@ static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum s
   const Bits falling = s2.usable & s4.usable;
   const Bits three_usable = (rising & one_lifted_of(s2, s4)) | (falling & one_lifted_of(s1, s3));
   const Bits one_or_two =
-      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.middle, doubt));
+      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.point, doubt));
   const Bits ambiguous = bits_of(sum.ambiguous) | one_or_two;
   const Bits saturated = s1.saturated | s2.saturated | s3.saturated | s4.saturated;
   const Bits missing = s1.missing | s2.missing | s3.missing | s4.missing;

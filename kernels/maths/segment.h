@@ -17,24 +17,25 @@ static inline Mask moves_vertically(Bits status) {
   return mask_of((usable == PF_BITS(3)) | (usable == PF_BITS(12)));
 }
 
-/* The segment whose middle the direct solve found (F1). */
-static inline Segment segment_of(Force middle, Mask vertical) {
+/* The segment of which the direct solve reports `point`, at `fraction` of its normal forces (F1).
+ */
+static inline Segment segment_of(Force point, Mask vertical, Real fraction) {
   Segment segment;
-  segment.fixed = fabs(vertical ? middle.shear_x : middle.shear_y);
-  segment.moving = fabs(vertical ? middle.shear_y : middle.shear_x) +
-                   PF_REAL(1.41421356237309504880) * middle.normal;
-  segment.high = middle.normal + middle.normal;
+  segment.fixed = fabs(vertical ? point.shear_x : point.shear_y);
+  segment.moving = fabs(vertical ? point.shear_y : point.shear_x) +
+                   PF_REAL(1.41421356237309504880) * point.normal;
+  segment.high = point.normal / fraction;
   return segment;
 }
 
-/* The force of the segment whose normal force is `normal` (F2). */
-static inline Force force_on_segment(Force middle, Mask vertical, Real normal) {
-  const Real grown = PF_REAL(1.41421356237309504880) * (normal - middle.normal);
-  const Real moved = vertical ? middle.shear_y : middle.shear_x;
+/* The force whose normal force is `normal`, of the segment on which `point` lies (F2). */
+static inline Force force_on_segment(Force point, Mask vertical, Real normal) {
+  const Real grown = PF_REAL(1.41421356237309504880) * (normal - point.normal);
+  const Real moved = vertical ? point.shear_y : point.shear_x;
   const Real moving = moved - copysign(PF_REAL(1.0), moved) * grown;
   Force force;
-  force.shear_x = vertical ? middle.shear_x : moving;
-  force.shear_y = vertical ? moving : middle.shear_y;
+  force.shear_x = vertical ? point.shear_x : moving;
+  force.shear_y = vertical ? moving : point.shear_y;
   force.normal = normal;
   return force;
 }

@@ -3,7 +3,7 @@
 #define PF_STATUS_SENSEL_2 2   /* upper left */
 #define PF_STATUS_SENSEL_3 4   /* lower left */
 #define PF_STATUS_SENSEL_4 8   /* lower right */
-#define PF_STATUS_AMBIGUOUS 16 /* the force is the middle of a segment, or the region is 1 or 2 */
+#define PF_STATUS_AMBIGUOUS 16 /* the force is one of a segment, or the region is 1 or 2 */
 #define PF_STATUS_SATURATED 32
 #define PF_STATUS_INCONSISTENT 64     /* a missing sensel, or readings at odds with each other */
 #define PF_STATUS_FROM_NEIGHBOURS 128 /* ambiguous, and resolved with the help of its contact */

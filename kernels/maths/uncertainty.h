@@ -24,7 +24,7 @@ typedef struct {
 } DifferenceWeights;
 
 /* The parity sum of `direct_force` is linear in the readings, with these weights (U1). */
-static inline ParityWeights parity_weights(Diagonals diagonals) {
+static inline ParityWeights parity_weights(Diagonals diagonals, Real segment_point) {
   const Real zero = PF_REAL(0.0);
   const Real one_half = PF_REAL(0.5);
   const Real one = PF_REAL(1.0);
@@ -34,11 +34,11 @@ static inline ParityWeights parity_weights(Diagonals diagonals) {
   const Mask by_b = a.open || ((a.p + a.q >= b.p + b.q) && !b.open);
   const Mask has_a = a.full || !(determined || by_b);
   /* What one diagonal has, the other has not, but where both measure or both are open. */
-  const Real whole = determined ? one : one_half;
+  const Real point = has_segment(a, b) ? segment_point : one_half;
+  const Real whole = determined ? one : point;
   const Real share = (a.full && b.full) ? one_half : (has_a ? whole : zero);
   const Mask both_open = a.open && b.open && !determined;
-  const Mask both_stand = (a.p_stands || a.q_stands) && (b.p_stands || b.q_stands);
-  const Real open_share = both_stand ? PF_REAL(0.66666666666666666667) : one;
+  const Real open_share = (one_stands(a) && one_stands(b)) ? PF_REAL(0.66666666666666666667) : one;
   ParityWeights weights;
   weights.rising = both_open ? open_share : share;
   weights.falling = both_open ? open_share : whole - share;
@@ -61,11 +61,21 @@ static inline Real variance_of(Sensel sensel, Real noise) {
   return is_pressed(sensel) ? noise * noise : PF_REAL(0.0);
 }
 
-/* Standard deviations of the components of `direct_force`, N (U3). In regions 1 and 2 they are
- * exact; in region 3 they are those of the middle of the segment, whose length is not in them. */
-static inline Force force_deviations(Pillar pillar, Diagonals diagonals, Noise noise,
-                                     ForceScale scale) {
-  const ParityWeights weights = parity_weights(diagonals);
+/* Root mean square distance of the true parity sum from that reported, counts, where readings leave
+ * it ambiguous (U9): on a segment by what friction leaves of it, elsewhere as if all of the
+ * interval were equally likely. Zero where the force is determined. */
+static inline Real ambiguity_of(Diagonals diagonals, ParitySum sum, Real segment_point) {
+  const Real away = segment_point - PF_REAL(0.875);
+  const Real on_segment = plain_length_2(PF_REAL(0.12), away);
+  const Mask segment = has_segment(diagonals.rising, diagonals.falling);
+  const Real part = segment ? on_segment : PF_REAL(0.28867513459481288225);
+  return sum.ambiguous ? part * sum.high : PF_REAL(0.0);
+}
+
+/* Standard deviations of the components of `direct_force`, N (U3, U9): exact in regions 1 and 2. */
+static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
+                                     Real segment_point, ForceScale scale) {
+  const ParityWeights weights = parity_weights(diagonals, segment_point);
   const DifferenceWeights rising = difference_weights(diagonals.rising);
   const DifferenceWeights falling = difference_weights(diagonals.falling);
   const Real to_x = rising.sum - falling.sum;
@@ -90,6 +100,12 @@ static inline Force force_deviations(Pillar pillar, Diagonals diagonals, Noise n
   deviations.shear_y =
       scale.shear * sqrt(y1 * y1 * var1 + y2 * y2 * var2 + y3 * y3 * var3 + y4 * y4 * var4);
   deviations.normal = scale.normal * sqrt(rising_share + falling_share);
+  if (!any_lane(sum.ambiguous)) return deviations;
+  const Real ambiguity = ambiguity_of(diagonals, sum, segment_point);
+  const Real shear = scale.shear * ambiguity;
+  deviations.shear_x = length_2(deviations.shear_x, to_x * shear);
+  deviations.shear_y = length_2(deviations.shear_y, to_y * shear);
+  deviations.normal = length_2(deviations.normal, scale.normal * ambiguity);
   return deviations;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kIntroduction = R"(## Kinds of contact
 
-The judging scenes, nothing said by them; errors in counts (k times newtons), all pillars of a kind taken together. "Middle" is that of the segment, which `direct` reports; "θ middle"
+The judging scenes, nothing said by them; errors in counts (k times newtons), all pillars of a kind taken together. "Middle" is that of the segment, `direct` at a segment point of 0.5; "θ middle"
 the paper's midpoint; "noise alone" the nearest to the truth of all forces that explain the readings. The ratio is field over θ middle; its median and its worst are those of
 scenes with {enough} ambiguous pillars or more.
 

@@ -72,6 +72,8 @@ class Help(CommandTest):
     def test_wrong_command_lines_end_with_2(self):
         for arguments in ([], ["fly"], ["solve"], ["solve", "in.h5"], ["simulate", "--seed", "x"],
                           ["solve", "a", "-o", "b", "--estimator", "magic"],
+                          ["solve", "a", "-o", "b", "--segment-point", "0"],
+                          ["solve", "a", "-o", "b", "--segment-point", "1.1"],
                           ["solve", "a", "-o", "b", "--outputs", "smoke"],
                           ["solve", "a", "-o", "b", "--memory", "none"],
                           ["solve", "a", "-o", "b", "--threshold", "much"],
@@ -211,6 +213,33 @@ class Work(CommandTest):
         self.assertTrue(differ)
         self.assertNotIn(0, differ)
 
+    def test_the_segment_point_is_chosen(self):
+        scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
+        run("simulate", scene, "-o", self.recording, "--frames", 1)
+        solve = ("solve", self.recording, "-o", self.forces, "--noise", 0.5)
+        planes = {}
+        for name, options in {"default": (), "7/8": ("--segment-point", 0.875),
+                              "middle": ("--segment-point", 0.5)}.items():
+            run(*solve, *options)
+            with h5py.File(self.forces) as file:
+                planes[name] = file["force/normal"][:], file["force/status"][:]
+        (normal, status), (middle, _) = planes["default"], planes["middle"]
+        self.assertTrue((normal == planes["7/8"][0]).all())
+        usable = status & 15
+        adjacent = (usable == 3) | (usable == 6) | (usable == 12) | (usable == 9)
+        segment = adjacent & (status & 16 != 0)
+        self.assertGreater(segment.sum(), 100)
+        self.assertTrue((abs(normal - 1.75 * middle)[segment] <= 1e-6 * normal[segment]).all())
+        self.assertTrue((normal == middle)[~segment].all())
+        self.assertEqual(run_json("info", self.forces)["segment_point"], 0.5)
+        run(*solve, "--estimator", "paper")
+        self.assertNotIn("segment_point", run_json("info", self.forces))
+        self.scene.write_text(SMALL_SCENE + "[solver]\nsegment_point = 0.625\n")
+        run(*solve, "--scene", self.scene)
+        self.assertEqual(run_json("info", self.forces)["segment_point"], 0.625)
+        self.assert_fails(*solve, "--segment-point", 0.5, "--estimator", "paper",
+                          says=["--segment-point", "paper"])
+
     def test_evidence_is_of_use_to_the_field_alone(self):
         run("simulate", self.scene, "-o", self.recording)
         self.assert_fails("solve", self.recording, "-o", self.forces, "--friction", 0.8,
@@ -231,7 +260,7 @@ class Work(CommandTest):
     def test_kernel_holds_only_the_stages_of_its_scene(self):
         text = run("info", "--kernel", self.scene).stdout
         self.assertIn("kernel void solve_frame", text)
-        self.assertIn("#define PF_FULL_SCALE 1020\n", text)
+        self.assertIn("#define PF_FULL_SCALE 4080\n", text)
         self.assertNotIn("#define PF_TARE", text)
         self.scene.write_text(SMALL_SCENE.replace("noise_counts", "tare_counts = 3\nnoise_counts"))
         self.assertIn("#define PF_TARE", run("info", "--kernel", self.scene).stdout)

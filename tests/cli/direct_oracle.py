@@ -26,11 +26,11 @@ def solve_pattern(usable, readings, threshold):
     if len(chosen) >= 3:
         return known @ np.linalg.pinv(MODEL[chosen]).T
     normal = np.zeros(len(readings))
-    if len(chosen) == 2 and (chosen[1] - chosen[0]) % 2 == 1:  # adjacent: the middle of the segment
-        normal = (known.min(axis=1) + threshold) / 4
+    if len(chosen) == 2 and (chosen[1] - chosen[0]) % 2 == 1:  # adjacent: 7/8 of the segment
+        normal = 7 / 8 * (known.min(axis=1) + threshold) / 2
     elif len(chosen) == 2:  # opposite: a fault; the two alone give the normal force
         normal = known.mean(axis=1)
-    elif len(chosen) == 1:  # the middle again; both neighbours alike
+    elif len(chosen) == 1:  # the middle; both neighbours alike
         normal[:] = threshold / 2
         chosen = [n for n in range(4) if n != (chosen[0] + 2) % 4]
         known = np.where(usable[chosen], readings[:, chosen], normal[:, None])

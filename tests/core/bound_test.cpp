@@ -100,16 +100,15 @@ TEST(LeastError, LosesNoMoreThanWhatASilentSenselAdds) {
 }
 
 TEST(Misreading, CostsItsChanceTimesTheSquareOfItsJump) {
-  // V = (60, 40, -12, 8): where the last is lost, S is taken for the middle of [0, 45], not 48
-  // (B6).
+  // V = (60, 40, -12, 8): where the last is lost, S is taken for 7/8 of 45, not 48 (B6).
   const PillarSensor sensor = sensor_of(1);
   const Force force = {10 * std::numbers::sqrt2, 26 * std::numbers::sqrt2, 24};
   const double chance = std::erfc(3 / std::numbers::sqrt2) / 2;
-  const double jump = (48 - 22.5) * std::sqrt(3) / 2;
+  const double jump = (48 - kSegmentPoint * 45) * std::sqrt(3) / 2;
   const RmsError error = rms_error(force, sensor, Estimator::direct, 400'000, 0);
   EXPECT_NEAR(error.misread_share, chance, 2e-4);
-  EXPECT_NEAR(error.of_all, std::sqrt(2.5 + chance * jump * jump), 0.02);
-  EXPECT_GT(error.of_all / least_error(force, sensor), 1.1);
+  EXPECT_NEAR(error.of_all, std::sqrt(2.5 + chance * jump * jump), 0.005);
+  EXPECT_GT(error.of_all / least_error(force, sensor), 1.01);
 }
 
 class DirectSolve : public testing::TestWithParam<double> {

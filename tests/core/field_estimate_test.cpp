@@ -86,9 +86,9 @@ double theta_of(const ForceField& field, std::size_t i) {
 
 /// Where nothing is known, theta is halfway between that of the steepest force and a right angle.
 void expect_middle(const ForceField& solved, const ForceField& direct, std::size_t i) {
-  const double steepest = std::atan2(
-      std::hypot(direct.shear_x[i] - direct.normal[i] * std::numbers::sqrt2, direct.shear_y[i]),
-      2 * direct.normal[i]);
+  const double high = direct.normal[i] / kSegmentPoint;
+  const double rest = (high - direct.normal[i]) * std::numbers::sqrt2;
+  const double steepest = std::atan2(std::hypot(direct.shear_x[i] - rest, direct.shear_y[i]), high);
   EXPECT_NEAR(theta_of(solved, i), (steepest + std::numbers::pi / 2) / 2, 1e-5);
   EXPECT_EQ(solved.status[i], direct.status[i]);
 }

@@ -39,6 +39,7 @@ SolverPlan direct_plan(const Scene& scene) {
   plan.skin = made.skin;
   plan.sensel_type = SenselType::f32;
   set_solver(plan, made);
+  plan.segment_point = 0.5;  // the middle, which the study compares with
   return plan;
 }
 
@@ -219,8 +220,8 @@ bool Observed::covers(const ForceField& solved, std::size_t i) const {
     const double deviation = solved.uncertainty[Uncertainty::normal][i];
     return std::abs(solved.normal[i] - normal) <= kBand * deviation;
   }
-  // The upper end is twice the middle, and so is its deviation.
-  const double deviation = 2 * double{direct_.uncertainty[Uncertainty::normal][i]};
+  // The upper end is twice the middle, and the noise of a reading over 2k is its deviation.
+  const double deviation = scene_.noise_counts / (2 * kCountsPerNewton);
   return normal <= 2 * double{direct_.normal[i]} + kBand * deviation;
 }
 

@@ -83,10 +83,12 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:3: key 'baseline_time_s' in [solver] is 0; allowed: a number in [1e-06, "
        "1000000000]"},
       {"[solver]\nestimator = \"magic\"",
-       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "field")"},
+       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "field", "contact")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
        "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
        "allowed: estimator = \"direct\" or \"contact\""},
+      {"[solver]\nsegment_point = 0",
+       "s.toml:3: key 'segment_point' in [solver] is 0; allowed: a number in (0, 1]"},
       {"[solver]\nparity_tolerance_counts = true",
        "s.toml:3: key 'parity_tolerance_counts' in [solver] is true; allowed: a number in [0, "
        "1e+33]"},

@@ -82,6 +82,9 @@ TEST(KernelSource, ConstantsAreExact) {
   EXPECT_EQ(std::strtof(macro(source, "PF_THRESHOLD").c_str(), nullptr), 0.1F);
   EXPECT_EQ(std::strtof(macro(source, "PF_NORMAL_SCALE").c_str(), nullptr),
             static_cast<float>(1 / (2 * 317.0)));
+  EXPECT_EQ(std::strtof(macro(source, "PF_SEGMENT_POINT").c_str(), nullptr), 0.875F);
+  plan.segment_point = 0.9;
+  EXPECT_EQ(std::strtof(macro(kernel_source(plan, 1), "PF_SEGMENT_POINT").c_str(), nullptr), 0.9F);
   EXPECT_EQ(macro(source, "PF_THRESHOLD").find("0x"), 0U);
 }
 
@@ -98,6 +101,9 @@ TEST(KernelSource, WholeNumbersAreThoseOfBareBytes) {
     plan.parity_tolerance_counts = 3.7;
     plan.noise_counts = 0.4;
   }));
+  for (const double point : {0.5, 0.75, 0.875}) {
+    EXPECT_TRUE(is_whole([&](SolverPlan& plan) { plan.segment_point = point; }));
+  }
   EXPECT_FALSE(is_whole([](SolverPlan&) {}, 1));
   const auto is_not = [&](auto&& change) { EXPECT_FALSE(is_whole(change)); };
   is_not([](SolverPlan& plan) { plan.sensel_type = SenselType::u16; });
@@ -111,6 +117,9 @@ TEST(KernelSource, WholeNumbersAreThoseOfBareBytes) {
   is_not([](SolverPlan& plan) { plan.skin.power_law = PowerLaw{0.9, 50}; });
   is_not([](SolverPlan& plan) { plan.skin.threshold_counts = 2.3; });
   is_not([](SolverPlan& plan) { plan.skin.threshold_counts = 1e9; });
+  is_not([](SolverPlan& plan) { plan.skin.threshold_counts = 501; });
+  is_not([](SolverPlan& plan) { plan.segment_point = 0.9; });
+  is_not([](SolverPlan& plan) { plan.segment_point = 1; });
   is_not([](SolverPlan& plan) {
     plan.skin.threshold_counts = 20;
     plan.skin.full_scale_counts = 20;

@@ -412,6 +412,9 @@ TEST(Processor, RefusesPlansOutOfRange) {
   refuses([](SolverPlan& plan) { plan.skin.full_scale_counts = 0; });
   refuses([](SolverPlan& plan) { plan.parity_tolerance_counts = -1; });
   refuses([](SolverPlan& plan) { plan.noise_counts = -1; });
+  refuses([](SolverPlan& plan) { plan.segment_point = 0; });
+  refuses([](SolverPlan& plan) { plan.segment_point = 1.01; });
+  refuses([](SolverPlan& plan) { plan.segment_point = std::nan(""); });
   refuses([](SolverPlan& plan) { plan.baseline_rate = 0; });
   refuses([](SolverPlan& plan) { plan.baseline_rate = 1.5; });
   refuses([](SolverPlan& plan) { plan.baseline_rate = std::nan(""); });

@@ -78,6 +78,7 @@ SolverPlan full_plan(std::uint32_t rows, std::uint32_t cols, SenselType type, st
   plan.skin.counts_per_newton = 317;
   plan.skin.full_scale_counts = type == SenselType::u16 ? 4000 : 250;
   plan.parity_tolerance_counts = 30;
+  plan.segment_point = 0.7;
   const std::size_t size = plan.skin.sensels();
   plan.calibration.tare = random_plane<float>(random, size, -3, 6);
   plan.calibration.gain = random_plane<float>(random, size, 0.8, 1.25);

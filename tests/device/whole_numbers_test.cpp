@@ -79,9 +79,23 @@ class WholeNumbers : public testing::Test {
 };
 
 TEST_F(WholeNumbers, EveryThreshold) {
-  for (const double threshold : {0.0, 0.5, 2.0, 2.3, 2.5, 126.5, 254.0, 255.0, 300.0, 1000.0}) {
+  for (const double threshold :
+       {0.0, 0.5, 2.0, 2.3, 2.5, 126.5, 254.0, 255.0, 300.0, 500.0, 500.5, 1000.0}) {
     SCOPED_TRACE(threshold);
     expect_host_bits(plan_of(threshold));
+  }
+}
+
+/// Those that whole numbers hold exactly, and others.
+TEST_F(WholeNumbers, EverySegmentPoint) {
+  for (const double point : {1e-3, 0.5, 0.7, 0.75, 0.875, 0.9375, 1.0}) {
+    for (const double threshold : {0.0, 2.0, 3.5, 20.5, 253.5}) {
+      SCOPED_TRACE(testing::Message() << point << " behind " << threshold);
+      SolverPlan plan = plan_of(threshold);
+      plan.segment_point = point;
+      plan.skin.full_scale_counts = 255;
+      expect_host_bits(plan);
+    }
   }
 }
 

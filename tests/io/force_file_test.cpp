@@ -43,7 +43,9 @@ struct Field {
 };
 
 ForceFileInfo info_of(std::uint32_t rows, std::uint32_t cols, bool angles = false) {
-  return {rows, cols, 1.265, "direct", "a device \xc2\xb5", "press.h5", angles};
+  ForceFileInfo info = {rows, cols, 1.265, "direct", "a device \xc2\xb5", "press.h5", angles};
+  if (angles) info.segment_point = 0.75;
+  return info;
 }
 
 void write(const std::filesystem::path& path, const ForceFileInfo& info, std::uint64_t frames) {
@@ -68,6 +70,7 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
       EXPECT_EQ(reader.info().angles, angles);
       EXPECT_EQ(reader.info().pillar_pitch_mm, 1.265);
       EXPECT_EQ(reader.info().estimator, "direct");
+      EXPECT_EQ(reader.info().segment_point, angles ? std::optional(0.75) : std::nullopt);
       EXPECT_EQ(reader.info().device, "a device \xc2\xb5");
       EXPECT_EQ(reader.info().source, "press.h5");
       EXPECT_TRUE(reader.remarks().empty());

@@ -74,7 +74,8 @@ TYPED_TEST(DirectSolveBorders, RegionTwoMeetsTheEndOfRegionThree) {
     EXPECT_LE(TestFixture::distance(TestFixture::force_of(in_two), segment.high()),
               1000 * TestFixture::kUlp);
     EXPECT_NEAR(TestFixture::distance(TestFixture::force_of(in_two), segment.force),
-                TestFixture::distance(segment.low(), segment.high()) / 2, 1000 * TestFixture::kUlp);
+                (1 - kSegmentPoint) * TestFixture::distance(segment.low(), segment.high()),
+                1000 * TestFixture::kUlp);
   }
 }
 

@@ -1,4 +1,4 @@
-// Region 3: the readings leave a segment of forces, of which the solve reports the middle.
+// Region 3: the readings leave a segment of forces, of which the solve reports the segment point.
 
 #include <gtest/gtest.h>
 
@@ -59,23 +59,63 @@ TYPED_TEST(DirectSolveSegment, HasTheEndsThatBisectionFinds) {
   EXPECT_LE(worst, 4);
 }
 
-TYPED_TEST(DirectSolveSegment, HoldsTheTruthWithinHalfItsLengthOfTheMiddle) {
-  TestFixture::for_random_region_three(100'000, [](const auto& truth, const auto& readings) {
-    const auto solved =
-        solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton);
-    const double_precision::Force low = {solved.low().shear_x, solved.low().shear_y,
-                                         solved.low().normal};
-    const double_precision::Force high = {solved.high().shear_x, solved.high().shear_y,
-                                          solved.high().normal};
-    const double_precision::Force middle = {solved.force.shear_x, solved.force.shear_y,
-                                            solved.force.normal};
-    const double rounding = 16 * TestFixture::ulp_of(truth);
-    EXPECT_NE(solved.status & status::kAmbiguous, 0);
-    // On the segment the distances to its two ends add up to its length.
-    EXPECT_NEAR(distance(truth, low) + distance(truth, high), distance(low, high), rounding);
-    EXPECT_NEAR(distance(middle, low), distance(middle, high), rounding);
-    EXPECT_LE(distance(truth, middle), distance(low, high) / 2 + rounding);
-  });
+TYPED_TEST(DirectSolveSegment, HoldsTheTruthAndTheForceAtItsPoint) {
+  for (const double part : {0.5, kSegmentPoint, 1.0}) {
+    TestFixture::for_random_region_three(30'000, [part](const auto& truth, const auto& readings) {
+      const auto solved =
+          solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton, part);
+      const double_precision::Force low = {solved.low().shear_x, solved.low().shear_y,
+                                           solved.low().normal};
+      const double_precision::Force high = {solved.high().shear_x, solved.high().shear_y,
+                                            solved.high().normal};
+      const double_precision::Force point = {solved.force.shear_x, solved.force.shear_y,
+                                             solved.force.normal};
+      const double rounding = 16 * TestFixture::ulp_of(truth);
+      const double length = distance(low, high);
+      EXPECT_NE(solved.status & status::kAmbiguous, 0);
+      // On the segment the distances to its two ends add up to its length.
+      EXPECT_NEAR(distance(truth, low) + distance(truth, high), length, rounding);
+      EXPECT_NEAR(distance(point, low), part * length, rounding);
+      EXPECT_NEAR(distance(point, high), (1 - part) * length, rounding);
+      EXPECT_LE(distance(truth, point), std::max(part, 1 - part) * length + rounding);
+    });
+  }
+}
+
+/// The normal force of a pillar of counts_per_newton 1/2, whose parity sum that is.
+template <class Precision>
+double sum_of(const PillarOf<Precision>& pillar, double segment_point) {
+  return static_cast<double>(solve<Precision>(pillar, 0.5, segment_point).force.normal);
+}
+
+TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheMiddleElsewhere) {
+  using Real = RealOf<TypeParam>;
+  const auto usable = TypeParam::raw_sensel(40);
+  const auto lifted = TypeParam::raw_sensel(0);
+  const auto missing = apply_mask(TypeParam::raw_sensel(40), Real{0});
+  const auto saturated = mark_saturated(TypeParam::raw_sensel(60), Real{60});
+  const auto at = [&](auto one, auto two, auto three, auto four, double segment_point) {
+    const Real threshold = 4;
+    const PillarOf<TypeParam> pillar = {classify(one, threshold), classify(two, threshold),
+                                        classify(three, threshold), classify(four, threshold)};
+    return sum_of<TypeParam>(pillar, segment_point);
+  };
+  for (const double part : {0.25, 0.5, 0.875, 1.0}) {
+    EXPECT_EQ(at(usable, usable, lifted, lifted, part), part * 44);
+    EXPECT_EQ(at(saturated, saturated, lifted, lifted, part), part * 64);
+    EXPECT_EQ(at(usable, saturated, lifted, lifted, part), part * 44);
+    // One is missing: the other diagonal bounds the sum.
+    EXPECT_EQ(at(usable, usable, missing, lifted, part), part * 44);
+    EXPECT_EQ(at(usable, lifted, lifted, missing, part), part * 44);
+    // Thresholds alone, or the smallest force, set the end of the others.
+    EXPECT_EQ(at(usable, lifted, lifted, lifted, part), 4);
+    EXPECT_EQ(at(usable, lifted, missing, lifted, part), 4);
+    EXPECT_NEAR(at(usable, usable, missing, missing, part), 160 / 3.0, 1e-4);
+    // The force is determined.
+    EXPECT_EQ(at(usable, usable, usable, lifted, part), 80);
+    EXPECT_EQ(at(usable, lifted, usable, lifted, part), 80);
+    EXPECT_EQ(at(lifted, lifted, lifted, lifted, part), 0);
+  }
 }
 
 TYPED_TEST(DirectSolveSegment, ExplainsTheReadingsAllAlong) {

@@ -166,8 +166,9 @@ Examples of_magnitude(double force_n, Precision precision) {
 Examples subnormal(Precision precision) {
   const double least = least_above_zero(precision);
   Examples examples;
+  // Of 8, so that seven eighths need no rounding: it would be of counts, and count by 1 / 2k.
   for (const double k : {kMinCountsPerNewton, 1.0, 320.0}) {
-    for (const Raw& raw : {Raw{7, 5, 3, 5}, Raw{1, 1, 1, 1}, Raw{60, 90, 31, 0}, Raw{9, 2, 0, 0},
+    for (const Raw& raw : {Raw{7, 5, 3, 5}, Raw{1, 1, 1, 1}, Raw{60, 90, 31, 0}, Raw{9, 8, 0, 0},
                            Raw{1, 0, 0, 0}, Raw{100, 0, 3, 0}}) {
       const Raw scaled = {raw[0] * least, raw[1] * least, raw[2] * least, raw[3] * least};
       add_turns(examples, scaled, sensor_of(k));

@@ -95,10 +95,12 @@ bool explains_silence(const SomeReadings& usable, const Force& force, Exact k, E
   return true;
 }
 
-Force middle_of(const Segment& segment) {
-  return {(segment.low.shear_x + segment.high.shear_x) / 2,
-          (segment.low.shear_y + segment.high.shear_y) / 2,
-          (segment.low.normal + segment.high.normal) / 2};
+/// The force a part of the way from the low to the high end.
+Force point_of(const Segment& segment, Exact part) {
+  const auto between = [&](Exact low, Exact high) { return low + part * (high - low); };
+  return {between(segment.low.shear_x, segment.high.shear_x),
+          between(segment.low.shear_y, segment.high.shear_y),
+          between(segment.low.normal, segment.high.normal)};
 }
 
 /// `usable` with one reading changed by a share of itself.
@@ -158,11 +160,12 @@ Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden) {
   return {force_at_normal(equations, 0), force_at_normal(equations, low)};
 }
 
-Force direct_force(const SomeReadings& usable, Exact k, Exact hidden) {
+Force direct_force(const SomeReadings& usable, Exact k, Exact hidden, Exact segment_point) {
   const auto count = std::ranges::count_if(usable, [](const auto& v) { return v.has_value(); });
   if (count == 0) return {0, 0, 0};
   const bool whole_diagonal = (usable[0] && usable[2]) || (usable[1] && usable[3]);
-  return whole_diagonal ? least_squares(usable, k) : middle_of(segment_of(usable, k, hidden));
+  if (whole_diagonal) return least_squares(usable, k);
+  return point_of(segment_of(usable, k, hidden), count == 2 ? segment_point : Exact{1} / 2);
 }
 
 double condition_number(const SomeReadings& usable, const Estimate& estimate) {

@@ -50,9 +50,11 @@ struct Segment {
 [[nodiscard]] Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden = 0);
 
 /// What docs/derivations/direct_solve.md promises for pillars whose other sensels are silent: least
-/// squares where the force is determined, the middle of the segment where it is not, and no force
-/// without usable readings. Two opposite usable ones are completed by two that read the same.
-[[nodiscard]] Force direct_force(const SomeReadings& usable, Exact k, Exact hidden = 0);
+/// squares where the force is determined; of the segment where it is not the segment point for two
+/// usable readings, the middle for one; and no force without usable readings. Two opposite usable
+/// ones are completed by two that read the same.
+[[nodiscard]] Force direct_force(const SomeReadings& usable, Exact k, Exact hidden = 0,
+                                 Exact segment_point = Exact{7} / 8);
 
 /// By how much the largest component of `estimate(usable)` changes, relative to the force's
 /// magnitude, when every reading changes by the same small share of itself at the worst signs:

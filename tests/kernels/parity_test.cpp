@@ -16,7 +16,8 @@ template <class Precision>
 class Parity : public testing::Test {
  protected:
   static bool fails(const PillarOf<Precision>& pillar, RealOf<Precision> tolerance) {
-    const auto sum = parity_sum(pillar_diagonals(pillar));
+    const auto sum =
+        parity_sum(pillar_diagonals(pillar), static_cast<RealOf<Precision>>(kSegmentPoint));
     return fails_parity(pillar, sum, tolerance) != 0;
   }
 
@@ -76,8 +77,9 @@ TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
   using Real = RealOf<TypeParam>;
   const auto open = [](const PillarOf<TypeParam>& pillar, Real doubt) {
     const auto diagonals = pillar_diagonals(pillar);
-    return (direct_status(pillar, diagonals, parity_sum(diagonals), doubt) & status::kAmbiguous) !=
-           0;
+    return (direct_status(pillar, diagonals,
+                          parity_sum(diagonals, static_cast<Real>(kSegmentPoint)), doubt) &
+            status::kAmbiguous) != 0;
   };
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto under = [&](Real opposite, Real threshold) {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "pillarfield/solver_plan.h"
 #include "precisions.h"
 
 /// Pillars to test with: sensels in any state, solved, and random ones.
@@ -92,11 +93,12 @@ struct Solved {
 };
 
 template <class Precision>
-Solved<Precision> solve(const PillarOf<Precision>& pillar, double k) {
+Solved<Precision> solve(const PillarOf<Precision>& pillar, double k,
+                        double segment_point = kSegmentPoint) {
   using Real = RealOf<Precision>;
   Solved<Precision> solved{};
   solved.diagonals = pillar_diagonals(pillar);
-  solved.sum = parity_sum(solved.diagonals);
+  solved.sum = parity_sum(solved.diagonals, static_cast<Real>(segment_point));
   solved.scale = {static_cast<Real>(1 / (2 * std::numbers::sqrt2_v<long double> * k)),
                   static_cast<Real>(1 / (2 * static_cast<long double>(k)))};
   solved.force = direct_force(solved.diagonals, solved.sum, solved.scale);

@@ -17,7 +17,7 @@ namespace maths = single_precision;
 struct OpenPillar {
   maths::Diagonals diagonals{};
   maths::ParitySum sum{};
-  maths::Force middle{};
+  maths::Force point{};
   int status = 0;
 };
 
@@ -27,26 +27,28 @@ maths::Sensel sensel_of(double reading) {
   return maths::classify(maths::raw_sensel(static_cast<float>(reading)), 0.0F);
 }
 
-OpenPillar open_pillar(const maths::Readings& v) {
+constexpr auto kPoint = static_cast<float>(kSegmentPoint);
+
+OpenPillar open_pillar(const maths::Readings& v, float segment_point) {
   const maths::Pillar pillar = {sensel_of(v.v1), sensel_of(v.v2), sensel_of(v.v3), sensel_of(v.v4)};
   OpenPillar open;
   open.diagonals = maths::pillar_diagonals(pillar);
-  open.sum = maths::parity_sum(open.diagonals);
-  open.middle = maths::direct_force(open.diagonals, open.sum, kScale);
+  open.sum = maths::parity_sum(open.diagonals, segment_point);
+  open.point = maths::direct_force(open.diagonals, open.sum, kScale);
   open.status = maths::direct_status(pillar, open.diagonals, open.sum, 0);
   return open;
 }
 
 /// Calls `check(open, truth)` for forces from all round that lift two adjacent sensels.
 template <class Check>
-void for_open_pillars(Check check) {
+void for_open_pillars(Check check, float segment_point = kPoint) {
   int open_pillars = 0;
   for (int azimuth = 0; azimuth < 360; azimuth += 1) {
     for (const double ratio : {1.45, 1.6, 2.0, 3.0, 8.0}) {
       const double angle = azimuth * std::numbers::pi / 180;
       const maths::Force truth = {static_cast<float>(40 * ratio * std::cos(angle)),
                                   static_cast<float>(40 * ratio * std::sin(angle)), 40};
-      const OpenPillar open = open_pillar(maths::model_readings(truth, 1));
+      const OpenPillar open = open_pillar(maths::model_readings(truth, 1), segment_point);
       if (!maths::is_open(static_cast<std::uint8_t>(open.status))) continue;
       ++open_pillars;
       check(open, truth);
@@ -60,24 +62,29 @@ double ratio_of(const maths::Force& force) {
 }
 
 TEST(Segment, HoldsTheForcesOfTheDirectSolve) {
-  for_open_pillars([](const OpenPillar& open, const maths::Force&) {
-    const bool vertical = maths::moves_vertically(open.status);
-    const float high = maths::segment_of(open.middle, vertical).high;
-    EXPECT_NEAR(high, open.sum.high * kScale.normal, 1e-4);
-    for (const float part : {0.0F, 0.25F, 0.7F, 1.0F}) {
-      const maths::Force here = maths::force_on_segment(open.middle, vertical, part * high);
-      const maths::Force there = maths::force_at(open.diagonals, part * open.sum.high, kScale);
-      ASSERT_NEAR(here.shear_x, there.shear_x, 1e-4);
-      ASSERT_NEAR(here.shear_y, there.shear_y, 1e-4);
-      ASSERT_NEAR(here.normal, there.normal, 1e-4);
-    }
-  });
+  for (const float at : {0.5F, kPoint, 1.0F}) {
+    for_open_pillars(
+        [at](const OpenPillar& open, const maths::Force&) {
+          const bool vertical = maths::moves_vertically(open.status);
+          const float high = maths::segment_of(open.point, vertical, at).high;
+          EXPECT_NEAR(high, open.sum.high * kScale.normal, 1e-4);
+          for (const float part : {0.0F, 0.25F, 0.7F, 1.0F}) {
+            const maths::Force here = maths::force_on_segment(open.point, vertical, part * high);
+            const maths::Force there =
+                maths::force_at(open.diagonals, part * open.sum.high, kScale);
+            ASSERT_NEAR(here.shear_x, there.shear_x, 1e-4);
+            ASSERT_NEAR(here.shear_y, there.shear_y, 1e-4);
+            ASSERT_NEAR(here.normal, there.normal, 1e-4);
+          }
+        },
+        at);
+  }
 }
 
 TEST(Segment, TheTruthIsWhereItsRatioIs) {
   for_open_pillars([](const OpenPillar& open, const maths::Force& truth) {
     const bool vertical = maths::moves_vertically(open.status);
-    const maths::Segment segment = maths::segment_of(open.middle, vertical);
+    const maths::Segment segment = maths::segment_of(open.point, vertical, kPoint);
     const auto ratio = static_cast<float>(ratio_of(truth));
     ASSERT_NEAR(maths::normal_at_ratio(segment, ratio), truth.normal, 2e-3);
     ASSERT_NEAR(maths::ratio_on_segment(segment, truth.normal), ratio, 1e-4 * ratio);
@@ -87,7 +94,7 @@ TEST(Segment, TheTruthIsWhereItsRatioIs) {
 TEST(Segment, RatiosFallAsTheNormalForceGrows) {
   for_open_pillars([](const OpenPillar& open, const maths::Force&) {
     const maths::Segment segment =
-        maths::segment_of(open.middle, maths::moves_vertically(open.status));
+        maths::segment_of(open.point, maths::moves_vertically(open.status), kPoint);
     float before = segment.high;
     const float least = maths::ratio_on_segment(segment, segment.high);
     for (int step = 0; step < 30; ++step) {
@@ -99,10 +106,10 @@ TEST(Segment, RatiosFallAsTheNormalForceGrows) {
   });
 }
 
-TEST(Segment, TheMiddleHasTheMiddleOfTheThetas) {
+TEST(Segment, HalfwayIsInTheMiddleOfTheThetas) {
   for_open_pillars([](const OpenPillar& open, const maths::Force&) {
     const maths::Segment segment =
-        maths::segment_of(open.middle, maths::moves_vertically(open.status));
+        maths::segment_of(open.point, maths::moves_vertically(open.status), kPoint);
     const double least = std::atan(maths::ratio_on_segment(segment, segment.high));
     const float whole = maths::between_thetas(segment, 0, segment.high, 0.5F);
     ASSERT_NEAR(std::atan(maths::ratio_on_segment(segment, whole)),

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "pillars.h"
 
@@ -27,10 +28,12 @@ template <class Precision>
 class Deviations : public testing::Test {
  protected:
   using Real = RealOf<Precision>;
-  static Components of(const PillarOf<Precision>& pillar, const std::array<Real, 4>& noise) {
-    const auto solved = solve<Precision>(pillar, kCountsOfOneNewton);
-    return components(force_deviations(pillar, solved.diagonals,
-                                       {noise[0], noise[1], noise[2], noise[3]}, solved.scale));
+  static Components of(const PillarOf<Precision>& pillar, const std::array<Real, 4>& noise,
+                       double segment_point = kSegmentPoint) {
+    const auto solved = solve<Precision>(pillar, kCountsOfOneNewton, segment_point);
+    return components(force_deviations(pillar, solved.diagonals, solved.sum,
+                                       {noise[0], noise[1], noise[2], noise[3]},
+                                       static_cast<Real>(segment_point), solved.scale));
   }
 };
 TYPED_TEST_SUITE(Deviations, Precisions, PrecisionNames);
@@ -45,10 +48,42 @@ TYPED_TEST(Deviations, AreTheClosedFormsOfRegionsOneToThree) {
   EXPECT_NEAR(region_2[0], unit, 1e-8);
   EXPECT_NEAR(region_2[1], unit, 1e-8);
   EXPECT_NEAR(region_2[2], unit / std::numbers::sqrt2, 1e-8);
-  const auto region_3 = TestFixture::of(pillar_of<TypeParam>({30, 60, 0, 0}), {2, 2, 2, 2});
-  EXPECT_NEAR(region_3[0], unit, 1e-8);
-  EXPECT_NEAR(region_3[1], unit * std::sqrt(5.0 / 8), 1e-8);
-  EXPECT_NEAR(region_3[2], unit / 4, 1e-8);
+}
+
+/// 30 counts are the largest parity sum, 30 / 2k the largest normal force. Noise alone, as the
+/// derivatives of the force say: those of s_y are 1 - part and 1 over sqrt(2) k, of N part / 2k.
+TYPED_TEST(Deviations, OfRegionThreeHoldWhatFrictionLeavesOfTheSegmentToo) {
+  const double unit = 2 / kCountsOfOneNewton;
+  const double high = 30 / (2 * kCountsOfOneNewton);
+  for (const auto& [part, spread] :
+       {std::pair{kSegmentPoint, 0.12}, {0.5, std::hypot(0.12, 0.375)}}) {
+    const auto region_3 = TestFixture::of(pillar_of<TypeParam>({30, 60, 0, 0}), {2, 2, 2, 2}, part);
+    const double of_y = unit * std::hypot(1 - part, 1) / std::numbers::sqrt2;
+    EXPECT_NEAR(region_3[0], unit, 1e-8);
+    EXPECT_NEAR(region_3[1], std::hypot(of_y, std::numbers::sqrt2 * spread * high), 1e-7);
+    EXPECT_NEAR(region_3[2], std::hypot(unit * part / 2, spread * high), 1e-7);
+    const auto turned = TestFixture::of(pillar_of<TypeParam>({30, 0, 0, 60}), {2, 2, 2, 2}, part);
+    EXPECT_NEAR(turned[0], region_3[1], 1e-7);
+    EXPECT_NEAR(turned[1], region_3[0], 1e-7);
+  }
+}
+
+/// One usable sensel behind a threshold of 8 counts: the parity sum lies in [0, 16].
+TYPED_TEST(Deviations, OfRegionFourAreThoseOfTheWholeInterval) {
+  const auto region_4 = TestFixture::of(pillar_of<TypeParam>({30, 0, 0, 0}, 8), {0, 0, 0, 0});
+  const double high = 16 / (2 * kCountsOfOneNewton);
+  EXPECT_NEAR(region_4[2], high / std::sqrt(12.0), 1e-8);
+  EXPECT_NEAR(region_4[0], region_4[2] / std::numbers::sqrt2, 1e-8);
+  EXPECT_NEAR(region_4[1], region_4[2] / std::numbers::sqrt2, 1e-8);
+}
+
+/// What the ambiguity of the parity sum adds: the force moves along with it.
+Components deviations_by_ambiguity(const Solved<Double>& solved, double spread) {
+  const auto low = components(solved.low());
+  const auto high = components(solved.high());
+  Components added{};
+  for (std::size_t i = 0; i < 3; ++i) added[i] = spread * (high[i] - low[i]);
+  return added;
 }
 
 /// The estimate is linear where it has no kink: differences of it are its derivatives.
@@ -83,11 +118,16 @@ TEST(Deviations, AreThoseOfTheEstimateForAllStates) {
       for (auto& sigma : noise) sigma = random.uniform(0.1, 3);
       const auto pillar = pillar_in<Double>(states, readings);
       const auto solved = solve<Double>(pillar, kCountsOfOneNewton);
-      const auto actual = components(force_deviations(
-          pillar, solved.diagonals, {noise[0], noise[1], noise[2], noise[3]}, solved.scale));
+      const auto actual = components(force_deviations(pillar, solved.diagonals, solved.sum,
+                                                      {noise[0], noise[1], noise[2], noise[3]},
+                                                      kSegmentPoint, solved.scale));
       const auto expected = deviations_by_differences(states, readings, noise);
+      const bool is_halved = 2 * solved.sum.point == solved.sum.high;
+      const auto ambiguity =
+          deviations_by_ambiguity(solved, is_halved ? 1 / std::sqrt(12.0) : 0.12);
       for (std::size_t part = 0; part < 3; ++part) {
-        EXPECT_NEAR(actual[part], expected[part], 1e-9) << name_of(states) << ", part " << part;
+        EXPECT_NEAR(actual[part], std::hypot(expected[part], ambiguity[part]), 1e-9)
+            << name_of(states) << ", part " << part;
       }
     }
   }
@@ -309,7 +349,8 @@ TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
                                                direction_of(solved.force), solved.scale);
       const Real most = static_cast<Real>(1e6);
       const auto deviations =
-          force_deviations(pillar, solved.diagonals, {most, most, most, most}, solved.scale);
+          force_deviations(pillar, solved.diagonals, solved.sum, {most, most, most, most},
+                           static_cast<Real>(kSegmentPoint), solved.scale);
       for (const Real value : {interval.theta_low, interval.theta_high, interval.phi_low,
                                interval.phi_high, interval.magnitude_low, interval.magnitude_high,
                                deviations.shear_x, deviations.shear_y, deviations.normal}) {

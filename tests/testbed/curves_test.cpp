@@ -63,15 +63,18 @@ TEST_P(Contour, HoldsTheRatioWithinItsRegion) {
   EXPECT_NEAR(std::max(bracket(1, theta, phi), bracket(2, theta, phi)), 0, 1e-12);
 }
 
-TEST_P(Contour, MiddlesLieOnIt) {
+TEST_P(Contour, EstimatesLieOnIt) {
   const double ratio = GetParam();
   for (const Estimator estimator : {Estimator::paper, Estimator::direct}) {
-    const auto [theta, phi] = middle_of_contour(ratio, estimator);
+    const auto [theta, phi] = point_on_contour(ratio, estimator);
     EXPECT_NEAR(bracket(3, theta, phi), ratio * bracket(4, theta, phi), 1e-12);
   }
   const std::vector<Angles> ends = contour(ratio, 2);
-  EXPECT_NEAR(middle_of_contour(ratio, Estimator::paper).theta,
+  EXPECT_NEAR(point_on_contour(ratio, Estimator::paper).theta,
               (ends.front().theta + ends.back().theta) / 2, 1e-12);
+  const double sum = 0.875 * std::min(ratio, 1.0);
+  EXPECT_NEAR(point_on_contour(ratio, Estimator::direct).theta,
+              std::atan2(std::hypot(2 * ratio - sum, 2 - sum), sum), 1e-12);
 }
 
 TEST_P(Contour, HalfWidthsAreHalfOfItsExtent) {

@@ -11,8 +11,8 @@
 namespace pillarfield {
 
 /// What is told of the uncertainty of a force (docs/derivations/uncertainty.md). The first three
-/// are standard deviations from the noise of the sensels, N; in an ambiguous pillar they are those
-/// of the middle of the segment. The others are the ends of what direction and magnitude may be,
+/// are standard deviations, N: of the noise of the sensels, and in an ambiguous pillar also of what
+/// its readings leave open. The others are the ends of what direction and magnitude may be,
 /// noise apart: both the estimate itself where the pillar is not ambiguous. They hold for pillars
 /// without missing and saturated sensels.
 enum class Uncertainty : std::uint8_t {

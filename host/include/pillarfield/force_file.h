@@ -19,12 +19,14 @@ struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
   double pillar_pitch_mm = 0;
-  std::string estimator;                        ///< "direct" or "paper"
+  std::string estimator;                        ///< "direct", "paper" or "field"
   std::string device;                           ///< name of the device that solved it
   std::string source;                           ///< name of the file the frames came from
   bool angles = false;                          ///< with magnitude, theta and phi
   bool uncertainty = false;                     ///< with the planes of Uncertainty
   std::optional<ContactOptions> contacts = {};  ///< with the contacts that these find; HDF5 only
+  /// That of SolverPlan; unset: the file does not say. HDF5 only.
+  std::optional<double> segment_point = {};
 };
 
 /// Takes solved frames one by one. Like recordings, files are written under `path` + ".part" and

@@ -46,8 +46,9 @@ struct Scene {
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
-  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan, as the three that follow
+  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan, as the four that follow
   Estimator estimator = Estimator::direct;
+  double segment_point = kSegmentPoint;
   FieldEvidence field;
   FrictionKnowledge friction;
   bool angles = false;
