@@ -191,14 +191,40 @@ class Work(CommandTest):
         scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
         run("simulate", scene, "-o", self.recording, "--frames", 2)
         errors = {}
-        for estimator in ("direct", "field"):
+        for estimator in ("direct", "field", "contact"):
             solved = run_json("solve", self.recording, "-o", self.forces, "--noise", 0.5,
                               "--estimator", estimator)
             compared = run_json("compare", self.forces, self.recording)
             errors[estimator] = compared["regions"]["3"]["rms_n"]
             self.assertEqual("resolve_field" in solved["stages"], estimator == "field")
-            self.assertEqual(solved["resolved"] > 0, estimator == "field")
-        self.assertLess(errors["field"], 0.3 * errors["direct"])
+            self.assertEqual("estimate_contacts" in solved["stages"], estimator == "contact")
+            self.assertEqual(solved["resolved"] > 0, estimator != "direct")
+        self.assertLess(errors["field"], 0.6 * errors["direct"])
+        self.assertLess(errors["contact"], 0.6 * errors["direct"])
+
+    def test_what_is_known_of_friction_reaches_the_contacts(self):
+        scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
+        run("simulate", scene, "-o", self.recording, "--frames", 1)
+        normals = []
+        for known in ((), ("--friction", 1.2), ("--friction-bound", 1.5),
+                      ("--friction-prior", "3,0.1")):
+            run("solve", self.recording, "-o", self.forces, "--estimator", "contact", *known)
+            with h5py.File(self.forces) as file:
+                normals.append(float(file["force/normal"][:].sum()))
+        self.assertEqual(len(set(normals)), 4)
+        # A larger friction leaves less normal force for the same readings.
+        self.assertEqual(max(normals), normals[1])
+        self.assertEqual(min(normals), normals[3])
+
+    def test_knowledge_of_friction_is_checked(self):
+        run("simulate", self.scene, "-o", self.recording)
+        contact = ("solve", self.recording, "-o", self.forces, "--estimator", "contact")
+        self.assert_fails(*contact, "--friction", 20, says=["the friction is 20", "[0.1, 9.9]"])
+        self.assert_fails(*contact, "--friction-prior", "0.05,0.5", says=["median", "0.05"])
+        self.assert_fails(*contact, "--friction-prior", "1,9", says=["spread"])
+        self.assert_fails(*contact, "--slips", says=["field estimator"])
+        self.assert_fails("solve", self.recording, "-o", self.forces, "--friction-bound", 2,
+                          says=["--estimator contact"])
 
     def test_frames_that_are_close_know_of_the_one_before(self):
         self.scene.write_text(GROWING_SHEAR)
