@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,9 @@ using double_precision::Force;
 
 constexpr double kBand = 1.96;    // standard deviations that hold 95 % of a normal distribution
 constexpr double kEndsSlack = 3;  // standard deviations
+/// Noise of the vector in region 3, by that of the shear component that readings determine: 1.30 at
+/// any segment point but for 2 %.
+constexpr double kNoiseOfSegment = 1.3;
 constexpr double kSingle = 1e-6;  // rounding of planes in single precision
 constexpr double kTurn = 2 * std::numbers::pi;
 
@@ -26,10 +30,20 @@ class Stated {
 
   double operator[](Uncertainty plane) const { return field_.uncertainty[plane][pillar_]; }
 
-  /// Standard deviation of the force's vector, N.
-  [[nodiscard]] double vector_deviation() const {
-    return std::hypot((*this)[Uncertainty::shear_x], (*this)[Uncertainty::shear_y],
-                      (*this)[Uncertainty::normal]);
+  /// Standard deviation that noise gives the force's vector, N. That of ambiguous pillars is taken
+  /// from the components that hold nothing else (docs/derivations/uncertainty.md, U3, U9).
+  [[nodiscard]] double noise_deviation() const {
+    const double x = (*this)[Uncertainty::shear_x];
+    const double y = (*this)[Uncertainty::shear_y];
+    const double normal = (*this)[Uncertainty::normal];
+    const std::uint8_t bits = field_.status[pillar_];
+    const bool open = (bits & status::kAmbiguous) != 0 && (bits & status::kFromNeighbours) == 0;
+    if (open && region_of(bits) == Region::three) return kNoiseOfSegment * std::min(x, y);
+    // The normal force of region 4 has no noise, and the shear half of its variance each way.
+    if (open && region_of(bits) == Region::four) {
+      return std::sqrt(std::max(0.0, x * x + y * y - normal * normal));
+    }
+    return std::hypot(x, y, normal);
   }
 
  private:
@@ -49,7 +63,7 @@ bool is_between_turns(double angle, double low, double high, double slack) {
 }
 
 bool lies_between_ends(const Direction& truth, const Stated& stated) {
-  const double slack = kEndsSlack * stated.vector_deviation() + kSingle * truth.magnitude;
+  const double slack = kEndsSlack * stated.noise_deviation() + kSingle * truth.magnitude;
   const double angle_slack = truth.magnitude > 0 ? slack / truth.magnitude : kTurn;
   const double sine = std::sin(truth.theta);
   const double phi_slack = sine > 0 ? angle_slack / sine : kTurn;
