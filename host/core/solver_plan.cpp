@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/scene_limits.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
 
