@@ -62,6 +62,15 @@ double ratio_at(const maths::Segment& segment, double normal) {
 
 }  // namespace
 
+void ContactEstimator::Workspace::clear() {
+  ratios.clear();
+  bounds.clear();
+  predicted.clear();
+  samples.clear();
+  ambiguous.clear();
+  peak_n = 0;
+}
+
 ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
                                    const ContactParameters& parameters)
     : parameters_(parameters),
@@ -175,129 +184,139 @@ double ContactEstimator::deviation_of_ratio(double normal) const {
   return std::sqrt(noise * noise + parameters_.ratio_deviation * parameters_.ratio_deviation);
 }
 
+/// The box about a contact.
+void ContactEstimator::measure(std::span<const ContactRun> runs, Contact& contact) const {
+  contact.first_row = runs.front().row;
+  contact.rows = runs.back().row - runs.front().row + 1;
+  contact.first_col = cols_;
+  std::uint32_t end_col = 0;
+  for (const ContactRun& run : runs) {
+    contact.pillars += run.end - run.first;
+    contact.first_col = std::min(contact.first_col, run.first);
+    end_col = std::max(end_col, run.end);
+  }
+  contact.cols = end_col - contact.first_col;
+}
+
 /// Collects what sampled pillars of a contact show.
 void ContactEstimator::gather(const maths::Field& field, Contact& contact,
                               std::span<const ContactRun> runs, Workspace& work) const {
-  work.ratios.clear();
-  work.bounds.clear();
-  work.predicted.clear();
-  work.samples.clear();
-  work.ambiguous.clear();
-  std::uint32_t pillars = 0;
-  std::uint32_t first_col = cols_;
-  std::uint32_t end_col = 0;
-  for (const ContactRun& run : runs) {
-    pillars += run.end - run.first;
-    first_col = std::min(first_col, run.first);
-    end_col = std::max(end_col, run.end);
-  }
-  const double height = runs.back().row - runs.front().row + 1;
-  contact.centre_row = 0.5 * (runs.front().row + runs.back().row);
-  contact.centre_col = 0.5 * (first_col + end_col - 1.0);
-  contact.scale = 0.5 * std::max<double>(height, end_col - first_col) + 1;
-  const std::uint32_t step = (pillars + kMostAsked - 1) / kMostAsked;
-  const double least = parameters_.least_normal * noise_n_;
-  double peak = 0;
+  work.clear();
+  measure(runs, contact);
+  const std::uint32_t step = (contact.pillars + kMostAsked - 1) / kMostAsked;
   std::uint32_t skip = 0;
   for (const ContactRun& run : runs) {
     std::uint32_t col = run.first + skip;
-    for (; col < run.end; col += step) {
-      const std::uint32_t index = run.row * cols_ + col;
-      const std::uint8_t status = field.status[index];
-      const double normal = field.normal[index];
-      if (!(normal > 0 && normal < kMostNormal)) continue;
-      if (maths::is_open(status)) {
-        contact.any_ambiguous = true;
-        work.ambiguous.push_back(index);
-        const maths::Segment segment = segment_of(field, index);
-        const double high = segment.high;
-        peak = std::max(peak, high);
-        if (!(high > least)) continue;
-        work.bounds.push_back(
-            {ratio_at(segment, high),
-             std::hypot(parameters_.noise_of_ratio * noise_n_ / high, parameters_.ratio_deviation),
-             0});
-      } else if (maths::is_determined(status)) {
-        peak = std::max(peak, normal);
-        work.samples.push_back({(col - contact.centre_col) / contact.scale,
-                                (run.row - contact.centre_row) / contact.scale, normal * normal,
-                                1});
-        if (!(normal > least) || (status & status::kAmbiguous) != 0) continue;
-        const double x = field.shear_x[index];
-        const double y = field.shear_y[index];
-        work.ratios.push_back(
-            {std::sqrt(x * x + y * y) / normal, deviation_of_ratio(normal), ceiling_of(x, y)});
-      }
-    }
+    for (; col < run.end; col += step) ask(field, contact, run.row, col, work);
     skip = col - run.end;
   }
-  if (!contact.any_ambiguous && step > 1) {
-    // Those that were passed over may still be ambiguous.
-    contact.any_ambiguous = true;
-  }
-  if (!work.ambiguous.empty() && !work.samples.empty()) {
-    add_edges(field, contact, runs, 1.0 / step, peak, work);
+  // Those that were passed over may still be ambiguous.
+  contact.any_ambiguous = !work.ambiguous.empty() || step > 1;
+  if (work.ambiguous.empty() || work.samples.empty()) return;
+  add_ends_of_rows(field, contact, runs, 1.0 / step, work);
+  add_ends_of_columns(field, contact, runs, 1.0 / step, work);
+}
+
+/// Collects what one pillar shows.
+void ContactEstimator::ask(const maths::Field& field, const Contact& contact, std::uint32_t row,
+                           std::uint32_t col, Workspace& work) const {
+  const std::uint32_t index = row * cols_ + col;
+  const std::uint8_t status = field.status[index];
+  const double normal = field.normal[index];
+  const double least = parameters_.least_normal * noise_n_;
+  if (!(normal > 0 && normal < kMostNormal)) return;
+  if (maths::is_open(status)) {
+    const maths::Segment segment = segment_of(field, index);
+    const double high = segment.high;
+    work.ambiguous.push_back(index);
+    work.peak_n = std::max(work.peak_n, high);
+    if (high > least) work.bounds.push_back({ratio_at(segment, high), deviation_of_ratio(high), 0});
+  } else if (maths::is_determined(status)) {
+    work.peak_n = std::max(work.peak_n, normal);
+    work.samples.push_back({contact.x_of(col), contact.y_of(row), normal * normal, 1});
+    if (!(normal > least) || (status & status::kAmbiguous) != 0) return;
+    const double x = field.shear_x[index];
+    const double y = field.shear_y[index];
+    work.ratios.push_back(
+        {std::sqrt(x * x + y * y) / normal, deviation_of_ratio(normal), ceiling_of(x, y)});
   }
 }
 
-/// The normal force vanishes at a contact's edge, unless its outermost pillars bear much (C7).
-void ContactEstimator::add_edges(const maths::Field& field, const Contact& contact,
-                                 std::span<const ContactRun> runs, double weight, double peak_n,
-                                 Workspace& work) const {
-  const auto add = [&](std::uint32_t row, std::uint32_t col, int down, int right, double each) {
-    const std::uint32_t index = row * cols_ + col;
-    double most = most_normal(field, index);
-    const std::int64_t inner_row = std::int64_t{row} - down;
-    const std::int64_t inner_col = std::int64_t{col} - right;
-    if (inner_row >= 0 && inner_row < rows_ && inner_col >= 0 && inner_col < cols_) {
-      most = std::max(most, most_normal(field, static_cast<std::uint32_t>(inner_row) * cols_ +
-                                                   static_cast<std::uint32_t>(inner_col)));
-    }
-    const double rest = std::max(1 - most / peak_n, 0.0);
-    work.samples.push_back({(col + kEdge * right - contact.centre_col) / contact.scale,
-                            (row + kEdge * down - contact.centre_row) / contact.scale, 0,
-                            each * rest * rest});
-  };
-  const std::uint32_t first_row = runs.front().row;
-  const std::uint32_t rows = runs.back().row - first_row + 1;
-  const std::uint32_t row_step = (rows + kMostEdges - 1) / kMostEdges;
+/// The normal force vanishes at a contact's edge, unless its outermost pillars bear much (C7). The
+/// edge lies `down` or `right` (1, 0 or -1) of the pillar.
+void ContactEstimator::add_edge(const maths::Field& field, const Contact& contact, const Edge& edge,
+                                double weight, Workspace& work) const {
+  double most = most_normal(field, edge.row * cols_ + edge.col);
+  const std::int64_t inner_row = std::int64_t{edge.row} - edge.down;
+  const std::int64_t inner_col = std::int64_t{edge.col} - edge.right;
+  if (inner_row >= 0 && inner_row < rows_ && inner_col >= 0 && inner_col < cols_) {
+    most = std::max(most, most_normal(field, static_cast<std::uint32_t>(inner_row) * cols_ +
+                                                 static_cast<std::uint32_t>(inner_col)));
+  }
+  const double rest = std::max(1 - most / work.peak_n, 0.0);
+  work.samples.push_back({contact.x_of(edge.col + kEdge * edge.right),
+                          contact.y_of(edge.row + kEdge * edge.down), 0, weight * rest * rest});
+}
+
+void ContactEstimator::add_ends_of_rows(const maths::Field& field, const Contact& contact,
+                                        std::span<const ContactRun> runs, double weight,
+                                        Workspace& work) const {
+  const std::uint32_t step = (contact.rows + kMostEdges - 1) / kMostEdges;
   for (std::size_t i = 0; i < runs.size();) {
     std::size_t end = i + 1;
     while (end < runs.size() && runs[end].row == runs[i].row) ++end;
-    if ((runs[i].row - first_row) % row_step == 0) {
-      if (runs[i].first > 0) add(runs[i].row, runs[i].first, 0, -1, weight * row_step);
-      if (runs[end - 1].end < cols_)
-        add(runs[i].row, runs[end - 1].end - 1, 0, 1, weight * row_step);
-    }
+    const std::uint32_t row = runs[i].row;
+    const std::uint32_t first = runs[i].first;
+    const std::uint32_t last = runs[end - 1].end - 1;
     i = end;
+    if ((row - contact.first_row) % step != 0) continue;
+    if (first > 0) add_edge(field, contact, {row, first, 0, -1}, weight * step, work);
+    if (last + 1 < cols_) add_edge(field, contact, {row, last, 0, 1}, weight * step, work);
   }
-  std::uint32_t first_col = cols_;
-  std::uint32_t end_col = 0;
-  for (const ContactRun& run : runs) {
-    first_col = std::min(first_col, run.first);
-    end_col = std::max(end_col, run.end);
-  }
-  const std::uint32_t col_step = (end_col - first_col + kMostEdges - 1) / kMostEdges;
-  const std::uint32_t columns = (end_col - first_col + col_step - 1) / col_step;
+}
+
+void ContactEstimator::add_ends_of_columns(const maths::Field& field, const Contact& contact,
+                                           std::span<const ContactRun> runs, double weight,
+                                           Workspace& work) const {
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  const std::uint32_t step = (contact.cols + kMostEdges - 1) / kMostEdges;
+  const std::uint32_t columns = (contact.cols + step - 1) / step;
   work.top.assign(columns, kNone);
   work.bottom.assign(columns, 0);
   for (const ContactRun& run : runs) {
-    const std::uint32_t from = (run.first - first_col + col_step - 1) / col_step;
-    for (std::uint32_t i = from; i < columns && first_col + i * col_step < run.end; ++i) {
-      if (work.top[i] == kNone) work.top[i] = run.row;
+    const std::uint32_t first = (run.first - contact.first_col + step - 1) / step;
+    for (std::uint32_t i = first; i < columns && contact.first_col + i * step < run.end; ++i) {
+      work.top[i] = std::min(work.top[i], run.row);
       work.bottom[i] = run.row;
     }
   }
   for (std::uint32_t i = 0; i < columns; ++i) {
     if (work.top[i] == kNone) continue;
-    const std::uint32_t col = first_col + i * col_step;
-    if (work.top[i] > 0) add(work.top[i], col, -1, 0, weight * col_step);
-    if (work.bottom[i] + 1 < rows_) add(work.bottom[i], col, 1, 0, weight * col_step);
+    const std::uint32_t col = contact.first_col + i * step;
+    if (work.top[i] > 0) add_edge(field, contact, {work.top[i], col, -1, 0}, weight * step, work);
+    if (work.bottom[i] + 1 < rows_) {
+      add_edge(field, contact, {work.bottom[i], col, 1, 0}, weight * step, work);
+    }
   }
 }
 
-/// What the regression of the pressure predicts of ambiguous pillars tells of the friction, too.
+/// What the regression of the pressure predicts of a pillar (C6); no more than readings allow.
+std::optional<ContactEstimator::NormalEstimate> ContactEstimator::predicted(const Contact& contact,
+                                                                            std::uint32_t index,
+                                                                            double high) const {
+  if (!contact.pressure) return std::nullopt;
+  const std::uint32_t row = index / cols_;
+  const PressureRegression::Prediction found =
+      contact.pressure->at(contact.x_of(index - row * cols_), contact.y_of(row));
+  if (!(found.square > 0)) return std::nullopt;
+  const double normal = std::min(std::sqrt(found.square), high + noise_n_);
+  const double factor = parameters_.regression_factor;
+  const double own = parameters_.prediction_deviation * normal;
+  return NormalEstimate{normal, factor * factor * found.variance / (4 * found.square) +
+                                    noise_n_ * noise_n_ + own * own};
+}
+
+/// What is predicted of ambiguous pillars tells of the friction, too.
 void ContactEstimator::predict(const maths::Field& field, const Contact& contact,
                                Workspace& work) const {
   constexpr double kMostDeviation = 0.35;  // of a prediction that is heard, relative
@@ -306,25 +325,17 @@ void ContactEstimator::predict(const maths::Field& field, const Contact& contact
   for (std::size_t i = 0; i < work.ambiguous.size(); i += step) {
     const std::uint32_t index = work.ambiguous[i];
     const maths::Segment segment = segment_of(field, index);
-    const PressureRegression::Prediction square =
-        contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,
-                             (index / cols_ - contact.centre_row) / contact.scale);
-    if (!(square.square > 0)) continue;
-    const double normal = std::min(std::sqrt(square.square), segment.high + noise_n_);
-    const double factor = parameters_.regression_factor;
-    const double deviation = std::sqrt(
-        factor * factor * square.variance / (4 * square.square) + noise_n_ * noise_n_ +
-        parameters_.prediction_deviation * parameters_.prediction_deviation * normal * normal);
-    if (!(deviation < kMostDeviation * normal && normal > parameters_.least_normal * noise_n_)) {
-      continue;
-    }
-    const double ratio = ratio_at(segment, normal);
+    const auto found = predicted(contact, index, segment.high);
+    if (!found) continue;
+    const double normal = found->normal;
+    const double deviation = std::sqrt(found->variance) / normal;
+    if (!(deviation < kMostDeviation && normal > parameters_.least_normal * noise_n_)) continue;
     const double steepness = std::abs(std::log(ratio_at(segment, normal * (1 + kStep)) /
                                                ratio_at(segment, normal * (1 - kStep)))) /
                              (2 * kStep);
-    work.predicted.push_back(
-        {ratio, std::hypot(deviation / normal * steepness, deviation_of_ratio(normal)),
-         kNoCeiling});
+    work.predicted.push_back({ratio_at(segment, normal),
+                              std::hypot(deviation * steepness, deviation_of_ratio(normal)),
+                              kNoCeiling});
   }
 }
 
@@ -421,20 +432,10 @@ void ContactEstimator::write(const maths::Field& field, const Contact& contact, 
   const double own = parameters_.ratio_deviation * mean;  // a pillar is not quite at the friction
   double variance =
       std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n_ * noise_n_ + own * own;
-  if (contact.pressure) {
-    const PressureRegression::Prediction predicted =
-        contact.pressure->at((index % cols_ - contact.centre_col) / contact.scale,
-                             (index / cols_ - contact.centre_row) / contact.scale);
-    if (predicted.square > 0) {
-      const double normal = std::min(std::sqrt(predicted.square), high + noise_n_);
-      const double factor = parameters_.regression_factor;
-      const double other =
-          factor * factor * predicted.variance / (4 * predicted.square) + noise_n_ * noise_n_ +
-          parameters_.prediction_deviation * parameters_.prediction_deviation * normal * normal;
-      const double weight = variance / (variance + other);
-      mean += weight * (normal - mean);
-      variance *= 1 - weight;
-    }
+  if (const auto found = predicted(contact, index, high)) {
+    const double weight = variance / (variance + found->variance);
+    mean += weight * (found->normal - mean);
+    variance *= 1 - weight;
   }
   mean = std::min(mean, high);
   const double deviation = std::sqrt(variance);

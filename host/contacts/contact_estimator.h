@@ -53,7 +53,10 @@ class ContactEstimator {
     std::vector<PressureRegression::Sample> samples;
     std::vector<std::uint32_t> ambiguous;  ///< sampled, by index in the frame
     std::vector<std::uint32_t> top;        ///< first row of the contact in each sampled column
-    std::vector<std::uint32_t> bottom;     ///< and one past the last
+    std::vector<std::uint32_t> bottom;     ///< and its last
+    double peak_n = 0;  ///< the largest normal force that a sampled pillar may have
+
+    void clear();
   };
 
   /// What its ambiguous pillars are estimated with.
@@ -61,21 +64,53 @@ class ContactEstimator {
     static constexpr std::size_t kNodes = 6;
     std::array<float, kNodes> nodes{};  ///< frictions of equal probability
     std::optional<PressureRegression> pressure;
-    double centre_row = 0;
-    double centre_col = 0;
-    double scale = 1;  ///< pillars
+    std::uint32_t first_row = 0;  ///< of the box about it
+    std::uint32_t first_col = 0;
+    std::uint32_t rows = 0;
+    std::uint32_t cols = 0;
+    std::uint32_t pillars = 0;
     bool any_ambiguous = false;
+
+    /// Places in the regression: from the box's middle, about 1 at its farther edges.
+    [[nodiscard]] double x_of(double col) const {
+      return (col - first_col - 0.5 * (cols - 1)) / scale();
+    }
+    [[nodiscard]] double y_of(double row) const {
+      return (row - first_row - 0.5 * (rows - 1)) / scale();
+    }
+    [[nodiscard]] double scale() const { return 0.5 * (rows > cols ? rows : cols) + 1; }
+  };
+
+  /// A side at which a contact ends: next to which pillar, and where from there (1, 0 or -1).
+  struct Edge {
+    std::uint32_t row;
+    std::uint32_t col;
+    int down;
+    int right;
+  };
+
+  struct NormalEstimate {
+    double normal;    ///< N
+    double variance;  ///< N²
   };
 
   struct Batch;
 
   void match();
-  void learn(const single_precision::Field& field, std::uint32_t contact, Workspace& work);
+  void learn(const single_precision::Field& field, std::uint32_t number, Workspace& work);
+  void measure(std::span<const ContactRun> runs, Contact& contact) const;
   void gather(const single_precision::Field& field, Contact& contact,
               std::span<const ContactRun> runs, Workspace& work) const;
-  void add_edges(const single_precision::Field& field, const Contact& contact,
-                 std::span<const ContactRun> runs, double weight, double peak_n,
-                 Workspace& work) const;
+  void ask(const single_precision::Field& field, const Contact& contact, std::uint32_t row,
+           std::uint32_t col, Workspace& work) const;
+  void add_edge(const single_precision::Field& field, const Contact& contact, const Edge& edge,
+                double weight, Workspace& work) const;
+  void add_ends_of_rows(const single_precision::Field& field, const Contact& contact,
+                        std::span<const ContactRun> runs, double weight, Workspace& work) const;
+  void add_ends_of_columns(const single_precision::Field& field, const Contact& contact,
+                           std::span<const ContactRun> runs, double weight, Workspace& work) const;
+  [[nodiscard]] std::optional<NormalEstimate> predicted(const Contact& contact, std::uint32_t index,
+                                                        double high) const;
   [[nodiscard]] single_precision::Segment segment_of(const single_precision::Field& field,
                                                      std::uint32_t index) const;
   [[nodiscard]] double most_normal(const single_precision::Field& field, std::uint32_t index) const;
