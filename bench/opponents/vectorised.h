@@ -8,8 +8,8 @@ namespace pillarfield::bench {
 /// AVX2, whichever the processor has.
 ///
 /// Readings are whole numbers, and with a threshold that is one too, all of the solve but the last
-/// product is exact in 16-bit integers of eighths of a count: the result has the bits of the kernels,
-/// which compute in single precision.
+/// product is exact in 16-bit integers of eighths of a count: the result has the bits of the
+/// kernels, which compute in single precision.
 struct Vectorised {
   const char* instructions = nullptr;  ///< "AVX-512", "AVX2", or null: this processor has neither
   SolveRows cached = nullptr;

@@ -144,7 +144,7 @@ void apply_segment_point(const PlanOptions& options, const std::string& source, 
   if (!options.segment_point) return;
   if (plan.estimator == Estimator::paper) {
     throw Error(source, "--segment-point is of no use to the paper's estimator",
-                "leave it out, or take --estimator direct or field");
+                "leave it out, or take another --estimator");
   }
   plan.segment_point = *options.segment_point;
 }

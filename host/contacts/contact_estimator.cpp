@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/field_planes.h"
 #include "core/status_word.h"
 #include "core/wide.h"
 #include "pillarfield/status.h"
@@ -45,9 +46,8 @@ double noise_of(const SolverPlan& plan) {
   return counts / plan.skin.counts_per_newton;
 }
 
-float* floats_or_null(std::vector<float>& plane) { return plane.empty() ? nullptr : plane.data(); }
-
-/// Sensels 1 to 4 of the direction of a determined pillar's shear lift beyond this ratio (C4).
+/// The largest ratio of shear to normal force at which a pillar that is sheared in this direction
+/// has three usable sensels and so a determined force (C4).
 double ceiling_of(double shear_x, double shear_y) {
   const double least = std::min(std::abs(shear_x + shear_y), std::abs(shear_y - shear_x));
   const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y);
@@ -85,19 +85,7 @@ ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
       workspaces_(threads),
       team_(std::make_unique<WorkTeam>(threads)) {}
 
-void ContactEstimator::resolve(ForceField& field) {
-  auto& uncertainty = field.uncertainty;
-  resolve({field.shear_x.data(), field.shear_y.data(), field.normal.data(), field.status.data(),
-           nullptr, nullptr, nullptr, floats_or_null(uncertainty[Uncertainty::shear_x]),
-           floats_or_null(uncertainty[Uncertainty::shear_y]),
-           floats_or_null(uncertainty[Uncertainty::normal]),
-           floats_or_null(uncertainty[Uncertainty::theta_low]),
-           floats_or_null(uncertainty[Uncertainty::theta_high]),
-           floats_or_null(uncertainty[Uncertainty::phi_low]),
-           floats_or_null(uncertainty[Uncertainty::phi_high]),
-           floats_or_null(uncertainty[Uncertainty::magnitude_low]),
-           floats_or_null(uncertainty[Uncertainty::magnitude_high]), field.rows, field.cols});
-}
+void ContactEstimator::resolve(ForceField& field) { resolve(planes_of(field)); }
 
 void ContactEstimator::resolve(const maths::Field& field, const SilentBlocks& idle) {
   map_.find({field.status, std::size_t{rows_} * cols_}, rows_, cols_, idle);
@@ -319,8 +307,8 @@ std::optional<ContactEstimator::NormalEstimate> ContactEstimator::predicted(cons
 /// What is predicted of ambiguous pillars tells of the friction, too.
 void ContactEstimator::predict(const maths::Field& field, const Contact& contact,
                                Workspace& work) const {
-  constexpr double kMostDeviation = 0.35;  // of a prediction that is heard, relative
-  constexpr double kStep = 0.02;
+  constexpr double kMostDeviation = 0.35;  // relative, of a prediction that is used
+  constexpr double kStep = 0.02;           // relative, of the derivative of the ratio
   const std::size_t step = (work.ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
   for (std::size_t i = 0; i < work.ambiguous.size(); i += step) {
     const std::uint32_t index = work.ambiguous[i];
@@ -339,23 +327,10 @@ void ContactEstimator::predict(const maths::Field& field, const Contact& contact
   }
 }
 
-/// What readings leave of a lot of ambiguous pillars, and what is estimated of them.
-struct ContactEstimator::Batch {
-  static constexpr std::size_t kPillars = 32;
-  using Values = std::array<float, kPillars>;
-  std::array<std::uint32_t, kPillars> index{};
-  std::array<maths::Segment, kPillars> segments{};
-  Values fixed{};
-  Values moving{};
-  Values high{};
-  Values mean{};    ///< of the normal force, N
-  Values square{};  ///< its mean square, N²
-  std::size_t pillars = 0;
-};
-
 namespace {
 
-using Values = std::array<float, 32>;
+constexpr std::size_t kBatchPillars = 32;
+using Values = std::array<float, kBatchPillars>;
 
 /// Mean and mean square of normal forces over frictions of equal probability, at which pillars slip
 /// or, with a probability, stick (C8).
@@ -382,12 +357,23 @@ PF_WIDE void average(const Values& fixed, const Values& moving, const Values& hi
 
 }  // namespace
 
+/// Some ambiguous pillars of a contact: their segments, and the normal forces on them.
+struct ContactEstimator::Batch {
+  std::array<std::uint32_t, kBatchPillars> index{};
+  Values fixed{};  ///< as in Segment, N
+  Values moving{};
+  Values high{};
+  Values mean{};    ///< of the normal force, N
+  Values square{};  ///< its mean square, N²
+  std::size_t pillars = 0;
+};
+
 /// Estimates the ambiguous pillars of a contact, some at a time.
 void ContactEstimator::estimate(const maths::Field& field, std::uint32_t number) const {
   const Contact& contact = contacts_[number];
   Batch batch;
   const auto finish = [&] {
-    for (std::size_t i = batch.pillars; i < Batch::kPillars; ++i) {
+    for (std::size_t i = batch.pillars; i < kBatchPillars; ++i) {
       batch.fixed[i] = batch.moving[i] = batch.high[i] = 1;
     }
     average(batch.fixed, batch.moving, batch.high, contact.nodes,
@@ -400,11 +386,10 @@ void ContactEstimator::estimate(const maths::Field& field, std::uint32_t number)
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormal)) return;
     const maths::Segment segment = segment_of(field, index);
     batch.index[batch.pillars] = index;
-    batch.segments[batch.pillars] = segment;
     batch.fixed[batch.pillars] = segment.fixed;
     batch.moving[batch.pillars] = segment.moving;
     batch.high[batch.pillars] = segment.high;
-    if (++batch.pillars == Batch::kPillars) finish();
+    if (++batch.pillars == kBatchPillars) finish();
   };
   for (const ContactRun& run : map_.runs(number)) {
     std::uint32_t index = run.row * cols_ + run.first;

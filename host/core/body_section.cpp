@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/named_value.h"
+#include "core/path_section.h"
 #include "core/scene_limits.h"
 
 namespace pillarfield {
@@ -86,27 +87,6 @@ BodyKey read_body_key(TomlSection& section) {
   return {0, position->front(), position->back(), angle.value_or(0), *load};
 }
 
-std::vector<BodyKey> read_body_path(TomlSection& section) {
-  auto keys = section.tables("path", "path of [[body]]");
-  if (!keys) return {read_body_key(section)};
-  for (const std::string_view key : {"position_mm", "angle_deg", "load_n"}) {
-    if (section.has(key)) section.fail(key, "comes with path", "one of the two");
-  }
-  std::vector<BodyKey> path;
-  for (TomlSection& key : *keys) {
-    const auto time = key.number("time_s", kPathTimeS);
-    if (!time) key.fail_missing("time_s", kPathTimeS.text());
-    if (!path.empty() && *time <= path.back().time_s) {
-      key.fail("time_s", fmt::format("is {}", *time),
-               fmt::format("more than that of the key before, {}", path.back().time_s));
-    }
-    path.push_back(read_body_key(key));
-    path.back().time_s = *time;
-    key.finish();
-  }
-  return path;
-}
-
 }  // namespace
 
 Body read_body(TomlSection& section, const std::filesystem::path& folder) {
@@ -119,7 +99,8 @@ Body read_body(TomlSection& section, const std::filesystem::path& folder) {
   if (const auto substeps = section.whole_number("substeps", 1, kMaxSubsteps)) {
     body.substeps = static_cast<std::uint32_t>(*substeps);
   }
-  body.path = read_body_path(section);
+  body.path = read_path<BodyKey>(section, "path of [[body]]",
+                                 {"position_mm", "angle_deg", "load_n"}, read_body_key);
   section.finish();
   return body;
 }

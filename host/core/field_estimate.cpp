@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/field_planes.h"
+
 namespace pillarfield {
 namespace {
 
@@ -11,31 +13,6 @@ constexpr std::size_t kFloatPlanes = 6;
 
 /// Threads share pillars that stay alone in such lots; a smaller one is not worth waking them.
 constexpr std::size_t kAlonePiece = 1024;
-
-/// A plane's values; null where it is empty.
-float* values(std::vector<float>& plane) { return plane.empty() ? nullptr : plane.data(); }
-
-maths::Field planes_of(ForceField& field) {
-  auto& uncertainty = field.uncertainty;
-  return {field.shear_x.data(),
-          field.shear_y.data(),
-          field.normal.data(),
-          field.status.data(),
-          nullptr,
-          nullptr,
-          nullptr,
-          values(uncertainty[Uncertainty::shear_x]),
-          values(uncertainty[Uncertainty::shear_y]),
-          values(uncertainty[Uncertainty::normal]),
-          values(uncertainty[Uncertainty::theta_low]),
-          values(uncertainty[Uncertainty::theta_high]),
-          values(uncertainty[Uncertainty::phi_low]),
-          values(uncertainty[Uncertainty::phi_high]),
-          values(uncertainty[Uncertainty::magnitude_low]),
-          values(uncertainty[Uncertainty::magnitude_high]),
-          field.rows,
-          field.cols};
-}
 
 }  // namespace
 

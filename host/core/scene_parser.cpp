@@ -10,6 +10,7 @@
 #include "core/body_section.h"
 #include "core/chart.h"
 #include "core/named_value.h"
+#include "core/path_section.h"
 #include "core/scene_limits.h"
 #include "core/toml_depth.h"
 #include "core/toml_section.h"
@@ -257,27 +258,6 @@ ContactKey read_state(TomlSection& section) {
   return {0, position->front(), position->back(), *load};
 }
 
-std::vector<ContactKey> read_path(TomlSection& section) {
-  auto keys = section.tables("path", "path of [[contact]]");
-  if (!keys) return {read_state(section)};
-  for (const std::string_view key : {"position_mm", "load_n"}) {
-    if (section.has(key)) section.fail(key, "comes with path", "one of the two");
-  }
-  std::vector<ContactKey> path;
-  for (TomlSection& key : *keys) {
-    const auto time = key.number("time_s", kPathTimeS);
-    if (!time) key.fail_missing("time_s", kPathTimeS.text());
-    if (!path.empty() && *time <= path.back().time_s) {
-      key.fail("time_s", fmt::format("is {}", *time),
-               fmt::format("more than that of the key before, {}", path.back().time_s));
-    }
-    path.push_back(read_state(key));
-    path.back().time_s = *time;
-    key.finish();
-  }
-  return path;
-}
-
 /// The load at which a contact has its radius, where the scene does not say: the heaviest.
 double heaviest_load(const std::vector<ContactKey>& path) {
   const double heaviest = std::ranges::max(path, {}, &ContactKey::load_n).load_n;
@@ -292,7 +272,8 @@ Contact read_contact(TomlSection& section) {
   if (contact.motion == ContactMotion::spin) {
     contact.clockwise = section.flag("clockwise").value_or(false);
   }
-  contact.path = read_path(section);
+  contact.path =
+      read_path<ContactKey>(section, "path of [[contact]]", {"position_mm", "load_n"}, read_state);
   if (!section.has("reference_load_n")) contact.reference_load_n = heaviest_load(contact.path);
   section.finish();
   return contact;

@@ -37,9 +37,16 @@ single_precision::Field field_of(const SlotMemory& memory, std::uint32_t rows, s
           cols};
 }
 
-class HostFieldStage final : public FieldStage {
+const ContactMap& contacts_of(const HostFieldEstimator& estimator) {
+  return estimator.work().map();
+}
+const ContactMap& contacts_of(const ContactEstimator& estimator) { return estimator.contacts(); }
+
+/// An estimator that works on the host's side of the planes.
+template <class HostEstimator>
+class HostStage final : public FieldStage {
  public:
-  HostFieldStage(const SolverPlan& plan, std::size_t threads)
+  HostStage(const SolverPlan& plan, std::size_t threads)
       : rows_(plan.skin.pillar_rows()), cols_(plan.skin.pillar_cols()), estimator_(plan, threads) {}
 
   void warm_up(const cl::CommandQueue&, SlotMemory&) override {}
@@ -48,38 +55,19 @@ class HostFieldStage final : public FieldStage {
     estimator_.resolve(field_of(memory, rows_, cols_), memory.silence());
   }
 
-  [[nodiscard]] const ContactMap& contacts() const override { return estimator_.work().map(); }
+  [[nodiscard]] const ContactMap& contacts() const override { return contacts_of(estimator_); }
 
  private:
   std::uint32_t rows_;
   std::uint32_t cols_;
-  HostFieldEstimator estimator_;
-};
-
-class ContactStage final : public FieldStage {
- public:
-  ContactStage(const SolverPlan& plan, std::size_t threads)
-      : rows_(plan.skin.pillar_rows()), cols_(plan.skin.pillar_cols()), estimator_(plan, threads) {}
-
-  void warm_up(const cl::CommandQueue&, SlotMemory&) override {}
-
-  void resolve(const cl::CommandQueue&, SlotMemory& memory) override {
-    estimator_.resolve(field_of(memory, rows_, cols_), memory.silence());
-  }
-
-  [[nodiscard]] const ContactMap& contacts() const override { return estimator_.contacts(); }
-
- private:
-  std::uint32_t rows_;
-  std::uint32_t cols_;
-  ContactEstimator estimator_;
+  HostEstimator estimator_;
 };
 
 }  // namespace
 
 std::unique_ptr<FieldStage> host_field_stage(const Device::State& device, const SolverPlan& plan) {
-  return std::make_unique<HostFieldStage>(plan,
-                                          device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  return std::make_unique<HostStage<HostFieldEstimator>>(
+      plan, device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
 }
 
 std::unique_ptr<FieldStage> contact_stage(const Device::State& device, const SolverPlan& plan) {
@@ -87,7 +75,7 @@ std::unique_ptr<FieldStage> contact_stage(const Device::State& device, const Sol
   const bool is_host = device.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU;
   const std::size_t threads = is_host ? device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()
                                       : std::thread::hardware_concurrency();
-  return std::make_unique<ContactStage>(plan, std::max<std::size_t>(threads, 1));
+  return std::make_unique<HostStage<ContactEstimator>>(plan, std::max<std::size_t>(threads, 1));
 }
 
 }  // namespace pillarfield

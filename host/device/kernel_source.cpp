@@ -115,8 +115,7 @@ std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
   add(true, "PF_NORMAL_SCALE", hex_float(scale.normal / units_per_count), nullptr);
   add(paper, "PF_PAPER", "", nullptr);
   add(true, "PF_SEGMENT_POINT",
-      whole ? fmt::format("{}", *whole_segment_point(plan))
-            : hex_float(plan.segment_point),
+      whole ? fmt::format("{}", *whole_segment_point(plan)) : hex_float(plan.segment_point),
       nullptr);
   add(true, "PF_DOUBT", counts.from(region_doubt(plan)), nullptr);
   if (plan.parity_tolerance_counts) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "contacts/contact_estimator.h"
 #include "core/field_estimate.h"
 #include "core/host_solve.h"
 #include "pillarfield/error.h"
@@ -158,6 +159,36 @@ class EveryWay : public testing::TestWithParam<Way> {
 TEST_P(EveryWay, NothingSaidHasTheBitsOfTheHost) {
   const SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
   expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, ContactsFrictionHasTheBitsOfTheHost) {
+  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
+  plan.estimator = Estimator::contact;
+  plan.friction.memory = false;
+  expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, ContactsFrictionIsCarriedFromFrameToFrame) {
+  const Simulator simulator(parse_scene(kScene, "scene"));
+  SolverPlan plan = plan_of(simulator);
+  plan.estimator = Estimator::contact;
+  SolverPlan direct = plan;
+  direct.estimator = Estimator::direct;
+  Processor solver = processor(plan);
+  ContactEstimator estimator(plan);
+  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  bool any_differs = false;
+  for (std::uint64_t index = 0; index < simulator.scene().frames; ++index) {
+    simulator.render(index, raw, truth);
+    solver.submit(raw.view());
+    ForceField expected = solve_on_host(direct, raw.view());
+    estimator.resolve(expected);
+    const ForceFieldView forces = solver.receive();
+    expect_same_bits(forces, expected.view());
+    any_differs |= solve_on_host(plan, raw.view()).normal != expected.normal;
+  }
+  EXPECT_TRUE(any_differs);  // from frames by themselves
 }
 
 TEST_P(EveryWay, WhatFlanksTellHasTheBitsOfTheHost) {

@@ -126,6 +126,23 @@ TEST_F(CloseFrames, KnowNothingWhereTheyAreJumpedTo) {
   EXPECT_FALSE(std::ranges::equal(producer->produce(3).forces.normal, alone.normal));
 }
 
+/// The same of what a contact showed of its friction.
+TEST(ShownFriction, IsCarriedWhereFramesArePlayedAndNotWhereTheyAreJumpedTo) {
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory / "contact.toml";
+  std::string scene = kGrowingShear;
+  const std::string field = "\"field\"\nframes_close = true";
+  scene.replace(scene.find(field), field.size(), "\"contact\"");
+  write_bytes(path, scene);
+  const auto producer = open_producer(path, {});
+  ASSERT_EQ(producer->info().remarks.size(), 1U);
+  const ForceField alone = copy_of(producer->produce(4).forces);
+  static_cast<void>(producer->produce(1));
+  expect_same_forces(producer->produce(4).forces, alone.view());
+  for (std::uint64_t index = 0; index < 4; ++index) static_cast<void>(producer->produce(index));
+  EXPECT_FALSE(std::ranges::equal(producer->produce(4).forces.normal, alone.normal));
+}
+
 TEST_F(CloseFrames, AreForgottenInTheLastFreeSlot) {
   const auto producer = open_producer(path_, {});
   std::vector<ShownField> shown = {producer->produce(3)};
