@@ -29,15 +29,6 @@
  * is the number n of 1 - 1 / 2^n, and of
  * maths only pillar_model.h, sensel.h, direct_solve.h and half.h are of use.
  *
- * kernels/field, which is of contacts and not of lanes, is written with these, and with float,
- * double, uint and uchar, on which both languages agree:
- *
- *   PF_GLOBAL       what a pointer to memory of the frame is declared with
- *   await_others()  waits until all work-items of a contact came here and sees what they wrote;
- *                   nothing where there is one only, as PF_ALONE says
- *   add_count(p, n) *p += n, whatever the other work-items do
- *   bits_of_float(x), float_of_bits(b)
- *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
  *
@@ -115,16 +106,6 @@ static inline bool any_bits(Bits bits) {
 
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
-#define PF_GLOBAL global
-#ifdef PF_ALONE
-static inline void await_others(void) {}
-#else
-static inline void await_others(void) { barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE); }
-#endif
-static inline void add_count(volatile global uint* count, uint more) { atomic_add(count, more); }
-static inline uint bits_of_float(float value) { return as_uint(value); }
-static inline float float_of_bits(uint bits) { return as_float(bits); }
-
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
@@ -136,14 +117,6 @@ static inline float float_of_bits(uint bits) { return as_float(bits); }
 #undef PF_COUNTS
 #undef PF_BITS
 #undef PF_WORD
-#undef PF_GLOBAL
-#define PF_GLOBAL
-using uint = std::uint32_t;
-using uchar = std::uint8_t;
-static inline void await_others() {}
-static inline void add_count(uint* count, uint more) { *count += more; }
-static inline uint bits_of_float(float value) { return std::bit_cast<uint>(value); }
-static inline float float_of_bits(uint bits) { return std::bit_cast<float>(bits); }
 #if PF_PRECISION == 64
 using Real = double;
 #define PF_REAL(x) (x)

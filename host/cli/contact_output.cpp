@@ -34,20 +34,15 @@ void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
                   "Contacts of fewer pillars are not told of [1]")
       ->needs(file);
   command
-      .add_option(
-          "--contact-friction", options.contacts.friction,
-          "Friction of every contact [that of --friction or the scene, else what each shows]")
-      ->needs(file);
-  command
       .add_option("--contact-reach", options.contacts.reach_mm,
                   "How far a contact may jump from frame to frame, mm [10]")
       ->needs(file);
 }
 
 void take_friction(const SolverPlan& plan, ContactOptions& contacts) {
-  if (contacts.friction) return;
-  contacts.friction =
-      plan.estimator == Estimator::contact ? plan.friction.given : plan.field.friction;
+  contacts.friction = plan.friction;
+  contacts.noise_n = reading_noise_n(plan);
+  contacts.hidden_n = hidden_normal_n(plan.skin);
 }
 
 void check(const ContactOutputOptions& options, const std::string& output) {
@@ -85,7 +80,7 @@ ContactOutput::ContactOutput(const ContactOutputOptions& options, const ForceFil
                                {forces.pillar_pitch_mm, forces.source, options.contacts}, replace);
 }
 
-void ContactOutput::append(const ForceFieldView& forces, const ContactMap* found, double time_s,
+void ContactOutput::append(const ForceFieldView& forces, const FoundContacts& found, double time_s,
                            ForceSink& sink) {
   const FrameContacts& frame = tracker_.update(forces, time_s, found);
   if (in_force_file_) sink.append_contacts(frame);

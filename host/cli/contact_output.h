@@ -22,8 +22,7 @@ struct ContactOutputOptions {
 /// --contacts and what goes with it.
 void add_contact_options(CLI::App& command, ContactOutputOptions& options);
 
-/// Takes the friction that `plan` was told, by --friction or by a scene, for that of every contact,
-/// unless --contact-friction has said another.
+/// Takes what `plan` knows of friction, by --friction or by a scene, and of noise for contacts.
 void take_friction(const SolverPlan& plan, ContactOptions& contacts);
 
 /// Throws Error unless contacts can be written to where `options` says, or nothing is said.
@@ -47,7 +46,7 @@ class ContactOutput {
                 const std::string& output, Replace replace);
 
   /// Takes a frame that `sink` has just taken; `found` as ContactTracker::update() has it.
-  void append(const ForceFieldView& forces, const ContactMap* found, double time_s,
+  void append(const ForceFieldView& forces, const FoundContacts& found, double time_s,
               ForceSink& sink);
   void finish();
 

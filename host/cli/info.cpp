@@ -230,7 +230,6 @@ void print_kernel(const std::string& scene_file) {
   fmt::print("// Stages on {}:", device.name);
   for (const std::string& stage : kernel_stages(plan)) fmt::print(" {}", stage);
   fmt::print("\n{}", kernel_source(plan, device.lanes));
-  fmt::print("{}", field_source(plan, device));
 }
 
 void info(const InfoOptions& options) {

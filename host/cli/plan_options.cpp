@@ -65,43 +65,27 @@ void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s
   }
 }
 
-void add_evidence_options(CLI::App& command, PlanOptions& options) {
+void add_friction_options(CLI::App& command, PlanOptions& options) {
   command
       .add_option("--friction", options.friction,
-                  "The friction coefficient of all contacts. --estimator contact: to 3 %; field: "
-                  "no pillar's shear exceeds this many times its normal force [not known]")
-      ->check(number_range(1e-6, 100).description("RATIO"));
+                  "The friction coefficient of all contacts, to 3 % [learnt from what they show]")
+      ->check(number_range(0.1, 9.9).description("RATIO"));
   command
       .add_option("--friction-bound", options.friction_bound,
-                  "--estimator contact: no friction coefficient is larger [not known]")
+                  "No friction coefficient is larger [not known]")
       ->check(number_range(0.1, 100).description("RATIO"));
   command
       .add_option("--friction-prior", options.friction_prior,
-                  "--estimator contact: friction coefficients before any reading, log-normal, "
-                  "MEDIAN,SPREAD [1,0.5]")
+                  "Friction coefficients before any reading, log-normal, MEDIAN,SPREAD [1,0.5]")
       ->expected(2)
       ->delimiter(',')
       ->check(number_range(0.01, 9.9).description("NUMBER"));
   command.add_flag("--unrelated-frames", options.unrelated_frames,
-                   "--estimator contact: what a contact showed in earlier frames does not count");
-  command.add_flag("--slips", options.slips,
-                   "--estimator field: every pillar slips, at that friction");
-  command.add_flag("--frames-close", options.frames_close,
-                   "--estimator field: forces change little from one frame to the next");
-  command
-      .add_option(
-          "--sweeps", options.sweeps,
-          "--estimator field: sweeps of the pressure's relaxation, more for accuracy, fewer "
-          "for speed [8]")
-      ->check(whole_number_range(0, 1000).description("NUMBER"));
+                   "What a contact showed of its friction in earlier frames does not count");
 }
 
-void apply_friction(const PlanOptions& options, const std::string& source,
-                    FrictionKnowledge& friction) {
-  if (options.slips || options.frames_close || options.sweeps) {
-    throw Error(source, "--slips, --frames-close and --sweeps are of the field estimator",
-                "leave them out, or add --estimator field");
-  }
+/// Applies what is said of friction.
+void apply_friction(const PlanOptions& options, FrictionKnowledge& friction) {
   if (options.friction) friction.given = options.friction;
   if (options.friction_bound) friction.bound = options.friction_bound;
   if (!options.friction_prior.empty()) {
@@ -109,34 +93,6 @@ void apply_friction(const PlanOptions& options, const std::string& source,
     friction.spread = options.friction_prior[1];
   }
   if (options.unrelated_frames) friction.memory = false;
-}
-
-/// Applies what is said of the evidence; it is of no use to other estimators.
-void apply_evidence(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
-  const bool of_contact =
-      options.friction_bound || !options.friction_prior.empty() || options.unrelated_frames;
-  if (of_contact && plan.estimator != Estimator::contact) {
-    throw Error(source,
-                "--friction-bound, --friction-prior and --unrelated-frames say what is known of "
-                "friction, and nothing asks for it",
-                "add --estimator contact");
-  }
-  if (plan.estimator == Estimator::contact) {
-    apply_friction(options, source, plan.friction);
-    return;
-  }
-  const bool said = options.friction || options.slips || options.frames_close || options.sweeps;
-  if (!said) return;
-  if (plan.estimator != Estimator::field) {
-    throw Error(source,
-                "--friction, --slips, --frames-close and --sweeps say what ambiguous "
-                "pillars may be resolved by, and nothing resolves them",
-                "add --estimator field");
-  }
-  if (options.friction) plan.field.friction = options.friction;
-  if (options.slips) plan.field.slips = true;
-  if (options.frames_close) plan.field.frames_close = true;
-  if (options.sweeps) plan.field.sweeps = *options.sweeps;
 }
 
 /// Applies the point of the segment; the paper's equations have one of their own.
@@ -161,17 +117,17 @@ void add_plan_options(CLI::App& command, PlanOptions& options) {
       command, "--estimator", options.estimator,
       {{"direct", Estimator::direct},
        {"paper", Estimator::paper},
-       {"field", Estimator::field},
-       {"contact", Estimator::contact}},
-      "How forces are estimated: direct; the paper's equations; contact, which estimates ambiguous "
-      "pillars by the friction of their contact; or field, by its shape [direct]");
+       {"contact", Estimator::contact},
+       {"field", Estimator::contact}},
+      "How forces are estimated: direct; the paper's equations; or contact, which estimates "
+      "ambiguous pillars by the friction of their contact (field is its former name) [direct]");
   command
       .add_option("--segment-point", options.segment_point,
                   "Where the force of a pillar with two adjacent usable sensels is put, as a "
                   "fraction of the largest normal force that its readings allow; 0.5: the middle, "
                   "whose largest error is the least [0.875]")
       ->check(number_range(1e-6, 1).description("FRACTION"));
-  add_evidence_options(command, options);
+  add_friction_options(command, options);
   command
       .add_option("--outputs", options.outputs,
                   "What is computed: forces; angles adds magnitude, theta and phi; uncertainty "
@@ -211,7 +167,7 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
   if (options.baseline_time_s) baseline_time_s = options.baseline_time_s;
   if (options.estimator) plan.estimator = *options.estimator;
   apply_segment_point(options, source, plan);
-  apply_evidence(options, source, plan);
+  apply_friction(options, plan.friction);
   if (!options.outputs.empty()) {
     plan.angles = asks_for(options, "angles");
     plan.uncertainty = asks_for(options, "uncertainty");

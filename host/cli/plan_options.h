@@ -22,9 +22,6 @@ struct PlanOptions {
   std::optional<double> friction_bound;
   std::vector<double> friction_prior;  ///< empty, or median and spread
   bool unrelated_frames = false;
-  bool slips = false;
-  bool frames_close = false;
-  std::optional<int> sweeps;
   std::vector<std::string> outputs;
   std::optional<double> threshold_counts;
   std::optional<double> counts_per_newton;

@@ -186,7 +186,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
                region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
-  if (plan.estimator == Estimator::field) {
+  if (plan.estimator == Estimator::contact) {
     fmt::print("Resolved with the help of their contacts: {} of {} pillars of region 3\n",
                regions.resolved, regions.of(Region::three));
   }

@@ -40,6 +40,15 @@ struct ContactParameters {
   /// An ambiguous pillar counts as resolved (status bit 7) up to this standard deviation of its
   /// normal force over its segment's length.
   double resolved_deviation = 0.1;
+  /// A friction is told up to this standard deviation of its logarithm; [0.02, 0.1].
+  double reported_spread = 0.05;
+  /// Ratios within this relative distance of the friction are taken for it;
+  double same_ratio = 0.15;
+  /// and up to this share of others for noise.
+  double few = 0.05;
+  /// A contact whose outermost pillars bear more than this share of the largest force, in the mean,
+  /// may be a flat face.
+  double face_load = 0.75;
 };
 
 }  // namespace pillarfield

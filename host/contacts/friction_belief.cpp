@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace pillarfield {
@@ -9,9 +10,6 @@ namespace {
 
 /// A probability that a single frame of evidence can still raise.
 constexpr double kLeastProbability = 1e-30;
-
-/// What is left open of a friction that was given: its logarithm's standard deviation.
-constexpr double kGivenSpread = 0.03;
 
 }  // namespace
 
@@ -25,7 +23,7 @@ double FrictionGrid::at(double point) { return kLeast * std::exp(point * kStep);
 
 FrictionBelief::FrictionBelief(const FrictionKnowledge& knowledge) {
   const double centre = std::log(knowledge.given.value_or(knowledge.median));
-  const double spread = knowledge.given ? kGivenSpread : knowledge.spread;
+  const double spread = knowledge.given ? kGivenFrictionSpread : knowledge.spread;
   for (std::size_t i = 0; i < probability_.size(); ++i) {
     const double friction = FrictionGrid::at(static_cast<double>(i));
     const double deviations = (std::log(friction) - centre) / spread;

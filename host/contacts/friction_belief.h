@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "contacts/contact_parameters.h"
-#include "pillarfield/solver_plan.h"
+#include "pillarfield/friction.h"
 
 namespace pillarfield {
 
@@ -19,6 +19,9 @@ struct FrictionGrid {
   [[nodiscard]] static std::size_t nearest(double ratio);
   [[nodiscard]] static double at(double point);
 };
+
+/// What is left open of a friction that was given: its logarithm's standard deviation.
+inline constexpr double kGivenFrictionSpread = 0.03;
 
 /// A number for each point of the grid.
 using FrictionCurve = std::array<double, FrictionGrid::kPoints>;

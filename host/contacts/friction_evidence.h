@@ -11,8 +11,10 @@ struct ShownRatio {
   double ratio;      ///< |shear| / normal
   double deviation;  ///< relative standard deviation
   /// Where the pillar's direction of shear has no determined force of a larger ratio
-  /// (docs/derivations/contact.md, C4); infinity if there is no such limit.
+  /// (docs/derivations/contact.md, C4); kNoCeiling if there is no such limit.
   double ceiling;
+
+  static constexpr double kNoCeiling = 1e3;  ///< above all frictions
 };
 
 /// Likelihoods of the friction coefficient from what pillars show, tabulated once

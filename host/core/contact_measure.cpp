@@ -1,10 +1,6 @@
 #include "core/contact_measure.h"
 
-#include <algorithm>
 #include <cmath>
-#include <vector>
-
-#include "core/contact_ratios.h"
 
 namespace pillarfield {
 namespace {
@@ -15,18 +11,8 @@ constexpr double kQuantum = ForceQuanta::kForceQuantum;
 constexpr double kFew = 0.1;
 constexpr double kMostOpen = 0.25;
 
-/// Fewer pillars cannot show a friction, and more of a contact need not be asked.
-constexpr std::uint64_t kFewestForFriction = 8;
-constexpr std::uint64_t kSamples = 500;
-
-constexpr std::uint64_t kFewestRows = 8;
-
-/// One of so many rows of a contact is asked for its friction.
-std::uint64_t step_of(std::span<const ContactRun> runs, std::uint64_t pillars) {
-  const std::uint64_t rows = runs.back().row - runs.front().row + 1;
-  const std::uint64_t enough = (pillars + kSamples - 1) / kSamples;
-  return std::min(enough, std::max<std::uint64_t>(rows / kFewestRows, 1));
-}
+/// From this share of the friction's ratio on a pillar slips.
+constexpr double kSlipRatio = 0.92;
 
 }  // namespace
 
@@ -39,25 +25,9 @@ std::uint64_t pillars_of(std::span<const ContactRun> runs) {
 ContactMeasure::ContactMeasure(const ForceFieldView& forces, double pillar_pitch_mm)
     : forces_(forces), pitch_mm_(pillar_pitch_mm) {}
 
-std::optional<double> ContactMeasure::friction(std::span<const ContactRun> runs,
-                                               FrictionHistogram& scratch) const {
-  const std::uint64_t pillars = pillars_of(runs);
-  if (pillars < kFewestForFriction) return std::nullopt;
-  const std::uint64_t step = step_of(runs, pillars);
-  std::vector<ContactRun> asked;
-  for (const ContactRun& run : runs) {
-    if ((run.row - runs.front().row) % step == step / 2) asked.push_back(run);
-  }
-  scratch.clear();
-  add_ratios(forces_, asked, peak_of(forces_, asked), scratch);
-  const std::optional<FrictionPlateau> plateau = scratch.plateau();
-  if (!plateau) return std::nullopt;
-  return plateau->friction;
-}
-
 ContactTotals ContactMeasure::totals(std::span<const ContactRun> runs,
                                      std::optional<double> friction) const {
-  if (friction) friction = kWithinPlateau * *friction;
+  if (friction) friction = kSlipRatio * *friction;
   return totals_of(forces_, runs, friction);
 }
 
@@ -110,17 +80,24 @@ SlipState state_of(const PressingSum& slip) {
 
 }  // namespace
 
-void set_slip(ContactQuantities& contact, double friction, FrictionSource source,
+std::optional<double> known_friction(const ContactFriction& friction) {
+  if (friction.source == FrictionSource::prior) return std::nullopt;
+  return friction.median;
+}
+
+void set_slip(ContactQuantities& contact, const ContactFriction& friction,
               const PressingSum& slip) {
-  contact.friction = friction;
-  contact.friction_source = source;
+  contact.friction_source = friction.source;
+  if (friction.source == FrictionSource::prior) return;
+  contact.friction = friction.median;
+  contact.friction_deviation = friction.median * friction.spread;
   contact.slip = state_of(slip);
   const auto known = static_cast<double>(slip.known);
   if (known > 0) contact.slipping_share = static_cast<double>(slip.slipping) / known;
   if (contact.normal_n > 0) {
     const double shear_n =
         std::sqrt(contact.shear_x_n * contact.shear_x_n + contact.shear_y_n * contact.shear_y_n);
-    contact.slip_margin = 1 - shear_n / (friction * contact.normal_n);
+    contact.slip_margin = 1 - shear_n / (friction.median * contact.normal_n);
   }
 }
 

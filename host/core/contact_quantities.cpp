@@ -18,16 +18,16 @@ const char* name_of(SlipState state) {
 
 const char* name_of(FrictionSource source) {
   switch (source) {
-    case FrictionSource::none:
-      return "none";
+    case FrictionSource::prior:
+      return "prior";
     case FrictionSource::given:
       return "given";
-    case FrictionSource::shown:
-      return "shown";
-    case FrictionSource::remembered:
+    case FrictionSource::observed:
+      return "observed";
+    case FrictionSource::carried_over:
       break;
   }
-  return "remembered";
+  return "carried_over";
 }
 
 Moment moment_about(const PatchPlace& point, const ContactQuantities& contact) {

@@ -19,8 +19,7 @@ std::size_t threads_for(std::uint32_t wanted) {
 
 }  // namespace
 
-ContactSurvey::ContactSurvey(std::uint32_t threads)
-    : threads_(threads_for(threads)), histograms_(threads_) {}
+ContactSurvey::ContactSurvey(std::uint32_t threads) : threads_(threads_for(threads)) {}
 
 /// Shares of pillars, and from them lots of contacts.
 void ContactSurvey::share_out(const ContactMap& map) {
@@ -49,59 +48,43 @@ void ContactSurvey::share_out(const ContactMap& map) {
 }
 
 void ContactSurvey::measure_lot(const Lot& lot, const ContactMeasure& measure,
-                                const ContactMap& map, const std::optional<double>& given,
+                                const ContactMap& map, const FrictionOf& friction_of,
                                 std::size_t member) {
-  std::unique_ptr<FrictionHistogram>& histogram = histograms_[member];
-  if (!histogram) histogram = std::make_unique<FrictionHistogram>();
   for (std::uint32_t contact = lot.first; contact < lot.end; ++contact) {
-    const auto runs = map.runs(contact);
-    ShownContact& shown = shown_[contact];
-    shown.friction = given ? given : measure.friction(runs, *histogram);
-    if (!lot.large) shown.totals = measure.totals(runs, shown.friction);
+    frictions_[contact] = friction_of(contact, member);
+    if (!lot.large) totals_[contact] = measure.totals(map.runs(contact), frictions_[contact]);
   }
 }
 
-const std::vector<ShownContact>& ContactSurvey::measure(const ContactMeasure& measure,
-                                                        const ContactMap& map,
-                                                        const std::optional<double>& given) {
-  shown_.assign(map.contacts(), {});
+const std::vector<ContactTotals>& ContactSurvey::measure(const ContactMeasure& measure,
+                                                         const ContactMap& map,
+                                                         const FrictionOf& friction_of) {
+  totals_.assign(map.contacts(), {});
+  frictions_.assign(map.contacts(), {});
   share_out(map);
   run(lots_.size(), [&](std::size_t piece, std::size_t member) {
-    measure_lot(lots_[piece], measure, map, given, member);
+    measure_lot(lots_[piece], measure, map, friction_of, member);
   });
   parts_.clear();
   for (const Lot& lot : lots_) {
-    if (lot.large) add_parts(lot.first, map.runs(lot.first), shown_[lot.first].friction);
+    if (lot.large) add_parts(lot.first, map.runs(lot.first));
   }
   sum_parts(measure);
   for (const Part& part : parts_) {
-    shown_[part.place].totals.sum.add(part.totals.sum);
-    shown_[part.place].totals.slip.add(part.totals.slip);
+    totals_[part.contact].sum.add(part.totals.sum);
+    totals_[part.contact].slip.add(part.totals.slip);
   }
-  return shown_;
-}
-
-std::vector<PressingSum> ContactSurvey::slip(const ContactMeasure& measure, const ContactMap& map,
-                                             std::span<const AssumedFriction> assumed) {
-  parts_.clear();
-  for (std::size_t i = 0; i < assumed.size(); ++i) {
-    add_parts(i, map.runs(assumed[i].contact), assumed[i].friction);
-  }
-  sum_parts(measure);
-  std::vector<PressingSum> slips(assumed.size());
-  for (const Part& part : parts_) slips[part.place].add(part.totals.slip);
-  return slips;
+  return totals_;
 }
 
 /// Cuts the runs of a contact into parts of a share each, or some more.
-void ContactSurvey::add_parts(std::size_t place, std::span<const ContactRun> runs,
-                              const std::optional<double>& friction) {
+void ContactSurvey::add_parts(std::uint32_t contact, std::span<const ContactRun> runs) {
   std::size_t first = 0;
   std::uint64_t pillars = 0;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     pillars += runs[i].end - runs[i].first;
     if (pillars < share_ && i + 1 < runs.size()) continue;
-    parts_.push_back({place, runs.subspan(first, i + 1 - first), friction, {}});
+    parts_.push_back({contact, runs.subspan(first, i + 1 - first), frictions_[contact], {}});
     first = i + 1;
     pillars = 0;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,17 +14,9 @@
 
 namespace pillarfield {
 
-/// What a contact of a frame shows by itself.
-struct ShownContact {
-  ContactTotals totals;            ///< slip included where there is a friction
-  std::optional<double> friction;  ///< what was given, or what it shows
-};
-
-/// A contact, and the friction to judge its slip by.
-struct AssumedFriction {
-  std::uint32_t contact = 0;  ///< number in the map
-  double friction = 0;
-};
+/// Tells the friction of a contact, if it is known, to a member of the team. Called once for each
+/// contact, in any thread.
+using FrictionOf = std::function<std::optional<double>(std::uint32_t contact, std::size_t member)>;
 
 /// Measures the contacts of frame after frame in several threads, which take them by lots of about
 /// as many pillars; a large contact is cut between its runs. All sums are of whole numbers, so the
@@ -34,13 +27,12 @@ class ContactSurvey {
   /// and sleep between frames.
   explicit ContactSurvey(std::uint32_t threads);
 
-  /// One for each contact of the map, by `given` or its own friction; stays until the next call.
-  const std::vector<ShownContact>& measure(const ContactMeasure& measure, const ContactMap& map,
-                                           const std::optional<double>& given);
+  /// The sums of each contact of the map, with its slip where its friction is known; they stay
+  /// until the next call.
+  const std::vector<ContactTotals>& measure(const ContactMeasure& measure, const ContactMap& map,
+                                            const FrictionOf& friction_of);
 
-  /// How contacts of the same map slip by other frictions, one for each.
-  std::vector<PressingSum> slip(const ContactMeasure& measure, const ContactMap& map,
-                                std::span<const AssumedFriction> assumed);
+  [[nodiscard]] std::size_t threads() const { return threads_; }
 
  private:
   /// Contacts that one thread takes together; a large one is by itself, and only its friction is
@@ -53,7 +45,7 @@ class ContactSurvey {
 
   /// Runs of a contact that are summed together.
   struct Part {
-    std::size_t place = 0;  ///< of its contact in what is asked
+    std::uint32_t contact = 0;
     std::span<const ContactRun> runs;
     std::optional<double> friction;
     ContactTotals totals;
@@ -61,19 +53,18 @@ class ContactSurvey {
 
   void share_out(const ContactMap& map);
   void measure_lot(const Lot& lot, const ContactMeasure& measure, const ContactMap& map,
-                   const std::optional<double>& given, std::size_t member);
-  void add_parts(std::size_t place, std::span<const ContactRun> runs,
-                 const std::optional<double>& friction);
+                   const FrictionOf& friction_of, std::size_t member);
+  void add_parts(std::uint32_t contact, std::span<const ContactRun> runs);
   void sum_parts(const ContactMeasure& measure);
   void run(std::size_t pieces, const WorkTeam::Work& work);
 
   std::size_t threads_;
   std::unique_ptr<WorkTeam> team_;  ///< null as long as there was nothing to share
-  std::vector<std::unique_ptr<FrictionHistogram>> histograms_;  ///< of each thread that needed one
   std::uint64_t share_ = 0;  ///< pillars of a lot or a part, or some more
   std::vector<Lot> lots_;
   std::vector<Part> parts_;
-  std::vector<ShownContact> shown_;
+  std::vector<ContactTotals> totals_;
+  std::vector<std::optional<double>> frictions_;
 };
 
 }  // namespace pillarfield

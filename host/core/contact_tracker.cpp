@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contacts/friction_estimator.h"
 #include "core/contact_identity.h"
 #include "core/contact_measure.h"
 #include "core/contact_survey.h"
@@ -15,7 +16,7 @@ namespace pillarfield {
 namespace {
 
 constexpr const char* kPlace = "ContactTracker";
-constexpr double kMostFriction = 100;
+constexpr double kMostNoiseN = 1e6;
 constexpr double kMostReachMm = 1000;
 constexpr std::uint32_t kMostThreads = 1024;
 
@@ -30,7 +31,13 @@ void require_whole(const ForceFieldView& forces) {
   }
 }
 
-void require_inside(const ContactMap& map, const ForceFieldView& forces) {
+void require_inside(const FoundContacts& found, const ForceFieldView& forces) {
+  const ContactMap& map = *found.map;
+  if (!found.friction.empty() && found.friction.size() != map.contacts()) {
+    throw Error(kPlace,
+                fmt::format("{} frictions for {} contacts", found.friction.size(), map.contacts()),
+                "give one for each, or none");
+  }
   for (const ContactRun& run : map.runs()) {
     if (run.row < forces.rows && run.end <= forces.cols) continue;
     throw Error(kPlace,
@@ -45,20 +52,27 @@ ContactOptions checked(const ContactOptions& options) {
   return options;
 }
 
+FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& options) {
+  return {pitch_mm, options.noise_n, {.hidden_n = static_cast<float>(options.hidden_n)}};
+}
+
 /// What is remembered of a contact.
 struct Known {
   std::optional<std::uint64_t> parent;
   double first_time_s = 0;
-  std::optional<double> friction;  ///< last shown
 };
 
 }  // namespace
 
 void check(const ContactOptions& options, const std::string& where) {
-  const auto& friction = options.friction;
-  if (friction && !(*friction > 0 && *friction <= kMostFriction)) {
-    throw Error(where, fmt::format("a friction of {}", *friction),
-                fmt::format("it must be above 0 and at most {}", kMostFriction));
+  check(options.friction, where);
+  if (options.noise_n && !(*options.noise_n >= 0 && *options.noise_n <= kMostNoiseN)) {
+    throw Error(where, fmt::format("a noise of {} N", *options.noise_n),
+                fmt::format("it must be 0 to {}", kMostNoiseN));
+  }
+  if (!(options.hidden_n >= 0 && options.hidden_n <= kMostNoiseN)) {
+    throw Error(where, fmt::format("a hidden normal force of {} N", options.hidden_n),
+                fmt::format("it must be 0 to {}", kMostNoiseN));
   }
   if (!(options.reach_mm >= 0 && options.reach_mm <= kMostReachMm)) {
     throw Error(where, fmt::format("contacts that jump by {} mm", options.reach_mm),
@@ -74,10 +88,11 @@ struct ContactTracker::State {
   State(double pillar_pitch_mm, const ContactOptions& contact_options);
 
   void require_size(const ForceFieldView& forces);
-  const FrameContacts& follow(const ForceFieldView& forces, double time_s);
-  void measure(const ContactMeasure& measure);
+  const FrameContacts& follow(const ForceFieldView& forces, double time_s,
+                              std::span<const ContactFriction> friction);
+  void measure(const ContactMeasure& measure, const ForceFieldView& forces,
+               std::span<const ContactFriction> friction);
   void identify(double time_s);
-  void judge_slip(const ContactMeasure& measure);
 
   double pitch_mm;
   ContactOptions options;
@@ -90,15 +105,17 @@ struct ContactTracker::State {
   FrameContacts frame;
   std::vector<Known> known;  // of frame.contacts
   ContactSurvey survey;
-  std::span<const ShownContact> shown;  // the survey's, of the contacts of the map
-  PressingSum patch_slip;               // where a friction was given
-  std::vector<std::uint32_t> indices;   // of these, the place in frame.contacts, or kNoContact
+  FrictionEstimator friction_estimator;
+  std::vector<std::uint32_t> indices;  // of the map's contacts, the place in frame.contacts
   ContactTraces traces;
   ContactTraces traces_before;
 };
 
 ContactTracker::State::State(double pillar_pitch_mm, const ContactOptions& contact_options)
-    : pitch_mm(pillar_pitch_mm), options(checked(contact_options)), survey(options.threads) {
+    : pitch_mm(pillar_pitch_mm),
+      options(checked(contact_options)),
+      survey(options.threads),
+      friction_estimator(sensor_of(pitch_mm, options), options.friction, survey.threads()) {
   if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
     throw Error(kPlace, fmt::format("a pillar pitch of {} mm", pitch_mm), "it must be above zero");
   }
@@ -116,26 +133,40 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
   cols = forces.cols;
 }
 
-/// Lists the contacts that are large enough and what they exert, and the patch.
-void ContactTracker::State::measure(const ContactMeasure& measure) {
-  shown = survey.measure(measure, map, options.friction);
+/// Lists the contacts that are large enough and what they exert, and the patch. Their friction is
+/// learnt where none is told.
+void ContactTracker::State::measure(const ContactMeasure& measure, const ForceFieldView& forces,
+                                    std::span<const ContactFriction> friction) {
+  const bool learns = friction.empty() && map.contacts() > 0;
+  if (learns) {
+    friction_estimator.begin(map);
+    friction = friction_estimator.friction();
+  }
+  const auto friction_of = [&](std::uint32_t contact, std::size_t member) {
+    if (learns) friction_estimator.learn(forces, map, contact, member);
+    return known_friction(friction[contact]);
+  };
+  const std::vector<ContactTotals>& totals = survey.measure(measure, map, friction_of);
   indices.clear();
   frame.contacts.clear();
-  ContactSum patch;
-  patch_slip = {};
+  ContactTotals patch;
   for (std::uint32_t number = 0; number < map.contacts(); ++number) {
-    const ShownContact& each = shown[number];
-    patch.add(each.totals.sum);
-    patch_slip.add(each.totals.slip);
+    const ContactTotals& each = totals[number];
+    patch.sum.add(each.sum);
+    patch.slip.add(each.slip);
     indices.push_back(kNoContact);
-    if (static_cast<std::uint64_t>(each.totals.sum.pillars) < options.minimum_pillars) continue;
+    if (static_cast<std::uint64_t>(each.sum.pillars) < options.minimum_pillars) continue;
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
     contact.number = number;
-    contact.quantities = measure.quantities(each.totals.sum);
+    contact.quantities = measure.quantities(each.sum);
+    set_slip(contact.quantities, friction[number], each.slip);
     frame.contacts.push_back(contact);
   }
-  frame.patch = measure.quantities(patch);
+  frame.patch = measure.quantities(patch.sum);
+  if (!options.friction.given || frame.patch.pillars == 0) return;
+  set_slip(frame.patch, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
+           patch.slip);
 }
 
 /// Gives each contact of the frame its id, and tells which of the frame before have ended.
@@ -162,7 +193,7 @@ void ContactTracker::State::identify(double time_s) {
     } else {
       contact.id = next_id++;
       const std::uint32_t parent = matches.parents[i];
-      known.push_back({std::nullopt, time_s, std::nullopt});
+      known.push_back({std::nullopt, time_s});
       if (parent != kNoContact) known.back().parent = traces_before.ids[parent];
     }
     contact.parent = known.back().parent;
@@ -183,38 +214,12 @@ void ContactTracker::State::identify(double time_s) {
             [](const EndedContact& a, const EndedContact& b) { return a.id < b.id; });
 }
 
-/// Which friction goes for each contact, and what slips at it.
-void ContactTracker::State::judge_slip(const ContactMeasure& measure) {
-  std::vector<std::size_t> remembering;
-  std::vector<AssumedFriction> assumed;
-  for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
-    TrackedContact& contact = frame.contacts[i];
-    const ShownContact& now = shown[contact.number];
-    if (now.friction) {
-      const auto source = options.friction ? FrictionSource::given : FrictionSource::shown;
-      set_slip(contact.quantities, *now.friction, source, now.totals.slip);
-      known[i].friction = now.friction;
-    } else if (const auto& before = known[i].friction) {
-      remembering.push_back(i);
-      assumed.push_back({contact.number, *before});
-    }
-  }
-  const std::vector<PressingSum> slips = survey.slip(measure, map, assumed);
-  for (std::size_t i = 0; i < slips.size(); ++i) {
-    set_slip(frame.contacts[remembering[i]].quantities, assumed[i].friction,
-             FrictionSource::remembered, slips[i]);
-  }
-  if (!options.friction || frame.patch.pillars == 0) return;
-  set_slip(frame.patch, *options.friction, FrictionSource::given, patch_slip);
-}
-
 /// Takes a frame whose contacts are found.
-const FrameContacts& ContactTracker::State::follow(const ForceFieldView& forces, double time_s) {
-  const ContactMeasure contact_measure(forces, pitch_mm);
+const FrameContacts& ContactTracker::State::follow(const ForceFieldView& forces, double time_s,
+                                                   std::span<const ContactFriction> friction) {
   frame.time_s = time_s;
-  measure(contact_measure);
+  measure(ContactMeasure(forces, pitch_mm), forces, friction);
   identify(time_s);
-  judge_slip(contact_measure);
   any_frame = true;
   last_time_s = time_s;
   return frame;
@@ -227,15 +232,15 @@ ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;
 ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;
 
 const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s,
-                                            const ContactMap* found) {
+                                            const FoundContacts& found) {
   state_->require_size(forces);
-  if (found != nullptr) {
-    require_inside(*found, forces);
-    state_->map = *found;
-  } else {
-    state_->map.find(forces.status, forces.rows, forces.cols);
+  if (found.map != nullptr) {
+    require_inside(found, forces);
+    state_->map = *found.map;
+    return state_->follow(forces, time_s, found.friction);
   }
-  return state_->follow(forces, time_s);
+  state_->map.find(forces.status, forces.rows, forces.cols);
+  return state_->follow(forces, time_s, {});
 }
 
 const ContactMap& ContactTracker::map() const { return state_->map; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "contacts/contact_estimator.h"
-#include "core/field_estimate.h"
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
 #include "core/sensel_reader.h"
@@ -122,7 +121,6 @@ ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
   }
-  if (plan.estimator == Estimator::field) HostFieldEstimator(plan).resolve(field);
   if (plan.estimator == Estimator::contact) ContactEstimator(plan).resolve(field);
   return field;
 }

@@ -143,11 +143,9 @@ inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
 inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
 inline constexpr Range kSegmentPoints = {0, 1, true};
-inline constexpr Range kFriction = {0, 100, true};
-inline constexpr Range kFrictions = {0.1, 9.9};  ///< of Estimator::contact
+inline constexpr Range kFrictions = {0.1, 9.9};
 inline constexpr Range kPriorSpread = {0.01, 3};
 inline constexpr Range kFrictionBound = {0.1, 100};
-inline constexpr std::int64_t kMaxSweeps = 1000;
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};
@@ -185,8 +183,8 @@ inline constexpr std::array<Named<BodyShape>, 5> kBodyShapes = {{
 inline constexpr std::array<Named<Estimator>, 4> kEstimators = {{
     {"direct", Estimator::direct},
     {"paper", Estimator::paper},
-    {"field", Estimator::field},
     {"contact", Estimator::contact},
+    {"field", Estimator::contact},  // its former name
 }};
 
 /// Whether the closed forms know this motion of this shape.

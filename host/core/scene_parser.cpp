@@ -82,20 +82,7 @@ void read_time(TomlSection section, Scene& scene) {
   section.finish();
 }
 
-/// What the field estimator may go by.
-void read_evidence(TomlSection& section, FieldEvidence& evidence) {
-  evidence.friction = section.number("friction", kFriction);
-  evidence.slips = section.flag("slips").value_or(evidence.slips);
-  if (evidence.slips && !evidence.friction) {
-    section.fail("slips", "comes without the friction at which everything slips", "friction = 0.8");
-  }
-  evidence.frames_close = section.flag("frames_close").value_or(evidence.frames_close);
-  if (const auto sweeps = section.whole_number("sweeps", 0, kMaxSweeps)) {
-    evidence.sweeps = static_cast<int>(*sweeps);
-  }
-}
-
-/// What the contact estimator knows of friction.
+/// What is known of friction.
 void read_friction(TomlSection& section, FrictionKnowledge& friction) {
   friction.given = section.number("friction", kFrictions);
   friction.bound = section.number("friction_bound", kFrictionBound);
@@ -123,8 +110,7 @@ void read_solver(TomlSection section, Scene& scene) {
     section.fail("uncertainty", "comes with the paper's estimator, which has none",
                  R"(estimator = "direct" or "contact")");
   }
-  if (scene.estimator == Estimator::field) read_evidence(section, scene.field);
-  if (scene.estimator == Estimator::contact) read_friction(section, scene.friction);
+  read_friction(section, scene.friction);
   section.finish();
 }
 

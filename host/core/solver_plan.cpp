@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/force_scale.h"
 #include "core/scene_limits.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
@@ -33,23 +34,11 @@ double mean_noise(const Calibration& calibration) {
 }
 
 constexpr int kMaxBaselineInterval = 1024;
-constexpr double kMaxFriction = 100;
-constexpr int kMaxSweeps = 1000;
 
-void check(const FieldEvidence& evidence, std::string_view where) {
-  if (evidence.friction && !(*evidence.friction > 0 && *evidence.friction <= kMaxFriction)) {
-    throw Error(where, fmt::format("friction is {}", *evidence.friction),
-                fmt::format("it must lie in (0, {}]", kMaxFriction));
-  }
-  if (evidence.slips && !evidence.friction) {
-    throw Error(where, "everything is said to slip, and the friction is not known",
-                "give the friction at which it slips");
-  }
-  if (evidence.sweeps < 0 || evidence.sweeps > kMaxSweeps) {
-    throw Error(where, fmt::format("sweeps is {}", evidence.sweeps),
-                fmt::format("it must lie in [0, {}]", kMaxSweeps));
-  }
-}
+/// Where the noise is not known, the threshold is taken to be so many deviations.
+constexpr double kThresholdDeviations = 4;
+
+}  // namespace
 
 void check(const FrictionKnowledge& friction, std::string_view where) {
   const auto require = [&](const char* name, double value, double least, double most) {
@@ -68,13 +57,10 @@ void check(const FrictionKnowledge& friction, std::string_view where) {
   }
 }
 
-}  // namespace
-
 void set_solver(SolverPlan& plan, const Scene& scene) {
   plan.parity_tolerance_counts = scene.parity_tolerance_counts;
   plan.estimator = scene.estimator;
   plan.segment_point = scene.segment_point;
-  plan.field = scene.field;
   plan.friction = scene.friction;
   plan.angles = scene.angles;
   plan.uncertainty = scene.uncertainty;
@@ -90,8 +76,6 @@ const char* name_of(Estimator estimator) {
       return "direct";
     case Estimator::paper:
       return "paper";
-    case Estimator::field:
-      return "field";
     case Estimator::contact:
       break;
   }
@@ -115,24 +99,15 @@ void check(const SolverPlan& plan, std::string_view where) {
     throw Error(where, fmt::format("baseline_interval is {}", plan.baseline_interval),
                 fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
   }
-  if (plan.estimator == Estimator::field) {
-    check(plan.field, where);
-    if (plan.half_output) {
-      throw Error(where, "the field estimator has no results of half precision",
-                  "leave out half_output (--half), or take the direct estimator");
-    }
-  }
-  if (plan.estimator == Estimator::contact) {
-    check(plan.friction, where);
-    if (plan.half_output) {
-      throw Error(where, "the contact estimator has no results of half precision",
-                  "leave out half_output (--half), or take the direct estimator");
-    }
+  check(plan.friction, where);
+  if (plan.estimator == Estimator::contact && plan.half_output) {
+    throw Error(where, "the contact estimator has no results of half precision",
+                "leave out half_output (--half), or take the direct estimator");
   }
   if (!plan.uncertainty) return;
   if (plan.estimator == Estimator::paper) {
     throw Error(where, "the paper's estimator has no uncertainty",
-                "use the direct estimator, or that of the field");
+                "take the estimator direct or contact");
   }
   if (!plan.noise_counts && plan.calibration.noise.empty()) {
     throw Error(where, "uncertainty is asked for, and the noise of the sensels is not known",
@@ -154,6 +129,17 @@ double reading_noise(const SolverPlan& plan) {
   const double noise = plan.noise_counts.value_or(0);
   const double rounding = plan.sensel_type == SenselType::f32 ? 0 : 1.0 / 12;
   return std::sqrt(noise * noise + rounding);
+}
+
+double reading_noise_n(const SolverPlan& plan) {
+  const bool known = plan.noise_counts || !plan.calibration.noise.empty();
+  const double counts =
+      known ? reading_noise(plan) : plan.skin.threshold_counts / kThresholdDeviations;
+  return counts / plan.skin.counts_per_newton;
+}
+
+double hidden_normal_n(const Skin& skin) {
+  return force_scale(skin.counts_per_newton).normal * skin.threshold_counts;
 }
 
 double region_doubt(const SolverPlan& plan) {

@@ -8,7 +8,6 @@
 #include "core/force_scale.h"
 #include "core/wake_levels.h"
 #include "device/block_lanes.h"
-#include "device/field_stage.h"
 #include "device/kernel_files.h"
 #include "device/sensel_macro.h"
 #include "pillarfield/processor.h"
@@ -148,17 +147,6 @@ std::vector<Definition> silence_definitions(const SolverPlan& plan) {
   return all;
 }
 
-/// Whether a file is of the field estimator, which is a program of its own.
-bool is_of_field(std::string_view file) {
-  return file.starts_with("field/") || file == "maths/segment.h";
-}
-
-/// Whether it is of what the field estimator shares with the solve.
-bool is_shared_with_field(std::string_view file) {
-  return file == "portable.h" || file == "maths/status.h" || file == "maths/elementary.h" ||
-         file == "maths/pillar_model.h" || file == "maths/angles.h";
-}
-
 /// Appends a file, which compilers then know by its own lines.
 void append(std::string& source, const KernelFile& file) {
   source += fmt::format("#line 1 \"{}\"\n", file.name);
@@ -180,7 +168,6 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   }
   stages.emplace_back(plan.half_output ? "store_half" : "store");
   if (plan.baseline_rate) stages.emplace_back("follow_baseline");
-  if (plan.estimator == Estimator::field) stages.emplace_back("resolve_field");
   if (plan.estimator == Estimator::contact) stages.emplace_back("estimate_contacts");
   return stages;
 }
@@ -199,24 +186,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));
   for (const KernelFile& file : kernel_files()) {
-    if (is_of_field(file.name) || (whole && !serves_whole_numbers(file.name))) continue;
-    append(source, file);
-  }
-  return source;
-}
-
-std::string field_source(const SolverPlan& plan, const DeviceInfo& device, ContactSharing sharing) {
-  if (plan.estimator != Estimator::field) return {};
-  return field_kernel_source(shares_by_groups(device, sharing));
-}
-
-std::string field_kernel_source(bool groups) {
-  std::string source =
-      "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n"
-      "#define PF_LANES 1\n";
-  if (!groups) source += "#define PF_ALONE 1\n";
-  for (const KernelFile& file : kernel_files()) {
-    if (is_of_field(file.name) || is_shared_with_field(file.name)) append(source, file);
+    if (!whole || serves_whole_numbers(file.name)) append(source, file);
   }
   return source;
 }

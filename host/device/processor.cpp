@@ -58,17 +58,6 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
-/// A CPU that shares the host's memory is the host's own processor: to launch what is left would
-/// take longer than to do it.
-std::unique_ptr<FieldStage> make_field_stage(Device::State& device, const SolverPlan& plan,
-                                             ContactSharing sharing, bool shares_memory) {
-  const bool groups = shares_by_groups(device.info, sharing);
-  if (sharing == ContactSharing::automatic && shares_memory && !groups) {
-    return host_field_stage(device, plan);
-  }
-  return device_field_stage(device, plan, groups);
-}
-
 /// What a user reads while kernels are compiled.
 std::string line_on_compiling(const DeviceInfo& device) {
   if (!device.kernel_cache.empty()) {
@@ -116,11 +105,7 @@ struct Processor::State {
       slots.push_back(
           std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
     }
-    if (wanted.estimator == Estimator::contact) {
-      field = contact_stage(device.state(), wanted);
-    } else if (wanted.estimator == Estimator::field) {
-      field = make_field_stage(device.state(), wanted, options.contacts, shares_memory);
-    }
+    if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
     warm_up();
     baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
     baseline.frame = 0;
@@ -132,7 +117,6 @@ struct Processor::State {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front()->submit(frame.view());
     slots.front()->wait();
-    if (field) slots.front()->warm_up(*field);
   }
 
   Device device;
@@ -142,7 +126,7 @@ struct Processor::State {
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
-  std::unique_ptr<FieldStage> field;         ///< null where the estimator is another
+  std::optional<ContactStage> contacts;  ///< where the estimator is that of contacts
   std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
   SlotTurns turns;
   bool received = false;  ///< a frame, once
@@ -217,7 +201,7 @@ FieldView<Value> Processor::receive_oldest() {
   Slot& slot = *state_->slots[state_->turns.oldest()];
   with_opencl_errors(state_->device.info().name, [&] {
     slot.wait();
-    if (state_->field) slot.resolve(*state_->field);
+    if (state_->contacts) slot.resolve(*state_->contacts);
   });
   state_->turns.receive();
   state_->received = true;
@@ -248,8 +232,9 @@ Processor::Kept Processor::keep() {
   return Kept(std::make_unique<Kept::State>(state_->slots[*slot], state_->turns.returned(), *slot));
 }
 
-const ContactMap* Processor::contacts() const {
-  return state_->field && state_->received ? &state_->field->contacts() : nullptr;
+FoundContacts Processor::contacts() const {
+  if (!state_->contacts || !state_->received) return {};
+  return state_->contacts->contacts();
 }
 
 int Processor::in_flight() const { return static_cast<int>(state_->turns.in_flight()); }

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
+#include "device/contact_stage.h"
 #include "device/device_state.h"
-#include "device/field_stage.h"
 #include "device/large_pages.h"
 #include "device/slot_memory.h"
 
@@ -59,10 +59,8 @@ class Slot {
   /// Waits for it.
   void wait();
 
-  void warm_up(FieldStage& field) { field.warm_up(queue_, *memory_); }
-
-  /// Resolves what the direct solve left open, after wait().
-  void resolve(FieldStage& field) { field.resolve(queue_, *memory_); }
+  /// Estimates what the direct solve left ambiguous, after wait().
+  void resolve(ContactStage& contacts) { contacts.resolve(*memory_); }
 
   /// What it became, after wait(). `Value` is that of the plan's results: float or Half.
   template <class Value>

@@ -74,7 +74,7 @@ constexpr std::array<ContactColumn<Ended>, 4> kEnded = {{
      [](Ended& c, double v) { c.last_time_s = v; }},
 }};
 
-constexpr std::array<ContactColumn<Quantities>, 21> kQuantities = {{
+constexpr std::array<ContactColumn<Quantities>, 22> kQuantities = {{
     {"pillars", "", count, [](const Quantities& q) { return static_cast<double>(q.pillars); },
      [](Quantities& q, double v) { q.pillars = as_count(v); }},
     {"ambiguous", "", count, [](const Quantities& q) { return static_cast<double>(q.ambiguous); },
@@ -111,6 +111,9 @@ constexpr std::array<ContactColumn<Quantities>, 21> kQuantities = {{
      [](Quantities& q, double v) { q.mean_pressure_kpa = v; }},
     {"friction", "", number, [](const Quantities& q) { return q.friction.value_or(kUnset); },
      [](Quantities& q, double v) { q.friction = as_number(v); }},
+    {"friction_deviation", "", number,
+     [](const Quantities& q) { return q.friction_deviation.value_or(kUnset); },
+     [](Quantities& q, double v) { q.friction_deviation = as_number(v); }, nullptr, true},
     {"friction_source", "", ColumnKind::word,
      [](const Quantities& q) { return static_cast<double>(q.friction_source); },
      [](Quantities& q, double v) { q.friction_source = as_word<FrictionSource>(v); },

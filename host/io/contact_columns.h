@@ -26,6 +26,7 @@ struct ContactColumn {
   double (*get)(const Row&) = nullptr;
   void (*set)(Row&, double) = nullptr;    ///< takes any number, which may come from a damaged file
   const char* (*word)(double) = nullptr;  ///< of kind word
+  bool later = false;                     ///< files of earlier versions lack it
 };
 
 /// id, parent, number, first_time_s, age_s.

@@ -23,12 +23,14 @@ enum PatchRow : std::uint8_t { kFirstContact, kContactCount, kFirstEnded, kEnded
 
 /// Sets a column of each of `rows`; `part` gives what of a row the column is of.
 template <class Row, class Item, class Part>
-void read_columns(std::span<const ContactColumn<Row>> columns, const hdf5::StoredFrames* datasets,
-                  std::uint64_t first, std::vector<Item>& rows, Part part) {
+void read_columns(std::span<const ContactColumn<Row>> columns,
+                  const std::optional<hdf5::StoredFrames>* datasets, std::uint64_t first,
+                  std::vector<Item>& rows, Part part) {
   std::vector<double> values(rows.size());
   for (const auto& column : columns) {
-    datasets->get_all(first, values.size(), H5T_NATIVE_DOUBLE, values.data());
-    ++datasets;
+    const auto& dataset = *datasets++;
+    if (!dataset) continue;
+    dataset->get_all(first, values.size(), H5T_NATIVE_DOUBLE, values.data());
     for (std::size_t i = 0; i < rows.size(); ++i) column.set(part(rows[i]), values[i]);
   }
 }
@@ -36,9 +38,13 @@ void read_columns(std::span<const ContactColumn<Row>> columns, const hdf5::Store
 }  // namespace
 
 void ContactTablesReader::Table::open(const hdf5::File& file, const std::string& group,
-                                      const char* name) {
-  columns.emplace_back(file, group + "/" + name, 0);
-  rows = columns.size() == 1 ? columns.back().frames() : std::min(rows, columns.back().frames());
+                                      const char* name, bool may_lack) {
+  const std::string path = group + "/" + name;
+  columns.emplace_back();
+  if (may_lack && !hdf5::exists(file, path)) return;
+  columns.back().emplace(file, path, 0);
+  const std::uint64_t frames = columns.back()->frames();
+  rows = columns.size() == 1 ? frames : std::min(rows, frames);
 }
 
 ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.path) {
@@ -46,10 +52,10 @@ ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.pa
   for (const auto& column : identity_columns())
     contacts_.open(file, force_format::kContacts, column.name);
   for (const auto& column : quantity_columns())
-    contacts_.open(file, force_format::kContacts, column.name);
+    contacts_.open(file, force_format::kContacts, column.name, column.later);
   for (const char* name : force_format::kPatchRows) patch_.open(file, force_format::kPatch, name);
   for (const auto& column : quantity_columns())
-    patch_.open(file, force_format::kPatch, column.name);
+    patch_.open(file, force_format::kPatch, column.name, column.later);
   for (const auto& column : ended_columns()) ended_.open(file, force_format::kEnded, column.name);
   frames_ = patch_.rows;
   if (file.unclosed) drop_frames_without_rows();
@@ -78,7 +84,7 @@ void ContactTablesReader::read_options(const hdf5::File& file) {
   if (minimum && *minimum >= 0 && *minimum <= kMost) {
     options_.minimum_pillars = static_cast<std::uint64_t>(*minimum);
   }
-  options_.friction = hdf5::read_number(file, group.get(), force_format::kGivenFriction);
+  options_.friction.given = hdf5::read_number(file, group.get(), force_format::kGivenFriction);
   options_.reach_mm =
       hdf5::read_number(file, group.get(), force_format::kReach).value_or(options_.reach_mm);
   check(options_, file.path.string());
@@ -86,7 +92,7 @@ void ContactTablesReader::read_options(const hdf5::File& file) {
 
 std::uint64_t ContactTablesReader::count_at(std::size_t column, std::uint64_t index) const {
   std::uint64_t count = 0;
-  patch_.columns[column].get(index, H5T_NATIVE_UINT64, &count);
+  patch_.columns[column]->get(index, H5T_NATIVE_UINT64, &count);
   // Sums of two of them must not wrap.
   return std::min<std::uint64_t>(count, INT64_MAX);
 }
@@ -96,7 +102,7 @@ void ContactTablesReader::require_rows(const Table& table, std::uint64_t first,
   if (first + count <= table.rows) return;
   throw Error(path_.string(),
               fmt::format("has {} rows in {}, and a frame wants row {}", table.rows,
-                          table.columns.front().name(), first + count - 1),
+                          table.columns.front()->name(), first + count - 1),
               hdf5::kDamaged);
 }
 
@@ -121,7 +127,7 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   const auto quantities = [](TrackedContact& contact) -> ContactQuantities& {
     return contact.quantities;
   };
-  const hdf5::StoredFrames* const contact_columns = contacts_.columns.data();
+  const std::optional<hdf5::StoredFrames>* const contact_columns = contacts_.columns.data();
   read_columns(identity_columns(), contact_columns, first_contact, frame.contacts, itself);
   read_columns(quantity_columns(), contact_columns + identity_columns().size(), first_contact,
                frame.contacts, quantities);

@@ -25,10 +25,11 @@ class ContactTablesReader {
  private:
   /// The datasets of a group, in the order of its columns, and how many rows all of them have.
   struct Table {
-    std::vector<hdf5::StoredFrames> columns;
+    std::vector<std::optional<hdf5::StoredFrames>> columns;  ///< unset where it is absent
     std::uint64_t rows = 0;
 
-    void open(const hdf5::File& file, const std::string& group, const char* name);
+    void open(const hdf5::File& file, const std::string& group, const char* name,
+              bool may_lack = false);
   };
 
   void read_options(const hdf5::File& file);

@@ -77,8 +77,8 @@ ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& optio
   hdf5::write_attribute(file, group.get(), force_format::kMinimumPillars,
                         static_cast<double>(options.minimum_pillars));
   hdf5::write_attribute(file, group.get(), force_format::kReach, options.reach_mm);
-  if (options.friction) {
-    hdf5::write_attribute(file, group.get(), force_format::kGivenFriction, *options.friction);
+  if (options.friction.given) {
+    hdf5::write_attribute(file, group.get(), force_format::kGivenFriction, *options.friction.given);
   }
   contacts_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
   add_columns(file, identity_columns(), contacts_);

@@ -61,7 +61,7 @@ class JsonSink final : public ContactSink {
 
 JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace)
     : path_(path), file_(path, OutputKind::contact_list, replace) {
-  const auto& friction = info.options.friction;
+  const auto& friction = info.options.friction.given;
   file_.write(
       fmt::format("{{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":{},"
                   "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"

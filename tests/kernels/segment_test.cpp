@@ -1,11 +1,12 @@
-// The segment of an ambiguous pillar: what kernels/maths/segment.h says of it is what the direct
-// solve says (docs/derivations/field.md, F1 to F5).
+// The segment of an ambiguous pillar: what host/contacts/segment.h says of it is what the direct
+// solve says (docs/derivations/segment.md).
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "contacts/segment.h"
 #include "pillars.h"
 
 namespace pillarfield {
@@ -49,7 +50,7 @@ void for_open_pillars(Check check, float segment_point = kPoint) {
       const maths::Force truth = {static_cast<float>(40 * ratio * std::cos(angle)),
                                   static_cast<float>(40 * ratio * std::sin(angle)), 40};
       const OpenPillar open = open_pillar(maths::model_readings(truth, 1), segment_point);
-      if (!maths::is_open(static_cast<std::uint8_t>(open.status))) continue;
+      if (!is_ambiguous(static_cast<std::uint8_t>(open.status))) continue;
       ++open_pillars;
       check(open, truth);
     }
@@ -61,15 +62,20 @@ double ratio_of(const maths::Force& force) {
   return std::hypot(force.shear_x, force.shear_y) / force.normal;
 }
 
+Segment segment_of(const OpenPillar& open) {
+  return pillarfield::segment_of(open.point,
+                                 moves_vertically(static_cast<std::uint8_t>(open.status)), {});
+}
+
 TEST(Segment, HoldsTheForcesOfTheDirectSolve) {
   for (const float at : {0.5F, kPoint, 1.0F}) {
     for_open_pillars(
-        [at](const OpenPillar& open, const maths::Force&) {
-          const bool vertical = maths::moves_vertically(open.status);
-          const float high = maths::segment_of(open.point, vertical, at).high;
+        [](const OpenPillar& open, const maths::Force&) {
+          const bool vertical = moves_vertically(static_cast<std::uint8_t>(open.status));
+          const float high = segment_of(open).high;
           EXPECT_NEAR(high, open.sum.high * kScale.normal, 1e-4);
           for (const float part : {0.0F, 0.25F, 0.7F, 1.0F}) {
-            const maths::Force here = maths::force_on_segment(open.point, vertical, part * high);
+            const maths::Force here = force_on_segment(open.point, vertical, part * high);
             const maths::Force there =
                 maths::force_at(open.diagonals, part * open.sum.high, kScale);
             ASSERT_NEAR(here.shear_x, there.shear_x, 1e-4);
@@ -81,54 +87,48 @@ TEST(Segment, HoldsTheForcesOfTheDirectSolve) {
   }
 }
 
-TEST(Segment, TheTruthIsWhereItsRatioIs) {
+TEST(Segment, IsTheSameOfEachOfItsForces) {
+  for_open_pillars([](const OpenPillar& open, const maths::Force&) {
+    const bool vertical = moves_vertically(static_cast<std::uint8_t>(open.status));
+    const Segment segment = segment_of(open);
+    for (const float part : {0.01F, 0.3F, 1.0F}) {
+      const maths::Force other = force_on_segment(open.point, vertical, part * segment.high);
+      const Segment again = pillarfield::segment_of(other, vertical, {});
+      ASSERT_NEAR(again.fixed, segment.fixed, 1e-4);
+      ASSERT_NEAR(again.moving, segment.moving, 1e-4);
+      ASSERT_NEAR(again.high, segment.high, 1e-4);
+    }
+  });
+}
+
+TEST(Segment, TheTruthHasItsRatio) {
   for_open_pillars([](const OpenPillar& open, const maths::Force& truth) {
-    const bool vertical = maths::moves_vertically(open.status);
-    const maths::Segment segment = maths::segment_of(open.point, vertical, kPoint);
-    const auto ratio = static_cast<float>(ratio_of(truth));
-    ASSERT_NEAR(maths::normal_at_ratio(segment, ratio), truth.normal, 2e-3);
-    ASSERT_NEAR(maths::ratio_on_segment(segment, truth.normal), ratio, 1e-4 * ratio);
+    ASSERT_NEAR(segment_of(open).ratio_at(truth.normal), ratio_of(truth), 1e-4 * ratio_of(truth));
   });
 }
 
 TEST(Segment, RatiosFallAsTheNormalForceGrows) {
   for_open_pillars([](const OpenPillar& open, const maths::Force&) {
-    const maths::Segment segment =
-        maths::segment_of(open.point, maths::moves_vertically(open.status), kPoint);
-    float before = segment.high;
-    const float least = maths::ratio_on_segment(segment, segment.high);
-    for (int step = 0; step < 30; ++step) {
-      const float normal =
-          maths::normal_at_ratio(segment, least * (1 + 0.2F * static_cast<float>(step)));
-      ASSERT_LE(normal, before * 1.00001F);
-      before = normal;
+    const Segment segment = segment_of(open);
+    double before = segment.ratio_at(0.01 * segment.high);
+    for (double step = 1; step <= 30; ++step) {
+      const double ratio = segment.ratio_at(double{segment.high} * step / 30);
+      ASSERT_LT(ratio, before);
+      before = ratio;
     }
   });
 }
 
-TEST(Segment, HalfwayIsInTheMiddleOfTheThetas) {
-  for_open_pillars([](const OpenPillar& open, const maths::Force&) {
-    const maths::Segment segment =
-        maths::segment_of(open.point, maths::moves_vertically(open.status), kPoint);
-    const double least = std::atan(maths::ratio_on_segment(segment, segment.high));
-    const float whole = maths::between_thetas(segment, 0, segment.high, 0.5F);
-    ASSERT_NEAR(std::atan(maths::ratio_on_segment(segment, whole)),
-                (least + std::numbers::pi / 2) / 2, 1e-5);
-    const float low = 0.6F * segment.high;
-    const double most = std::atan(maths::ratio_on_segment(segment, low));
-    const float part = maths::between_thetas(segment, low, segment.high, 0.5F);
-    ASSERT_NEAR(std::atan(maths::ratio_on_segment(segment, part)), (least + most) / 2, 1e-5);
-    ASSERT_NEAR(maths::between_thetas(segment, low, segment.high, 1.0F), low, 1e-4 * low);
-  });
-}
-
 TEST(Segment, ScalesWithTheForce) {
-  const maths::Segment one = {0.3F, 1.2F, 0.5F};
+  const maths::Force force = {-0.3F, 1.2F, 0.5F};
+  const Segment one = pillarfield::segment_of(force, true, {});
   for (const float scale : {1e-12F, 1e-3F, 1e6F, 1e15F}) {
-    const maths::Segment other = {0.3F * scale, 1.2F * scale, 0.5F * scale};
-    EXPECT_NEAR(maths::normal_at_ratio(other, 2) / scale, maths::normal_at_ratio(one, 2), 1e-6);
+    const Segment other = pillarfield::segment_of(
+        {scale * force.shear_x, scale * force.shear_y, scale * force.normal}, true, {});
+    EXPECT_NEAR(other.fixed / scale, one.fixed, 1e-6);
+    EXPECT_NEAR(other.moving / scale, one.moving, 1e-6);
+    EXPECT_NEAR(other.high / scale, one.high, 1e-6);
   }
-  EXPECT_EQ(maths::normal_at_ratio({0, 0, 0}, 2), 0);
 }
 
 }  // namespace

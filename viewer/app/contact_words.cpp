@@ -21,6 +21,12 @@ std::string ambiguous_words(const ContactQuantities& contact) {
   return share + " / " + percent_words(contact.resolved, contact.ambiguous);
 }
 
+std::string friction_words(const ContactQuantities& contact) {
+  if (!contact.friction) return "–";
+  if (!contact.friction_deviation) return fmt::format("{:.2f}", *contact.friction);
+  return fmt::format("{:.2f} ± {:.2f}", *contact.friction, *contact.friction_deviation);
+}
+
 }  // namespace
 
 const std::array<ContactColumn, kContactColumns>& contact_columns() {
@@ -28,7 +34,7 @@ const std::array<ContactColumn, kContactColumns>& contact_columns() {
       {"id", "stays the same while the contact is followed", "0000"},
       {"normal", "normal force, N", "00000"},
       {"shear", "shear force, N", "00000"},
-      {"µ", "friction, where it is known", "0.00"},
+      {"µ", "friction and its standard deviation, where it is known", "0.00 ± 0.00"},
       {"slip", "sticking, partial, sliding or unknown", "unknown"},
       {"ambiguous", "share of the pillars / share of those that neighbours resolved",
        "00 % / 00 %"},
@@ -44,7 +50,7 @@ std::array<std::string, kContactColumns> contact_words(const std::string& name,
   return {name,
           three_digits(contact.normal_n),
           three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n)),
-          contact.friction ? fmt::format("{:.2f}", *contact.friction) : "–",
+          friction_words(contact),
           name_of(contact.slip),
           ambiguous_words(contact),
           three_digits(contact.mean_pressure_kpa),

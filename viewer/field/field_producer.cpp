@@ -33,7 +33,9 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_readings = true;
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
-  info.friction = plan.estimator == Estimator::contact ? plan.friction.given : plan.field.friction;
+  info.contacts.friction = plan.friction;
+  info.contacts.noise_n = reading_noise_n(plan);
+  info.contacts.hidden_n = hidden_normal_n(plan.skin);
   info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
                             processor.shares_memory() ? "zero copy" : "staged");
 }
@@ -78,7 +80,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   if (scene.baseline_time_s) {
     info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
   }
-  if (remembers(scene.estimator, scene.field, scene.friction)) {
+  if (remembers(scene.estimator, scene.friction)) {
     info.remarks.emplace_back(
         "Frames that are played know of the one before, one that is jumped to is solved by "
         "itself.");
@@ -122,7 +124,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 }  // namespace
 
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
-  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm(), info().friction);
+  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm(), info().contacts);
   return watch_->contacts_of(field);
 }
 

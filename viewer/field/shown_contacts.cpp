@@ -45,7 +45,7 @@ ShownContacts with_extents(FrameContacts found, const ContactMap& map) {
 
 ShownContacts ContactWatch::contacts_of(const ShownField& field) {
   if (!tracker_ || field.index < last_index_) {
-    tracker_.emplace(pitch_mm_, ContactOptions{.friction = friction_});
+    tracker_.emplace(pitch_mm_, options_);
   }
   last_index_ = field.index;
   const FrameContacts& found = tracker_->update(field.forces, field.time_s);

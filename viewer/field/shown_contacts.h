@@ -25,16 +25,15 @@ struct ShownContacts {
 /// comes before the last begins anew, with ids from 1.
 class ContactWatch {
  public:
-  /// `friction` as that of ContactOptions.
-  explicit ContactWatch(double pillar_pitch_mm, std::optional<double> friction = {})
-      : pitch_mm_(pillar_pitch_mm), friction_(friction) {}
+  explicit ContactWatch(double pillar_pitch_mm, const ContactOptions& options = {})
+      : pitch_mm_(pillar_pitch_mm), options_(options) {}
 
   /// Time as ContactTracker::update().
   [[nodiscard]] ShownContacts contacts_of(const ShownField& field);
 
  private:
   double pitch_mm_;
-  std::optional<double> friction_;
+  ContactOptions options_;
   std::optional<ContactTracker> tracker_;
   std::uint64_t last_index_ = 0;
 };

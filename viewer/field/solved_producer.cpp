@@ -18,9 +18,8 @@ struct Held {
 
 }  // namespace
 
-bool remembers(Estimator estimator, const FieldEvidence& field, const FrictionKnowledge& friction) {
-  return (estimator == Estimator::field && field.frames_close) ||
-         (estimator == Estimator::contact && friction.memory);
+bool remembers(Estimator estimator, const FrictionKnowledge& friction) {
+  return estimator == Estimator::contact && friction.memory;
 }
 
 SolverPlan shown_plan(SolverPlan plan) {
@@ -35,7 +34,7 @@ SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> sup
                                const SolverPlan& plan, Processor processor)
     : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
   info_.frames = supply_->frames();
-  if (!remembers(plan.estimator, plan.field, plan.friction)) return;
+  if (!remembers(plan.estimator, plan.friction)) return;
   silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
 

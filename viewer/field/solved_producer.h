@@ -12,8 +12,7 @@
 namespace pillarfield::viewer {
 
 /// Whether frames are estimated with the help of the frame before.
-[[nodiscard]] bool remembers(Estimator estimator, const FieldEvidence& field,
-                             const FrictionKnowledge& friction);
+[[nodiscard]] bool remembers(Estimator estimator, const FrictionKnowledge& friction);
 
 /// What a source asks of the solver, and what there is to show for it: angles always, uncertainty
 /// where the noise is known and the estimator can tell.

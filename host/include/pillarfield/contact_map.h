@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "pillarfield/friction.h"
+
 namespace pillarfield {
 
 struct SilentBlocks;  // core/silent_blocks.h
@@ -55,6 +57,12 @@ class ContactMap {
   std::vector<ContactRun> found_;       ///< row by row
   std::vector<std::uint32_t> parents_;  ///< a run before each in its contact, or itself
   std::vector<std::size_t> next_;       ///< of each contact, where its next run goes
+};
+
+/// The contacts of a frame that were found already, and what is believed of the friction of each.
+struct FoundContacts {
+  const ContactMap* map = nullptr;            ///< null: they were not looked for
+  std::span<const ContactFriction> friction;  ///< by number; empty where it was not asked for
 };
 
 }  // namespace pillarfield

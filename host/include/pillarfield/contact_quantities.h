@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "pillarfield/friction.h"
+
 namespace pillarfield {
 
 /// A place on the patch, mm: from its centre, x right and y up, as in scenes.
@@ -19,19 +21,8 @@ enum class SlipState : std::uint8_t {
   sliding,   ///< pillars that bear nine tenths or more slip
 };
 
-/// Where a contact's friction comes from.
-enum class FrictionSource : std::uint8_t {
-  none,        ///< it is not known
-  given,       ///< by whoever asked
-  shown,       ///< by a plateau of shear / normal in this frame
-  remembered,  ///< by one in the last frame in which this contact showed any
-};
-
 /// "unknown", "sticking", "partial", "sliding".
 [[nodiscard]] const char* name_of(SlipState state);
-
-/// "none", "given", "shown", "remembered".
-[[nodiscard]] const char* name_of(FrictionSource source);
 
 /// What a contact exerts on the skin, and where (docs/contacts_found.md). Forces are sums over its
 /// pillars, with the signs of ForceFieldView.
@@ -59,8 +50,11 @@ struct ContactQuantities {
   PatchPlace peak;      ///< where; of equal ones the first row by row
   double mean_pressure_kpa = 0;
 
+  /// The friction coefficient, where it is known: by a posterior whose logarithm has a standard
+  /// deviation of 0.05 or less (docs/derivations/contact.md). Unset elsewhere.
   std::optional<double> friction;
-  FrictionSource friction_source = FrictionSource::none;
+  std::optional<double> friction_deviation;  ///< its standard deviation; unset as friction
+  FrictionSource friction_source = FrictionSource::prior;
   SlipState slip = SlipState::unknown;
   /// Of the normal force of the unambiguous pillars, the share on those whose shear / normal is
   /// 0.92 of the friction or more. Unset where the friction is not known, or no pillar is

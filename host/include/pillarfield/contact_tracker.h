@@ -36,15 +36,20 @@ struct FrameContacts {
   std::vector<TrackedContact> contacts;
   std::vector<EndedContact> ended;  ///< by id
   /// All loaded pillars of the patch together, those of contacts too small to be listed included.
-  /// The friction is what was given: bodies of unlike friction may be on the patch.
+  /// Its friction is what was given: bodies of unlike friction may be on the patch.
   ContactQuantities patch;
 };
 
 /// What contacts are looked for and how they are followed.
 struct ContactOptions {
   std::uint64_t minimum_pillars = 1;  ///< smaller contacts are neither listed nor followed
-  std::optional<double> friction =
-      {};                ///< of every contact, (0, 100]; unset: each may show its own
+  FrictionKnowledge friction = {};      ///< what is known of their friction before any reading
+  /// Standard deviation of a reading over counts per newton, N, 0 to 1e6; unset: a sixty-fourth of
+  /// the largest force of each contact.
+  std::optional<double> noise_n = {};
+  /// The normal force that sensels may hide at the threshold, N: half of it over counts per newton
+  /// (hidden_normal_n()), 0 to 1e6.
+  double hidden_n = 0;
   double reach_mm = 10;  ///< how far a contact may jump, 0 to 1000
   /// That measure a frame's contacts together, 0 to 1024; 0: as many as the processor has. What is
   /// found does not depend on it. They start with the first frame of more than 4000 loaded pillars
@@ -79,9 +84,10 @@ class ContactTracker {
   /// patch for finding contacts and with loaded ones for the rest, n log n in contacts. Forces of
   /// any value are taken. Where the contacts of this frame were found already, `found` has them
   /// (Processor::contacts()); it is copied. Throws Error where planes are not of the field's size,
-  /// that is not the size of the frame before, or a run of `found` lies outside it.
+  /// that is not the size of the frame before, a run of `found` lies outside it, or it has frictions
+  /// but not one for each contact.
   const FrameContacts& update(const ForceFieldView& forces, double time_s,
-                              const ContactMap* found = nullptr);
+                              const FoundContacts& found = {});
 
   /// The pillars of the contacts of the frame last taken, small ones included.
   [[nodiscard]] const ContactMap& map() const;

@@ -82,26 +82,12 @@ struct SpeedPaths {
   Stores stores = Stores::automatic;
 };
 
-/// How work-items of the device share the contacts that the estimator `field` resolves: the same
-/// bits.
-enum class ContactSharing : std::uint8_t {
-  automatic,   ///< work_group, or on a CPU work_item; where that shares the host's memory neither,
-               ///< but threads of the host
-  work_item,   ///< a contact is one work-item's
-  work_group,  ///< a contact is a group's, as suits a GPU
-};
-
 /// The OpenCL C that is compiled for a plan on a device with so many lanes, complete. Stores are
 /// streaming only where `paths` says so.
 [[nodiscard]] std::string kernel_source(const SolverPlan& plan, int device_lanes,
                                         const SpeedPaths& paths = {});
 
-/// The OpenCL C that resolves what the direct solve left open, a program of its own; empty where
-/// the estimator is not that of the field.
-[[nodiscard]] std::string field_source(const SolverPlan& plan, const DeviceInfo& device,
-                                       ContactSharing sharing = ContactSharing::automatic);
-
-/// The stages that kernel_source and field_source hold, in their order, one name each.
+/// The stages of a plan, in their order, one name each: those of kernel_source, and of the host.
 [[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
 
 /// Solves frames on a device, by the estimator and with the stages that a plan names.
@@ -124,7 +110,6 @@ class Processor {
     int lanes = 0;  ///< pillars that a work-item solves at once: 1, 2, 4, 8 or 16; 0: DeviceInfo's;
                     ///< fewer where a row of the skin is shorter
     SpeedPaths paths = {};
-    ContactSharing contacts = ContactSharing::automatic;  ///< of the estimator `field`
     /// Called at most once, from another thread, where the constructor takes longer than a moment,
     /// as when kernels are compiled for the first time: with a line that says so to a user. May not
     /// throw.
@@ -176,10 +161,10 @@ class Processor {
   /// frame that was submitted since took its slot.
   [[nodiscard]] Kept keep();
 
-  /// The contacts of the frame last received, whose pillars the estimator `field` looks for: with
-  /// them ContactTracker need not. They stay until the next frame is received, also where this one
-  /// is kept. Null with other estimators, and before the first frame.
-  [[nodiscard]] const ContactMap* contacts() const;
+  /// The contacts of the frame last received and what the estimator `contact` believes of their
+  /// friction: with them ContactTracker need not look. They stay until the next frame is received,
+  /// also where this one is kept. Nothing with other estimators, and before the first frame.
+  [[nodiscard]] FoundContacts contacts() const;
 
   /// The tare [sensel rows, cols] as the frames submitted so far leave it, in counts; waits for
   /// them. Empty where the plan has none and follows none.

@@ -49,7 +49,6 @@ struct Scene {
   std::optional<double> parity_tolerance_counts;  ///< see SolverPlan, as the four that follow
   Estimator estimator = Estimator::direct;
   double segment_point = kSegmentPoint;
-  FieldEvidence field;
   FrictionKnowledge friction;
   bool angles = false;
   bool uncertainty = false;

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "pillarfield/calibration.h"
+#include "pillarfield/friction.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
@@ -14,40 +15,14 @@ enum class Estimator : std::uint8_t {
   direct,  ///< linear, on the Cramér–Rao bound in regions 1 and 2
            ///< (docs/derivations/direct_solve.md)
   paper,   ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
-  field,   ///< direct, then ambiguous pillars with their contact's help (docs/derivations/field.md)
   contact,  ///< direct, then ambiguous pillars by what is believed of their contact's friction
             ///< (docs/derivations/contact.md)
-};
-
-/// What `Estimator::field` may go by where readings leave a force open. Each piece of evidence is
-/// used where the contact itself bears it out; what the scene vouches for is used as it stands.
-struct FieldEvidence {
-  bool shape = true;  ///< the pressure is smooth and vanishes at the contact's edge
-  bool slip = true;   ///< friction is learnt where resolved pillars show that they slip
-  /// No pillar's shear exceeds this many times its normal force, (0, 100]; unset: not known.
-  std::optional<double> friction;
-  bool slips = false;         ///< every pillar slips at that friction, which must be set
-  bool frames_close = false;  ///< forces change little from one frame to the next
-  int sweeps = 8;             ///< of the relaxation of the pressure, 0 to 1000: speed against error
 };
 
 /// See SolverPlan::segment_point.
 inline constexpr double kSegmentPoint = 0.875;
 
-/// What `Estimator::contact` knows of friction coefficients before any reading: a log-normal
-/// distribution, the same for all contacts (docs/derivations/contact.md, C1).
-struct FrictionKnowledge {
-  double median = 1;    ///< [0.1, 9.9]
-  double spread = 0.5;  ///< standard deviation of the logarithm, [0.01, 3]
-  /// The friction itself, [0.1, 9.9], to 3 %; it takes the place of median and spread. Unset: not
-  /// known.
-  std::optional<double> given;
-  std::optional<double> bound;  ///< no friction is larger, [0.1, 100]; unset: not known
-  bool memory =
-      true;  ///< what a contact showed counts in the next frame; false: frames are unrelated
-};
-
-/// "direct", "paper", "field" or "contact".
+/// "direct", "paper" or "contact".
 [[nodiscard]] const char* name_of(Estimator estimator);
 
 /// What is computed, and from which sensor. Each member that is set or not empty adds its
@@ -69,8 +44,7 @@ struct SolverPlan {
   /// counts at 0.875, 25 and 19 at 0.5: the middle, whose largest error is the least
   /// (docs/derivations/direct_solve.md, section 5).
   double segment_point = kSegmentPoint;
-  FieldEvidence field;         ///< for `Estimator::field`
-  FrictionKnowledge friction;  ///< for `Estimator::contact`
+  FrictionKnowledge friction;  ///< for `Estimator::contact`, and of tracked contacts
   /// Share of its distance from the reading that the tare of an untouched sensel takes over after
   /// each frame, (0, 1]; unset: the tare stays. Untouched is a sensel whose pillar and the eight
   /// around it have no usable and no saturated sensel in that frame.
@@ -83,8 +57,8 @@ struct SolverPlan {
   bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, not for `paper`
   /// The planes of a result, status apart, are of half precision (half.h) and come from
   /// Processor::receive_half(): fewer bytes to move, 11 instead of 17 a pillar where 8-bit readings
-  /// become forces. Forces of up to 65504 N, angles within 0.001 rad. Not for `field`, which goes
-  /// over planes of single precision once more.
+  /// become forces. Forces of up to 65504 N, angles within 0.001 rad. Not for `contact`, which
+  /// goes over planes of single precision once more.
   bool half_output = false;
 };
 
@@ -103,6 +77,14 @@ void check(const SolverPlan& plan, std::string_view where);
 /// Standard deviation of a raw reading of sensels without a noise plane, counts: that of the plan,
 /// and of rounding to whole counts, 1/√12, where the sensel type has no fractions.
 [[nodiscard]] double reading_noise(const SolverPlan& plan);
+
+/// The same as a force, over the counts per newton, N; where the noise is not known, a quarter of
+/// the threshold is taken for it.
+[[nodiscard]] double reading_noise_n(const SolverPlan& plan);
+
+/// The normal force that inactive sensels may hide below the threshold, N (docs/derivations/
+/// segment.md, F1).
+[[nodiscard]] double hidden_normal_n(const Skin& skin);
 
 /// By how many counts noise may shift what parity leaves for a silent sensel, five standard
 /// deviations: what direct_status takes as doubt. Zero where the noise is not known. One number for

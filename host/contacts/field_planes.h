@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pillarfield/force_field.h"
+
+namespace pillarfield {
+
+/// The planes of a result that an estimator goes over once more, [rows, cols] each.
+struct FieldPlanes {
+  float* shear_x = nullptr;
+  float* shear_y = nullptr;
+  float* normal = nullptr;
+  std::uint8_t* status = nullptr;
+  float* magnitude = nullptr;  ///< null, as theta and phi, where angles are not asked for
+  float* theta = nullptr;
+  float* phi = nullptr;
+  std::array<float*, kUncertaintyPlanes> uncertainty{};  ///< null where it is not asked for
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+
+  [[nodiscard]] bool has_uncertainty() const { return uncertainty[0] != nullptr; }
+  [[nodiscard]] float& at(Uncertainty plane, std::size_t index) const {
+    return uncertainty[static_cast<std::size_t>(plane)][index];
+  }
+  /// Forces and status.
+  [[nodiscard]] ForceFieldView forces() const {
+    const std::size_t pillars = std::size_t{rows} * cols;
+    ForceFieldView view;
+    view.rows = rows;
+    view.cols = cols;
+    view.shear_x = {shear_x, pillars};
+    view.shear_y = {shear_y, pillars};
+    view.normal = {normal, pillars};
+    view.status = {status, pillars};
+    return view;
+  }
+};
+
+[[nodiscard]] inline FieldPlanes planes_of(ForceField& field) {
+  const auto values_or_null = [](std::vector<float>& plane) {
+    return plane.empty() ? nullptr : plane.data();
+  };
+  FieldPlanes planes;
+  planes.rows = field.rows;
+  planes.cols = field.cols;
+  planes.shear_x = field.shear_x.data();
+  planes.shear_y = field.shear_y.data();
+  planes.normal = field.normal.data();
+  planes.status = field.status.data();
+  for (std::size_t i = 0; i < kUncertaintyPlanes; ++i) {
+    planes.uncertainty[i] = values_or_null(field.uncertainty[static_cast<Uncertainty>(i)]);
+  }
+  return planes;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,50 @@
+#include "device/contact_stage.h"
+
+#include <algorithm>
+#include <thread>
+
+namespace pillarfield {
+namespace {
+
+/// A device that is the host's processor has as many compute units as threads may be used.
+std::size_t threads_for(const Device::State& device) {
+  const bool is_host = device.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU;
+  const std::size_t threads = is_host ? device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()
+                                      : std::thread::hardware_concurrency();
+  return std::max<std::size_t>(threads, 1);
+}
+
+float* floats_of(const SlotMemory& memory, std::size_t plane) {
+  return reinterpret_cast<float*>(memory.host(plane));
+}
+
+/// The host's side of a result's planes.
+FieldPlanes planes_of(const SlotMemory& memory, std::uint32_t rows, std::uint32_t cols) {
+  FieldPlanes planes;
+  planes.rows = rows;
+  planes.cols = cols;
+  planes.shear_x = floats_of(memory, kShearX);
+  planes.shear_y = floats_of(memory, kShearY);
+  planes.normal = floats_of(memory, kNormal);
+  planes.status = reinterpret_cast<std::uint8_t*>(memory.host(kStatus));
+  planes.magnitude = floats_of(memory, kMagnitude);
+  planes.theta = floats_of(memory, kTheta);
+  planes.phi = floats_of(memory, kPhi);
+  for (std::size_t i = 0; i < kUncertaintyPlanes; ++i) {
+    planes.uncertainty[i] = floats_of(memory, kUncertainty + i);
+  }
+  return planes;
+}
+
+}  // namespace
+
+ContactStage::ContactStage(const Device::State& device, const SolverPlan& plan)
+    : rows_(plan.skin.pillar_rows()),
+      cols_(plan.skin.pillar_cols()),
+      estimator_(plan, threads_for(device)) {}
+
+void ContactStage::resolve(const SlotMemory& memory) {
+  estimator_.resolve(planes_of(memory, rows_, cols_), memory.silence());
+}
+
+}  // namespace pillarfield
