@@ -52,7 +52,8 @@ void write_ends(const FieldPlanes& field, std::uint32_t index, const maths::Forc
 ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
                                    const ContactParameters& parameters)
     : parameters_(parameters),
-      end_{.point = static_cast<float>(plan.segment_point)},
+      end_{.point = static_cast<float>(plan.segment_point),
+           .hidden_n = static_cast<float>(hidden_normal_n(plan.skin))},
       friction_({plan.skin.pillar_pitch_mm(), reading_noise_n(plan), end_}, plan.friction, threads,
                 parameters),
       rows_(plan.skin.pillar_rows()),

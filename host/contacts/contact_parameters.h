@@ -19,6 +19,9 @@ struct ContactParameters {
   double noise_of_ratio = 1.6;
   /// Least normal force of a pillar that is asked, in noise of a reading; [5, 12].
   double least_normal = 8;
+  /// Pillars of smaller ratios tell nothing of friction: most of a body that is only pressed
+  /// are; [0.1, 0.3].
+  double least_ratio = 0.2;
   /// Probability that a pillar follows none of the above; [1e-4, 1e-2].
   double outliers = 1e-3;
   /// Ratios at which two sensels become inactive are known to this relative deviation.
@@ -41,14 +44,14 @@ struct ContactParameters {
   /// normal force over its segment's length.
   double resolved_deviation = 0.1;
   /// A friction is told up to this standard deviation of its logarithm; [0.02, 0.1].
-  double reported_spread = 0.05;
-  /// Ratios within this relative distance of the friction are taken for it;
-  double same_ratio = 0.15;
-  /// and up to this share of others for noise.
-  double few = 0.05;
+  double reported_spread = 0.02;
+  /// A friction is the same as before within this relative distance,
+  double same_friction = 0.05;
+  /// and the mean ratio of a contact's pillars another beyond this.
+  double other_load = 0.1;
   /// A contact whose outermost pillars bear more than this share of the largest force, in the mean,
   /// may be a flat face.
-  double face_load = 0.75;
+  double face_load = 0.73;
 };
 
 }  // namespace pillarfield

@@ -82,11 +82,12 @@ void ContactSamples::ask(std::uint32_t row, std::uint32_t col, double noise_n,
   } else if (is_determined(status)) {
     peak_n_ = std::max(peak_n_, normal);
     pressure_.push_back({box_.x_of(col), box_.y_of(row), normal * normal, 1});
-    if (!(normal > least) || (status & status::kAmbiguous) != 0) return;
+    if (!(normal > least)) return;
     const double x = forces_.shear_x[index];
     const double y = forces_.shear_y[index];
-    ratios_.push_back({std::sqrt(x * x + y * y) / normal,
-                       deviation_of_ratio(normal, noise_n, parameters), ceiling_of(x, y)});
+    const double ratio = std::sqrt(x * x + y * y) / normal;
+    if (ratio < parameters.least_ratio) return;
+    ratios_.push_back({ratio, deviation_of_ratio(normal, noise_n, parameters), ceiling_of(x, y)});
   }
 }
 

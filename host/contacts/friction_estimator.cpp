@@ -51,9 +51,9 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
 
 void FrictionEstimator::begin(const ContactMap& map) {
   std::swap(beliefs_, beliefs_before_);
-  std::swap(certain_, certain_before_);
+  std::swap(histories_, histories_before_);
   beliefs_.assign(map.contacts(), prior_);
-  certain_.assign(map.contacts(), 0);
+  histories_.assign(map.contacts(), {});
   models_.assign(map.contacts(), {});
   friction_.assign(map.contacts(), {});
   if (!remember_) return;
@@ -79,7 +79,7 @@ void FrictionEstimator::begin(const ContactMap& map) {
                                                                         : matches.parents[contact];
     if (before == kNoContact) continue;
     beliefs_[contact] = beliefs_before_[before].carried(prior_, parameters_.forgetting);
-    certain_[contact] = certain_before_[before];
+    histories_[contact] = histories_before_[before];
   }
 }
 
@@ -141,18 +141,25 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   }
 }
 
-/// Whether a contact is borne by its edge too, and its pillars show one ratio of shear to normal
-/// force: a flat face that sticks does, as does one that slides (section 5).
-bool FrictionEstimator::may_stick(double friction, Workspace& work) const {
-  const std::vector<ShownRatio>& ratios = work.samples.ratios();
-  const auto below = std::count_if(ratios.begin(), ratios.end(), [&](const ShownRatio& pillar) {
-    return pillar.ratio < (1 - parameters_.same_ratio) * friction;
-  });
-  if (static_cast<double>(below) > parameters_.few * static_cast<double>(ratios.size())) {
-    return false;
-  }
+/// Whether a contact bears as much at its edge as elsewhere: under such a face all pillars may stick
+/// and still show nearly one ratio of shear to normal force (section 5).
+bool FrictionEstimator::is_face(Workspace& work) const {
   if (!work.samples.has_edges()) work.samples.add_edges();
   return work.samples.edge_load() > parameters_.face_load;
+}
+
+/// Whether a ratio that pillars share stayed when what the contact bears changed. What sticks does
+/// not: its ratios grow together.
+bool FrictionEstimator::stays(double friction, const Workspace& work, History& history) const {
+  const std::vector<ShownRatio>& ratios = work.samples.ratios();
+  double mean = 0;
+  for (const ShownRatio& pillar : ratios) mean += pillar.ratio / static_cast<double>(ratios.size());
+  if (std::abs(friction / history.friction - 1) > parameters_.same_friction) {
+    history = {friction, mean, false};
+  } else if (std::abs(mean / history.mean_ratio - 1) > parameters_.other_load) {
+    history.stayed = true;
+  }
+  return history.stayed;
 }
 
 /// What is told of a belief, and how it was learnt.
@@ -163,11 +170,8 @@ ContactFriction FrictionEstimator::reported(std::uint32_t contact,
   ContactFriction friction{belief.quantile(0.5), belief.spread(), FrictionSource::prior};
   if (given_) return {*given_, friction.spread, FrictionSource::given};
   if (friction.spread > parameters_.reported_spread) return friction;
-  // Where it once differed from what sticks, it is known; but not that of a larger ratio.
-  double& certain = certain_[contact];
-  const bool seen_before = friction.median < (1 + parameters_.same_ratio) * certain;
-  if (may_stick(friction.median, work) && !seen_before) return friction;
-  certain = std::max(certain, friction.median);
+  const bool certain = stays(friction.median, work, histories_[contact]);
+  if (!certain && is_face(work)) return friction;
   FrictionBelief alone = prior_;
   alone.update(log_likelihood);
   friction.source = alone.spread() <= parameters_.reported_spread ? FrictionSource::observed

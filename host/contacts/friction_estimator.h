@@ -74,8 +74,16 @@ class FrictionEstimator {
     std::vector<ShownRatio> predicted;
   };
 
+  /// Since when a contact has shown a friction.
+  struct History {
+    double friction = 0;
+    double mean_ratio = 0;  ///< of its pillars, then
+    bool stayed = false;    ///< while that changed
+  };
+
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
-  [[nodiscard]] bool may_stick(double friction, Workspace& work) const;
+  [[nodiscard]] bool is_face(Workspace& work) const;
+  bool stays(double friction, const Workspace& work, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
                                          Workspace& work);
 
@@ -89,8 +97,8 @@ class FrictionEstimator {
   ContactTraces traces_before_;
   std::vector<FrictionBelief> beliefs_;
   std::vector<FrictionBelief> beliefs_before_;
-  std::vector<double> certain_;  ///< the largest friction that was told of each, or 0
-  std::vector<double> certain_before_;
+  std::vector<History> histories_;
+  std::vector<History> histories_before_;
   std::vector<ContactModel> models_;
   std::vector<ContactFriction> friction_;
   std::vector<Workspace> workspaces_;
