@@ -3,10 +3,11 @@
 //     fuzz_replay CORPUS [FILE...]
 //
 // CORPUS has a folder for each target; FILE limits the run to these of its files, named as
-// FOLDER/NAME. A file fails when a signal ends its process, when it takes longer than 5 s (20 s
-// with sanitizers) or more than 1 GiB (without them), when it ends in anything but a
-// pillarfield::Error, when its name begins with "seed_" and it is refused, or when it does not and
-// it is read. Exit status: 0, or 1 where a file fails.
+// FOLDER/NAME. A file fails when a signal ends its process, when it takes more than 5 s of
+// processor time (20 s with sanitizers; other programs may use the computer too), a minute in all
+// or 1 GiB (without sanitizers), when it ends in anything but a pillarfield::Error, when its name
+// begins with "seed_" and it is refused, or when it does not and it is read. Exit status: 0, or 1
+// where a file fails.
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -38,7 +39,8 @@ constexpr bool kSanitized = false;
 namespace pillarfield::fuzz {
 namespace {
 
-constexpr unsigned kMostSeconds = kSanitized ? 20 : 5;
+constexpr unsigned kMostSeconds = kSanitized ? 20 : 5;  ///< of processor time
+constexpr unsigned kMostWait = 60;                      ///< seconds by the clock
 constexpr rlim_t kMostBytes = 1 << 30;
 
 // Exit statuses of a child, none of them one that a sanitizer uses.
@@ -58,7 +60,7 @@ int read_under_limits(const Target& target, const std::filesystem::path& path, i
   };
   limit(RLIMIT_CORE, 0);
   if (!kSanitized) limit(RLIMIT_AS, kMostBytes);
-  alarm(kMostSeconds);
+  alarm(kMostWait);
   try {
     target.read(path, {.trust = false});
     return kRead;
@@ -77,11 +79,22 @@ struct Outcome {
   std::string text;
 };
 
-Outcome outcome_of(int status, bool is_seed, const std::string& message) {
+double seconds_of(const rusage& used) {
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(used.ru_utime) + seconds(used.ru_stime);
+}
+
+/// `used`: by the child and those that it waited for.
+Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::string& message) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMostSeconds)};
+    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMostWait)};
     return {true, false, fmt::format("killed by signal {}, {}", signal, strsignal(signal))};
+  }
+  if (seconds_of(used) > kMostSeconds) {
+    return {true, false, fmt::format("takes {:.1f} s of processor time", seconds_of(used))};
   }
   switch (WEXITSTATUS(status)) {
     case kRead:
@@ -119,8 +132,9 @@ Outcome replay(const Target& target, const std::filesystem::path& path) {
   close(ends[1]);
   const std::string message = all_of(ends[0]);
   int status = 0;
-  waitpid(child, &status, 0);
-  return outcome_of(status, path.filename().string().starts_with("seed_"), message);
+  rusage used{};
+  wait4(child, &status, 0, &used);
+  return outcome_of(status, used, path.filename().string().starts_with("seed_"), message);
 }
 
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder) {
