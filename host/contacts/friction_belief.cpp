@@ -75,14 +75,7 @@ double FrictionBelief::quantile(double share) const {
 }
 
 double FrictionBelief::spread() const {
-  double mean = 0;
-  double square = 0;
-  for (std::size_t i = 0; i < probability_.size(); ++i) {
-    const double logarithm = FrictionGrid::kStep * static_cast<double>(i);
-    mean += probability_[i] * logarithm;
-    square += probability_[i] * logarithm * logarithm;
-  }
-  return std::sqrt(std::max(square - mean * mean, 0.0));
+  return 0.5 * std::log(quantile(0.841) / quantile(0.159));
 }
 
 }  // namespace pillarfield

@@ -71,7 +71,8 @@ void FrictionEstimator::begin(const ContactMap& map) {
       row += length * run.row;
       col += length * 0.5 * (run.first + run.end - 1.0);
     }
-    traces_.centres.push_back({sensor_.pitch_mm * col / pillars, -sensor_.pitch_mm * row / pillars});
+    traces_.centres.push_back(
+        {sensor_.pitch_mm * col / pillars, -sensor_.pitch_mm * row / pillars});
   }
   const ContactMatches matches = match_contacts(traces_before_, traces_, kReachMm);
   for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
@@ -131,7 +132,8 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
     if (!found) continue;
     const double normal = found->normal;
     const double deviation = std::sqrt(found->variance) / normal;
-    if (!(deviation < kMostDeviation && normal > parameters_.least_normal * model.noise_n)) continue;
+    if (!(deviation < kMostDeviation && normal > parameters_.least_normal * model.noise_n))
+      continue;
     const double steepness = std::abs(std::log(segment.ratio_at(normal * (1 + kStep)) /
                                                segment.ratio_at(normal * (1 - kStep)))) /
                              (2 * kStep);
@@ -141,8 +143,8 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   }
 }
 
-/// Whether a contact bears as much at its edge as elsewhere: under such a face all pillars may stick
-/// and still show nearly one ratio of shear to normal force (section 5).
+/// Whether a contact bears as much at its edge as elsewhere: under such a face all pillars may
+/// stick and still show nearly one ratio of shear to normal force (section 5).
 bool FrictionEstimator::is_face(Workspace& work) const {
   if (!work.samples.has_edges()) work.samples.add_edges();
   return work.samples.edge_load() > parameters_.face_load;
@@ -164,8 +166,7 @@ bool FrictionEstimator::stays(double friction, const Workspace& work, History& h
 
 /// What is told of a belief, and how it was learnt.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
-                                            const FrictionCurve& log_likelihood,
-                                            Workspace& work) {
+                                            const FrictionCurve& log_likelihood, Workspace& work) {
   const FrictionBelief& belief = beliefs_[contact];
   ContactFriction friction{belief.quantile(0.5), belief.spread(), FrictionSource::prior};
   if (given_) return {*given_, friction.spread, FrictionSource::given};

@@ -58,11 +58,9 @@ struct SegmentEnd {
                                         const SegmentEnd& end) {
   constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
   const float fixed = std::abs(vertical ? point.shear_x : point.shear_y);
-  const float moving =
-      std::abs(vertical ? point.shear_y : point.shear_x) + kRoot2 * point.normal;
-  const float high = end.point > 0
-                         ? point.normal / end.point
-                         : std::max(moving - fixed, 0.0F) / (2 * kRoot2) + end.hidden_n;
+  const float moving = std::abs(vertical ? point.shear_y : point.shear_x) + kRoot2 * point.normal;
+  const float high = end.point > 0 ? point.normal / end.point
+                                   : std::max(moving - fixed, 0.0F) / (2 * kRoot2) + end.hidden_n;
   return {fixed, moving, high};
 }
 

@@ -60,7 +60,7 @@ class ContactSurvey {
 
   std::size_t threads_;
   std::unique_ptr<WorkTeam> team_;  ///< null as long as there was nothing to share
-  std::uint64_t share_ = 0;  ///< pillars of a lot or a part, or some more
+  std::uint64_t share_ = 0;         ///< pillars of a lot or a part, or some more
   std::vector<Lot> lots_;
   std::vector<Part> parts_;
   std::vector<ContactTotals> totals_;

@@ -301,7 +301,7 @@ TEST(ContactTracker, TakesContactsThatWereFound) {
     const FrameContacts& expected = finds.update(patch.view(), step);
     ContactMap map;  // gone when the frame is taken
     map.find(patch.view().status, 40, 60);
-    const FrameContacts& actual = takes.update(patch.view(), step, &map);
+    const FrameContacts& actual = takes.update(patch.view(), step, {&map, {}});
     map = {};
     EXPECT_EQ(ids_of(actual), ids_of(expected));
     EXPECT_EQ(ended_ids(actual), ended_ids(expected));
@@ -316,25 +316,26 @@ TEST(ContactTracker, TakesContactsThatWereFound) {
 /// the frame, some of a thousand, hundreds of a few.
 ForceField many_contacts(int step) {
   ForceField field(220, 260);
-  const auto load = [&](std::size_t row, std::size_t col, float ratio) {
+  const auto load = [&](std::size_t row, std::size_t col, float ratio, float bears = 1) {
     const std::size_t place = row * field.cols + col;
     const std::size_t hash = place * 2654435761U % 1009;
-    field.normal[place] = 0.01F + 0.0001F * static_cast<float>(hash);
+    field.normal[place] = bears * (0.01F + 0.0001F * static_cast<float>(hash));
     field.shear_x[place] = ratio * field.normal[place] * 0.6F;
     field.shear_y[place] = ratio * field.normal[place] * 0.8F;
-    field.status[place] =
-        hash % 11 == 0 ? status::kAmbiguous | status::kSensel1 | status::kSensel2 : status::kUsable;
+    field.status[place] = hash % 11 == 0 ? status::kAmbiguous | status::kSensel1 : status::kUsable;
   };
   const auto disc = [&](int row, int col, int radius, float ratio) {
     for (int r = row - radius; r <= row + radius; ++r) {
       for (int c = col - radius; c <= col + radius; ++c) {
-        if ((r - row) * (r - row) + (c - col) * (c - col) > radius * radius) continue;
+        const int away = (r - row) * (r - row) + (c - col) * (c - col);
+        if (away > radius * radius) continue;
         load(static_cast<std::size_t>(r), static_cast<std::size_t>(c),
-             ratio * (c > col ? 1.0F : 0.9F + 0.01F * static_cast<float>(r % 3)));
+             ratio * (c > col ? 1.0F : 0.9F + 0.01F * static_cast<float>(r % 3)),
+             1.05F - static_cast<float>(away) / static_cast<float>(radius * radius));
       }
     }
   };
-  disc(85, 85 + step, 80, step % 2 == 0 ? 0.7F : 0.0F);  // its friction is remembered
+  disc(85, 85 + step, 80, step % 2 == 0 ? 0.7F : 0.0F);  // its friction is carried over
   for (int i = 0; i < 4; ++i) disc(25 + 45 * i, 220, 18, 0.3F * static_cast<float>(i));
   for (std::size_t col = 0; col < field.cols; col += 3) {
     for (std::size_t row = 180; row < field.rows; row += 4) {
@@ -371,9 +372,9 @@ void expect_same_bits(const ContactQuantities& actual, const ContactQuantities& 
 TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
   for (const std::optional<double> friction : {std::optional<double>(), {0.6}}) {
     for (const std::uint32_t threads : {2U, 7U, 0U}) {
-      ContactTracker alone(kPillarPitchMm, {.friction = friction, .threads = 1});
-      ContactTracker shared(kPillarPitchMm, {.friction = friction, .threads = threads});
-      bool remembered = false;
+      ContactTracker alone(kPillarPitchMm, {.friction = {.given = friction}, .threads = 1});
+      ContactTracker shared(kPillarPitchMm, {.friction = {.given = friction}, .threads = threads});
+      bool carried_over = false;
       for (int step = 0; step < 4; ++step) {
         const ForceField field = many_contacts(step);
         const FrameContacts& expected = alone.update(field.view(), step);
@@ -385,9 +386,9 @@ TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
         }
         expect_same_bits(actual.patch, expected.patch);
         const FrictionSource source = expected.contacts[0].quantities.friction_source;
-        remembered = remembered || source == FrictionSource::remembered;
+        carried_over = carried_over || source == FrictionSource::carried_over;
       }
-      EXPECT_EQ(remembered, !friction);
+      EXPECT_EQ(carried_over, !friction);
     }
   }
 }
@@ -402,7 +403,11 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
     says([&] { const ContactTracker tracker(pitch_mm); }, "pillar pitch");
   }
   for (const double friction : {0.0, -1.0, 101.0, kNan}) {
-    says([&] { const ContactTracker tracker(1, {.friction = friction}); }, "friction");
+    says([&] { const ContactTracker tracker(1, {.friction = {.given = friction}}); }, "friction");
+  }
+  for (const double force_n : {-1.0, 1e7, kNan}) {
+    says([&] { const ContactTracker tracker(1, {.noise_n = force_n}); }, "noise");
+    says([&] { const ContactTracker tracker(1, {.hidden_n = force_n}); }, "hidden");
   }
   for (const double reach_mm : {-1.0, 1001.0, kNan}) {
     says([&] { const ContactTracker tracker(1, {.reach_mm = reach_mm}); }, "jump");
@@ -419,8 +424,11 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
   for (const auto& [rows, cols] : {std::pair{5U, 5U}, {4U, 6U}}) {
     ContactMap map;
     map.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
-    says([&] { tracker.update(same.view(), 1, &map); }, "of 4 x 5 pillars");
+    says([&] { tracker.update(same.view(), 1, {&map, {}}); }, "of 4 x 5 pillars");
   }
+  const ContactMap none;
+  const std::vector<ContactFriction> one(1);
+  says([&] { tracker.update(same.view(), 1, {&none, one}); }, "1 frictions for 0 contacts");
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:3: key 'baseline_time_s' in [solver] is 0; allowed: a number in [1e-06, "
        "1000000000]"},
       {"[solver]\nestimator = \"magic\"",
-       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "field", "contact")"},
+       R"(s.toml:3: key 'estimator' in [solver] is "magic"; allowed: "direct", "paper", "contact", "field")"},
       {"[solver]\nestimator = \"paper\"\nuncertainty = true",
        "s.toml:4: key 'uncertainty' in [solver] comes with the paper's estimator, which has none; "
        "allowed: estimator = \"direct\" or \"contact\""},

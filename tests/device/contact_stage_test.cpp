@@ -1,5 +1,5 @@
-// The field estimator on the device against the same mathematics as a C++ loop: 0 ULP, however
-// contacts are shared among work-items, and whatever the scene says.
+// The estimator `contact` of a processor against the direct solve and the estimator as a C++ loop:
+// 0 ULP, whatever the memory and whatever is known of friction.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <string>
 
 #include "contacts/contact_estimator.h"
-#include "core/field_estimate.h"
 #include "core/host_solve.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
@@ -65,33 +64,13 @@ position_mm = [-10, -38]
 load_n = 220
 )";
 
-/// A sphere whose middle is resolved, but too little of it for a trend.
-constexpr const char* kFlankedScene = R"(
-[skin]
-pillars = [70, 72]
-threshold_counts = 2
-[sensor]
-noise_counts = 0.5
-adc_bits = 10
-[time]
-frames = 1
-[[contact]]
-shape = "sphere"
-motion = "partial_slip"
-contact_radius_mm = 32
-friction = 2.3
-tangential_ratio = 0.93
-position_mm = [1, -2]
-load_n = 800
-)";
-
 SolverPlan plan_of(const Simulator& simulator) {
   SolverPlan plan;
   plan.skin = simulator.scene().skin;
   plan.sensel_type = simulator.sensel_type();
   plan.calibration = simulator.calibration();
   set_solver(plan, simulator.scene());
-  plan.estimator = Estimator::field;
+  plan.estimator = Estimator::contact;
   plan.uncertainty = true;
   return plan;
 }
@@ -124,7 +103,6 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
 /// What differs from one way to run it to the next.
 struct Way {
   const char* name;
-  ContactSharing contacts;
   Memory memory;
 };
 
@@ -137,12 +115,12 @@ class EveryWay : public testing::TestWithParam<Way> {
   }
 
   [[nodiscard]] static Processor processor(const SolverPlan& plan) {
-    return {test_device(), plan, {.memory = GetParam().memory, .contacts = GetParam().contacts}};
+    return {test_device(), plan, {.memory = GetParam().memory}};
   }
 
   /// Solves all frames of the scene, and expects the bits of the C++ loop.
-  static void expect_host_bits(const SolverPlan& plan, const char* scene = kScene) {
-    const Simulator simulator(parse_scene(scene, "scene"));
+  static void expect_host_bits(const SolverPlan& plan) {
+    const Simulator simulator(parse_scene(kScene, "scene"));
     Processor solver = processor(plan);
     FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
     ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
@@ -156,22 +134,24 @@ class EveryWay : public testing::TestWithParam<Way> {
   }
 };
 
-TEST_P(EveryWay, NothingSaidHasTheBitsOfTheHost) {
-  const SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
-  expect_host_bits(plan);
-}
-
-TEST_P(EveryWay, ContactsFrictionHasTheBitsOfTheHost) {
+TEST_P(EveryWay, HasTheBitsOfTheHost) {
   SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
-  plan.estimator = Estimator::contact;
   plan.friction.memory = false;
   expect_host_bits(plan);
 }
 
-TEST_P(EveryWay, ContactsFrictionIsCarriedFromFrameToFrame) {
+TEST_P(EveryWay, WhatIsKnownOfFrictionHasTheBitsOfTheHost) {
+  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
+  plan.friction = {.median = 2, .spread = 0.2, .bound = 2.5, .memory = false};
+  plan.segment_point = 0.5;
+  expect_host_bits(plan);
+  plan.friction.given = 1.7;
+  expect_host_bits(plan);
+}
+
+TEST_P(EveryWay, FrictionIsCarriedFromFrameToFrame) {
   const Simulator simulator(parse_scene(kScene, "scene"));
   SolverPlan plan = plan_of(simulator);
-  plan.estimator = Estimator::contact;
   SolverPlan direct = plan;
   direct.estimator = Estimator::direct;
   Processor solver = processor(plan);
@@ -191,28 +171,11 @@ TEST_P(EveryWay, ContactsFrictionIsCarriedFromFrameToFrame) {
   EXPECT_TRUE(any_differs);  // from frames by themselves
 }
 
-TEST_P(EveryWay, WhatFlanksTellHasTheBitsOfTheHost) {
-  const Simulator simulator(parse_scene(kFlankedScene, "scene"));
-  const SolverPlan plan = plan_of(simulator);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  simulator.render(0, raw, truth);
-  SolverPlan direct = plan;
-  direct.estimator = Estimator::direct;
-  ForceField field = solve_on_host(direct, raw.view());
-  HostFieldEstimator estimator(plan);
-  estimator.resolve(field);
-  ASSERT_EQ(estimator.verdicts().size(), 1U);
-  ASSERT_EQ(estimator.verdicts()[0].way, PF_BY_SHAPE);
-  ASSERT_EQ(estimator.verdicts()[0].score, 0);  // which a trend's is not
-  expect_host_bits(plan, kFlankedScene);
-}
-
 TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
   const Simulator simulator(parse_scene(kScene, "scene"));
   const SolverPlan plan = plan_of(simulator);
   Processor solver = processor(plan);
-  EXPECT_EQ(solver.contacts(), nullptr);
+  EXPECT_EQ(solver.contacts().map, nullptr);
   FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   for (std::uint64_t index = 0; index < 2; ++index) {
@@ -221,53 +184,18 @@ TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
     const ForceFieldView forces = solver.receive();
     ContactMap found;
     found.find(forces.status, forces.rows, forces.cols);
-    ASSERT_NE(solver.contacts(), nullptr);
+    ASSERT_NE(solver.contacts().map, nullptr);
     EXPECT_GT(found.contacts(), 2U);
-    expect_same_runs(solver.contacts()->runs(), found.runs());
-  }
-}
-
-TEST_P(EveryWay, BoundAndSweepsHaveTheBitsOfTheHost) {
-  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
-  plan.field.friction = 2.5;
-  plan.field.sweeps = 3;
-  expect_host_bits(plan);
-  plan.field.slip = false;
-  plan.field.sweeps = 0;
-  expect_host_bits(plan);
-}
-
-TEST_P(EveryWay, SlippingHasTheBitsOfTheHost) {
-  SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
-  plan.field.friction = 1.7;
-  plan.field.slips = true;
-  expect_host_bits(plan);
-}
-
-TEST_P(EveryWay, FramesThatAreCloseHaveTheBitsOfTheHost) {
-  const Simulator simulator(parse_scene(kScene, "scene"));
-  SolverPlan plan = plan_of(simulator);
-  plan.field.shape = false;
-  plan.field.frames_close = true;
-  SolverPlan direct = plan;
-  direct.estimator = Estimator::direct;
-  HostFieldEstimator estimator(plan);
-  Processor solver = processor(plan);
-  FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  for (std::uint64_t index = 0; index < 3; ++index) {
-    simulator.render(index, raw, truth);
-    solver.submit(raw.view());
-    ForceField expected = solve_on_host(direct, raw.view());
-    estimator.resolve(expected);
-    expect_same_field(solver.receive(), expected.view());
+    expect_same_runs(solver.contacts().map->runs(), found.runs());
+    EXPECT_EQ(solver.contacts().friction.size(), found.contacts());
   }
 }
 
 TEST_P(EveryWay, RandomFramesHaveTheBitsOfTheHost) {
   for (const SenselType type : {SenselType::u8, SenselType::f32}) {
     SolverPlan plan = full_plan(66, 2 * 41, type, 5);
-    plan.estimator = Estimator::field;
+    plan.estimator = Estimator::contact;
+    plan.friction.memory = false;
     Processor solver = processor(plan);
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const RandomFrame frame(plan, 3, seed);
@@ -300,40 +228,35 @@ TEST_P(EveryWay, AnglesAreThoseOfTheForces) {
   EXPECT_GT(resolved, 500U);
 }
 
-constexpr Way kWays[] = {{"automatic_shared", ContactSharing::automatic, Memory::shared},
-                         {"alone_shared", ContactSharing::work_item, Memory::shared},
-                         {"alone_staged", ContactSharing::work_item, Memory::staged},
-                         {"groups_shared", ContactSharing::work_group, Memory::shared},
-                         {"groups_staged", ContactSharing::work_group, Memory::staged}};
+constexpr Way kWays[] = {{"shared", Memory::shared}, {"staged", Memory::staged}};
 INSTANTIATE_TEST_SUITE_P(Ways, EveryWay, testing::ValuesIn(kWays),
                          [](const auto& way) { return std::string(way.param.name); });
 
-TEST(FieldStage, OfOthersNoContactsAreLent) {
+TEST(ContactStage, OfOthersNoContactsAreLent) {
   const SolverPlan plan = bare_plan(20, 20, SenselType::u8);
   Processor solver(test_device(), plan);
   const FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   solver.submit(raw.view());
   (void)solver.receive();
-  EXPECT_EQ(solver.contacts(), nullptr);
+  EXPECT_EQ(solver.contacts().map, nullptr);
 }
 
-TEST(FieldStage, IsNamedAmongTheStages) {
+TEST(ContactStage, IsNamedAmongTheStages) {
   SolverPlan plan = bare_plan(20, 20, SenselType::u8);
-  plan.estimator = Estimator::field;
-  EXPECT_EQ(kernel_stages(plan).back(), "resolve_field");
+  plan.estimator = Estimator::contact;
+  EXPECT_EQ(kernel_stages(plan).back(), "estimate_contacts");
 }
 
-TEST(FieldStage, RefusesEvidenceOutOfRange) {
+TEST(ContactStage, RefusesKnowledgeOutOfRange) {
   SolverPlan plan = bare_plan(20, 20, SenselType::u8);
-  plan.estimator = Estimator::field;
-  plan.field.slips = true;
+  plan.estimator = Estimator::contact;
+  plan.friction.given = -1;
   EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.field.friction = -1;
+  plan.friction = {.spread = 0};
   EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.field.friction = 1;
-  plan.field.sweeps = -1;
+  plan.friction = {.bound = 0.05};
   EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.field.sweeps = 0;
+  plan.friction = {};
   plan.half_output = true;
   EXPECT_THROW(Processor(test_device(), plan), Error);
 }

@@ -136,25 +136,6 @@ TEST(KernelSource, ABlockIsNoWiderThanARow) {
   EXPECT_EQ(macro(kernel_source(bare_plan(8, 3, SenselType::u8), 16), "PF_LANES"), "1");
 }
 
-TEST(KernelSource, ContactsAreSharedAsTheDeviceIsOrAsIsAsked) {
-  SolverPlan plan = bare_plan(8, 8, SenselType::u8);
-  DeviceInfo device;
-  EXPECT_EQ(field_source(plan, device), "");
-  plan.estimator = Estimator::field;
-  const auto is_alone = [&](ContactSharing sharing) {
-    return macro(field_source(plan, device, sharing), "PF_ALONE") != "(none)";
-  };
-  for (const char* type : {"CPU", "GPU", "accelerator"}) {
-    device.type = type;
-    for (const int lanes : {1, 16}) {
-      device.lanes = lanes;
-      EXPECT_EQ(is_alone(ContactSharing::automatic), device.type == "CPU") << type;
-      EXPECT_TRUE(is_alone(ContactSharing::work_item)) << type;
-      EXPECT_FALSE(is_alone(ContactSharing::work_group)) << type;
-    }
-  }
-}
-
 TEST(KernelSource, EmbeddedFilesAreThoseOfTheTree) {
   for (const KernelFile& embedded : kernel_files()) {
     std::ifstream file(std::string(PILLARFIELD_KERNELS) + "/" + std::string(embedded.name));
@@ -163,7 +144,7 @@ TEST(KernelSource, EmbeddedFilesAreThoseOfTheTree) {
     EXPECT_EQ(text.str(), embedded.text) << embedded.name;
   }
   EXPECT_EQ(kernel_files().front().name, "portable.h");
-  EXPECT_EQ(kernel_files().back().name, "field/resolve_field.cl");
+  EXPECT_EQ(kernel_files().back().name, "follow_baseline.cl");
 }
 
 }  // namespace

@@ -55,9 +55,9 @@ TEST(ProcessorLeak, AllStagesLeaveNothing) {
   expect_no_growth(plan, {.memory = Memory::shared});
 }
 
-TEST(ProcessorLeak, FieldEstimatorLeavesNothing) {
+TEST(ProcessorLeak, ContactEstimatorLeavesNothing) {
   SolverPlan plan = bare_plan(kSensels, kSensels, SenselType::u8);
-  plan.estimator = Estimator::field;
+  plan.estimator = Estimator::contact;
   expect_no_growth(plan, {.memory = Memory::shared});
 }
 

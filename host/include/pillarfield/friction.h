@@ -13,10 +13,11 @@ struct FrictionKnowledge {
   double spread = 0.5;  ///< standard deviation of the logarithm, [0.01, 3]
   /// The friction itself, [0.1, 9.9], to 3 %; it takes the place of median and spread. Unset: not
   /// known.
-  std::optional<double> given;
-  std::optional<double> bound;  ///< no friction is larger, [0.1, 100]; unset: not known
-  bool memory =
-      true;  ///< what a contact showed counts in the next frame; false: frames are unrelated
+  std::optional<double> given = std::nullopt;
+  /// No friction is larger, [0.1, 100]; unset: not known.
+  std::optional<double> bound = std::nullopt;
+  /// What a contact showed counts in the next frame; false: frames are unrelated.
+  bool memory = true;
 };
 
 /// Throws Error, its place being `where`, when a member is out of its range.

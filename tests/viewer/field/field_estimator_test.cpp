@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/field_estimate.h"
+#include "contacts/contact_estimator.h"
 #include "core/host_solve.h"
 #include "pillarfield/scene.h"
 #include "tests/io/sample_files.h"
@@ -20,23 +20,23 @@ using io_test::has_all;
 using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
-/// A ball that slides, solved by the field estimator, to which `told` is told.
+/// A ball that slides, solved by the estimator `contact`, to which `told` is told.
 std::string sliding_scene(const std::string& told) {
-  return "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"field\"\n" + told +
+  return "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n" + told +
          "[sensor]\nnoise_counts = 0.5\n[time]\nframes = 6\n"
          "[[contact]]\nshape = \"sphere\"\nmotion = \"slide\"\ncontact_radius_mm = 8\n"
          "friction = 1.8\ndirection_deg = 0\nposition_mm = [0, 0]\nload_n = 30\n";
 }
 
-TEST(SceneProducer, SolvesWithTheFieldEstimatorAndItsUncertainty) {
+TEST(SceneProducer, SolvesWithTheContactEstimatorAndItsUncertainty) {
   const auto path = std::filesystem::path(PILLARFIELD_SCENES) / "ambiguous_contacts.toml";
   const Simulator simulator(load_scene(path));
   const SolverPlan plan = plan_of(simulator);
-  ASSERT_EQ(plan.estimator, Estimator::field);
+  ASSERT_EQ(plan.estimator, Estimator::contact);
   FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   const auto producer = open_producer(path, {.most_frames = 2});
-  EXPECT_TRUE(has_all(producer->info().solver, {"field on "}));
+  EXPECT_TRUE(has_all(producer->info().solver, {"contact on "}));
   EXPECT_TRUE(producer->info().has_uncertainty);
   const ShownField field = producer->produce(1);
   simulator.render(1, frame, truth);
@@ -70,7 +70,7 @@ TEST(SceneProducer, ContactsHaveTheFrictionThatTheSceneTells) {
 std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::uint64_t frames) {
   const Simulator simulator(load_scene(path));
   SolverPlan plan = plan_of(simulator);
-  HostFieldEstimator estimator(plan);
+  ContactEstimator estimator(plan);
   plan.estimator = Estimator::direct;
   FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
@@ -83,9 +83,9 @@ std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::
   return solved;
 }
 
-/// A ball whose shear grows: of what is open in frame 3, some was resolved in frame 2.
+/// A ball whose shear grows: what it shows in frame 2 tells of frame 3.
 constexpr const char* kGrowingShear =
-    "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"field\"\nframes_close = true\n"
+    "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n"
     "[sensor]\nnoise_counts = 0.3\n[time]\nframes = 6\n"
     "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 8\n"
     "path = [{ time_s = 0, position_mm = [0, 0], load_n = 30 },\n"
@@ -95,15 +95,15 @@ constexpr const char* kGrowingShear =
     "path = [{ time_s = 0, position_mm = [0, 0], load_n = 3 },\n"
     "        { time_s = 0.05, position_mm = [0, 0], load_n = 30 }]\n";
 
-class CloseFrames : public testing::Test {
+class FramesInOrder : public testing::Test {
  protected:
-  CloseFrames() { write_bytes(path_, kGrowingShear); }
+  FramesInOrder() { write_bytes(path_, kGrowingShear); }
 
   TemporaryDirectory directory_;
-  std::filesystem::path path_ = directory_ / "close.toml";
+  std::filesystem::path path_ = directory_ / "growing.toml";
 };
 
-TEST_F(CloseFrames, KnowOfTheOneBeforeWhereTheyArePlayed) {
+TEST_F(FramesInOrder, KnowOfTheOneBeforeWhereTheyArePlayed) {
   const std::vector<ForceField> expected = solved_in_order(path_, 4);
   for (const Memory memory : {Memory::automatic, Memory::staged}) {
     const auto producer = open_producer(path_, {.memory = memory});
@@ -113,7 +113,7 @@ TEST_F(CloseFrames, KnowOfTheOneBeforeWhereTheyArePlayed) {
   }
 }
 
-TEST_F(CloseFrames, KnowNothingWhereTheyAreJumpedTo) {
+TEST_F(FramesInOrder, KnowNothingWhereTheyAreJumpedTo) {
   const auto producer = open_producer(path_, {});
   ASSERT_EQ(producer->info().remarks.size(), 1U);
   EXPECT_TRUE(has_all(producer->info().remarks[0], {"jumped to", "by itself"}));
@@ -126,24 +126,7 @@ TEST_F(CloseFrames, KnowNothingWhereTheyAreJumpedTo) {
   EXPECT_FALSE(std::ranges::equal(producer->produce(3).forces.normal, alone.normal));
 }
 
-/// The same of what a contact showed of its friction.
-TEST(ShownFriction, IsCarriedWhereFramesArePlayedAndNotWhereTheyAreJumpedTo) {
-  const TemporaryDirectory directory;
-  const std::filesystem::path path = directory / "contact.toml";
-  std::string scene = kGrowingShear;
-  const std::string field = "\"field\"\nframes_close = true";
-  scene.replace(scene.find(field), field.size(), "\"contact\"");
-  write_bytes(path, scene);
-  const auto producer = open_producer(path, {});
-  ASSERT_EQ(producer->info().remarks.size(), 1U);
-  const ForceField alone = copy_of(producer->produce(4).forces);
-  static_cast<void>(producer->produce(1));
-  expect_same_forces(producer->produce(4).forces, alone.view());
-  for (std::uint64_t index = 0; index < 4; ++index) static_cast<void>(producer->produce(index));
-  EXPECT_FALSE(std::ranges::equal(producer->produce(4).forces.normal, alone.normal));
-}
-
-TEST_F(CloseFrames, AreForgottenInTheLastFreeSlot) {
+TEST_F(FramesInOrder, AreForgottenInTheLastFreeSlot) {
   const auto producer = open_producer(path_, {});
   std::vector<ShownField> shown = {producer->produce(3)};
   const ForceField alone = copy_of(shown[0].forces);
