@@ -1,122 +1,183 @@
-// What was wanted of the field estimator, and whether it is met.
+// What was wanted of the estimator `contact`, and whether it is met.
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
+#include <vector>
 
-#include "core/field_work.h"
-#include "report/field/field_goals.h"
 #include "report/field/section.h"
 #include "report/table.h"
 
 namespace pillarfield::report {
 namespace {
 
+using field_study::kIntervals;
+using field_study::Score;
+
 constexpr const char* kIntroduction = R"(## Goals
 
-What was wanted before anything was measured, on the judging scenes: RMS error of the vector force over the pillars of region 3, divided by that of
-the paper's midpoint. A goal counts as met where *every* scene meets it; "pooled" takes all pillars of those scenes together. Scenes with fewer than
-{enough} ambiguous pillars have no ratio: there are {few} of {all}. "Noise alone" is the ratio that remains where every pillar has the force that is *nearest to the
-truth* of all that explain its readings: these are noisy.
+RMS error of the force vector over the pillars of region 3 of the [histories](#recordings), in counts (newtons times counts per newton), all pillars of a friction taken together. "Friction given" is the error of `contact` where it is
+given the true friction, "noise alone" that of the nearest force to the truth among those that explain the readings: they show what bounds a goal that is not met.
 
 )";
 
+/// The largest error that is wanted at a friction, counts.
+struct ErrorGoal {
+  double friction;
+  double limit;
+};
+constexpr std::array kContactGoals = {ErrorGoal{0.8, 0.8}, ErrorGoal{1.2, 1.3}, ErrorGoal{1.6, 2.0},
+                                      ErrorGoal{2.2, 3.0}, ErrorGoal{3.0, 4.6}};
+constexpr std::array kDirectGoals = {ErrorGoal{1.2, 4.0}, ErrorGoal{1.6, 5.5}, ErrorGoal{2.2, 5.0},
+                                     ErrorGoal{3.0, 8.0}};
+constexpr double kUnrelatedFactor = 1.6;  // of the limits of related frames
+constexpr double kWorstToPaper = 1.02;
+
 std::string verdict_of(bool met) { return met ? "met" : "**not met**"; }
 
-std::string goals_table(const std::vector<FieldGoal>& goals) {
-  Table table("lrrrrrrl", {"Goal", "wanted", "pooled", "noise alone", "worst scene", "scenes",
-                           "of these above", ""});
-  for (const FieldGoal& goal : goals) {
-    table.add({goal.what, fmt::format("≤ {:g}", goal.limit), ratio_text(goal.pooled),
-               fmt::format("{:.3f}", goal.pooled.best_ratio()), fmt::format("{:.3f}", goal.worst),
-               fmt::format("{}", goal.scenes), fmt::format("{}", goal.missed),
-               verdict_of(goal.is_met())});
-  }
-  return table.text();
+/// One row of the table of goals.
+void add_error_goal(const FieldContext& context, std::size_t method, const ErrorGoal& goal,
+                    Table& table) {
+  const auto holds = of_friction(goal.friction);
+  const Score found = pooled(context.histories, method, holds);
+  table.add({fmt::format("{}, friction {:.1f}", methods()[method].name, goal.friction),
+             fmt::format("≤ {:.2f}", goal.limit), rms_text(found),
+             verdict_of(found.rms_counts() <= goal.limit),
+             rms_text(pooled(context.histories, kGiven, holds)),
+             rms_text(pooled_nearest(context.histories, holds))});
 }
 
-std::string text_of_missed(const FieldGoal& goal) {
-  if (goal.missed == 0) return "";
-  std::string text = fmt::format("- **{}, ≤ {:g}.** Worst: {} ({:.3f}). Above: {}.", goal.what,
-                                 goal.limit, goal.worst_scene, goal.worst, goal.misses);
-  if (goal.by_noise > 0) {
-    text += fmt::format(
-        " In {} of these {} scenes noise alone is above the limit: no force that explains the "
-        "readings could meet it.",
-        goal.by_noise, goal.missed);
+void add_error_goals(const FieldContext& context, Table& table) {
+  for (const ErrorGoal& goal : kContactGoals) add_error_goal(context, kContact, goal, table);
+  for (const ErrorGoal& goal : kContactGoals) {
+    add_error_goal(context, kUnrelated, {goal.friction, kUnrelatedFactor * goal.limit}, table);
   }
-  if (goal.left > 0) {
-    text += fmt::format(" In {} the evidence does not suffice, and most pillars keep the midpoint",
-                        goal.left);
-    if (goal.unasked > 0) {
-      text += fmt::format(
-          "; {} of them have less than one open pillar in {}, at the contact's edge, and are "
-          "[not asked](decisions/field_estimator.md): the midpoint errs by {:.1f} counts there at "
-          "most",
-          goal.unasked, kLeastOpenShare, goal.most_unasked_counts);
+  for (const ErrorGoal& goal : kDirectGoals) add_error_goal(context, kDirect, goal, table);
+}
+
+/// Histories up to the largest usual friction in which `contact` is worse than the paper.
+std::vector<HistoryResult> worse_than_paper(const FieldContext& context) {
+  std::vector<HistoryResult> worse;
+  for (const HistoryResult& result : context.histories) {
+    if (result.history.friction <= kLargestUsual && result.to_paper(kContact) > kWorstToPaper) {
+      worse.push_back(result);
     }
-    text += ".";
   }
-  if (goal.otherwise > 0) {
-    text += fmt::format(" In {} the error is up to {:.2f} times that of noise alone.",
-                        goal.otherwise, goal.most_over_noise);
-  }
-  return text + "\n";
+  std::sort(worse.begin(), worse.end(), [](const HistoryResult& a, const HistoryResult& b) {
+    return a.to_paper(kContact) > b.to_paper(kContact);
+  });
+  return worse;
 }
 
-std::string text_of_coverage(const CoverageGoal& goal) {
-  const bool met = goal.below == 0 && goal.above == 0;
-  const double share_of_resolved =
-      100.0 * static_cast<double>(goal.resolved_below) / static_cast<double>(goal.resolved);
-  return fmt::format(
-      "\nThe truth shall lie in the stated 95 % band for 93 to 99 % of the pillars of region 3, in "
-      "every judging scene: {}. Of {} scenes {} are below and {} above; the least is {:.1f} % "
-      "({}), "
-      "the largest {:.1f} %. Two things stop it. An error is *common* to a contact, that of its "
-      "friction or of its model, and the band is one factor for all pillars: it holds nearly all "
-      "of them or few, so that 95 % can be true of contacts, not of each: of the {} contacts that "
-      "are resolved it holds less than 93 % in {}, {:.1f} %. And where nothing resolves a pillar, "
-      "the whole segment is all that can be said, and holds nearly every truth: {} of those above. "
-      "A narrower band could not be true there, since bodies that read the same reach "
-      "from one end of it to the other ([below](#what-cannot-be-known)). Of those below, {} "
-      "are within two standard deviations of 95 %, for they have few pillars "
-      "([coverage](#coverage)).\n",
-      verdict_of(met), goal.scenes, goal.below, goal.above, 100 * goal.least, goal.least_scene,
-      100 * goal.most, goal.resolved, goal.resolved_below, share_of_resolved, goal.whole,
-      goal.by_chance);
+void add_paper_goal(const FieldContext& context, Table& table) {
+  const auto usual = std::count_if(
+      context.histories.begin(), context.histories.end(), [](const HistoryResult& result) {
+        return result.history.friction <= kLargestUsual && result.open() > 0;
+      });
+  const std::size_t worse = worse_than_paper(context).size();
+  table.add({fmt::format("recordings above {} of `paper`, friction up to {:g}", kWorstToPaper,
+                         kLargestUsual),
+             "none", fmt::format("{} of {}", worse, usual), verdict_of(worse == 0), "", ""});
 }
 
-std::string text_of_rest(const FieldContext& context) {
-  std::size_t touched = 0;
-  for (const SceneResult& result : context.judging) touched += result.field().touched;
-  return fmt::format(
-      "\nPillars of regions 1 and 2 that differ from the direct solve in any bit: {}. On a square "
-      "metre ([square_metre.toml](../scenes/square_metre.toml), {:.1f} % of the pillars in "
-      "contact) the "
-      "field solve at its default takes {:.2f} times as long as the direct one, and {:.2f} times "
-      "with its contacts found and followed (wanted: ≤ 2), both in turns with it; in processor "
-      "time, all threads together, {:.2f} and {:.2f} times. What bounds it is in "
-      "[performance_decisions.md](performance_decisions.md#not-tried-or-not-done).\n",
-      touched, 100 * context.times.square_metre_share, context.times.square_metre.time,
-      context.times.square_metre_with_contacts.time, context.times.square_metre.processor,
-      context.times.square_metre_with_contacts.processor);
+void add_total_goals(const FieldContext& context, Table& table) {
+  constexpr double kFriction = 2.2;
+  constexpr double kMostBias = 0.02;
+  constexpr double kMostRms = 0.04;
+  const Score found = pooled(context.histories, kContact, of_friction(kFriction));
+  const Score given = pooled(context.histories, kGiven, of_friction(kFriction));
+  const auto signed_percent = [](double share) { return fmt::format("{:+.1f}", 100 * share); };
+  table.add({fmt::format("total normal force, friction {:g}, bias, %", kFriction), "−2 to 2",
+             signed_percent(found.total_bias()),
+             verdict_of(std::abs(found.total_bias()) <= kMostBias),
+             signed_percent(given.total_bias()), ""});
+  table.add({fmt::format("total normal force, friction {:g}, RMS, %", kFriction), "≤ 4",
+             percent_text(found.total_rms()), verdict_of(found.total_rms() <= kMostRms),
+             percent_text(given.total_rms()), ""});
+}
+
+/// The range of a share over the intervals, and whether all lie within limits.
+struct ShareRange {
+  double low = 1;
+  double high = 0;
+
+  void add(double share) {
+    low = std::min(low, share);
+    high = std::max(high, share);
+  }
+  [[nodiscard]] bool within(double least, double most) const {
+    return low >= least && high <= most;
+  }
+  [[nodiscard]] std::string text() const {
+    return fmt::format("{} to {}", percent_text(low), percent_text(high));
+  }
+};
+
+void add_coverage_goals(const FieldContext& context, Table& table) {
+  ShareRange all;
+  ShareRange recordings;
+  const Score sum = pooled(context.histories, kContact, [](const HistoryResult&) { return true; });
+  for (std::size_t interval = 0; interval < kIntervals; ++interval) {
+    all.add(sum.coverage(interval));
+    recordings.add(share_of_true_recordings(context.histories, interval));
+  }
+  table.add({"stated 95 % that hold the truth, by component, pooled, %", "93 to 99", all.text(),
+             verdict_of(all.within(0.93, 0.99)), "", ""});
+  table.add(
+      {fmt::format("recordings of {} pillars or more in which 88 to 100 % do, %", kEnoughPillars),
+       "≥ 90", recordings.text(), verdict_of(recordings.low >= 0.9), "", ""});
+}
+
+void add_closed_form_goals(const FieldContext& context, Table& table) {
+  const auto add = [&](std::size_t index, double limit) {
+    const Kind& kind = kinds()[index];
+    const auto holds = [&](const ClosedFormResult& result) { return kind.holds(result.scene); };
+    const double paper = pooled(context.closed_forms, kPaper, holds).rms_counts();
+    const auto text = [&](const Score& score) {
+      return fmt::format("{:.3f}", score.rms_counts() / paper);
+    };
+    const Score found = pooled(context.closed_forms, kContact, holds);
+    table.add({fmt::format("closed forms, {}, ratio to `paper`", kind.name),
+               fmt::format("≤ {:.2f}", limit), text(found),
+               verdict_of(found.rms_counts() / paper <= limit),
+               text(pooled(context.closed_forms, kGiven, holds)),
+               text(pooled_nearest(context.closed_forms, holds))});
+  };
+  add(0, 0.03);
+  add(1, 0.10);
+}
+
+std::string text_of_worse(const FieldContext& context) {
+  const auto worse = worse_than_paper(context);
+  if (worse.empty()) return "";
+  Table table("lrrrr", {"recording worse than `paper`", "pillars of region 3", "of the loaded, %",
+                        "`contact` over `paper`", "friction given, over `paper`"});
+  for (const HistoryResult& result : worse) {
+    const double open = static_cast<double>(result.open());
+    table.add({result.history.name(), fmt::format("{}", result.open()),
+               percent_text(open / static_cast<double>(result.nearest.loaded)),
+               fmt::format("{:.2f}", result.to_paper(kContact)),
+               fmt::format("{:.2f}", result.to_paper(kGiven))});
+  }
+  return "\nThe readings of these recordings say too little of the friction, and the prior expects "
+         "a "
+         "smaller one:\n\n" +
+         table.text();
 }
 
 }  // namespace
 
 std::string field_goals_section(const FieldContext& context) {
-  const auto goals = field_goals(context.judging);
-  std::size_t few = 0;
-  for (const SceneResult& result : context.judging) {
-    if (!result.counts()) ++few;
-  }
-  std::string text = fmt::format(kIntroduction, fmt::arg("enough", kEnoughPillars),
-                                 fmt::arg("few", few), fmt::arg("all", context.judging.size())) +
-                     goals_table(goals);
-  std::string missed;
-  for (const FieldGoal& goal : goals) missed += text_of_missed(goal);
-  if (!missed.empty()) text += "\nWhat stops those that are not met:\n\n" + missed;
-  return text + text_of_coverage(coverage_goal(context.judging)) + text_of_rest(context);
+  Table table("lrrlrr", {"Goal", "wanted", "found", "", "friction given", "noise alone"});
+  add_error_goals(context, table);
+  add_paper_goal(context, table);
+  add_total_goals(context, table);
+  add_coverage_goals(context, table);
+  add_closed_form_goals(context, table);
+  return kIntroduction + table.text() + text_of_worse(context);
 }
 
 }  // namespace pillarfield::report

@@ -119,7 +119,7 @@ Indentation indentation_of(const History& history, const std::filesystem::path& 
       break;
     case Indenter::punch:
       body.shape = BodyShape::punch;
-      body.radius_mm = a;
+      body.radius_mm = 1.15 * a;  // its rounded edge bears load in part
       body.edge_radius_mm = 0.25 * a;
       break;
     case Indenter::rough_ball:
