@@ -110,7 +110,7 @@ std::string cost_section(const FieldContext& context) {
   return fmt::format(
       R"(## Cost
 
-A frame of a square metre ([square_metre.toml](../scenes/square_metre.toml): {:.1f} % of the pillars are in contact, {:.1f} % of these in region 3) on {}, over the direct solve of the
+A frame of a square metre ([square_metre.toml](../scenes/square_metre.toml): {:.1f} % of the pillars are in contact, {:.2f} % of these in region 3) on {}, over the direct solve of the
 same frame in the same run, in turns, {} rounds:
 
 | | processor time, all threads | time |

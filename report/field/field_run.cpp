@@ -47,6 +47,7 @@ std::vector<Method> all_methods() {
          set_contact(plan, {});
          plan.friction.bound = 1.5 * friction;
        }},
+      {"`direct`, segment point 0.75", [](SolverPlan& plan, double) { plan.segment_point = 0.75; }},
   };
   for (const double spread : {0.5, 1.0}) {
     for (const double median : {0.5, 1.0, 2.0, 3.0}) all.push_back(prior(median, spread));

@@ -37,7 +37,8 @@ inline constexpr std::size_t kContact = 3;
 inline constexpr std::size_t kUnrelated = 4;
 inline constexpr std::size_t kGiven = 5;
 inline constexpr std::size_t kBounded = 6;
-inline constexpr std::size_t kFirstPrior = 7;
+inline constexpr std::size_t kLower = 7;
+inline constexpr std::size_t kFirstPrior = 8;
 
 /// Scores of one recording.
 struct Result {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -22,35 +23,49 @@ What `contact` knows of friction before any reading is a log-normal distribution
 
 constexpr const char* kLearnt = R"(## Friction learnt
 
-How often a posterior that is narrow is wrong. Contacts of {} pillars or more, each in each frame: how many have a posterior whose spread (the standard deviation of the friction's logarithm) is at most a limit, and which share of these has a median that is off by more than 10 %, by true friction. A contact that
-has not slipped yet shows no friction, so a good limit leaves it out.
+How often a narrow posterior is wrong. Contacts of {} pillars or more, each in each frame: how many have a posterior whose spread (the standard deviation of the friction's logarithm) is at most a limit, and which percentage of these have a median that is off by more than 10 or 20 %. First all contacts; then those whose
+estimated shear uses half of that friction or more, Σ|s| ≥ 0.5 median ΣN, which readings tell; then those of which a fifth of the pillars truly slip.
 
+)";
+
+constexpr const char* kLearntEnd = R"(
+A contact that sticks has a narrow posterior that is far too low: its small ratios of shear to normal force are taken for friction. A limit on the spread does not tell such contacts from those that slip.
 )";
 
 /// Smaller contacts are fragments at the rim of others.
 constexpr std::uint64_t kLeastPillars = 10;
+constexpr double kLeastUsed = 0.5;
+constexpr double kLeastSlipping = 0.2;
 constexpr std::array kLimits = {0.02, 0.03, 0.05, 0.08, 0.12, 0.2};
 constexpr double kOff = 0.1;
 
-/// Narrow posteriors of one friction or of all.
+using field_study::LearntFriction;
+
+/// Of contacts with narrow posteriors, how many are off.
 struct Narrow {
-  std::size_t contacts = 0;
   std::size_t narrow = 0;
   std::size_t off = 0;
   std::size_t far_off = 0;  ///< by twice as much
 
-  void add(const HistoryResult& result, double limit) {
-    for (const field_study::LearntFriction& learnt : result.learnt) {
-      if (learnt.pillars < kLeastPillars) continue;
-      ++contacts;
-      if (learnt.spread > limit) continue;
-      const double error = std::abs(learnt.median / result.history.friction - 1);
-      ++narrow;
-      if (error > kOff) ++off;
-      if (error > 2 * kOff) ++far_off;
-    }
+  void add(double error) {
+    ++narrow;
+    if (error > kOff) ++off;
+    if (error > 2 * kOff) ++far_off;
   }
 };
+
+/// Contacts for which `holds`, whose spread is at most a limit.
+Narrow narrow_of(const std::vector<HistoryResult>& results, double limit,
+                 bool (*holds)(const LearntFriction&)) {
+  Narrow sum;
+  for (const HistoryResult& result : results) {
+    for (const LearntFriction& learnt : result.learnt) {
+      if (learnt.pillars < kLeastPillars || learnt.spread > limit || !holds(learnt)) continue;
+      sum.add(std::abs(learnt.median / result.history.friction - 1));
+    }
+  }
+  return sum;
+}
 
 std::string share_text(std::size_t part, std::size_t whole) {
   if (whole == 0) return "–";
@@ -78,35 +93,30 @@ std::string prior_section(const FieldContext& context) {
 }
 
 std::string learnt_table(const std::vector<HistoryResult>& results) {
-  std::vector<std::string> header = {"spread at most", "narrow, % of contacts", "off by 10 %, %",
-                                     "by 20 %, %"};
-  for (const double friction : kFrictions) header.push_back(fmt::format("µ {:.1f}", friction));
-  Table table("r" + std::string(header.size() - 1, 'r'), header);
-  for (const double limit : kLimits) {
-    Narrow all;
-    std::vector<std::string> by_friction;
-    for (const double friction : kFrictions) {
-      Narrow one;
-      for (const HistoryResult& result : results) {
-        if (result.history.friction == friction) one.add(result, limit);
-      }
-      by_friction.push_back(fmt::format("{} of {}", one.off, one.narrow));
-      all.contacts += one.contacts;
-      all.narrow += one.narrow;
-      all.off += one.off;
-      all.far_off += one.far_off;
+  constexpr std::array<bool (*)(const LearntFriction&), 3> kGroups = {
+      [](const LearntFriction&) { return true; },
+      [](const LearntFriction& learnt) { return learnt.used >= kLeastUsed; },
+      [](const LearntFriction& learnt) { return learnt.slipping >= kLeastSlipping; }};
+  Table table("rrrrrrrrrr", {"spread at most", "all", "10 %", "20 %", "half used", "10 %", "20 %",
+                             "a fifth slips", "10 %", "20 %"});
+  const auto add = [&](const std::string& name, double limit) {
+    std::vector<std::string> cells = {name};
+    for (const auto holds : kGroups) {
+      const Narrow found = narrow_of(results, limit, holds);
+      cells.push_back(fmt::format("{}", found.narrow));
+      cells.push_back(share_text(found.off, found.narrow));
+      cells.push_back(share_text(found.far_off, found.narrow));
     }
-    std::vector<std::string> cells = {
-        fmt::format("{:.2f}", limit), share_text(all.narrow, all.contacts),
-        share_text(all.off, all.narrow), share_text(all.far_off, all.narrow)};
-    cells.insert(cells.end(), by_friction.begin(), by_friction.end());
     table.add(cells);
-  }
+  };
+  for (const double limit : kLimits) add(fmt::format("{:.2f}", limit), limit);
+  add("any", std::numeric_limits<double>::infinity());
   return table.text();
 }
 
 std::string learnt_section(const FieldContext& context) {
-  return fmt::format(fmt::runtime(kLearnt), kLeastPillars) + learnt_table(context.histories);
+  return fmt::format(fmt::runtime(kLearnt), kLeastPillars) + learnt_table(context.histories) +
+         kLearntEnd;
 }
 
 }  // namespace pillarfield::report

@@ -28,17 +28,21 @@ reading of a recording is 150 counts. Contact radii are 3, 5, 8, 12, 16 and 22 p
 constexpr const char* kPicture = R"(
 ![A history](pictures/field/history.png)
 
-*{}: left, the mean normal force of the pillars of region 3 in each frame; right, these pillars in the last frame, each with its stated 95 %.*
+*{}: left, the mean normal force of the pillars of region 3 in each frame; right, some of these pillars in the last frame, with their stated 95 %.*
 )";
 
 constexpr const char* kScript = R"(
 set multiplot layout 1,2
+set pointintervalbox 0
 set grid linecolor '#dddddd'
 set xlabel 'frame'
-set ylabel 'mean normal force in region 3, counts'
+set ylabel 'mean normal force, counts'
 set yrange [0:*]
-set key top left Left reverse
+set key bottom right Left reverse
+set xtics 2
 plot $means using 1:2 with linespoints linetype 1 linewidth 2 pointtype 7 pointsize 0.6 title 'truth', '' using 1:3 with linespoints linetype 6 pointtype 7 pointsize 0.6 title 'contact', '' using 1:4 with linespoints linetype 3 pointtype 7 pointsize 0.6 title 'direct', '' using 1:5 with linespoints linetype 7 pointtype 7 pointsize 0.6 title 'paper'
+set key top left Left reverse
+set xtics auto
 set xlabel 'true normal force, counts'
 set ylabel 'estimated normal force, counts'
 set xrange [0:*]
@@ -46,10 +50,13 @@ plot $pillars using 1:4 with points linetype 7 pointtype 7 pointsize 0.4 title '
 unset multiplot
 )";
 
-/// A fingertip of the real size that is dragged until it slides.
+/// Pillars that are drawn: error bars of more hide each other.
+constexpr std::size_t kMostBars = 50;
+
+/// A finger that is dragged until it slides.
 bool is_shown(const field_study::History& history) {
   return history.indenter == Indenter::fingertip && history.loading == Loading::slide &&
-         history.radius_pillars == 5;
+         history.friction == 1.6;
 }
 
 std::string draw_history(const FieldContext& context) {
@@ -80,7 +87,9 @@ std::string draw_history(const FieldContext& context) {
   }
   data += "END\n$pillars << END\n";
   const ForceField& contact = solved[0].back();
-  for (const std::size_t i : evaluation.open(recording.frames.size() - 1)) {
+  const auto& last = evaluation.open(recording.frames.size() - 1);
+  for (std::size_t k = 0; k < last.size(); k += 1 + last.size() / kMostBars) {
+    const std::size_t i = last[k];
     data += fmt::format("{:.3f} {:.3f} {:.3f} {:.3f}\n", counts * recording.truth.back().normal[i],
                         counts * contact.normal[i],
                         1.96 * counts * contact.uncertainty[Uncertainty::normal][i],

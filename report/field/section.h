@@ -31,10 +31,10 @@ struct FieldContext {
 [[nodiscard]] std::string impossible_section(const FieldContext& context);
 [[nodiscard]] std::string recordings_section(const FieldContext& context);
 
-/// The share of the recordings with kEnoughPillars or more in which an interval of `contact` holds
+/// The share of the recordings with kEnoughPillars or more in which an interval of a method holds
 /// the truth for 88 to 100 % of the pillars of region 3.
 [[nodiscard]] double share_of_true_recordings(const std::vector<HistoryResult>& results,
-                                              std::size_t interval);
+                                              std::size_t method, std::size_t interval);
 
 /// The table of learnt frictions alone, for whoever chooses when a friction is reported.
 [[nodiscard]] std::string learnt_table(const std::vector<HistoryResult>& results);

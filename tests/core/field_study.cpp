@@ -80,22 +80,46 @@ bool is_within(float solved, float truth, float deviation) {
   return std::abs(double{solved} - truth) <= kNormal95 * deviation;
 }
 
-/// Whether a value lies between ends, up to the rounding of single precision.
-bool is_between(const ForceField& solved, Uncertainty low, Uncertainty high, double value,
-                std::size_t i) {
+/// Whether a value lies between ends that are widened by a margin, up to the rounding of single
+/// precision.
+bool is_between(const ForceField& solved, Uncertainty low, Uncertainty high, std::size_t i,
+                double value, double margin) {
   constexpr double kRounding = 1e-5;
-  return value >= solved.uncertainty[low][i] * (1 - kRounding) &&
-         value <= solved.uncertainty[high][i] * (1 + kRounding);
+  return value >= solved.uncertainty[low][i] * (1 - kRounding) - margin &&
+         value <= solved.uncertainty[high][i] * (1 + kRounding) + margin;
 }
 
 /// The same on the circle, counter-clockwise from the lower end to the upper.
-bool is_on_arc(const ForceField& solved, double phi, std::size_t i) {
+bool is_on_arc(const ForceField& solved, std::size_t i, double phi, double margin) {
   constexpr double kTurn = 2 * std::numbers::pi;
   constexpr double kRounding = 1e-5;
-  const double low = solved.uncertainty[Uncertainty::phi_low][i] - kRounding;
-  const double high = solved.uncertainty[Uncertainty::phi_high][i] + kRounding;
+  const double low = solved.uncertainty[Uncertainty::phi_low][i] - kRounding - margin;
+  const double high = solved.uncertainty[Uncertainty::phi_high][i] + kRounding + margin;
   const auto positive = [](double angle) { return angle < 0 ? angle + kTurn : angle; };
+  if (margin >= kTurn / 2) return true;
   return positive(std::fmod(phi - low, kTurn)) <= positive(std::fmod(high - low, kTurn));
+}
+
+/// How much of a friction of 1 the pillars of a contact use, and how many slip.
+LearntFriction usage_of(std::span<const ContactRun> runs, const ForceField& solved,
+                        const ForceField& truth, double friction) {
+  constexpr double kSlipping = 0.9;
+  LearntFriction usage;
+  double shear = 0;
+  double normal = 0;
+  double slipping = 0;
+  for (const ContactRun& run : runs) {
+    for (std::uint32_t col = run.first; col < run.end; ++col) {
+      const std::size_t i = std::size_t{run.row} * truth.cols + col;
+      ++usage.pillars;
+      shear += shear_of(solved, i);
+      normal += solved.normal[i];
+      if (shear_of(truth, i) > kSlipping * friction * truth.normal[i]) ++slipping;
+    }
+  }
+  usage.used = normal > 0 ? shear / normal : 0;
+  usage.slipping = slipping / static_cast<double>(usage.pillars);
+  return usage;
 }
 
 }  // namespace
@@ -148,16 +172,16 @@ std::vector<LearntFriction> learnt_friction(const Recording& recording) {
   plan.estimator = Estimator::contact;
   ContactEstimator estimator(plan);
   std::vector<LearntFriction> learnt;
-  for (const FrameBuffer& frame : recording.frames) {
-    ForceField solved = solve_on_host(recording.plan, frame.view());
+  for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
+    ForceField solved = solve_on_host(recording.plan, recording.frames[frame].view());
     estimator.resolve(solved);
     for (std::uint32_t contact = 0; contact < estimator.contacts().contacts(); ++contact) {
-      LearntFriction one;
-      for (const ContactRun& run : estimator.contacts().runs(contact)) {
-        one.pillars += run.end - run.first;
-      }
-      one.median = estimator.friction()[contact].median;
-      one.spread = estimator.friction()[contact].spread;
+      const ContactFriction& friction = estimator.friction()[contact];
+      LearntFriction one = usage_of(estimator.contacts().runs(contact), solved,
+                                    recording.truth[frame], recording.friction);
+      one.median = friction.median;
+      one.spread = friction.spread;
+      one.used /= friction.median;
       learnt.push_back(one);
     }
   }
@@ -197,29 +221,32 @@ const std::array<Interval, kIntervals>& intervals() {
   using Field = ForceField;
   static constexpr std::array<Interval, kIntervals> kAll = {{
       {"shear_x",
-       [](const Field& solved, const Field& truth, std::size_t i) {
+       [](const Field& solved, const Field& truth, std::size_t i, double) {
          return is_within(solved.shear_x[i], truth.shear_x[i], solved.uncertainty[U::shear_x][i]);
        }},
       {"shear_y",
-       [](const Field& solved, const Field& truth, std::size_t i) {
+       [](const Field& solved, const Field& truth, std::size_t i, double) {
          return is_within(solved.shear_y[i], truth.shear_y[i], solved.uncertainty[U::shear_y][i]);
        }},
       {"normal",
-       [](const Field& solved, const Field& truth, std::size_t i) {
+       [](const Field& solved, const Field& truth, std::size_t i, double) {
          return is_within(solved.normal[i], truth.normal[i], solved.uncertainty[U::normal][i]);
        }},
       {"magnitude",
-       [](const Field& solved, const Field& truth, std::size_t i) {
-         return is_between(solved, U::magnitude_low, U::magnitude_high, magnitude_of(truth, i), i);
+       [](const Field& solved, const Field& truth, std::size_t i, double noise_n) {
+         return is_between(solved, U::magnitude_low, U::magnitude_high, i, magnitude_of(truth, i),
+                           kNormal95 * noise_n);
        }},
       {"theta",
-       [](const Field& solved, const Field& truth, std::size_t i) {
-         const double theta = std::atan2(shear_of(truth, i), truth.normal[i]);
-         return is_between(solved, U::theta_low, U::theta_high, theta, i);
+       [](const Field& solved, const Field& truth, std::size_t i, double noise_n) {
+         return is_between(solved, U::theta_low, U::theta_high, i,
+                           std::atan2(shear_of(truth, i), truth.normal[i]),
+                           kNormal95 * noise_n / magnitude_of(truth, i));
        }},
       {"phi",
-       [](const Field& solved, const Field& truth, std::size_t i) {
-         return is_on_arc(solved, std::atan2(-truth.shear_y[i], -truth.shear_x[i]), i);
+       [](const Field& solved, const Field& truth, std::size_t i, double noise_n) {
+         return is_on_arc(solved, i, std::atan2(-truth.shear_y[i], -truth.shear_x[i]),
+                          kNormal95 * noise_n / shear_of(truth, i));
        }},
   }};
   return kAll;
@@ -245,7 +272,10 @@ Score& Score::operator+=(const Score& other) {
   loaded += other.loaded;
   open += other.open;
   squares += other.squares;
-  for (std::size_t k = 0; k < kIntervals; ++k) held[k] += other.held[k];
+  for (std::size_t k = 0; k < kIntervals; ++k) {
+    held[k] += other.held[k];
+    held_with_noise[k] += other.held_with_noise[k];
+  }
   frames += other.frames;
   total_errors += other.total_errors;
   total_squares += other.total_squares;
@@ -276,6 +306,7 @@ std::vector<ForceField> Evaluation::nearest() const {
 
 Score Evaluation::score(const std::vector<ForceField>& solved) const {
   const double counts_per_newton = recording_.plan.skin.counts_per_newton;
+  const double noise_n = reading_noise(recording_.plan) / counts_per_newton;
   Score score;
   for (std::size_t frame = 0; frame < solved.size(); ++frame) {
     const ForceField& truth = recording_.truth[frame];
@@ -288,7 +319,8 @@ Score Evaluation::score(const std::vector<ForceField>& solved) const {
       score.squares +=
           counts_per_newton * counts_per_newton * squared_error(solved[frame], truth, i);
       for (std::size_t k = 0; states && k < kIntervals; ++k) {
-        if (intervals()[k].holds(solved[frame], truth, i)) ++score.held[k];
+        if (intervals()[k].holds(solved[frame], truth, i, 0)) ++score.held[k];
+        if (intervals()[k].holds(solved[frame], truth, i, noise_n)) ++score.held_with_noise[k];
       }
     }
     const double load = total_normal(truth);

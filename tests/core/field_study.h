@@ -42,6 +42,11 @@ struct LearntFriction {
   std::uint64_t pillars = 0;  ///< of the contact
   double median = 0;
   double spread = 0;  ///< standard deviation of its logarithm
+  /// Sum of the estimated shears over the sum of median times normal force: near 1 where the whole
+  /// contact slips.
+  double used = 0;
+  /// Share of its pillars that truly bear 0.9 or more of the shear that friction allows.
+  double slipping = 0;
 };
 
 /// One entry for each contact of each frame, with the default prior.
@@ -69,9 +74,13 @@ struct Segment {
 /// A statement about one component of a pillar's force that is to hold for 95 % of pillars.
 struct Interval {
   const char* name;
-  bool (*holds)(const ForceField& solved, const ForceField& truth, std::size_t pillar);
+  /// Low-to-high intervals, which leave noise out, are widened by 1.96 times `noise_n`, N, in the
+  /// force; 0: as they are stated.
+  bool (*holds)(const ForceField& solved, const ForceField& truth, std::size_t pillar,
+                double noise_n);
 };
 inline constexpr std::size_t kIntervals = 6;
+inline constexpr std::size_t kFirstEnds = 3;  ///< from here on intervals are low to high
 
 /// The mean ± 1.96 standard deviations of the three components, and what lies between the ends of
 /// magnitude and angles.
@@ -82,10 +91,11 @@ struct Score {
   std::size_t loaded = 0;  ///< pillars with a usable sensel
   std::size_t open = 0;    ///< of these in region 3 by their status, and truly loaded
   double squares = 0;      ///< sum of |error|² of the force vector, counts²
-  std::array<std::size_t, kIntervals> held{};  ///< intervals that hold the truth
-  std::size_t frames = 0;                      ///< that are truly loaded
-  double total_errors = 0;                     ///< sum over frames of the relative error
-  double total_squares = 0;                    ///< and of its square
+  std::array<std::size_t, kIntervals> held{};             ///< intervals that hold the truth
+  std::array<std::size_t, kIntervals> held_with_noise{};  ///< where widened by that of a reading
+  std::size_t frames = 0;                                 ///< that are truly loaded
+  double total_errors = 0;                                ///< sum over frames of the relative error
+  double total_squares = 0;                               ///< and of its square
 
   [[nodiscard]] double rms_counts() const;
   [[nodiscard]] double coverage(std::size_t interval) const;  ///< 1 where nothing is open
