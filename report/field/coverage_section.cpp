@@ -69,7 +69,7 @@ std::string field_coverage_section(const FieldContext& context) {
   const field_study::Score all = pooled(context.histories, kContact, any);
   std::vector<std::string> widened = {"all, ends widened by noise"};
   for (std::size_t i = 0; i < kIntervals; ++i) {
-    const double held = static_cast<double>(all.held_with_noise[i]);
+    const auto held = static_cast<double>(all.held_with_noise[i]);
     widened.push_back(percent_text(held / static_cast<double>(all.open)));
   }
   table.add(widened);

@@ -83,8 +83,8 @@ Kind kind(const char* name, bool (*holds)(const ClosedForm&)) { return {name, ho
 }  // namespace
 
 const std::vector<Method>& methods() {
-  static const std::vector<Method> kAll = all_methods();
-  return kAll;
+  static const std::vector<Method> all = all_methods();
+  return all;
 }
 
 double Result::to_paper(std::size_t method) const {

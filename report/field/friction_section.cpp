@@ -29,7 +29,7 @@ estimated shear uses half of that friction or more, Σ|s| ≥ 0.5 median ΣN, wh
 )";
 
 constexpr const char* kLearntEnd = R"(
-A contact that sticks has a narrow posterior that is far too low: its small ratios of shear to normal force are taken for friction. A limit on the spread does not tell such contacts from those that slip.
+Of the contacts without a pillar that slips {} have a spread of at most {:g}, and {} % of these are off by more than 20 %: where all of a contact sticks, its small ratios of shear to normal force are taken for friction. A limit on the spread does not tell such contacts from those that slip.
 )";
 
 /// Smaller contacts are fragments at the rim of others.
@@ -115,8 +115,13 @@ std::string learnt_table(const std::vector<HistoryResult>& results) {
 }
 
 std::string learnt_section(const FieldContext& context) {
+  constexpr double kNarrowLimit = 0.05;
+  const Narrow sticking =
+      narrow_of(context.histories, kNarrowLimit,
+                [](const LearntFriction& learnt) { return learnt.slipping == 0; });
   return fmt::format(fmt::runtime(kLearnt), kLeastPillars) + learnt_table(context.histories) +
-         kLearntEnd;
+         fmt::format(fmt::runtime(kLearntEnd), sticking.narrow, kNarrowLimit,
+                     share_text(sticking.far_off, sticking.narrow));
 }
 
 }  // namespace pillarfield::report

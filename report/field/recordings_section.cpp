@@ -21,7 +21,7 @@ using field_study::Recording;
 constexpr const char* kIntroduction = R"(## Recordings
 
 **Histories**: {} recordings of 8 to 12 frames, listed in `tests/core/field_study_histories.cpp`. The simulator's boundary-element solver ([derivation](derivations/half_space.md)) finds pressure and shear of a rigid body on an elastic half-space, so that each frame depends on those before. Readings have 8 bits, noise of 0.5 counts and a threshold of 2; the largest
-reading of a recording is 150 counts. Contact radii are 3, 5, 8, 12, 16 and 22 pillars (a circle of the same area); a fingertip covers 3 to 6. No parameter of any estimator was chosen on them.
+reading of a recording is 150 counts. Contact radii are 3, 5, 8, 12, 16 and 22 pillars (of a circle of the same area). No parameter of any estimator was chosen on them.
 
 )";
 
@@ -33,7 +33,6 @@ constexpr const char* kPicture = R"(
 
 constexpr const char* kScript = R"(
 set multiplot layout 1,2
-set pointintervalbox 0
 set grid linecolor '#dddddd'
 set xlabel 'frame'
 set ylabel 'mean normal force, counts'
@@ -46,7 +45,7 @@ set xtics auto
 set xlabel 'true normal force, counts'
 set ylabel 'estimated normal force, counts'
 set xrange [0:*]
-plot $pillars using 1:4 with points linetype 7 pointtype 7 pointsize 0.4 title 'paper', '' using 1:2:3 with yerrorbars linetype 6 pointtype 7 pointsize 0.4 title 'contact', x with lines linetype 1 notitle
+plot $pillars using 1:4 with points linetype 7 pointtype 7 pointsize 0.4 title 'paper', '' using 1:($2-$3):(0):(2*$3) with vectors nohead linetype 6 notitle, '' using 1:2 with points linetype 6 pointtype 7 pointsize 0.4 title 'contact', x with lines linetype 1 notitle
 unset multiplot
 )";
 

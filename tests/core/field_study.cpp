@@ -37,10 +37,10 @@ FrameBuffer read_frame(const Scene& scene, const Sensor& sensor, const ForceFiel
     for (std::uint32_t col = 0; col < truth.cols; ++col) {
       const auto v = ideal_readings(force_of(truth, std::size_t{row} * truth.cols + col),
                                     scene.skin.counts_per_newton);
-      upper[2 * col] = v.v2;
-      upper[2 * col + 1] = v.v1;
-      lower[2 * col] = v.v3;
-      lower[2 * col + 1] = v.v4;
+      upper[std::size_t{2} * col] = v.v2;
+      upper[std::size_t{2} * col + 1] = v.v1;
+      lower[std::size_t{2} * col] = v.v3;
+      lower[std::size_t{2} * col + 1] = v.v4;
     }
     sensor.read_row(index, 2 * row, upper, raw);
     sensor.read_row(index, 2 * row + 1, lower, raw);
@@ -89,14 +89,15 @@ bool is_between(const ForceField& solved, Uncertainty low, Uncertainty high, std
          value <= solved.uncertainty[high][i] * (1 + kRounding) + margin;
 }
 
-/// The same on the circle, counter-clockwise from the lower end to the upper.
+/// The same on the circle, counter-clockwise from the lower end to the upper. A margin that is not
+/// a number is that of a force without shear, of which any phi is true.
 bool is_on_arc(const ForceField& solved, std::size_t i, double phi, double margin) {
   constexpr double kTurn = 2 * std::numbers::pi;
   constexpr double kRounding = 1e-5;
+  if (!(margin < kTurn / 2)) return true;
   const double low = solved.uncertainty[Uncertainty::phi_low][i] - kRounding - margin;
   const double high = solved.uncertainty[Uncertainty::phi_high][i] + kRounding + margin;
   const auto positive = [](double angle) { return angle < 0 ? angle + kTurn : angle; };
-  if (margin >= kTurn / 2) return true;
   return positive(std::fmod(phi - low, kTurn)) <= positive(std::fmod(high - low, kTurn));
 }
 

@@ -298,7 +298,7 @@ std::string History::name() const {
 }
 
 const std::vector<History>& histories() {
-  static const std::vector<History> kAll = [] {
+  static const std::vector<History> all_histories = [] {
     std::vector<History> all;
     for (int i = 0; i < kIndenters; ++i) {
       const auto indenter = static_cast<Indenter>(i);
@@ -309,7 +309,7 @@ const std::vector<History>& histories() {
     }
     return all;
   }();
-  return kAll;
+  return all_histories;
 }
 
 Recording record(const History& history, const std::filesystem::path& scenes) {

@@ -190,6 +190,7 @@ std::vector<Recording> few_recordings() {
   scenes.insert(scenes.end(), more.begin(), more.begin() + 2);
   integrate(scenes);
   std::vector<Recording> recordings;
+  recordings.reserve(scenes.size());
   for (const ClosedForm& scene : scenes) recordings.push_back(record(scene));
   return recordings;
 }
