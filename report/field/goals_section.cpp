@@ -21,7 +21,7 @@ using field_study::Score;
 constexpr const char* kIntroduction = R"(## Goals
 
 RMS error of the force vector over the pillars of region 3 of the [histories](#recordings), in counts (newtons times counts per newton), all pillars of a friction taken together. "Friction given" is the error of `contact` where it is
-given the true friction, "noise alone" that of the nearest force to the truth among those that explain the readings: they show what bounds a goal that is not met, friction that is not known, or that even then nobody knows which pillars stick. Coverage is given from the least to the most covered component, and recordings count from 30 pillars of region 3 on.
+given the true friction, "noise alone" that of the nearest force to the truth among those that explain the readings: they show what bounds a goal that is not met: "friction" where the goal would be met with the true friction given, "more than friction" where not. Coverage is given from the least to the most covered component, and recordings count from 30 pillars of region 3 on.
 
 )";
 
@@ -48,7 +48,7 @@ struct Found {
 void add_goal(const std::string& what, const std::string& wanted, const Found& found,
               const Found& given, const std::string& noise, Table& table) {
   const char* const reason =
-      found.bound != nullptr ? found.bound : (given.met ? "friction" : "stick or slip");
+      found.bound != nullptr ? found.bound : (given.met ? "friction" : "more than friction");
   table.add({what, wanted, found.text, found.met ? "met" : "**not met**", given.text, noise,
              found.met ? "" : reason});
 }
