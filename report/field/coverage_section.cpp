@@ -1,4 +1,4 @@
-// Whether the stated uncertainty of ambiguous pillars is true.
+// Whether the stated uncertainty of pillars of region 3 is true.
 
 #include <fmt/format.h>
 
@@ -12,67 +12,70 @@
 namespace pillarfield::report {
 namespace {
 
+using field_study::intervals;
+using field_study::kIntervals;
+
 constexpr const char* kIntroduction = R"(## Coverage
 
-The share of the pillars of region 3 whose true normal force lies in the stated band: for those that neighbours resolved (status bit 7) the estimate ± 1.96 of its standard deviation, for
-the others the whole segment, from nothing to twice the middle, and 1.96 standard deviations of that end. Nothing is said by the scenes. The last columns are of scenes with {enough} such pillars or more: how many are held
-by less than 93 %, by 93 to 99 %, by more where most pillars are resolved, and by more where they are not; and the least share.
+The share of the pillars of region 3 of which a stated 95 % holds the truth, `contact` with its default prior: of the components the mean ± 1.96 standard deviations, of magnitude and angles what lies from the low to the high end. The ends
+leave out the noise of the shear component that does not depend on the normal force; one row adds 1.96 deviations of it to them. The last rows are of recordings with {} such pillars or more.
 
 )";
 
-std::string percent(std::size_t part, std::size_t whole) {
-  if (whole == 0) return "–";
-  return fmt::format("{:.1f}", 100.0 * static_cast<double>(part) / static_cast<double>(whole));
-}
+constexpr double kLeastTrue = 0.88;
 
-/// Scenes by the share that their bands hold.
-struct Shares {
-  int below = 0;
-  int within = 0;
-  int above = 0;       ///< of which most pillars are resolved
-  int unresolved = 0;  ///< above, and most are not
-  double least = 1;
-
-  void add(const field_study::Score& score) {
-    const double share = score.coverage();
-    least = std::min(least, share);
-    if (share < 0.93) {
-      ++below;
-    } else if (share <= 0.99) {
-      ++within;
-    } else {
-      ++(2 * score.resolved < score.open ? unresolved : above);
-    }
-  }
-  [[nodiscard]] int scenes() const { return below + within + above + unresolved; }
-};
-
-Shares shares_of(const std::vector<SceneResult>& results, const Kind& kind) {
-  Shares shares;
-  for (const SceneResult& result : results) {
-    if (result.counts() && kind.holds(result.scene)) shares.add(result.field());
+std::vector<double> shares_of(const std::vector<HistoryResult>& results, std::size_t method,
+                              std::size_t interval) {
+  std::vector<double> shares;
+  for (const HistoryResult& result : results) {
+    if (result.open() < kEnoughPillars) continue;
+    shares.push_back(result.by_method[method].coverage(interval));
   }
   return shares;
 }
 
 }  // namespace
 
+double share_of_true_recordings(const std::vector<HistoryResult>& results, std::size_t method,
+                                std::size_t interval) {
+  const std::vector<double> shares = shares_of(results, method, interval);
+  const auto good =
+      std::count_if(shares.begin(), shares.end(), [](double share) { return share >= kLeastTrue; });
+  return static_cast<double>(good) / static_cast<double>(shares.size());
+}
+
 std::string field_coverage_section(const FieldContext& context) {
-  Table table("lrrrrrrrrr",
-              {"", "resolved, % of region 3", "held, %: resolved", "not resolved", "all",
-               "scenes < 93 %", "93 to 99 %", "more, resolved", "more, not", "least, %"});
-  for (const Kind& kind : kinds()) {
-    const auto score = pool_method(context.judging, kind, 0).solved;
-    const Shares shares = shares_of(context.judging, kind);
-    table.add({kind.name, percent(score.resolved, score.open),
-               percent(score.resolved_covered, score.resolved),
-               percent(score.covered - score.resolved_covered, score.open - score.resolved),
-               percent(score.covered, score.open), fmt::format("{}", shares.below),
-               fmt::format("{}", shares.within), fmt::format("{}", shares.above),
-               fmt::format("{}", shares.unresolved),
-               shares.scenes() > 0 ? fmt::format("{:.1f}", 100 * shares.least) : "–"});
+  std::vector<std::string> header = {"held, %"};
+  std::vector<std::string> good = {"recordings with 88 to 100 %, %"};
+  std::vector<std::string> least = {"least of a recording"};
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    header.emplace_back(intervals()[i].name);
+    good.push_back(percent_text(share_of_true_recordings(context.histories, kContact, i)));
+    const std::vector<double> shares = shares_of(context.histories, kContact, i);
+    least.push_back(percent_text(*std::min_element(shares.begin(), shares.end())));
   }
-  return fmt::format(kIntroduction, fmt::arg("enough", kEnoughPillars)) + table.text();
+  Table table("l" + std::string(kIntervals, 'r'), header);
+  const auto add = [&](const std::string& name, const auto& holds) {
+    const field_study::Score score = pooled(context.histories, kContact, holds);
+    std::vector<std::string> cells = {name};
+    for (std::size_t i = 0; i < kIntervals; ++i) cells.push_back(percent_text(score.coverage(i)));
+    table.add(cells);
+  };
+  for (const double friction : kFrictions) {
+    add(fmt::format("friction {:.1f}", friction), of_friction(friction));
+  }
+  const auto any = [](const HistoryResult&) { return true; };
+  add("all", any);
+  const field_study::Score all = pooled(context.histories, kContact, any);
+  std::vector<std::string> widened = {"all, ends widened by noise"};
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    const auto held = static_cast<double>(all.held_with_noise[i]);
+    widened.push_back(percent_text(held / static_cast<double>(all.open)));
+  }
+  table.add(widened);
+  table.add(good);
+  table.add(least);
+  return fmt::format(fmt::runtime(kIntroduction), kEnoughPillars) + table.text();
 }
 
 }  // namespace pillarfield::report

@@ -5,159 +5,168 @@
 namespace pillarfield::report {
 namespace {
 
+using field_study::ClosedForm;
+using field_study::Evaluation;
 using field_study::Family;
-using field_study::Method;
 using field_study::Motion;
-using field_study::Observed;
-using field_study::Scene;
-using field_study::Score;
+using field_study::Recording;
 using field_study::Shape;
 
-double root_ratio(const Score& a, const Score& b) {
-  return b.squares > 0 ? a.rms_counts() / b.rms_counts() : 0;
+void set_contact(SolverPlan& plan, const FrictionKnowledge& friction) {
+  plan.estimator = Estimator::contact;
+  plan.friction = friction;
 }
 
-std::optional<Score> score_of(const Scene& scene, const Observed& observed, const Method& method) {
-  const auto solved = field_study::solve(scene, observed, method);
-  if (!solved) return std::nullopt;
-  return observed.score(*solved);
+Method prior(double median, double spread) {
+  return {fmt::format("median {:g}, spread {:.1f}", median, spread), [=](SolverPlan& plan, double) {
+            FrictionKnowledge friction;
+            friction.median = median;
+            friction.spread = spread;
+            set_contact(plan, friction);
+          }};
 }
 
-bool has_goal(std::size_t method) {
-  return method == field_study::kNothingSaid || method == field_study::kFrictionTold ||
-         method == field_study::kSlipTold;
-}
-
-SceneResult result_of(const Scene& scene, bool all_methods) {
-  const Observed observed(scene);
-  SceneResult result;
-  result.scene = scene;
-  result.middle = observed.score(observed.direct());
-  result.theta = observed.score(observed.theta_midpoint());
-  result.best = observed.score(observed.nearest());
-  const auto& methods = field_study::methods();
-  const bool typical = scene.noise_counts == kTypicalNoise;
-  result.by_method.resize(methods.size());
-  for (std::size_t i = 0; i < (all_methods ? methods.size() : 1); ++i) {
-    if (typical || has_goal(i)) result.by_method[i] = score_of(scene, observed, methods[i]);
+std::vector<Method> all_methods() {
+  std::vector<Method> all = {
+      {"`direct`", [](SolverPlan&, double) {}},
+      {"`direct`, segment point 0.5", [](SolverPlan& plan, double) { plan.segment_point = 0.5; }},
+      {"`paper`", [](SolverPlan& plan, double) { plan.estimator = Estimator::paper; }},
+      {"`contact`", [](SolverPlan& plan, double) { set_contact(plan, {}); }},
+      {"`contact`, frames unrelated",
+       [](SolverPlan& plan, double) {
+         set_contact(plan, {});
+         plan.friction.memory = false;
+       }},
+      {"`contact`, true friction given",
+       [](SolverPlan& plan, double friction) {
+         set_contact(plan, {});
+         plan.friction.given = friction;
+       }},
+      {"median 1, spread 0.5, bound 1.5 times the true friction",
+       [](SolverPlan& plan, double friction) {
+         set_contact(plan, {});
+         plan.friction.bound = 1.5 * friction;
+       }},
+      {"`direct`, segment point 0.75", [](SolverPlan& plan, double) { plan.segment_point = 0.75; }},
+  };
+  for (const double spread : {0.5, 1.0}) {
+    for (const double median : {0.5, 1.0, 2.0, 3.0}) all.push_back(prior(median, spread));
   }
-  if (!typical || !all_methods) return result;
-  for (std::size_t i = 0; i < kSweeps.size(); ++i) {
-    Method method = field_study::methods().front();
-    method.evidence.sweeps = kSweeps[i];
-    result.by_sweeps[i] = score_of(scene, observed, method);
+  return all;
+}
+
+Result score(const Recording& recording, std::size_t method_count) {
+  const Evaluation evaluation(recording);
+  Result result;
+  result.nearest = evaluation.score(evaluation.nearest());
+  for (std::size_t i = 0; i < method_count; ++i) {
+    SolverPlan plan = recording.plan;
+    methods()[i].set(plan, recording.friction);
+    result.by_method.push_back(evaluation.score(field_study::solve(recording, plan)));
   }
   return result;
 }
 
-bool is_cylinder(const Scene& scene) { return scene.contact.body.shape == Shape::cylinder; }
+bool is_cylinder(const ClosedForm& scene) { return scene.contact.body.shape == Shape::cylinder; }
 
 /// Round in every direction: a cylinder's ends are abrupt.
-bool is_round(const Scene& scene) {
+bool is_round(const ClosedForm& scene) {
   return scene.family() == Family::rounded && !is_cylinder(scene);
 }
 
-bool is_partial(const Scene& scene) {
+bool is_partial(const ClosedForm& scene) {
   return scene.motion() == Motion::partial_slip || scene.motion() == Motion::partial_turn;
 }
 
-Kind kind(const char* name, bool (*holds)(const Scene&)) { return {name, holds}; }
+Kind kind(const char* name, bool (*holds)(const ClosedForm&)) { return {name, holds}; }
 
 }  // namespace
 
-double SceneResult::ratio(std::size_t method) const {
-  return by_method[method] ? root_ratio(*by_method[method], theta) : 0;
+const std::vector<Method>& methods() {
+  static const std::vector<Method> all = all_methods();
+  return all;
 }
 
-double SceneResult::settled_share() const {
-  if (theta.loaded == 0) return 0;
-  return 1 - static_cast<double>(theta.open) / static_cast<double>(theta.loaded);
+double Result::to_paper(std::size_t method) const {
+  const double paper = by_method.at(kPaper).rms_counts();
+  return paper > 0 ? by_method.at(method).rms_counts() / paper : 0;
 }
 
-std::vector<SceneResult> results_of(const std::vector<Scene>& scenes, bool all_methods) {
-  std::vector<SceneResult> results(scenes.size());
-  field_study::for_each_index(
-      scenes.size(), [&](std::size_t i) { results[i] = result_of(scenes[i], all_methods); });
+std::vector<HistoryResult> measure_histories(const std::filesystem::path& scenes) {
+  const auto& histories = field_study::histories();
+  std::vector<HistoryResult> results(histories.size());
+  field_study::for_each_index(results.size(), [&](std::size_t i) {
+    const Recording recording = field_study::record(histories[i], scenes);
+    results[i] = {score(recording, methods().size()), histories[i],
+                  field_study::learnt_friction(recording)};
+  });
   return results;
 }
 
-void Pooled::add(const SceneResult& result, const Score& score) {
-  middle += result.middle;
-  theta += result.theta;
-  best += result.best;
-  solved += score;
-  ++scenes;
+std::vector<ClosedFormResult> measure_closed_forms() {
+  std::vector<ClosedForm> scenes = field_study::closed_forms();
+  field_study::integrate(scenes);
+  std::vector<ClosedFormResult> results(scenes.size());
+  field_study::for_each_index(results.size(), [&](std::size_t i) {
+    results[i] = {score(field_study::record(scenes[i]), kBounded), scenes[i]};
+  });
+  return results;
 }
-
-double Pooled::ratio() const { return root_ratio(solved, theta); }
-double Pooled::best_ratio() const { return root_ratio(best, theta); }
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = {
       kind("rounded, spin and turn",
-           [](const Scene& scene) {
+           [](const ClosedForm& scene) {
              return is_round(scene) &&
                     (scene.motion() == Motion::spin || scene.motion() == Motion::turn);
            }),
       kind("rounded, partial slip",
-           [](const Scene& scene) { return is_round(scene) && is_partial(scene); }),
+           [](const ClosedForm& scene) { return is_round(scene) && is_partial(scene); }),
       kind("rounded, roll",
-           [](const Scene& scene) { return is_round(scene) && scene.motion() == Motion::roll; }),
+           [](const ClosedForm& scene) {
+             return is_round(scene) && scene.motion() == Motion::roll;
+           }),
       kind("rounded, slide",
-           [](const Scene& scene) { return is_round(scene) && scene.motion() == Motion::slide; }),
-      kind(
-          "cylinder, partial slip and roll",
-          [](const Scene& scene) { return is_cylinder(scene) && scene.motion() != Motion::press; }),
+           [](const ClosedForm& scene) {
+             return is_round(scene) && scene.motion() == Motion::slide;
+           }),
+      kind("cylinder, partial slip and roll",
+           [](const ClosedForm& scene) {
+             return is_cylinder(scene) && scene.motion() != Motion::press;
+           }),
       kind("cone, spin",
-           [](const Scene& scene) {
+           [](const ClosedForm& scene) {
              return scene.family() == Family::cone && scene.motion() == Motion::spin;
            }),
       kind("cone, partial slip",
-           [](const Scene& scene) { return scene.family() == Family::cone && is_partial(scene); }),
+           [](const ClosedForm& scene) {
+             return scene.family() == Family::cone && is_partial(scene);
+           }),
       kind("cone, slide",
-           [](const Scene& scene) {
+           [](const ClosedForm& scene) {
              return scene.family() == Family::cone && scene.motion() == Motion::slide;
            }),
       kind("punch, spin",
-           [](const Scene& scene) {
+           [](const ClosedForm& scene) {
              return scene.family() == Family::punch && scene.motion() == Motion::spin;
            }),
       kind("punch, partial slip",
-           [](const Scene& scene) { return scene.family() == Family::punch && is_partial(scene); }),
+           [](const ClosedForm& scene) {
+             return scene.family() == Family::punch && is_partial(scene);
+           }),
       kind("punch, slide",
-           [](const Scene& scene) {
+           [](const ClosedForm& scene) {
              return scene.family() == Family::punch && scene.motion() == Motion::slide;
            }),
-      kind("press, any", [](const Scene& scene) { return scene.motion() == Motion::press; }),
+      kind("press, any", [](const ClosedForm& scene) { return scene.motion() == Motion::press; }),
   };
   return all;
 }
 
-Pooled pool(const std::vector<SceneResult>& results,
-            const std::function<bool(const SceneResult&)>& holds,
-            const std::function<std::optional<Score>(const SceneResult&)>& score_of_result) {
-  Pooled pooled;
-  for (const SceneResult& result : results) {
-    if (!holds(result)) continue;
-    const auto score = score_of_result(result);
-    if (score) pooled.add(result, *score);
-  }
-  return pooled;
+std::string rms_text(const field_study::Score& score) {
+  return score.open == 0 ? "–" : fmt::format("{:.2f}", score.rms_counts());
 }
 
-Pooled pool_method(const std::vector<SceneResult>& results, const Kind& kind, std::size_t method,
-                   bool typical_noise) {
-  return pool(
-      results,
-      [&](const SceneResult& result) {
-        return kind.holds(result.scene) &&
-               (!typical_noise || result.scene.noise_counts == kTypicalNoise);
-      },
-      [&](const SceneResult& result) { return result.by_method.at(method); });
-}
-
-std::string ratio_text(const Pooled& pooled) {
-  return pooled.theta.open == 0 ? "–" : fmt::format("{:.3f}", pooled.ratio());
-}
+std::string percent_text(double share) { return fmt::format("{:.1f}", 100 * share); }
 
 }  // namespace pillarfield::report

@@ -1,76 +1,104 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <filesystem>
 #include <functional>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "tests/core/field_study.h"
+#include "tests/core/field_study_histories.h"
+#include "tests/core/field_study_scenes.h"
 
 namespace pillarfield::report {
 
-/// Iterations of the relaxation that are compared.
-inline constexpr std::array kSweeps = {0, 1, 2, 4, 8, 16, 32, 64, 128};
+/// Frictions of the histories.
+inline constexpr std::array kFrictions = {0.8, 1.2, 1.6, 2.2, 3.0, 4.5};
 
-/// Of a ratio or a share to mean something: ambiguous pillars in a scene.
+/// The largest friction that goals are about: larger ones are rare.
+inline constexpr double kLargestUsual = 3.0;
+
+/// Pillars of region 3 that a recording needs for a ratio or a share of its own.
 inline constexpr std::size_t kEnoughPillars = 30;
 
-/// The noise at which all is measured, counts.
-inline constexpr double kTypicalNoise = 0.5;
-
-/// How wrong a scene's ambiguous pillars are, by each way to resolve them.
-struct SceneResult {
-  field_study::Scene scene;
-  field_study::Score middle;  ///< of the segment: the direct solve
-  field_study::Score theta;   ///< the paper's midpoint
-  field_study::Score best;    ///< the nearest that explains the readings: noise alone
-  /// As field_study::methods(); those that no goal is about at kTypicalNoise alone.
-  std::vector<std::optional<field_study::Score>> by_method;
-  std::array<std::optional<field_study::Score>, kSweeps.size()> by_sweeps;  ///< at kTypicalNoise
-
-  [[nodiscard]] const field_study::Score& field() const { return *by_method.front(); }
-  [[nodiscard]] double ratio(std::size_t method = 0) const;  ///< to the paper's midpoint
-  [[nodiscard]] bool counts() const { return theta.open >= kEnoughPillars; }
-  /// Share of the loaded pillars that the readings determine.
-  [[nodiscard]] double settled_share() const;
+/// A way to estimate forces.
+struct Method {
+  std::string name;
+  std::function<void(SolverPlan& plan, double true_friction)> set;
 };
 
-/// Solves scenes that have their loads by all methods and sweeps, or by the first method alone.
-[[nodiscard]] std::vector<SceneResult> results_of(const std::vector<field_study::Scene>& scenes,
-                                                  bool all_methods);
+/// All methods; the first ones in the order of the indices below, then the priors.
+[[nodiscard]] const std::vector<Method>& methods();
+inline constexpr std::size_t kDirect = 0;
+inline constexpr std::size_t kMiddle = 1;
+inline constexpr std::size_t kPaper = 2;
+inline constexpr std::size_t kContact = 3;
+inline constexpr std::size_t kUnrelated = 4;
+inline constexpr std::size_t kGiven = 5;
+inline constexpr std::size_t kBounded = 6;
+inline constexpr std::size_t kLower = 7;
+inline constexpr std::size_t kFirstPrior = 8;
 
-/// Scores of many scenes, their pillars taken together.
-struct Pooled {
-  field_study::Score middle;
-  field_study::Score theta;
-  field_study::Score best;
-  field_study::Score solved;
-  std::size_t scenes = 0;
+/// Scores of one recording.
+struct Result {
+  std::vector<field_study::Score> by_method;  ///< as methods()
+  field_study::Score nearest;                 ///< the error that noise alone leaves
 
-  void add(const SceneResult& result, const field_study::Score& score);
-  [[nodiscard]] double ratio() const;       ///< of `solved` to `theta`
-  [[nodiscard]] double best_ratio() const;  ///< of `best` to `theta`
+  [[nodiscard]] std::size_t open() const { return nearest.open; }
+  /// The RMS error of a method over that of the paper's equations; 0 without open pillars.
+  [[nodiscard]] double to_paper(std::size_t method) const;
 };
 
-/// Kinds of scenes, as tables have them: "rounded, spin" and so on, in their order.
+struct HistoryResult : Result {
+  field_study::History history;
+  std::vector<field_study::LearntFriction> learnt;
+};
+
+/// Of a contact of closed form; by the methods before kBounded alone.
+struct ClosedFormResult : Result {
+  field_study::ClosedForm scene;
+};
+
+/// Solves all histories by all methods; two minutes of processor time. `scenes` has key.png.
+[[nodiscard]] std::vector<HistoryResult> measure_histories(const std::filesystem::path& scenes);
+[[nodiscard]] std::vector<ClosedFormResult> measure_closed_forms();
+
+/// Scores of those results for which `holds`, their pillars taken together.
+template <class Results, class Holds>
+[[nodiscard]] field_study::Score pooled(const Results& results, std::size_t method, Holds holds) {
+  field_study::Score sum;
+  for (const auto& result : results) {
+    if (holds(result)) sum += result.by_method.at(method);
+  }
+  return sum;
+}
+
+/// The same of what noise alone leaves.
+template <class Results, class Holds>
+[[nodiscard]] field_study::Score pooled_nearest(const Results& results, Holds holds) {
+  field_study::Score sum;
+  for (const auto& result : results) {
+    if (holds(result)) sum += result.nearest;
+  }
+  return sum;
+}
+
+/// Whether a history is of this friction.
+[[nodiscard]] inline auto of_friction(double friction) {
+  return [friction](const HistoryResult& result) { return result.history.friction == friction; };
+}
+
+/// Kinds of closed forms, as tables have them: "rounded, spin and turn" and so on.
 struct Kind {
   std::string name;
-  std::function<bool(const field_study::Scene&)> holds;
+  std::function<bool(const field_study::ClosedForm&)> holds;
 };
 [[nodiscard]] const std::vector<Kind>& kinds();
 
-/// Of the scenes for which `holds`; `score_of` gives nothing where a scene shall not count.
-[[nodiscard]] Pooled pool(
-    const std::vector<SceneResult>& results, const std::function<bool(const SceneResult&)>& holds,
-    const std::function<std::optional<field_study::Score>(const SceneResult&)>& score_of);
-
-/// The same for a method, at all noises or only at the typical one.
-[[nodiscard]] Pooled pool_method(const std::vector<SceneResult>& results, const Kind& kind,
-                                 std::size_t method, bool typical_noise = false);
-
-/// "0.093"; "–" where no scene counts.
-[[nodiscard]] std::string ratio_text(const Pooled& pooled);
+/// "1.23"; "–" where no pillar is open.
+[[nodiscard]] std::string rms_text(const field_study::Score& score);
+/// "12.3": 100 times a share.
+[[nodiscard]] std::string percent_text(double share);
 
 }  // namespace pillarfield::report

@@ -36,8 +36,7 @@ double paraboloid_load(double size) {  // ∝ ∫₀^size t² √(1 − t²) dt
 }
 
 /// The size at which a contact bears a share of the load it bears at size 1.
-template <class Load>
-double size_at(double share, const Load& load_of) {
+double size_at(double share, double (*load_of)(double size)) {
   double low = 0;
   double high = 1;
   for (int step = 0; step < 50; ++step) {
@@ -50,15 +49,6 @@ double size_at(double share, const Load& load_of) {
 /// 1/√(1 − r²), but no edge is so sharp that it bears more than a hundred times what the centre
 /// does.
 double punch_pressure(double r2) { return r2 < 1 ? 1 / std::sqrt(std::max(1 - r2, 1e-4)) : 0; }
-
-/// Of bodies whose height grows by r² and by r⁴, `second` says how much of each.
-double blunt_pressure(double r2, double size, double second) {
-  return root(size * size - r2) * (1 - second + second * (size * size + 2 * r2) / 3);
-}
-
-double blunt_load(double size, double second) {
-  return std::pow(size, 3) * ((1 - second) / 3 + second * size * size / 5);
-}
 
 /// The squared pressures of two spheres.
 std::array<double, 2> two_squares(const Body& body, double x, double y, double size) {
@@ -257,9 +247,9 @@ void scale_to(PillarLoads& loads, double peak) {
 }  // namespace
 
 const char* name_of(Shape shape) {
-  constexpr std::array kNames = {"sphere",         "ellipse", "paraboloid",    "two spheres",
-                                 "merged spheres", "wavy",    "cylinder",      "cone",
-                                 "truncated cone", "punch",   "rounded punch", "blunt"};
+  constexpr std::array kNames = {"sphere",         "ellipse", "paraboloid",   "two spheres",
+                                 "merged spheres", "wavy",    "cylinder",     "cone",
+                                 "truncated cone", "punch",   "rounded punch"};
   return kNames.at(static_cast<std::size_t>(shape));
 }
 
@@ -318,8 +308,6 @@ double pressure_at(const Body& body, double x, double y, double size) {
       return cone_pressure(r, size) - cone_pressure(r, body.second);
     case Shape::punch:
       return size < 1 ? root(size * size - r2) : punch_pressure(r2);
-    case Shape::blunt:
-      return blunt_pressure(r2, size, body.second);
     case Shape::rounded_punch:
       break;
   }
@@ -331,8 +319,6 @@ double stuck_size(const Body& body, double load_ratio) {
   switch (body.shape) {
     case Shape::paraboloid:
       return size_at(left, paraboloid_load);
-    case Shape::blunt:
-      return size_at(left, [&](double size) { return blunt_load(size, body.second); });
     case Shape::cylinder:
     case Shape::cone:
       return std::sqrt(left);

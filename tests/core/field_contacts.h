@@ -5,14 +5,14 @@
 
 #include "pillarfield/force_field.h"
 
-/// Contacts of closed form for the study of the field estimator: what each pillar bears.
+/// Contacts of closed form: what each pillar bears.
 ///
 /// Lengths in the frame of a body are in radii of its contact, on the skin in pillar pitches;
 /// forces are in counts, k times newtons. Tractions are integrated over each pillar's square cell.
 namespace pillarfield::field_study {
 
 /// What presses, by its pressure p, r from the centre in radii. All but the wavy body and the two
-/// spheres are solutions of contact mechanics; s, where it stands, is 1 (docs/field.md has all).
+/// spheres are solutions of contact mechanics.
 enum class Shape : std::uint8_t {
   sphere,          ///< √(1 − r²)
   ellipse,         ///< √(1 − x² − (y/aspect)²)
@@ -25,7 +25,6 @@ enum class Shape : std::uint8_t {
   truncated_cone,  ///< acosh(1/r), less acosh(second/r) within the tip's radius, `second`
   punch,           ///< 1/√(1 − r²), at most 100
   rounded_punch,  ///< √(1 − r²), less √(second² − r²) within the flat's radius, `second`
-  blunt,  ///< √(1 − r²) · (1 − second + second · (1 + 2r²)/3): height ∝ r² and r⁴, mixed
 };
 
 /// What the behaviour of a pressure is at the contact's edge and centre.
@@ -53,8 +52,7 @@ enum class Motion : std::uint8_t {
 struct Body {
   Shape shape = Shape::sphere;
   double radius = 30;  ///< pitches
-  double second = 0;   ///< of two spheres, truncated cone and rounded punch, radii; of the blunt
-                       ///< body a share
+  double second = 0;   ///< of two spheres, truncated cone and rounded punch, radii
   double aspect = 1;   ///< of ellipse and cylinder; of two spheres, their distance over the sum of
                        ///< their radii
   double waves = 0;    ///< of the wavy body: radians per radius

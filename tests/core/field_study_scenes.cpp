@@ -1,4 +1,6 @@
-// The scenes that tune the field estimator, and those that judge it.
+// Contacts of closed form, each seen at several frictions and noises.
+
+#include "field_study_scenes.h"
 
 #include <fmt/format.h>
 
@@ -6,16 +8,17 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <random>
+#include <utility>
 
 #include "field_study.h"
 
 namespace pillarfield::field_study {
 namespace {
 
+constexpr double kCountsPerNewton = 320;
 constexpr std::array kNoises = {0.25, 0.5, 1.0};
 
-/// What tells one set from the other.
+/// What the contacts of a set have in common.
 struct Set {
   std::vector<double> frictions;
   std::vector<double> load_ratios;
@@ -46,7 +49,7 @@ std::string body_name(const Body& body) {
 }
 
 /// Tells contacts of a set apart: those of a name may lie in two places.
-std::string contact_key(const Scene& scene) {
+std::string contact_key(const ClosedForm& scene) {
   return fmt::format("{} {}", scene.contact_name, scene.contact.body.x);
 }
 
@@ -105,7 +108,7 @@ class Contacts {
     spin(body, peak);
   }
 
-  [[nodiscard]] std::vector<Scene> scenes(std::string_view filter) const;
+  [[nodiscard]] std::vector<ClosedForm> scenes(std::string_view filter) const;
 
  private:
   double next_direction() {
@@ -127,8 +130,8 @@ class Contacts {
 
 /// The scenes of a contact: all frictions, which do not matter without shear, and all noises.
 void append_scenes(const FieldContact& contact, const std::vector<double>& frictions,
-                   std::uint64_t& seed, std::vector<Scene>& scenes) {
-  Scene scene;
+                   std::uint64_t& seed, std::vector<ClosedForm>& scenes) {
+  ClosedForm scene;
   scene.contact = contact;
   scene.contact_name = body_name(contact.body) + ", " + drive_name(contact.drive);
   const bool press = contact.drive.motion == Motion::press;
@@ -142,12 +145,12 @@ void append_scenes(const FieldContact& contact, const std::vector<double>& frict
   }
 }
 
-std::vector<Scene> Contacts::scenes(std::string_view filter) const {
-  std::vector<Scene> all;
+std::vector<ClosedForm> Contacts::scenes(std::string_view filter) const {
+  std::vector<ClosedForm> all;
   std::uint64_t seed = set_.first_seed;
   for (const FieldContact& contact : contacts_) append_scenes(contact, set_.frictions, seed, all);
-  std::erase_if(all,
-                [&](const Scene& scene) { return scene.name().find(filter) == std::string::npos; });
+  std::erase_if(
+      all, [&](const ClosedForm& scene) { return scene.name().find(filter) == std::string::npos; });
   return all;
 }
 
@@ -172,32 +175,11 @@ Body flattened(Shape shape, double radius, double flat) {
 
 }  // namespace
 
-std::vector<Scene> tuning(std::string_view filter) {
-  Contacts contacts({{1.5, 1.8, 2.3}, {0.55, 0.75, 0.93}, 352, 43, 0.37, 1000});
-  const Body sphere = body(Shape::sphere, 31);
-  contacts.usual(sphere, 100);
-  contacts.slide(sphere, 100, 6);
-  contacts.roll(sphere, 100);
-  contacts.turn(sphere, 100, 0.4, 0.3);
-  for (const auto& [radius, peak] : {std::pair{14.0, 55.0}, {41.0, 170.0}}) {
-    contacts.partial_slip(body(Shape::sphere, radius), peak);
-    contacts.spin(body(Shape::sphere, radius), peak);
-  }
-  contacts.usual(body(Shape::paraboloid, 27), 90);
-  const Body spheres = two(Shape::two_spheres, 21, 0.75, 0.85, 20);
-  contacts.usual(spheres, 110);
-  contacts.turn(spheres, 110, 0.2, -0.5);
-  contacts.usual(wavy(33, 9, 0.15), 100);
-  contacts.usual(body(Shape::cone, 29), 110);
-  contacts.usual(body(Shape::punch, 26), 100);
-  const Body cylinder = long_body(Shape::cylinder, 15, 1.8, 8);
-  contacts.press(cylinder, 95);
-  contacts.partial_slip(cylinder, 95);
-  contacts.roll(cylinder, 95);
-  return contacts.scenes(filter);
+std::string ClosedForm::name() const {
+  return fmt::format("{}, mu {:.3g}, noise {:g}", contact_name, friction, noise_counts);
 }
 
-std::vector<Scene> judging(std::string_view filter) {
+std::vector<ClosedForm> closed_forms(std::string_view filter) {
   Contacts contacts({{1.45, 1.6, 2.0, 2.5}, {0.5, 0.7, 0.9}, 3, 47, 0.71, 500'000});
   const Body sphere = body(Shape::sphere, 30);
   contacts.usual(sphere, 100);
@@ -225,125 +207,43 @@ std::vector<Scene> judging(std::string_view filter) {
   contacts.press(cylinder, 110);
   contacts.partial_slip(cylinder, 110);
   contacts.roll(cylinder, 110);
-  std::vector<Scene> scenes = contacts.scenes(filter);
+  std::vector<ClosedForm> scenes = contacts.scenes(filter);
   // Below 1.41 friction hardly a pillar is ambiguous; once is enough.
   Contacts little({{1.0}, {0.9}, 3, 47, 0.17, 900'000});
   little.partial_slip(sphere, 100);
   little.slide(sphere, 100, 1);
   little.spin(sphere, 100);
-  const std::vector<Scene> more = little.scenes(filter);
+  const std::vector<ClosedForm> more = little.scenes(filter);
   scenes.insert(scenes.end(), more.begin(), more.end());
   return scenes;
 }
 
-namespace {
-
-/// Draws what a scene is made of.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : engine_(seed) {}
-
-  double between(double low, double high) {
-    return std::lerp(low, high, static_cast<double>(engine_() >> 11) * 0x1p-53);
-  }
-  template <class Choices>
-  auto one_of(const Choices& choices) {
-    return choices[static_cast<std::size_t>(engine_() % choices.size())];
-  }
-
-  Body body();
-  Drive drive(Shape shape);
-
- private:
-  double direction();
-
-  std::mt19937_64 engine_;
-};
-
-Body Draw::body() {
-  constexpr std::array kShapes = {Shape::sphere, Shape::paraboloid, Shape::two_spheres,
-                                  Shape::wavy,   Shape::cylinder,   Shape::cone,
-                                  Shape::punch,  Shape::blunt};
-  Body body;
-  body.shape = one_of(kShapes);
-  const bool is_long = body.shape == Shape::cylinder || body.shape == Shape::two_spheres;
-  body.radius = is_long ? between(9, 23) : between(11, 44);
-  body.x = between(-0.5, 0.5);
-  body.y = between(-0.5, 0.5);
-  switch (body.shape) {
-    case Shape::two_spheres:
-      body.second = between(0.5, 1);
-      body.aspect = between(0.55, 1.02);
-      body.angle_deg = between(-90, 90);
-      break;
-    case Shape::wavy:
-      body.waves = between(4, 16);
-      body.ripple = between(0.05, 0.25);
-      break;
-    case Shape::cylinder:
-      body.aspect = between(1, 2.5);
-      body.angle_deg = between(-12, 12);
-      break;
-    case Shape::blunt:
-      body.second = between(0, 1);
-      break;
-    default:
-      break;
-  }
-  return body;
-}
-
-/// Most of them near an axis of the pillars, where region 3 is.
-double Draw::direction() {
-  if (between(0, 1) < 0.25) return between(0, 360);
-  return 90 * one_of(std::array{0.0, 1.0, 2.0, 3.0}) + between(-12, 12);
-}
-
-Drive Draw::drive(Shape shape) {
-  constexpr std::array kMotions = {Motion::partial_slip, Motion::partial_slip, Motion::partial_slip,
-                                   Motion::slide,        Motion::spin,         Motion::turn,
-                                   Motion::partial_turn};
-  const bool rolls = shape == Shape::sphere || shape == Shape::wavy || shape == Shape::cylinder;
-  Drive drive;
-  drive.motion = rolls && between(0, 1) < 0.2 ? Motion::roll : one_of(kMotions);
-  drive.direction_deg = direction();
-  drive.load_ratio = between(0.4, 0.97);
-  drive.pivot_x = between(-0.7, 0.7);
-  drive.pivot_y = between(-0.7, 0.7);
-  return drive;
-}
-
-}  // namespace
-
-std::vector<Scene> drawn(std::size_t count, std::string_view filter) {
-  std::vector<Scene> scenes;
-  Draw draw(20'000);
-  for (std::size_t i = 0; i < count; ++i) {
-    Scene scene;
-    scene.contact.body = draw.body();
-    scene.contact.drive = draw.drive(scene.contact.body.shape);
-    scene.contact.peak_counts = draw.between(40, 200);
-    scene.friction = draw.between(1.3, 3);
-    scene.noise_counts = draw.one_of(kNoises);
-    scene.seed = 100'000 + i;
-    scene.contact_name =
-        fmt::format("{} {}, {}", i, body_name(scene.contact.body), drive_name(scene.contact.drive));
-    if (scene.name().find(filter) != std::string::npos) scenes.push_back(scene);
-  }
-  return scenes;
-}
-
-void integrate(std::vector<Scene>& scenes) {
+void integrate(std::vector<ClosedForm>& scenes) {
   std::map<std::string, std::shared_ptr<const PillarLoads>> loads;
-  std::vector<const Scene*> first_of_contact;
-  for (const Scene& scene : scenes) {
+  std::vector<const ClosedForm*> first_of_contact;
+  for (const ClosedForm& scene : scenes) {
     if (loads.try_emplace(contact_key(scene)).second) first_of_contact.push_back(&scene);
   }
   for_each_index(first_of_contact.size(), [&](std::size_t i) {
-    const Scene& scene = *first_of_contact[i];
+    const ClosedForm& scene = *first_of_contact[i];
     loads.at(contact_key(scene)) = std::make_shared<PillarLoads>(loads_of(scene.contact));
   });
-  for (Scene& scene : scenes) scene.loads = loads.at(contact_key(scene));
+  for (ClosedForm& scene : scenes) scene.loads = loads.at(contact_key(scene));
+}
+
+Recording record(const ClosedForm& scene) {
+  Scene sensor;
+  sensor.title = scene.name();
+  sensor.skin.rows = 2 * scene.loads->rows;
+  sensor.skin.cols = 2 * scene.loads->cols;
+  sensor.skin.counts_per_newton = kCountsPerNewton;
+  sensor.skin.threshold_counts = 4 * scene.noise_counts;
+  sensor.sensor.noise_counts = scene.noise_counts;
+  sensor.seed = scene.seed;
+  Recording recording =
+      read_forces(sensor, {truth_of(*scene.loads, scene.friction, kCountsPerNewton)});
+  recording.friction = scene.friction;
+  return recording;
 }
 
 }  // namespace pillarfield::field_study

@@ -9,9 +9,14 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 #include "core/contact_traction.h"
 #include "core/pillar_maths.h"
+#include "field_study_histories.h"
+#include "field_study_scenes.h"
 #include "field_study_twins.h"
 #include "pillarfield/status.h"
 
@@ -58,8 +63,6 @@ double closed_load(Shape shape) {
       return kPi * (1 - std::pow(0.5, 2));
     case Shape::punch:
       return 2 * kPi;
-    case Shape::blunt:
-      return 0.5 * 2 * kPi / 3 + 0.5 * 2 * kPi / 5;
     case Shape::rounded_punch:
       break;
   }
@@ -101,13 +104,12 @@ INSTANTIATE_TEST_SUITE_P(FieldContacts, OfEachShape,
                          testing::Values(Shape::sphere, Shape::ellipse, Shape::paraboloid,
                                          Shape::two_spheres, Shape::merged_spheres, Shape::wavy,
                                          Shape::cylinder, Shape::cone, Shape::truncated_cone,
-                                         Shape::punch, Shape::rounded_punch, Shape::blunt));
+                                         Shape::punch, Shape::rounded_punch));
 
 /// The drag is the share of what friction can bear that the scene names.
 TEST(FieldContacts, DragByTheirLoadRatio) {
-  for (const Shape shape :
-       {Shape::sphere, Shape::ellipse, Shape::paraboloid, Shape::cylinder, Shape::cone,
-        Shape::truncated_cone, Shape::rounded_punch, Shape::blunt}) {
+  for (const Shape shape : {Shape::sphere, Shape::ellipse, Shape::paraboloid, Shape::cylinder,
+                            Shape::cone, Shape::truncated_cone, Shape::rounded_punch}) {
     FieldContact contact = contact_of(shape);
     contact.body.second = 0.3;
     contact.drive = {.motion = Motion::partial_slip, .direction_deg = 20, .load_ratio = 0.8};
@@ -181,25 +183,31 @@ TEST(FieldContacts, SphereBearsItsPressureInTheMiddle) {
   EXPECT_NEAR(loads.shear_x[middle], 0, 1e-6);
 }
 
-/// A spinning sphere and one in partial slip, of tuning, with the middle noise.
-std::vector<Scene> few_scenes() {
-  std::vector<Scene> scenes = tuning("sphere 14, spin, mu 2.3, noise 0.5");
-  const auto more = tuning("sphere 14, partial slip 0.93");
+/// Recordings of a spinning sphere and of one in partial slip.
+std::vector<Recording> few_recordings() {
+  std::vector<ClosedForm> scenes = closed_forms("sphere 12, spin, mu 2, noise 0.5");
+  const auto more = closed_forms("sphere 12, partial slip 0.9");
   scenes.insert(scenes.end(), more.begin(), more.begin() + 2);
   integrate(scenes);
-  return scenes;
+  std::vector<Recording> recordings;
+  recordings.reserve(scenes.size());
+  for (const ClosedForm& scene : scenes) recordings.push_back(record(scene));
+  return recordings;
 }
 
+Recording first_recording() { return std::move(few_recordings().front()); }
+
 TEST(FieldStudy, SegmentsExplainTheReadings) {
-  for (const Scene& scene : few_scenes()) {
-    const Observed observed(scene);
-    const auto raw = observed.frame().readings<float>();
-    const std::size_t width = 2 * std::size_t{observed.direct().cols};
-    ASSERT_GT(observed.open().size(), 50);
-    for (const std::size_t i : observed.open()) {
-      const Segment segment = segment_of(observed.direct(), i);
-      const std::size_t top = 2 * (i / observed.direct().cols) * width;
-      const std::size_t left = 2 * (i % observed.direct().cols);
+  for (const Recording& recording : few_recordings()) {
+    const Evaluation evaluation(recording);
+    const ForceField& direct = evaluation.direct().front();
+    const auto raw = recording.frames.front().readings<float>();
+    const std::size_t width = 2 * std::size_t{direct.cols};
+    ASSERT_GT(evaluation.open(0).size(), 30);
+    for (const std::size_t i : evaluation.open(0)) {
+      const Segment segment = segment_of(direct, i, recording.plan.segment_point);
+      const std::size_t top = 2 * (i / direct.cols) * width;
+      const std::size_t left = 2 * (i % direct.cols);
       for (const double share : {0.0, 0.3, 1.0}) {
         const double normal = share * segment.normal_high;
         const auto v = double_precision::model_readings(
@@ -208,7 +216,7 @@ TEST(FieldStudy, SegmentsExplainTheReadings) {
         const std::array read = {raw[top + left + 1], raw[top + left], raw[top + width + left],
                                  raw[top + width + left + 1]};
         for (std::size_t n = 0; n < 4; ++n) {
-          const bool usable = (observed.direct().status[i] & (1 << n)) != 0;
+          const bool usable = (direct.status[i] & (1 << n)) != 0;
           EXPECT_TRUE(!usable || std::abs(model[n] - read[n]) < 1e-3);
         }
       }
@@ -216,159 +224,192 @@ TEST(FieldStudy, SegmentsExplainTheReadings) {
   }
 }
 
-TEST(FieldStudy, ThetaMidpointHasTheMiddleTheta) {
-  for (const Scene& scene : few_scenes()) {
-    const Observed observed(scene);
-    const ForceField midpoint = observed.theta_midpoint();
-    const ForceField& direct = observed.direct();
-    for (const std::size_t i : observed.open()) {
-      const double theta =
-          std::atan2(std::hypot(midpoint.shear_x[i], midpoint.shear_y[i]), midpoint.normal[i]);
-      const double low = direct.uncertainty[Uncertainty::theta_low][i];
-      ASSERT_NEAR(theta, (low + std::numbers::pi / 2) / 2, 1e-5);
-      ASSERT_NEAR(direct.uncertainty[Uncertainty::theta_high][i], std::numbers::pi / 2, 1e-6);
-    }
-  }
-}
-
-TEST(FieldStudy, TruthHasNoErrorAndIsCovered) {
-  const Scene scene = few_scenes().front();
-  const Observed observed(scene);
-  ForceField truth = observed.truth();
-  truth.status = observed.direct().status;
-  truth.uncertainty = observed.direct().uncertainty;
-  for (auto& bits : truth.status) bits |= status::kFromNeighbours;
-  const Score score = observed.score(truth);
-  EXPECT_EQ(score.rms_counts(), 0);
-  EXPECT_EQ(score.coverage(), 1);
-  EXPECT_EQ(score.resolved, score.open);
-  EXPECT_GT(score.touched, 0);  // for regions 1 and 2 are not as they were
-  EXPECT_EQ(observed.score(observed.direct()).touched, 0);
-}
-
-/// The truth, resolved, with a normal force that is off by so many of its deviations of 0.001 N.
-ForceField off_by(const Observed& observed, double deviations) {
-  ForceField field = observed.truth();
-  field.status = observed.direct().status;
-  field.uncertainty = observed.direct().uncertainty;
-  for (const std::size_t i : observed.open()) {
-    field.status[i] |= status::kFromNeighbours;
-    field.uncertainty[Uncertainty::normal][i] = 1e-3F;
-    field.normal[i] += static_cast<float>(1e-3 * deviations);
-  }
-  return field;
-}
-
-TEST(FieldStudy, BandOfResolvedPillarsIsThatOfTheirDeviation) {
-  const Observed observed(few_scenes().front());
-  for (const double sign : {-1.0, 1.0}) {
-    EXPECT_EQ(observed.score(off_by(observed, 1.95 * sign)).coverage(), 1);
-    EXPECT_EQ(observed.score(off_by(observed, 1.97 * sign)).coverage(), 0);
-  }
-  EXPECT_EQ(observed.score(off_by(observed, 1.97)).resolved_covered, 0);
-}
-
-/// Where all slips at a friction that resolved pillars show, little but noise is left, and the band
-/// is hardly wider.
-TEST(FieldStudy, BandOfPillarsThatSlipHoldsNeitherTooFewNorAll) {
-  for (const char* const name : {"sphere 31, spin, mu 1.8", "two spheres 21, spin, mu 2.3"}) {
-    std::vector<Scene> scenes = tuning(name);
-    integrate(scenes);
-    double before = 0;
-    for (const Scene& scene : scenes) {  // from the least noise on
-      const Observed observed(scene);
-      const ForceField solved = *solve(scene, observed, methods().front());
-      const double coverage = observed.score(solved).coverage();
-      EXPECT_GT(coverage, 0.93) << scene.name();
-      EXPECT_LT(coverage, 0.99) << scene.name();
-      double deviations = 0;
-      for (const std::size_t i : observed.open()) {
-        deviations += solved.uncertainty[Uncertainty::normal][i];
-      }
-      const double mean = deviations / static_cast<double>(observed.open().size());
-      EXPECT_GT(mean, 1.3 * before) << scene.name();
-      before = mean;
-    }
-  }
-}
-
-/// The upper end of a segment is off by the noise of one reading, over 2 k.
-TEST(FieldStudy, BandOfOtherPillarsIsTheirSegment) {
-  std::vector<Scene> scenes = tuning("punch 26, partial slip 0.75");
-  integrate(scenes);
-  std::size_t outside = 0;
-  for (const Scene& scene : scenes) {
-    const Observed observed(scene);
-    std::size_t held = 0;
-    for (const std::size_t i : observed.open()) {
-      const double high = 2 * observed.direct().normal[i] + 1.96 * scene.noise_counts / (2 * 320);
-      if (observed.truth().normal[i] <= high) ++held;
-    }
-    EXPECT_EQ(observed.score(observed.direct()).covered, held) << scene.name();
-    outside += observed.open().size() - held;
-  }
-  EXPECT_GT(outside, 0);
-}
-
 TEST(FieldStudy, NearestIsNearest) {
-  for (const Scene& scene : few_scenes()) {
-    const Observed observed(scene);
-    const double nearest = observed.score(observed.nearest()).rms_counts();
-    EXPECT_LT(nearest, 2 * scene.noise_counts);
+  for (const Recording& recording : few_recordings()) {
+    const Evaluation evaluation(recording);
+    const double nearest = evaluation.score(evaluation.nearest()).rms_counts();
+    EXPECT_LT(nearest, 2 * *recording.plan.noise_counts);
     for (const double step_n : {-1e-4, 1e-4}) {
-      ForceField beside = observed.nearest();
-      for (const std::size_t i : observed.open()) {
-        const Segment segment = segment_of(observed.direct(), i);
-        const double normal = beside.normal[i] + step_n;
-        beside.shear_x[i] = static_cast<float>(segment.shear_x(normal));
-        beside.shear_y[i] = static_cast<float>(segment.shear_y(normal));
-        beside.normal[i] = static_cast<float>(normal);
+      std::vector<ForceField> beside = evaluation.nearest();
+      for (const std::size_t i : evaluation.open(0)) {
+        const Segment segment = segment_of(evaluation.direct()[0], i, recording.plan.segment_point);
+        const double normal = beside[0].normal[i] + step_n;
+        beside[0].shear_x[i] = static_cast<float>(segment.shear_x(normal));
+        beside[0].shear_y[i] = static_cast<float>(segment.shear_y(normal));
+        beside[0].normal[i] = static_cast<float>(normal);
       }
-      EXPECT_GT(observed.score(beside).rms_counts(), nearest);
+      EXPECT_GT(evaluation.score(beside).rms_counts(), nearest);
     }
   }
 }
 
-TEST(FieldStudy, LastOfTheFramesIsTheFrame) {
-  const Scene scene = few_scenes().front();
-  const Observed observed(scene);
-  const std::vector<FrameBuffer> frames = observed.frames(3);
-  const auto last = frames.back().readings<float>();
-  const auto first = frames.front().readings<float>();
-  const auto frame = observed.frame().readings<float>();
-  EXPECT_TRUE(std::equal(last.begin(), last.end(), frame.begin(), frame.end()));
-  EXPECT_FALSE(std::equal(first.begin(), first.end(), frame.begin(), frame.end()));
+/// The truth as an estimate whose components are off by `shift_n`, with a stated deviation of
+/// 0.001 N and ends at the truth.
+std::vector<ForceField> stated(const Recording& recording, const Evaluation& evaluation,
+                               double shift_n) {
+  ForceField field = recording.truth[0];
+  for (auto& plane : field.uncertainty) plane.assign(field.pillars(), 1e-3F);
+  auto& ends = field.uncertainty;
+  for (const std::size_t i : evaluation.open(0)) {
+    const double shear = std::hypot(field.shear_x[i], field.shear_y[i]);
+    const double theta = std::atan2(shear, field.normal[i]);
+    const double phi = std::atan2(-field.shear_y[i], -field.shear_x[i]);
+    const double magnitude = std::hypot(shear, field.normal[i]);
+    ends[Uncertainty::theta_low][i] = ends[Uncertainty::theta_high][i] = static_cast<float>(theta);
+    ends[Uncertainty::phi_low][i] = ends[Uncertainty::phi_high][i] = static_cast<float>(phi);
+    ends[Uncertainty::magnitude_low][i] = ends[Uncertainty::magnitude_high][i] =
+        static_cast<float>(magnitude);
+    for (auto* plane : {&field.shear_x, &field.shear_y, &field.normal}) {
+      (*plane)[i] += static_cast<float>(shift_n);
+    }
+  }
+  return {field};
 }
 
-TEST(FieldStudy, MethodsAreWhereGoalsLookForThem) {
-  EXPECT_EQ(methods().at(kNothingSaid).name, "nothing said");
-  EXPECT_EQ(methods().at(kFrictionTold).name, "friction told");
-  EXPECT_EQ(methods().at(kSlipTold).name, "friction told, and that it slips");
+TEST(FieldStudy, TruthHasNoErrorAndIsHeld) {
+  const Recording recording = first_recording();
+  const Evaluation evaluation(recording);
+  const Score score = evaluation.score(stated(recording, evaluation, 0));
+  EXPECT_EQ(score.rms_counts(), 0);
+  EXPECT_EQ(score.total_bias(), 0);
+  EXPECT_EQ(score.frames, 1);
+  for (std::size_t i = 0; i < kIntervals; ++i)
+    EXPECT_EQ(score.coverage(i), 1) << intervals()[i].name;
 }
 
-TEST(FieldStudy, SetsShareNoSceneFrictionOrSeed) {
+TEST(FieldStudy, ComponentsAreHeldUpTo196Deviations) {
+  const Recording recording = first_recording();
+  const Evaluation evaluation(recording);
+  for (const double sign : {-1.0, 1.0}) {
+    const Score inside = evaluation.score(stated(recording, evaluation, 1.95e-3 * sign));
+    const Score outside = evaluation.score(stated(recording, evaluation, 1.97e-3 * sign));
+    for (std::size_t i = 0; i < kFirstEnds; ++i) {
+      EXPECT_EQ(inside.coverage(i), 1) << intervals()[i].name;
+      EXPECT_EQ(outside.coverage(i), 0) << intervals()[i].name;
+    }
+  }
+}
+
+/// An arc that passes π holds what lies on it, and not the rest of the circle.
+TEST(FieldStudy, ArcsOfPhiRunCounterClockwise) {
+  ForceField truth(1, 1);
+  ForceField solved(1, 1);
+  for (auto& plane : solved.uncertainty) plane.assign(1, 0.0F);
+  solved.uncertainty[Uncertainty::phi_low][0] = 3;
+  solved.uncertainty[Uncertainty::phi_high][0] = -3;
+  const auto& phi = intervals().back();
+  for (const auto& [angle, held] :
+       std::map<double, bool>{{3.1, true}, {-3.1, true}, {2.9, false}, {-2.9, false}, {0, false}}) {
+    truth.shear_x[0] = static_cast<float>(-std::cos(angle));
+    truth.shear_y[0] = static_cast<float>(-std::sin(angle));
+    EXPECT_EQ(phi.holds(solved, truth, 0, 0), held) << angle;
+    EXPECT_EQ(phi.holds(solved, truth, 0, 0.2 / 1.96), held || angle != 0) << angle;
+  }
+}
+
+TEST(FieldStudy, ThrowsWhatWorkThrows) {
+  EXPECT_THROW(for_each_index(10,
+                              [](std::size_t i) {
+                                if (i == 3) throw std::runtime_error("three");
+                              }),
+               std::runtime_error);
+}
+
+TEST(ClosedForms, HaveNamesAndSeedsOfTheirOwn) {
   std::set<std::string> names;
   std::set<std::uint64_t> seeds;
-  std::set<double> tuning_frictions;
-  for (const Scene& scene : tuning()) {
-    EXPECT_TRUE(names.insert(scene.name()).second) << scene.name();
-    EXPECT_TRUE(seeds.insert(scene.seed).second);
-    tuning_frictions.insert(scene.friction);
-  }
-  for (const Scene& scene : judging()) {
+  for (const ClosedForm& scene : closed_forms()) {
     EXPECT_TRUE(names.insert(scene.name()).second) << scene.name();
     EXPECT_TRUE(seeds.insert(scene.seed).second) << scene.name();
-    EXPECT_EQ(tuning_frictions.count(scene.friction), 0);
   }
 }
 
-TEST(FieldStudy, SetsShareNoContact) {
-  std::set<std::string> contacts;
-  for (const Scene& scene : tuning()) contacts.insert(scene.contact_name);
-  for (const Scene& scene : judging()) {
-    EXPECT_EQ(contacts.count(scene.contact_name), 0) << scene.contact_name;
+TEST(Histories, CoverBodiesMotionsFrictionsAndSizes) {
+  std::set<std::pair<Indenter, double>> frictions;
+  std::set<std::pair<Indenter, Loading>> of_indenter;
+  std::set<std::pair<double, Loading>> of_friction;
+  std::set<std::pair<double, double>> sizes;
+  std::set<std::string> names;
+  for (const History& history : histories()) {
+    frictions.insert({history.indenter, history.friction});
+    of_indenter.insert({history.indenter, history.loading});
+    of_friction.insert({history.friction, history.loading});
+    sizes.insert({history.friction, history.radius_pillars});
+    EXPECT_TRUE(names.insert(history.name()).second) << history.name();
+  }
+  EXPECT_EQ(frictions.size(), 7 * 6);
+  EXPECT_EQ(of_indenter.size(), 7 * 8);
+  EXPECT_EQ(of_friction.size(), 6 * 8);
+  EXPECT_EQ(sizes.size(), 6 * 6);
+}
+
+/// A finger that is pressed, and slides in the end.
+TEST(Histories, TellWhichPillarsSlip) {
+  const auto& all = histories();
+  const auto found = std::find_if(all.begin(), all.end(), [](const History& history) {
+    return history.name() == "fingertip 5, slide at 98°, mu 2.2";
+  });
+  ASSERT_NE(found, all.end());
+  const auto learnt = learnt_friction(record(*found, PILLARFIELD_SCENES));
+  ASSERT_EQ(learnt.size(), 10);  // one contact in each frame
+  EXPECT_EQ(learnt.front().slipping, 0);
+  EXPECT_GT(learnt.back().slipping, 0.95);
+  EXPECT_NEAR(learnt.back().used, 2.2 / learnt.back().median, 0.2);
+}
+
+class SmallHistories : public testing::TestWithParam<Indenter> {
+ protected:
+  /// One whose contacts are small.
+  static History history() {
+    const auto& all = histories();
+    return *std::find_if(all.begin(), all.end(), [](const History& each) {
+      return each.indenter == GetParam() && each.radius_pillars <= 5 && each.friction >= 1.6;
+    });
+  }
+};
+
+TEST_P(SmallHistories, ReproduceBits) {
+  const Recording one = record(history(), PILLARFIELD_SCENES);
+  const Recording other = record(history(), PILLARFIELD_SCENES);
+  ASSERT_EQ(one.frames.size(), other.frames.size());
+  for (std::size_t i = 0; i < one.frames.size(); ++i) {
+    const auto a = one.frames[i].readings<std::uint8_t>();
+    const auto b = other.frames[i].readings<std::uint8_t>();
+    EXPECT_TRUE(std::equal(a.begin(), a.end(), b.begin(), b.end()));
+    EXPECT_EQ(one.truth[i].normal, other.truth[i].normal);
+    EXPECT_EQ(one.truth[i].shear_x, other.truth[i].shear_x);
   }
 }
+
+TEST_P(SmallHistories, AreAsLargeAndAsAmbiguousAsTheySay) {
+  const Recording recording = record(history(), PILLARFIELD_SCENES);
+  const Evaluation evaluation(recording);
+  EXPECT_GE(recording.frames.size(), 8);
+  EXPECT_LE(recording.frames.size(), 12);
+  std::uint8_t peak = 0;
+  double most_pillars = 0;
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < recording.frames.size(); ++i) {
+    const auto readings = recording.frames[i].readings<std::uint8_t>();
+    peak = std::max(peak, *std::max_element(readings.begin(), readings.end()));
+    const auto& normal = recording.truth[i].normal;
+    const auto loaded =
+        std::count_if(normal.begin(), normal.end(), [](float force_n) { return force_n > 0; });
+    most_pillars = std::max(most_pillars, static_cast<double>(loaded));
+    open += evaluation.open(i).size();
+  }
+  EXPECT_GE(peak, 145);
+  EXPECT_LE(peak, 155);
+  const double bodies = history().indenter == Indenter::two_fingers ? 2 : 1;
+  // Pillars that are loaded in part count as well.
+  EXPECT_NEAR(std::sqrt(most_pillars / bodies / std::numbers::pi), history().radius_pillars, 0.8);
+  EXPECT_GE(open, 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachIndenter, SmallHistories,
+                         testing::Values(Indenter::sphere, Indenter::fingertip, Indenter::cylinder,
+                                         Indenter::punch, Indenter::rough_ball, Indenter::key,
+                                         Indenter::two_fingers));
 
 TEST(FieldTwins, ReadTheSame) {
   const Twins twins = sliding_twins({});
