@@ -23,6 +23,7 @@ class ForceCsvSink final : public ForceSink {
 
   ForceFileInfo info_;
   std::vector<ForcePlane> further_;
+  FramePlanes frame_planes_;
   std::filesystem::path path_;
   TextPart file_;
   fmt::memory_buffer line_;
@@ -34,6 +35,7 @@ ForceCsvSink::ForceCsvSink(const std::filesystem::path& path, const ForceFileInf
                            Replace replace)
     : info_(info),
       further_(further_planes(info)),
+      frame_planes_(info),
       path_(path),
       file_(path, OutputKind::force_table, replace) {
   file_.write("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status");
@@ -51,7 +53,7 @@ void ForceCsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
                  forces.shear_x[pillar], forces.shear_y[pillar], forces.normal[pillar],
                  forces.status[pillar]);
   for (const ForcePlane& plane : further_) {
-    fmt::format_to(out, ",{}", plane.values(forces)[pillar]);
+    fmt::format_to(out, ",{}", frame_planes_.of(plane)[pillar]);
   }
   line_.push_back('\n');
   file_.write(std::string_view(line_.data(), line_.size()));
@@ -60,6 +62,7 @@ void ForceCsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
 void ForceCsvSink::append(const ForceFieldView& forces, double time_s) {
   file_.require_open();
   check(forces, time_s, info_, path_.string());
+  frame_planes_.take(forces);
   frame_cells_ = fmt::format("{},{},", frames_, time_s);
   for (std::size_t pillar = 0; pillar < forces.status.size(); ++pillar) {
     if (forces.status[pillar] != 0) add_line(forces, pillar);

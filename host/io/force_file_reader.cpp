@@ -39,8 +39,9 @@ struct OpenForces {
   std::vector<std::string> remarks;
 };
 
-/// The angles are not: they follow from the force.
+/// The angles and the ends of components are not: they follow from the rest.
 bool is_read(const ForcePlane& plane) {
+  if (plane.is_end_of_component()) return false;
   return plane.group == "uncertainty" || plane.index < component_planes().size();
 }
 

@@ -39,6 +39,7 @@ class Hdf5Sink final : public ForceSink {
   void flush();
 
   ForceFileInfo info_;
+  FramePlanes frame_planes_;
   std::filesystem::path path_;
   OutputFile part_;
   hdf5::File file_;
@@ -52,6 +53,7 @@ class Hdf5Sink final : public ForceSink {
 
 Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replace replace)
     : info_(std::move(info)),
+      frame_planes_(info_),
       path_(path),
       part_(path, OutputKind::forces, replace),
       file_(hdf5::create(part_)) {
@@ -107,8 +109,9 @@ void Hdf5Sink::require_open() const {
 
 void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
   std::size_t index = 0;
+  frame_planes_.take(forces);
   for (const ForcePlane& plane : all_planes(info_)) {
-    planes_[index++].put(frames_, H5T_NATIVE_FLOAT, plane.values(forces).data());
+    planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
   }
   status_.put(frames_, H5T_NATIVE_UINT8, forces.status.data());
   time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);

@@ -52,6 +52,7 @@ class NpySink final : public ForceSink {
 
   ForceFileInfo info_;
   std::vector<ForcePlane> further_;
+  FramePlanes frame_planes_;
   std::filesystem::path path_;
   OutputFile file_;
   std::size_t record_bytes_;
@@ -62,6 +63,7 @@ class NpySink final : public ForceSink {
 NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
     : info_(info),
       further_(further_planes(info)),
+      frame_planes_(info),
       path_(path),
       file_(path, OutputKind::force_array, replace),
       record_bytes_(kStatusEnd + 4 * further_.size()),
@@ -86,13 +88,14 @@ void NpySink::require_open() const {
 void NpySink::append(const ForceFieldView& forces, double time_s) {
   require_open();
   check(forces, time_s, info_, path_.string());
+  frame_planes_.take(forces);
   interleave(forces.shear_x, 0);
   interleave(forces.shear_y, 4);
   interleave(forces.normal, 8);
   interleave(forces.status, 12);
   std::size_t offset = kStatusEnd;
   for (const ForcePlane& plane : further_) {
-    interleave(plane.values(forces), offset);
+    interleave(frame_planes_.of(plane), offset);
     offset += 4;
   }
   file_.write(records_);

@@ -17,7 +17,7 @@ using field_study::kIntervals;
 
 constexpr const char* kIntroduction = R"(## Coverage
 
-The share of the pillars of region 3 of which a stated 95 % holds the truth, `contact` with its default prior: of the components the mean ± 1.96 standard deviations, of magnitude and angles what lies from the low to the high end. The ends
+The share of the pillars of region 3 of which a stated 95 % holds the truth, `contact` with its default prior: of the components from `_low` to `_high` (the estimate ± 1.96 standard deviations), of magnitude and angles what lies from the low to the high end. The ends
 leave out the noise of the shear component that does not depend on the normal force; one row adds 1.96 deviations of it to them. The last rows are of recordings with {} such pillars or more.
 
 )";

@@ -15,7 +15,6 @@
 namespace pillarfield::report {
 namespace {
 
-using field_study::kIntervals;
 using field_study::Score;
 
 constexpr const char* kIntroduction = R"(## Goals
@@ -125,37 +124,33 @@ void add_total_goals(const FieldContext& context, Table& table) {
            rms(kContact), rms(kGiven), "", table);
 }
 
-/// Some intervals, and the histories in which they are to hold.
+/// The histories in which the intervals of the components are to hold.
 struct CoverageGoal {
   std::string what;
   const std::vector<HistoryResult>& results;
-  std::size_t first;
-  std::size_t end;
-  const char* bound = nullptr;
 };
 
 /// The least and the largest of the values of `share_of` for each interval.
 template <class ShareOf>
-Found found_shares(const CoverageGoal& goal, double least, double most, ShareOf share_of) {
+Found found_shares(double least, double most, ShareOf share_of) {
   double low = 1;
   double high = 0;
-  for (std::size_t interval = goal.first; interval < goal.end; ++interval) {
+  for (std::size_t interval = 0; interval < field_study::kFirstEnds; ++interval) {
     low = std::min(low, share_of(interval));
     high = std::max(high, share_of(interval));
   }
   return {fmt::format("{} to {}", percent_text(low), percent_text(high)),
-          low >= least && high <= most, goal.bound};
+          low >= least && high <= most};
 }
 
 void add_coverage_goal(const CoverageGoal& goal, Table& table) {
   const auto all = [&](std::size_t method) {
     const Score sum = pooled(goal.results, method, [](const HistoryResult&) { return true; });
-    return found_shares(goal, 0.93, 0.99, [&](std::size_t i) { return sum.coverage(i); });
+    return found_shares(0.93, 0.99, [&](std::size_t i) { return sum.coverage(i); });
   };
   const auto recordings = [&](std::size_t method) {
-    return found_shares(goal, 0.9, 1, [&](std::size_t i) {
-      return share_of_true_recordings(goal.results, method, i);
-    });
+    return found_shares(
+        0.9, 1, [&](std::size_t i) { return share_of_true_recordings(goal.results, method, i); });
   };
   add_goal(fmt::format("stated 95 % hold the truth, {}, %", goal.what), "93 to 99", all(kContact),
            all(kGiven), "", table);
@@ -165,13 +160,8 @@ void add_coverage_goal(const CoverageGoal& goal, Table& table) {
 
 void add_coverage_goals(const FieldContext& context, const std::vector<HistoryResult>& usual,
                         Table& table) {
-  constexpr std::size_t kEnds = field_study::kFirstEnds;
-  constexpr const char* kEndsBound = "noise, which the ends leave out";
-  add_coverage_goal({"components, friction up to 3", usual, 0, kEnds}, table);
-  add_coverage_goal({"components, all frictions", context.histories, 0, kEnds}, table);
-  add_coverage_goal({"low to high, friction up to 3", usual, kEnds, kIntervals, kEndsBound}, table);
-  add_coverage_goal(
-      {"low to high, all frictions", context.histories, kEnds, kIntervals, kEndsBound}, table);
+  add_coverage_goal({"components from low to high, friction up to 3", usual}, table);
+  add_coverage_goal({"components from low to high, all frictions", context.histories}, table);
 }
 
 void add_closed_form_goal(const FieldContext& context, const Kind& kind, double limit,

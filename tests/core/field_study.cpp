@@ -16,6 +16,7 @@
 #include "core/ideal_readings.h"
 #include "core/scene_limits.h"
 #include "core/sensor.h"
+#include "pillarfield/component_ends.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield::field_study {
@@ -76,8 +77,10 @@ double magnitude_of(const ForceField& field, std::size_t i) {
 }
 
 /// Whether |error| <= 1.96 standard deviations.
-bool is_within(float solved, float truth, float deviation) {
-  return std::abs(double{solved} - truth) <= kNormal95 * deviation;
+bool is_between_ends(const ForceField& solved, ComponentEnd low, std::size_t pillar, double value) {
+  const auto ends = component_ends(solved.view(), pillar, std::nullopt);
+  const auto first = static_cast<std::size_t>(low);
+  return ends[first] <= value && value <= ends[first + 1];
 }
 
 /// Whether a value lies between ends that are widened by a margin, up to the rounding of single
@@ -223,15 +226,15 @@ const std::array<Interval, kIntervals>& intervals() {
   static constexpr std::array<Interval, kIntervals> kAll = {{
       {"shear_x",
        [](const Field& solved, const Field& truth, std::size_t i, double) {
-         return is_within(solved.shear_x[i], truth.shear_x[i], solved.uncertainty[U::shear_x][i]);
+         return is_between_ends(solved, ComponentEnd::shear_x_low, i, truth.shear_x[i]);
        }},
       {"shear_y",
        [](const Field& solved, const Field& truth, std::size_t i, double) {
-         return is_within(solved.shear_y[i], truth.shear_y[i], solved.uncertainty[U::shear_y][i]);
+         return is_between_ends(solved, ComponentEnd::shear_y_low, i, truth.shear_y[i]);
        }},
       {"normal",
        [](const Field& solved, const Field& truth, std::size_t i, double) {
-         return is_within(solved.normal[i], truth.normal[i], solved.uncertainty[U::normal][i]);
+         return is_between_ends(solved, ComponentEnd::normal_low, i, truth.normal[i]);
        }},
       {"magnitude",
        [](const Field& solved, const Field& truth, std::size_t i, double noise_n) {

@@ -82,8 +82,8 @@ struct Interval {
 inline constexpr std::size_t kIntervals = 6;
 inline constexpr std::size_t kFirstEnds = 3;  ///< from here on intervals are low to high
 
-/// The mean ± 1.96 standard deviations of the three components, and what lies between the ends of
-/// magnitude and angles.
+/// What lies between the ends of the three components, as component_ends() has them of estimates
+/// that are not direct ones, and between those of magnitude and angles.
 [[nodiscard]] const std::array<Interval, kIntervals>& intervals();
 
 /// Errors over the pillars of region 3, and of the total normal force of frames.

@@ -185,7 +185,7 @@ TEST(ContactsOfForceFile, AreKept) {
     ASSERT_EQ(reader.frames(), frames);
     ASSERT_TRUE(reader.info().contacts.has_value());
     EXPECT_EQ(reader.info().contacts->minimum_pillars, 3);
-    EXPECT_EQ(reader.info().contacts->friction, 0.5);
+    EXPECT_EQ(reader.info().contacts->friction.given, 0.5);
     EXPECT_EQ(reader.info().contacts->reach_mm, 7);
     for (std::uint64_t index = 0; index<frames; index += frames> 100 ? 97 : 1) {
       ASSERT_EQ(written_out(reader.read_contacts(index)), written_out(sample_contacts(index)))
