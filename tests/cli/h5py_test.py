@@ -98,7 +98,9 @@ class RecordingsOfH5py(CommandTest):
                    "phi": "phi_rad"}
         uncertainty = {"shear_x": "n", "shear_y": "n", "normal": "n", "theta_low": "rad",
                        "theta_high": "rad", "phi_low": "rad", "phi_high": "rad",
-                       "magnitude_low": "n", "magnitude_high": "n"}
+                       "magnitude_low": "n", "magnitude_high": "n", "shear_x_low": "n",
+                       "shear_x_high": "n", "shear_y_low": "n", "shear_y_high": "n",
+                       "normal_low": "n", "normal_high": "n"}
         with h5py.File(self.folder / "forces.h5") as file:
             for plane, column in columns.items():
                 expected = file["/force"][plane][:]

@@ -76,7 +76,7 @@ double magnitude_of(const ForceField& field, std::size_t i) {
   return std::hypot(field.shear_x[i], field.shear_y[i], field.normal[i]);
 }
 
-/// Whether |error| <= 1.96 standard deviations.
+/// Whether a component lies between the ends that are stated for it.
 bool is_between_ends(const ForceField& solved, ComponentEnd low, std::size_t pillar, double value) {
   const auto ends = component_ends(solved.view(), pillar, std::nullopt);
   const auto first = static_cast<std::size_t>(low);
