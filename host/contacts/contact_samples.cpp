@@ -19,6 +19,12 @@ double ceiling_of(double shear_x, double shear_y) {
   return least > 0 ? std::numbers::sqrt2 * shear / least : ShownRatio::kNoCeiling;
 }
 
+void prefetch([[maybe_unused]] const void* from) {
+#if defined(__GNUC__)
+  __builtin_prefetch(from);
+#endif
+}
+
 }  // namespace
 
 double deviation_of_ratio(double normal, double noise_n, const ContactParameters& parameters) {
@@ -56,10 +62,23 @@ void ContactSamples::take(const ForceFieldView& forces, std::span<const ContactR
   edge_loads_ = 0;
   edges_ = 0;
   step_ = (box_.pillars + kMostPillars - 1) / kMostPillars;
+  // They lie far apart: all are on their way before the first is needed.
+  for_each_asked([&](std::uint32_t row, std::uint32_t col) {
+    const std::size_t index = std::size_t{row} * forces.cols + col;
+    prefetch(&forces.status[index]);
+    prefetch(&forces.normal[index]);
+    prefetch(&forces.shear_x[index]);
+    prefetch(&forces.shear_y[index]);
+  });
+  for_each_asked([&](std::uint32_t row, std::uint32_t col) { ask(row, col, noise_n, parameters); });
+}
+
+template <class Ask>
+void ContactSamples::for_each_asked(Ask ask_for) const {
   std::uint32_t skip = 0;
-  for (const ContactRun& run : runs) {
+  for (const ContactRun& run : runs_) {
     std::uint32_t col = run.first + skip;
-    for (; col < run.end; col += step_) ask(run.row, col, noise_n, parameters);
+    for (; col < run.end; col += step_) ask_for(run.row, col);
     skip = col - run.end;
   }
 }

@@ -71,6 +71,8 @@ class ContactSamples {
     int right;
   };
 
+  template <class Ask>
+  void for_each_asked(Ask ask_for) const;
   void ask(std::uint32_t row, std::uint32_t col, double noise_n,
            const ContactParameters& parameters);
   void add_edge(const Edge& edge, double weight);

@@ -74,8 +74,6 @@ double FrictionBelief::quantile(double share) const {
   return FrictionGrid::at(static_cast<double>(probability_.size() - 1));
 }
 
-double FrictionBelief::spread() const {
-  return 0.5 * std::log(quantile(0.841) / quantile(0.159));
-}
+double FrictionBelief::spread() const { return 0.5 * std::log(quantile(0.841) / quantile(0.159)); }
 
 }  // namespace pillarfield

@@ -42,8 +42,8 @@ class FrictionBelief {
 
   /// The friction below which this share of the probability lies, (0, 1).
   [[nodiscard]] double quantile(double share) const;
-  /// Standard deviation of its logarithm, nearly the relative one of the friction: half of what lies
-  /// between the quantiles at which a normal distribution has it, whatever the tails.
+  /// Standard deviation of its logarithm, nearly the relative one of the friction: half of what
+  /// lies between the quantiles at which a normal distribution has it, whatever the tails.
   [[nodiscard]] double spread() const;
 
  private:
