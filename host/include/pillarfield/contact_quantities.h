@@ -50,8 +50,9 @@ struct ContactQuantities {
   PatchPlace peak;      ///< where; of equal ones the first row by row
   double mean_pressure_kpa = 0;
 
-  /// The friction coefficient, where it is known: by a posterior whose logarithm has a standard
-  /// deviation of 0.05 or less (docs/derivations/contact.md). Unset elsewhere.
+  /// The friction coefficient, where it was given, or where the standard deviation of the
+  /// posterior's logarithm is at most 0.02 and the contact is no flat face that may stick
+  /// (docs/derivations/contact.md, section 5). Unset elsewhere.
   std::optional<double> friction;
   std::optional<double> friction_deviation;  ///< its standard deviation; unset as friction
   FrictionSource friction_source = FrictionSource::prior;
