@@ -33,7 +33,7 @@ enum class SlipState : std::uint8_t {
 struct ContactQuantities {
   std::uint64_t pillars = 0;
   std::uint64_t ambiguous = 0;  ///< of these, pillars that readings alone leave open
-  std::uint64_t resolved = 0;   ///< of these, such as neighbours helped to resolve
+  std::uint64_t resolved = 0;   ///< of these, such as the contact's friction resolved
 
   double shear_x_n = 0;
   double shear_y_n = 0;
