@@ -10,7 +10,7 @@ namespace pillarfield::bench {
 /// What bodies do on a square metre.
 enum class Bodies : std::uint8_t {
   mixed,     ///< press, slide, partly slip and spin, at frictions of 0.5 to 1.1
-  slipping,  ///< all slip at a friction of 1.7: of a quarter of the pillars two sensels lift
+  slipping,  ///< all slip at a friction of 1.7: a quarter of the pillars has two inactive sensels
 };
 
 /// Frames of a simulated sensor, uint8 and with noise, on which eight balls cover 5 % of a square

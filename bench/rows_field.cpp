@@ -1,4 +1,4 @@
-// What neighbours, and the contacts that are found, cost beside the direct solve.
+// What the estimator `contact`, and following contacts, cost beside the direct solve.
 
 #include <fmt/format.h>
 
@@ -39,7 +39,11 @@ class BodyFrameStore {
 class ContactFollower {
  public:
   ContactFollower(const Device& device, const SolverPlan& plan, const Frames& frames)
-      : frames_(&frames), processor_(device, plan), tracker_(plan.skin.pillar_pitch_mm()) {}
+      : frames_(&frames),
+        processor_(device, plan),
+        tracker_(plan.skin.pillar_pitch_mm(), {.friction = plan.friction,
+                                               .noise_n = reading_noise_n(plan),
+                                               .hidden_n = hidden_normal_n(plan.skin)}) {}
 
   void run(int frames) {
     for (int i = 0; i < frames; ++i) {
@@ -65,16 +69,12 @@ class ContactFollower {
 struct What {
   const char* name;
   Estimator estimator;
-  bool evidence;  ///< of shape and slip
-  bool contacts;
+  bool contacts;  ///< followed by a ContactTracker
 };
-constexpr What kWhat[] = {{"direct", Estimator::direct, true, false},
-                          {"direct_and_contacts", Estimator::direct, true, true},
-                          {"neither", Estimator::field, false, false},
-                          {"field", Estimator::field, true, false},
-                          {"field_and_contacts", Estimator::field, true, true},
-                          {"contact", Estimator::contact, true, false},
-                          {"contact_and_contacts", Estimator::contact, true, true}};
+constexpr What kWhat[] = {{"direct", Estimator::direct, false},
+                          {"direct_and_contacts", Estimator::direct, true},
+                          {"contact", Estimator::contact, false},
+                          {"contact_and_contacts", Estimator::contact, true}};
 
 /// Shares of pillars: in contact, and of these of those that leave their force open.
 void tell_pillars(const ForceFieldView& forces, Measurement& measured) {
@@ -93,7 +93,6 @@ void tell_pillars(const ForceFieldView& forces, Measurement& measured) {
 Measurement race_field(const Session& session, const What& what, const BodyFrames& bodies) {
   SolverPlan plan = bodies.plan();
   plan.estimator = what.estimator;
-  plan.field.shape = plan.field.slip = what.evidence;
   const Frames& frames = bodies.frames();
   FrameSolver direct(session.device, bodies.plan(), frames);
   FrameSolver solver(session.device, plan, frames);

@@ -68,7 +68,10 @@ rate_hz = 200
 frames = 3
 seed = 7
 [solver]
-estimator = "field"
+estimator = "contact"
+friction_bound = 4
+friction_prior = [0.8, 0.4]
+memory = false
 segment_point = 0.5
 angles = true
 parity_tolerance_counts = 8

@@ -224,7 +224,7 @@ void add_run_options(CLI::App& command, LiveOptions& options) {
       ->check(whole_number_range(1, 1U << 20U));
   command.add_flag(
       "--half", options.half,
-      "Forces of half precision, which take fewer bytes to memory; not with --estimator field");
+      "Forces of half precision, which take fewer bytes to memory; not with --estimator contact");
   command.add_flag("--realtime", options.realtime,
                    "Ask for real-time scheduling and locked memory; says so where refused");
   command.add_flag("--strict", options.strict,

@@ -13,7 +13,7 @@ struct RegionCount {
   std::array<std::uint64_t, kRegions> pillars{};
   std::uint64_t saturated = 0;
   std::uint64_t inconsistent = 0;
-  std::uint64_t resolved = 0;  ///< ambiguous pillars that the field estimator resolved
+  std::uint64_t resolved = 0;  ///< ambiguous pillars that the estimator `contact` resolved
 
   void add(std::span<const std::uint8_t> status);
 

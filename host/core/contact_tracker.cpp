@@ -56,7 +56,7 @@ FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& optio
   return {pitch_mm, options.noise_n, {.hidden_n = static_cast<float>(options.hidden_n)}};
 }
 
-/// What is remembered of a contact.
+/// What identifies a contact from frame to frame, besides its id.
 struct Known {
   std::optional<std::uint64_t> parent;
   double first_time_s = 0;

@@ -101,8 +101,8 @@ class Rows(unittest.TestCase):
             "contact/0.1/bare", "contact/100/all", "regions/worst", "type/f32", "output/all",
             "estimator/paper", "lanes/16", "stage/none", "stage/all", "latency/6241",
             "throughput/shared/2", "throughput/staged/3", "opponent/paper_opencl",
-            "opponent/vectorised", "opponent/numpy", "field/mixed/field_and_contacts",
-            "field/slipping/neither"}, names)
+            "opponent/vectorised", "opponent/numpy", "field/mixed/contact_and_contacts",
+            "field/slipping/direct_and_contacts"}, names)
         self.assertEqual(len(names), len(listed.splitlines()), "a name stands twice")
 
 

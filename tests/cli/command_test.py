@@ -33,7 +33,7 @@ friction = 0.5
 direction_deg = 30
 """
 
-# Of what is open in one frame, some was resolved in the one before.
+# Of the pillars that are ambiguous in one frame, some were determined in the one before.
 GROWING_SHEAR = """
 [skin]
 size_mm = [30, 30]
@@ -187,20 +187,31 @@ class Work(CommandTest):
         self.assertGreater(solved["inconsistent"], 0)
         self.assertIn("parity_test", solved["stages"])
 
-    def test_the_field_resolves_what_its_readings_leave_open(self):
+    def test_contacts_resolve_what_readings_leave_open(self):
         scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
         run("simulate", scene, "-o", self.recording, "--frames", 2)
         errors = {}
-        for estimator in ("direct", "field", "contact"):
+        for estimator in ("direct", "contact"):
             solved = run_json("solve", self.recording, "-o", self.forces, "--noise", 0.5,
                               "--estimator", estimator)
             compared = run_json("compare", self.forces, self.recording)
             errors[estimator] = compared["regions"]["3"]["rms_n"]
-            self.assertEqual("resolve_field" in solved["stages"], estimator == "field")
             self.assertEqual("estimate_contacts" in solved["stages"], estimator == "contact")
-            self.assertEqual(solved["resolved"] > 0, estimator != "direct")
-        self.assertLess(errors["field"], 0.6 * errors["direct"])
+            self.assertEqual(solved["resolved"] > 0, estimator == "contact")
         self.assertLess(errors["contact"], 0.6 * errors["direct"])
+
+    def test_field_is_the_former_name_of_contact(self):
+        scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
+        run("simulate", scene, "-o", self.recording, "--frames", 2)
+        copies = {name: self.folder / f"{name}.npy" for name in ("contact", "field", "scene")}
+        for name in ("contact", "field"):
+            solved = run_json("solve", self.recording, "-o", copies[name], "--estimator", name)
+            self.assertEqual(solved["estimator"], "contact")
+            self.assertIn("estimate_contacts", solved["stages"])
+        self.scene.write_text(SMALL_SCENE + '[solver]\nestimator = "field"\n')
+        solved = run_json("solve", self.recording, "-o", copies["scene"], "--scene", self.scene)
+        self.assertEqual(solved["estimator"], "contact")
+        self.assertEqual(copies["field"].read_bytes(), copies["contact"].read_bytes())
 
     def test_what_is_known_of_friction_reaches_the_contacts(self):
         scene = SOURCE / "scenes" / "ambiguous_contacts.toml"
@@ -219,20 +230,45 @@ class Work(CommandTest):
     def test_knowledge_of_friction_is_checked(self):
         run("simulate", self.scene, "-o", self.recording)
         contact = ("solve", self.recording, "-o", self.forces, "--estimator", "contact")
-        self.assert_fails(*contact, "--friction", 20, says=["the friction is 20", "[0.1, 9.9]"])
+        for friction in (0.05, 20):
+            result = run(*contact, "--friction", friction, expect=2)
+            self.assertIn("--friction", result.stderr)
+        self.scene.write_text(SMALL_SCENE + "[solver]\nfriction = 20\n")
+        self.assert_fails(*contact, "--scene", self.scene,
+                          says=["ball.toml:", "friction", "0.1", "9.9"])
         self.assert_fails(*contact, "--friction-prior", "0.05,0.5", says=["median", "0.05"])
         self.assert_fails(*contact, "--friction-prior", "1,9", says=["spread"])
-        self.assert_fails(*contact, "--slips", says=["field estimator"])
-        self.assert_fails("solve", self.recording, "-o", self.forces, "--friction-bound", 2,
-                          says=["--estimator contact"])
 
-    def test_frames_that_are_close_know_of_the_one_before(self):
+    def test_what_is_known_of_friction_is_taken_by_every_estimator(self):
+        run("simulate", self.scene, "-o", self.recording)
+        for estimator in ("direct", "paper", "contact"):
+            copies = [self.folder / f"{name}.npy" for name in ("with", "without")]
+            for copy, known in zip(copies, (("--friction", 0.8, "--friction-bound", 3,
+                                             "--friction-prior", "2,0.1", "--unrelated-frames"),
+                                            ())):
+                run("solve", self.recording, "-o", copy, "--estimator", estimator, *known)
+            if estimator != "contact":  # Only contacts use it.
+                self.assertEqual(copies[0].read_bytes(), copies[1].read_bytes())
+
+    def test_options_of_the_former_estimator_are_gone(self):
+        run("simulate", self.scene, "-o", self.recording)
+        for option in (("--slips",), ("--frames-close",), ("--sweeps", 8),
+                       ("--contact-friction", 0.8)):
+            result = run("solve", self.recording, "-o", self.forces, "--contacts",
+                         self.folder / "contacts.csv", "--estimator", "field", *option, expect=2)
+            self.assertIn(option[0], result.stderr)
+        for key in ("slips = true", "frames_close = true", "sweeps = 8"):
+            self.scene.write_text(SMALL_SCENE + f'[solver]\nestimator = "field"\n{key}\n')
+            self.assert_fails("simulate", self.scene, "-o", self.folder / "none.h5",
+                              says=["ball.toml:", key.split()[0]])
+
+    def test_contacts_know_what_earlier_frames_showed(self):
         self.scene.write_text(GROWING_SHEAR)
         run("simulate", self.scene, "-o", self.recording)
         normals = []
-        for more in ((), ("--frames-close",)):
-            run("solve", self.recording, "-o", self.forces, "--estimator", "field", "--noise", 0.3,
-                *more)
+        for more in (("--unrelated-frames",), ()):
+            run("solve", self.recording, "-o", self.forces, "--estimator", "contact", "--noise",
+                0.3, *more)
             with h5py.File(self.forces) as file:
                 normals.append(file["force/normal"][:])
         differ = [index for index in range(6) if (normals[0][index] != normals[1][index]).any()]
@@ -265,13 +301,6 @@ class Work(CommandTest):
         self.assertEqual(run_json("info", self.forces)["segment_point"], 0.625)
         self.assert_fails(*solve, "--segment-point", 0.5, "--estimator", "paper",
                           says=["--segment-point", "paper"])
-
-    def test_evidence_is_of_use_to_the_field_alone(self):
-        run("simulate", self.scene, "-o", self.recording)
-        self.assert_fails("solve", self.recording, "-o", self.forces, "--friction", 0.8,
-                          says=["--estimator field"])
-        self.assert_fails("solve", self.recording, "-o", self.forces, "--estimator", "field",
-                          "--slips", says=["friction"])
 
     def test_info_describes_every_file(self):
         run("simulate", self.scene, "-o", self.recording)

@@ -14,6 +14,26 @@ from command import PROGRAM, SCENES, CommandTest, run, run_json
 
 WORDS = {"friction_source", "slip"}
 
+# A punch that is pressed on, dragged while it sticks, and dragged on until it slides, after 0.9 s.
+PUNCH = """
+title = "A punch that sticks"
+[skin]
+pillars = [20, 20]
+threshold_counts = 2
+[time]
+rate_hz = 10
+frames = 16
+[sensor]
+adc_bits = 8
+noise_counts = 0.5
+[[body]]
+shape = "punch"
+radius_mm = 8
+friction = 0.8
+path = [{ time_s = 0.0, position_mm = [0, 0], load_n = 25 },
+        { time_s = 1.5, position_mm = [2.4, 0], load_n = 25 }]
+"""
+
 
 class Contacts(CommandTest):
     def setUp(self):
@@ -66,7 +86,8 @@ class Contacts(CommandTest):
         with h5py.File(self.forces) as file:
             group = file["contacts"]
             names = [name for name in group["patch"] if name in table["frames"][0]["patch"]]
-            self.assertEqual(len(names), 21)
+            self.assertEqual(len(names), 22)
+            self.assertIn("friction_deviation", names)
             self.assertEqual(group.attrs["minimum_pillars"], 4)
             self.assertEqual(group["normal_n"].attrs["unit"], b"N")
             row_of_contact = 0
@@ -127,10 +148,12 @@ class Contacts(CommandTest):
             self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)
 
     def test_given_friction(self):
-        self.solve("--contacts", self.csv, "--contact-friction", 2)
-        for row in self.rows():
-            if row["row"] != "ended":
-                self.assertEqual((row["friction"], row["friction_source"]), ("2", "given"))
+        for estimator in ("direct", "contact"):
+            self.solve("--contacts", self.csv, "--estimator", estimator, "--friction", 2)
+            for row in self.rows():
+                if row["row"] != "ended":
+                    self.assertEqual((row["friction"], row["friction_source"]), ("2", "given"))
+                    self.assertGreater(float(row["friction_deviation"]), 0)
         text = run("solve", self.recording, "-o", self.forces, "--contacts", self.csv).stdout
         self.assertIn("Contacts: ", text)
 
@@ -144,18 +167,63 @@ class Contacts(CommandTest):
         return told, given
 
     def test_friction_that_the_solver_is_told_is_that_of_contacts(self):
-        field = ("--estimator", "field", "--noise", 0.5)
-        self.assertEqual(self.friction_of(*field, "--friction", 1.5), ({("1.5", "given")}, 1.5))
-        self.assertEqual(self.friction_of(*field, "--friction", 1.5, "--contact-friction", 2),
-                         ({("2", "given")}, 2))
         scene = self.folder / "frictional.toml"
         text = (SCENES / "several_contacts.toml").read_text(encoding="utf-8")
-        scene.write_text(text.replace("[solver]", "[solver]\nestimator = 'field'\nfriction = 1.25"),
-                         encoding="utf-8")
-        self.assertEqual(self.friction_of("--scene", scene), ({("1.25", "given")}, 1.25))
-        told, given = self.friction_of(*field)
-        self.assertIn("shown", {source for _, source in told})
-        self.assertIsNone(given)
+        for estimator in ("direct", "contact"):
+            options = ("--estimator", estimator, "--noise", 0.5)
+            self.assertEqual(self.friction_of(*options, "--friction", 1.5),
+                             ({("1.5", "given")}, 1.5))
+            scene.write_text(text.replace("[solver]", "[solver]\nfriction = 1.25\n"
+                                          f"estimator = '{estimator}'"), encoding="utf-8")
+            self.assertEqual(self.friction_of("--scene", scene), ({("1.25", "given")}, 1.25))
+            self.assertEqual(self.friction_of("--scene", scene, "--friction", 1.5),
+                             ({("1.5", "given")}, 1.5))
+            found, given = self.friction_of(*options)
+            self.assertIsNone(given)
+            self.assertIn("observed", {source for _, source in found})
+            self.assertLessEqual({source for _, source in found},
+                                 {"prior", "observed", "carried_over"})
+            for friction, source in found:
+                self.assertEqual(friction == "", source == "prior")
+
+    def test_what_is_known_of_friction_counts_for_contacts_of_direct_forces(self):
+        def first(*known):
+            self.solve("--contacts", self.csv, *known)
+            return [(row["friction"], row["friction_source"], row["friction_deviation"])
+                    for row in self.rows() if row["id"] == "1" and row["row"] == "contact"]
+
+        usual = first()  # It slides, at 0.6.
+        self.assertEqual({source for _, source, _ in usual}, {"observed"})
+        for friction, _, deviation in usual:
+            self.assertLess(abs(float(friction) - 0.6), 0.02)
+            self.assertLess(0, float(deviation))
+            self.assertLessEqual(float(deviation), 0.02 * float(friction))
+        alone = first("--unrelated-frames")
+        self.assertEqual(alone[0], usual[0])
+        self.assertNotEqual(alone, usual)
+        self.assertNotEqual(first("--friction-prior", "2,0.2"), usual)
+        for friction, source, _ in first("--friction-bound", 0.5):
+            self.assertTrue(source == "prior" or float(friction) <= 0.5)
+
+    def test_a_punch_that_sticks_does_not_slide(self):
+        scene = self.folder / "punch.toml"
+        scene.write_text(PUNCH, encoding="utf-8")
+        run("simulate", scene, "-o", self.recording, "--overwrite")
+        with h5py.File(self.recording) as file:
+            shear = np.abs(file["/truth/shear_x"][:].sum(axis=(1, 2)))
+        sticks = shear < 0.99 * 0.8 * 25
+        self.assertGreater(sticks.sum(), 4)
+        self.assertLess(sticks.sum(), 16)
+        self.assertGreater(shear[sticks].max(), 0.6 * 0.8 * 25)
+        for estimator in ("direct", "contact"):
+            self.solve("--contacts", self.csv, "--scene", scene, "--estimator", estimator)
+            rows = [row for row in self.rows() if row["row"] == "contact"]
+            self.assertEqual({int(row["frame"]) for row in rows}, set(range(16)))
+            for row in rows:
+                if sticks[int(row["frame"])]:
+                    self.assertNotEqual(row["slip"], "sliding", row)
+                    self.assertEqual((row["friction"], row["friction_deviation"]), ("", ""), row)
+                    self.assertEqual(row["friction_source"], "prior")
 
     def test_wrong_names_end_before_any_work(self):
         before = sorted(path.name for path in self.folder.iterdir())
@@ -172,9 +240,8 @@ class Contacts(CommandTest):
         # Nothing is read before: the error is not that of the recording.
         self.assert_fails("solve", self.folder / "absent.h5", "-o", self.forces, "--contacts",
                           "c.txt", says=["c.txt"])
-        for option, value in (("--contact-friction", "-1"), ("--contact-reach", "1e9")):
-            self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
-                              option, value, says=["the command line"])
+        self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
+                          "--contact-reach", "1e9", says=["the command line"])
         self.assert_folder_holds(*before)
         result = run("solve", self.recording, "-o", self.forces, "--minimum-pillars", 4, expect=2)
         self.assertIn("--contacts", result.stderr)
@@ -197,7 +264,7 @@ class Contacts(CommandTest):
 
     def test_completion_knows_the_options(self):
         script = run("completion", "bash").stdout
-        for option in ("--contacts", "--minimum-pillars", "--contact-friction", "--contact-reach"):
+        for option in ("--contacts", "--minimum-pillars", "--friction", "--contact-reach"):
             self.assertIn(option, script)
 
 

@@ -120,21 +120,24 @@ class Run(LiveTest):
         for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
             self.assertNotIn(stage, plain["stages"])
 
-    def test_frames_that_are_close(self):
-        close = ("--estimator", "field", "--frames-close")
-        report = self.live(self.scene, "--rate", 50, "--seconds", 0.3, *close)
-        self.assertEqual(report["estimator"], "field")
-        self.assertIn("resolve_field", report["stages"])
+    def test_contacts(self):
+        contact = ("--estimator", "contact", "--friction", 0.8, "--unrelated-frames")
+        report = self.live(self.scene, "--rate", 50, "--seconds", 0.3, *contact)
+        self.assertEqual(report["estimator"], "contact")
+        self.assertIn("estimate_contacts", report["stages"])
         self.assertEqual(report["solved"], 15)  # the six frames come again
-        self.scene.write_text(SCENE + '[solver]\nestimator = "field"\nframes_close = true\n')
-        told = self.live(self.scene, "--rate", 50, "--seconds", 0.1)
-        self.assertEqual(told["stages"], report["stages"])
-        self.assert_fails("live", self.scene, "--estimator", "direct", "--frames-close",
-                          says=["--frames-close", "--estimator field"])
+        self.scene.write_text(SCENE + '[solver]\nestimator = "contact"\nmemory = false\n')
+        from_scene = self.live(self.scene, "--rate", 50, "--seconds", 0.1)
+        self.assertEqual(from_scene["stages"], report["stages"])
+        former = self.live(self.scene, "--rate", 50, "--seconds", 0.1, "--estimator", "field")
+        self.assertEqual((former["estimator"], former["stages"]), ("contact", report["stages"]))
+        result = run("live", self.scene, "--frames-close", expect=2)
+        self.assertIn("--frames-close", result.stderr)
 
-    def test_the_field_has_no_half_precision(self):
-        self.assert_fails("live", self.scene, "--estimator", "field", "--half",
-                          says=["ball.toml", "half precision", "--half", "direct"])
+    def test_the_contact_estimator_has_no_half_precision(self):
+        for estimator in ("contact", "field"):
+            self.assert_fails("live", self.scene, "--estimator", estimator, "--half",
+                              says=["ball.toml", "half precision", "--half", "direct"])
 
     def test_half_precision_is_another_way_to_store(self):
         arguments = (self.scene, "--rate", 50, "--seconds", 0.1)

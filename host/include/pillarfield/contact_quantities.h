@@ -33,7 +33,7 @@ enum class SlipState : std::uint8_t {
 struct ContactQuantities {
   std::uint64_t pillars = 0;
   std::uint64_t ambiguous = 0;  ///< of these, pillars that readings alone leave open
-  std::uint64_t resolved = 0;   ///< of these, such as neighbours helped to resolve
+  std::uint64_t resolved = 0;   ///< of these, such as the contact's friction resolved
 
   double shear_x_n = 0;
   double shear_y_n = 0;
@@ -50,8 +50,9 @@ struct ContactQuantities {
   PatchPlace peak;      ///< where; of equal ones the first row by row
   double mean_pressure_kpa = 0;
 
-  /// The friction coefficient, where it is known: by a posterior whose logarithm has a standard
-  /// deviation of 0.05 or less (docs/derivations/contact.md). Unset elsewhere.
+  /// The friction coefficient, where it was given, or where the standard deviation of the
+  /// posterior's logarithm is at most 0.02 and the contact is no flat face that may stick
+  /// (docs/derivations/contact.md, section 5). Unset elsewhere.
   std::optional<double> friction;
   std::optional<double> friction_deviation;  ///< its standard deviation; unset as friction
   FrictionSource friction_source = FrictionSource::prior;

@@ -19,7 +19,7 @@ struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
   double pillar_pitch_mm = 0;
-  std::string estimator;                        ///< "direct", "paper" or "field"
+  std::string estimator;                        ///< "direct", "paper" or "contact"
   std::string device;                           ///< name of the device that solved it
   std::string source;                           ///< name of the file the frames came from
   bool angles = false;                          ///< with magnitude, theta and phi

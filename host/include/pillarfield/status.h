@@ -14,7 +14,7 @@ inline constexpr std::uint8_t kUsable = 15;           ///< mask of the four
 inline constexpr std::uint8_t kAmbiguous = 16;        ///< one force of a segment, or region 1 or 2
 inline constexpr std::uint8_t kSaturated = 32;        ///< a sensel at full scale
 inline constexpr std::uint8_t kInconsistent = 64;     ///< a missing sensel, or readings at odds
-inline constexpr std::uint8_t kFromNeighbours = 128;  ///< ambiguity resolved by the field
+inline constexpr std::uint8_t kFromNeighbours = 128;  ///< resolved by the friction of its contact
 
 }  // namespace pillarfield::status
 

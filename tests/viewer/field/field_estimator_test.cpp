@@ -1,4 +1,4 @@
-// Scenes that ask for the field estimator, as the viewer shows them.
+// Scenes that ask for the estimator `contact`, as the viewer shows them.
 
 #include <gtest/gtest.h>
 
