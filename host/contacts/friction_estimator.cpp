@@ -151,12 +151,15 @@ bool FrictionEstimator::is_face(Workspace& work) const {
 }
 
 /// Whether a ratio that pillars share stayed when what the contact bears changed. What sticks does
-/// not: its ratios grow together.
-bool FrictionEstimator::stays(double friction, const Workspace& work, History& history) const {
+/// not: its ratios grow together. `observed`: this frame shows it.
+bool FrictionEstimator::stays(double friction, bool observed, const Workspace& work,
+                              History& history) const {
+  if (std::abs(friction / history.friction - 1) > parameters_.same_friction) history = {};
   const std::vector<ShownRatio>& ratios = work.samples.ratios();
+  if (!observed || ratios.empty()) return history.stayed;
   double mean = 0;
   for (const ShownRatio& pillar : ratios) mean += pillar.ratio / static_cast<double>(ratios.size());
-  if (std::abs(friction / history.friction - 1) > parameters_.same_friction) {
+  if (history.friction == 0) {
     history = {friction, mean, false};
   } else if (std::abs(mean / history.mean_ratio - 1) > parameters_.other_load) {
     history.stayed = true;
@@ -171,12 +174,14 @@ ContactFriction FrictionEstimator::reported(std::uint32_t contact,
   ContactFriction friction{belief.quantile(0.5), belief.spread(), FrictionSource::prior};
   if (given_) return {*given_, friction.spread, FrictionSource::given};
   if (friction.spread > parameters_.reported_spread) return friction;
-  const bool certain = stays(friction.median, work, histories_[contact]);
-  if (!certain && is_face(work)) return friction;
   FrictionBelief alone = prior_;
   alone.update(log_likelihood);
-  friction.source = alone.spread() <= parameters_.reported_spread ? FrictionSource::observed
-                                                                  : FrictionSource::carried_over;
+  const bool observed =
+      alone.spread() <= parameters_.reported_spread &&
+      std::abs(alone.quantile(0.5) / friction.median - 1) <= parameters_.same_friction;
+  const bool certain = stays(friction.median, observed, work, histories_[contact]);
+  if (!certain && is_face(work)) return friction;
+  friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
   return friction;
 }
 

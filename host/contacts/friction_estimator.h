@@ -83,7 +83,7 @@ class FrictionEstimator {
 
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
   [[nodiscard]] bool is_face(Workspace& work) const;
-  bool stays(double friction, const Workspace& work, History& history) const;
+  bool stays(double friction, bool observed, const Workspace& work, History& history) const;
   [[nodiscard]] ContactFriction reported(std::uint32_t contact, const FrictionCurve& log_likelihood,
                                          Workspace& work);
 

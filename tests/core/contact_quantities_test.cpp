@@ -256,6 +256,17 @@ TEST(Friction, OfAFaceThatMayStickIsNotTold) {
   }
 }
 
+/// What was believed is carried over, but to lose the shear again proves nothing.
+TEST(Friction, OfAFaceThatStuckIsNotToldWhenItsShearIsGone) {
+  ContactTracker tracker(kPitchMm);
+  for (const double ratio : {0.4, 0.4, 0.0, 0.1, 0.3, 0.25, 0.0}) {
+    const FrameContacts& frame = tracker.update(face(100, ratio, 0).view(), 0);
+    const ContactQuantities& contact = frame.contacts.at(0).quantities;
+    EXPECT_EQ(contact.friction_source, FrictionSource::prior) << ratio;
+    EXPECT_NE(contact.slip, SlipState::sliding) << ratio;
+  }
+}
+
 TEST(Friction, OfAFaceIsToldOnceItStayedWhileOtherPillarsWereLoaded) {
   ContactTracker tracker(kPitchMm);
   const auto update = [&](double other_ratio) {

@@ -42,7 +42,11 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
   return lines;
 }
 
-ForceFileInfo force_info(std::optional<ContactOptions> contacts = ContactOptions{3, 0.5, 7}) {
+ContactOptions sample_options() {
+  return {.minimum_pillars = 3, .friction = {.given = 0.5}, .reach_mm = 7};
+}
+
+ForceFileInfo force_info(std::optional<ContactOptions> contacts = sample_options()) {
   ForceFileInfo info = {2, 3, 1.25, "direct", "a device", "press.h5"};
   info.contacts = contacts;
   return info;
@@ -63,7 +67,7 @@ TEST(ContactColumns, HaveNamesOfTheirOwn) {
   std::set<std::string> names;
   for (const auto& column : identity_columns()) EXPECT_TRUE(names.insert(column.name).second);
   for (const auto& column : quantity_columns()) EXPECT_TRUE(names.insert(column.name).second);
-  EXPECT_EQ(names.size(), 26);
+  EXPECT_EQ(names.size(), 27);
 }
 
 TEST(ContactColumns, SetWhatTheyGet) {
@@ -118,7 +122,7 @@ TEST(ContactCsv, HasALineForThePatchAndForEachContact) {
   }
   EXPECT_EQ(line, lines.size());
   for (const std::string& each : lines) {
-    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 28) << each;
+    EXPECT_EQ(std::count(each.begin(), each.end(), ','), 29) << each;
   }
   EXPECT_TRUE(has_all(lines[0], {"row,frame,time_s,id,parent,merged_into,first_time_s,age_s,",
                                  ",shear_x_n,", ",torque_nmm,", ",slip,"}));
@@ -267,6 +271,19 @@ TEST(ContactsOfForceFile, DamageIsAnError) {
     remove_link(path, name);
     EXPECT_TRUE(has_all(error_of([&] { const ForceFileReader reader(path); }), {"has no", name}));
   }
+}
+
+/// Files of earlier versions have no deviation of the friction.
+TEST(ContactTables, WithoutTheFrictionsDeviationAreRead) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "f.h5";
+  write_forces(path, 2);
+  remove_link(path, "/contacts/friction_deviation");
+  remove_link(path, "/contacts/patch/friction_deviation");
+  FrameContacts expected = sample_contacts(1);
+  expected.patch.friction_deviation.reset();
+  for (TrackedContact& contact : expected.contacts) contact.quantities.friction_deviation.reset();
+  EXPECT_EQ(written_out(ForceFileReader(path).read_contacts(1)), written_out(expected));
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ inline ContactQuantities sample_quantities(std::uint64_t place) {
   quantities.slip = static_cast<SlipState>(place % 4);
   if (place % 2 == 0) return quantities;
   quantities.friction = value();
+  quantities.friction_deviation = value();
   quantities.friction_source = static_cast<FrictionSource>(place % 3 + 1);
   quantities.slipping_share = value();
   quantities.slip_margin = value();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "pillarfield/component_ends.h"
 #include "viewer/app/export.h"
 
 namespace pillarfield::viewer {
@@ -15,6 +16,11 @@ struct Column {
   std::string name;
   std::span<const float> values;
 };
+
+/// Whether the ends of components are written, which follow from the uncertainty.
+bool has_ends(const ForceFieldView& forces) {
+  return !forces.uncertainty[Uncertainty::normal].empty();
+}
 
 /// Those that the field has, in the order of docs/formats.md.
 std::vector<Column> further_columns(const ForceFieldView& forces) {
@@ -31,9 +37,12 @@ std::vector<Column> further_columns(const ForceFieldView& forces) {
   return columns;
 }
 
-std::string header(const std::vector<Column>& columns) {
+std::string header(const ForceFieldView& forces, const std::vector<Column>& columns) {
   std::string text = "frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status";
   for (const Column& column : columns) text += "," + column.name;
+  for (std::size_t i = 0; has_ends(forces) && i < kComponentEnds; ++i) {
+    text += fmt::format(",uncertainty_{}_n", name_of(static_cast<ComponentEnd>(i)));
+  }
   return text + "\n";
 }
 
@@ -46,6 +55,11 @@ void append_line(std::string& text, const ShownField& field, const std::vector<C
   fmt::format_to(out, "{},{},{},{},{},{},{},{}", field.index, field.time_s, pillar.row, pillar.col,
                  forces.shear_x[at], forces.shear_y[at], forces.normal[at], forces.status[at]);
   for (const Column& column : columns) fmt::format_to(out, ",{}", column.values[at]);
+  if (has_ends(forces)) {
+    for (const float end : component_ends(forces, at, field.direct_point)) {
+      fmt::format_to(out, ",{}", end);
+    }
+  }
   text += '\n';
 }
 
@@ -56,7 +70,7 @@ void write_csv(const std::filesystem::path& path, const ShownField& field, const
   OutputFile file(path, OutputKind::force_table, replace);
   const ForceFieldView& forces = field.forces;
   const std::vector<Column> columns = further_columns(forces);
-  std::string text = header(columns);
+  std::string text = header(forces, columns);
   for (std::uint32_t row = rect.row_begin; row < std::min(rect.row_end, forces.rows); ++row) {
     for (std::uint32_t col = rect.col_begin; col < std::min(rect.col_end, forces.cols); ++col) {
       if (forces.status[std::size_t{row} * forces.cols + col] == 0) continue;

@@ -43,7 +43,7 @@ ShownValue with_deviation(const char* label, double value, double deviation, con
   return {label, value_words(value, deviation), deviation_words(deviation), unit};
 }
 
-/// An angle or a magnitude that may be anything between two ends.
+/// A value that may be anything between two ends.
 ShownValue with_interval(const char* label, double value, Span ends, const char* unit) {
   return {label, value_words(value, ends.to - ends.from), interval_words(ends.from, ends.to), unit};
 }
@@ -152,6 +152,19 @@ std::array<ShownValue, 3> shown_direction(const PillarValues& values) {
 }
 
 std::array<ShownValue, 3> shown_components(const PillarValues& values) {
+  if (is_ambiguous(values) && values.uncertainty) {
+    const auto span = [&values](ComponentEnd low) {
+      const auto first = static_cast<std::size_t>(low);
+      return Span{static_cast<double>(values.component_ends[first]),
+                  static_cast<double>(values.component_ends[first + 1])};
+    };
+    return {with_interval("normal", static_cast<double>(values.normal),
+                          span(ComponentEnd::normal_low), "N"),
+            with_interval("shear x", static_cast<double>(values.shear_x),
+                          span(ComponentEnd::shear_x_low), "N"),
+            with_interval("shear y", static_cast<double>(values.shear_y),
+                          span(ComponentEnd::shear_y_low), "N")};
+  }
   return {with_deviation("normal", static_cast<double>(values.normal),
                          plane(values, Uncertainty::normal), "N"),
           with_deviation("shear x", static_cast<double>(values.shear_x),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "pillarfield/solver_plan.h"
 #include "viewer/field/direction.h"
 #include "viewer/field/frame_rate.h"
 #include "viewer/field/too_many_shown.h"
@@ -39,6 +40,11 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   info.solver = solver_of(file);
   info.remarks = reader.remarks();
   return info;
+}
+
+/// As component_ends() takes it.
+std::optional<double> direct_point_of(const ForceFileInfo& file) {
+  return file.estimator == name_of(Estimator::direct) ? file.segment_point : std::nullopt;
 }
 
 void fill(PlaneBlock& block, const ForceField& forces) {
@@ -86,6 +92,7 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
           .raw = {},
           .time_s = time_s,
           .index = index,
+          .direct_point = direct_point_of(reader_->info()),
           .pages = block->pages(),
           .keep_alive = block};
 }

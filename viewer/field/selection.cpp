@@ -47,10 +47,12 @@ void set_direction(PillarValues& values, const ForceFieldView& forces, std::size
   values.phi = direction.phi;
 }
 
-void set_uncertainty(PillarValues& values, const ForceFieldView& forces, std::size_t at) {
+void set_uncertainty(PillarValues& values, const ShownField& field, std::size_t at) {
+  const ForceFieldView& forces = field.forces;
   if (forces.uncertainty[Uncertainty::shear_x].empty()) return;
   std::ranges::transform(forces.uncertainty, values.uncertainty.emplace().begin(),
                          [at](std::span<const float> plane) { return plane[at]; });
+  values.component_ends = component_ends(forces, at, field.direct_point);
 }
 
 bool is_finite(const ForceFieldView& forces, std::size_t at) {
@@ -129,7 +131,7 @@ PillarValues values_at(const ShownField& field, PillarIndex pillar) {
   values.normal = forces.normal[at];
   values.status = forces.status[at];
   set_direction(values, forces, at);
-  set_uncertainty(values, forces, at);
+  set_uncertainty(values, field, at);
   return values;
 }
 

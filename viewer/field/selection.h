@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "pillarfield/component_ends.h"
 #include "pillarfield/status.h"
 #include "viewer/field/shown_field.h"
 
@@ -29,6 +30,7 @@ struct PillarValues {
   float shear_x = 0, shear_y = 0, normal = 0;  ///< N
   float magnitude = 0, theta = 0, phi = 0;     ///< N, rad, rad; computed where there is no plane
   std::optional<std::array<float, kUncertaintyPlanes>> uncertainty;
+  std::array<float, kComponentEnds> component_ends{};  ///< where there is an uncertainty
   std::uint8_t status = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "pillarfield/force_field.h"
@@ -19,6 +20,7 @@ struct ShownField {
   FrameView raw;            ///< readings it was solved from; no data where they are not known
   double time_s = 0;        ///< of the frame, from its source
   std::uint64_t index = 0;  ///< of the frame in its source
+  std::optional<double> direct_point = {};  ///< as component_ends() takes it
   /// Whole pages that hold all planes of `forces`, so that a graphics device may read them in
   /// place.
   std::span<const std::byte> pages;

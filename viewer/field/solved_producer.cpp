@@ -34,6 +34,7 @@ SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> sup
                                const SolverPlan& plan, Processor processor)
     : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
   info_.frames = supply_->frames();
+  if (plan.estimator == Estimator::direct) direct_point_ = plan.segment_point;
   if (!remembers(plan.estimator, plan.friction)) return;
   silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
@@ -62,6 +63,7 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
           .raw = raw,
           .time_s = frame.time_s,
           .index = index,
+          .direct_point = direct_point_,
           .pages = held->result.pages(),
           .keep_alive = held};
 }

@@ -38,6 +38,7 @@ class SolvedProducer final : public FieldProducer {
   SourceInfo info_;
   std::unique_ptr<FrameSupply> supply_;
   Processor processor_;
+  std::optional<double> direct_point_;  ///< of the plan, where its estimator is direct
   std::optional<FrameBuffer> silence_;  ///< a frame of it, where frames are close
   std::uint64_t next_ = 0;              ///< the frame that would come after the last one solved
 };
