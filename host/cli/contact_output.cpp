@@ -31,7 +31,7 @@ void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
       "output holds them in any case");
   command
       .add_option("--minimum-pillars", options.contacts.minimum_pillars,
-                  "Contacts of fewer pillars are not told of [1]")
+                  "Contacts of fewer pillars are left out [1]")
       ->needs(file);
   command
       .add_option("--contact-reach", options.contacts.reach_mm,

@@ -27,7 +27,13 @@ using io_test::written_out;
 
 using Names = std::vector<std::string>;
 
-ContactFileInfo sample_info() { return {1.25, "a \"quoted\"\\\n name.h5", {3, 0.5, 7}}; }
+ContactOptions sample_options() {
+  return {.minimum_pillars = 3, .friction = {.given = 0.5}, .reach_mm = 7};
+}
+
+ContactFileInfo sample_info() {
+  return {1.25, "a \"quoted\"\\\n name.h5", sample_options()};
+}
 
 void write(const std::filesystem::path& path, std::uint64_t frames) {
   const auto sink = create_contact_sink(path, sample_info());
@@ -40,10 +46,6 @@ std::vector<std::string> lines_of(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(text, line);) lines.push_back(line);
   return lines;
-}
-
-ContactOptions sample_options() {
-  return {.minimum_pillars = 3, .friction = {.given = 0.5}, .reach_mm = 7};
 }
 
 ForceFileInfo force_info(std::optional<ContactOptions> contacts = sample_options()) {

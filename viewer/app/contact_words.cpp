@@ -14,7 +14,7 @@ std::string percent_words(std::uint64_t part, std::uint64_t all) {
   return fmt::format("{:.0f} %", 100 * static_cast<double>(part) / static_cast<double>(all));
 }
 
-/// "42 %", and "42 % / 90 %" where neighbours resolved some of them.
+/// "42 %", and "42 % / 90 %" where their contact resolved some of them.
 std::string ambiguous_words(const ContactQuantities& contact) {
   std::string share = percent_words(contact.ambiguous, contact.pillars);
   if (contact.resolved == 0) return share;
@@ -36,7 +36,7 @@ const std::array<ContactColumn, kContactColumns>& contact_columns() {
       {"shear", "shear force, N", "00000"},
       {"µ", "friction and its standard deviation, where it is known", "0.00 ± 0.00"},
       {"slip", "sticking, partial, sliding or unknown", "unknown"},
-      {"ambiguous", "share of the pillars / share of those that neighbours resolved",
+      {"ambiguous", "share of the pillars / share of those that their contact resolved",
        "00 % / 00 %"},
       {"mean", "mean pressure, kPa", "00000"},
       {"area", "mm²", "00000"},

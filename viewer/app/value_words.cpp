@@ -106,7 +106,7 @@ std::string status_words(std::uint8_t status) {
     words = fmt::format("region {}", name_of(region));
   }
   if ((status & status::kFromNeighbours) != 0) {
-    words += ", resolved by neighbours";
+    words += ", resolved by its contact";
   } else if ((status & status::kAmbiguous) != 0) {
     words += ", ambiguous";
   }

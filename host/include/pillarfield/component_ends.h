@@ -26,7 +26,7 @@ inline constexpr std::size_t kComponentEnds = 6;
 
 /// The six ends of one pillar, in the order of ComponentEnd: the estimate and 1.96 standard
 /// deviations either way, a normal force not below zero (docs/derivations/uncertainty.md, section
-/// 5).
+/// 3).
 ///
 /// Of forces that the direct solve left at `direct_point` of their segments (SolverPlan::
 /// segment_point) they are the ends of the segment instead, and 1.96 deviations of the noise beyond
