@@ -83,7 +83,7 @@ TEST(StatusWords, NameRegionAndFault) {
             "region 3, ambiguous");
   EXPECT_EQ(status_words(status::kSensel1 | status::kSensel2 | status::kAmbiguous |
                          status::kFromNeighbours),
-            "region 3, resolved by neighbours");
+            "region 3, resolved by its contact");
   EXPECT_EQ(status_words(status::kUsable | status::kSaturated), "region 1, saturated");
   EXPECT_EQ(status_words(status::kSensel1 | status::kSensel3 | status::kInconsistent),
             "opposite sensels, inconsistent");
