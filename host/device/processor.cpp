@@ -126,7 +126,7 @@ struct Processor::State {
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
-  std::optional<ContactStage> contacts;  ///< where the estimator is that of contacts
+  std::optional<ContactStage> contacts;      ///< where the estimator is that of contacts
   std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
   SlotTurns turns;
   bool received = false;  ///< a frame, once

@@ -31,9 +31,7 @@ ContactOptions sample_options() {
   return {.minimum_pillars = 3, .friction = {.given = 0.5}, .reach_mm = 7};
 }
 
-ContactFileInfo sample_info() {
-  return {1.25, "a \"quoted\"\\\n name.h5", sample_options()};
-}
+ContactFileInfo sample_info() { return {1.25, "a \"quoted\"\\\n name.h5", sample_options()}; }
 
 void write(const std::filesystem::path& path, std::uint64_t frames) {
   const auto sink = create_contact_sink(path, sample_info());

@@ -1,12 +1,13 @@
 // The segment of an ambiguous pillar: what host/contacts/segment.h says of it is what the direct
 // solve says (docs/derivations/segment.md).
 
+#include "contacts/segment.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "contacts/segment.h"
 #include "pillars.h"
 
 namespace pillarfield {

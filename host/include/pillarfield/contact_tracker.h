@@ -43,7 +43,7 @@ struct FrameContacts {
 /// What contacts are looked for and how they are followed.
 struct ContactOptions {
   std::uint64_t minimum_pillars = 1;  ///< smaller contacts are neither listed nor followed
-  FrictionKnowledge friction = {};      ///< what is known of their friction before any reading
+  FrictionKnowledge friction = {};    ///< what is known of their friction before any reading
   /// Standard deviation of a reading over counts per newton, N, 0 to 1e6; unset: a sixty-fourth of
   /// the largest force of each contact.
   std::optional<double> noise_n = {};
@@ -84,8 +84,8 @@ class ContactTracker {
   /// patch for finding contacts and with loaded ones for the rest, n log n in contacts. Forces of
   /// any value are taken. Where the contacts of this frame were found already, `found` has them
   /// (Processor::contacts()); it is copied. Throws Error where planes are not of the field's size,
-  /// that is not the size of the frame before, a run of `found` lies outside it, or it has frictions
-  /// but not one for each contact.
+  /// that is not the size of the frame before, a run of `found` lies outside it, or it has
+  /// frictions but not one for each contact.
   const FrameContacts& update(const ForceFieldView& forces, double time_s,
                               const FoundContacts& found = {});
 

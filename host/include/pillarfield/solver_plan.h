@@ -12,9 +12,9 @@ namespace pillarfield {
 
 /// How forces are estimated from readings.
 enum class Estimator : std::uint8_t {
-  direct,  ///< linear, on the Cramér–Rao bound in regions 1 and 2
-           ///< (docs/derivations/direct_solve.md)
-  paper,   ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
+  direct,   ///< linear, on the Cramér–Rao bound in regions 1 and 2
+            ///< (docs/derivations/direct_solve.md)
+  paper,    ///< the paper's equations, for comparison (docs/derivations/paper_solve.md)
   contact,  ///< direct, then ambiguous pillars by what is believed of their contact's friction
             ///< (docs/derivations/contact.md)
 };
