@@ -115,8 +115,8 @@ struct ContactEstimator::Batch {
 };
 
 /// Estimates the ambiguous pillars of a contact, some at a time.
-void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t number) const {
-  const ContactModel& model = friction_.model(number);
+void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact) const {
+  const ContactModel& model = friction_.model(contact);
   Batch batch;
   const auto finish = [&] {
     for (std::size_t i = batch.pillars; i < kBatchPillars; ++i) {
@@ -138,7 +138,7 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t number) 
     batch.high[batch.pillars] = segment.high;
     if (++batch.pillars == kBatchPillars) finish();
   };
-  for (const ContactRun& run : map_.runs(number)) {
+  for (const ContactRun& run : map_.runs(contact)) {
     std::uint32_t index = run.row * cols_ + run.first;
     const std::uint32_t end = run.row * cols_ + run.end;
     // Most pillars are not ambiguous: eight are passed over at a time.

@@ -49,6 +49,11 @@ void ContactTablesReader::Table::open(const hdf5::File& file, const std::string&
 
 ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.path) {
   read_options(file);
+  open_tables(file);
+  if (file.unclosed) drop_frames_without_rows();
+}
+
+void ContactTablesReader::open_tables(const hdf5::File& file) {
   for (const auto& column : identity_columns())
     contacts_.open(file, force_format::kContacts, column.name);
   for (const auto& column : quantity_columns())
@@ -58,7 +63,6 @@ ContactTablesReader::ContactTablesReader(const hdf5::File& file) : path_(file.pa
     patch_.open(file, force_format::kPatch, column.name, column.later);
   for (const auto& column : ended_columns()) ended_.open(file, force_format::kEnded, column.name);
   frames_ = patch_.rows;
-  if (file.unclosed) drop_frames_without_rows();
 }
 
 /// Of a writer that was killed, the last frames may name rows that are not there. The rows

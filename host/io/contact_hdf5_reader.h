@@ -33,6 +33,7 @@ class ContactTablesReader {
   };
 
   void read_options(const hdf5::File& file);
+  void open_tables(const hdf5::File& file);
   void drop_frames_without_rows();
   [[nodiscard]] bool has_rows_of(std::uint64_t index) const;
   [[nodiscard]] std::uint64_t count_at(std::size_t column, std::uint64_t index) const;
