@@ -189,6 +189,32 @@ TEST(ContactEstimator, RemembersWhatAContactShowed) {
   EXPECT_LT(contact_errors(scene).rms(), contact_errors(scene, unrelated).rms());
 }
 
+/// A single frame of a ball in partial slip, as a closed form: most of what slips is ambiguous, and
+/// the pressure's shape tells what the ratios of determined pillars do not.
+TEST(ContactEstimator, ReadsTheShapeOfThePressureUnderASmoothBody) {
+  for (const double friction : {1.6, 1.8, 2.2}) {
+    for (const double direction_deg : {0.0, 3.0, 90.0, 183.0}) {
+      Scene scene = dragged(ball(), friction);
+      scene.skin.counts_per_newton = 700;
+      scene.frames = 1;
+      Contact contact;
+      contact.motion = ContactMotion::partial_slip;
+      contact.contact_radius_mm = 12;
+      contact.reference_load_n = 40;
+      contact.friction = friction;
+      contact.tangential_ratio = 0.7;
+      contact.direction_deg = direction_deg;
+      contact.path = {{0, 0.4, -0.3, 40}};
+      scene.bodies.clear();
+      scene.load = std::vector<Contact>{contact};
+      const Errors found = contact_errors(scene);
+      ASSERT_GT(found.pillars, 30);
+      EXPECT_LT(found.rms(), 0.25 * paper_errors(scene).rms())
+          << friction << " at " << direction_deg;
+    }
+  }
+}
+
 class OneFrame : public testing::Test {
  protected:
   OneFrame() : scene_(dragged(fingertip(), 1.8)), simulator_(scene_) {
