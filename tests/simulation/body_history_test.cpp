@@ -70,6 +70,31 @@ Resultant resultant(const BodyForces& forces) {
   return sum;
 }
 
+/// A body that is long in x lies, turned counter-clockwise, along a line that rises to the right;
+/// and being turned on the skin it turns the skin with it.
+TEST(BodyHistory, TurnsCounterClockwise) {
+  for (const double angle_deg : {30.0, -30.0}) {
+    Body body = fingertip();
+    body.path = {{0, 0, 0, angle_deg, 9}, {0.1, 0, 0, angle_deg + 4, 9}};
+    const Simulator simulator(scene_of(body, 2));
+    const ForceField pressed = truth_of(simulator, 0);
+    const ForceField turned = truth_of(simulator, 1);
+    double product = 0;
+    double squares = 0;
+    double torque = 0;
+    for (std::size_t i = 0; i < pressed.pillars(); ++i) {
+      const double x = static_cast<double>(i % pressed.cols) - 12.5;
+      const double y = 12.5 - static_cast<double>(i / pressed.cols);
+      product += pressed.normal[i] * x * y;
+      squares += pressed.normal[i] * x * x;
+      torque += x * turned.shear_y[i] - y * turned.shear_x[i];
+    }
+    EXPECT_GT(product * angle_deg, 0);
+    EXPECT_GT(std::abs(product), 0.1 * squares);
+    EXPECT_GT(torque, 0);
+  }
+}
+
 TEST(BodyHistory, CarriesTheLoadAndNeverMoreShearThanFriction) {
   const Body body = fingertip();
   BodyHistory history(scene_of(body), 0);
