@@ -43,7 +43,7 @@ struct ContactParameters {
   /// An ambiguous pillar counts as resolved (status bit 7) up to this standard deviation of its
   /// normal force over its segment's length.
   double resolved_deviation = 0.1;
-  /// A friction is told up to this standard deviation of its logarithm; [0.01, 0.03].
+  /// A friction is reported up to this standard deviation of its logarithm; [0.01, 0.03].
   double reported_spread = 0.02;
   /// A friction is the same as before within this relative distance,
   double same_friction = 0.05;

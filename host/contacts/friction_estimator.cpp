@@ -9,9 +9,6 @@ namespace {
 
 constexpr std::size_t kMostPredicted = 16;
 
-/// How far a contact may jump from frame to frame and still be the same.
-constexpr double kReachMm = 10;
-
 /// Where the noise is not known, the largest force of a contact is taken to be so many times it.
 constexpr double kPeakOverNoise = 64;
 
@@ -74,7 +71,7 @@ void FrictionEstimator::begin(const ContactMap& map) {
     traces_.centres.push_back(
         {sensor_.pitch_mm * col / pillars, -sensor_.pitch_mm * row / pillars});
   }
-  const ContactMatches matches = match_contacts(traces_before_, traces_, kReachMm);
+  const ContactMatches matches = match_contacts(traces_before_, traces_, sensor_.reach_mm);
   for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
     const std::uint32_t before = matches.earlier[contact] != kNoContact ? matches.earlier[contact]
                                                                         : matches.parents[contact];
@@ -110,7 +107,7 @@ void FrictionEstimator::learn(const ForceFieldView& forces, const ContactMap& ma
                                   log_likelihood);
   }
   if (!samples.ratios().empty() || !samples.bounds().empty()) belief.update(log_likelihood);
-  for (std::size_t i = 0; i < ContactModel::kNodes; ++i) {
+  for (std::size_t i = 0; model.any_ambiguous && i < ContactModel::kNodes; ++i) {
     model.frictions[i] =
         static_cast<float>(belief.quantile((static_cast<double>(i) + 0.5) / ContactModel::kNodes));
   }
@@ -154,7 +151,7 @@ bool FrictionEstimator::is_face(Workspace& work) const {
 /// not: its ratios grow together. `observed`: this frame shows it.
 bool FrictionEstimator::stays(double friction, bool observed, const Workspace& work,
                               History& history) const {
-  if (std::abs(friction / history.friction - 1) > parameters_.same_friction) history = {};
+  if (std::abs(friction - history.friction) > parameters_.same_friction * friction) history = {};
   const std::vector<ShownRatio>& ratios = work.samples.ratios();
   if (!observed || ratios.empty()) return history.stayed;
   double mean = 0;
@@ -167,7 +164,7 @@ bool FrictionEstimator::stays(double friction, bool observed, const Workspace& w
   return history.stayed;
 }
 
-/// What is told of a belief, and how it was learnt.
+/// What is reported of a belief, and how it was learnt.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
                                             const FrictionCurve& log_likelihood, Workspace& work) {
   const FrictionBelief& belief = beliefs_[contact];

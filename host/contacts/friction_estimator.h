@@ -46,6 +46,7 @@ class FrictionEstimator {
  public:
   struct Sensor {
     double pitch_mm = 0;
+    double reach_mm = 10;  ///< how far a contact may jump from frame to frame and be the same
     /// Of a reading, N; unset: a sixty-fourth of the largest force of each contact.
     std::optional<double> noise_n;
     SegmentEnd segment_end = {};

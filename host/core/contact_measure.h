@@ -31,7 +31,7 @@ class ContactMeasure {
   double pitch_mm_;
 };
 
-/// The coefficient, where enough is believed of it to be told.
+/// The coefficient, where it is known well enough to be reported.
 [[nodiscard]] std::optional<double> known_friction(const ContactFriction& friction);
 
 /// Adds what is known of a contact's friction, and what that says of its slip. `slip` is of

@@ -53,7 +53,10 @@ ContactOptions checked(const ContactOptions& options) {
 }
 
 FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& options) {
-  return {pitch_mm, options.noise_n, {.hidden_n = static_cast<float>(options.hidden_n)}};
+  return {.pitch_mm = pitch_mm,
+          .reach_mm = options.reach_mm,
+          .noise_n = options.noise_n,
+          .segment_end = {.hidden_n = static_cast<float>(options.hidden_n)}};
 }
 
 /// What identifies a contact from frame to frame, besides its id.
@@ -134,7 +137,7 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
 }
 
 /// Lists the contacts that are large enough and what they exert, and the patch. Their friction is
-/// learnt where none is told.
+/// learnt where none is given.
 void ContactTracker::State::measure(const ContactMeasure& measure, const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
   const bool learns = friction.empty() && map.contacts() > 0;

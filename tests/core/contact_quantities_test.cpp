@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -243,6 +244,33 @@ TEST(Friction, WithoutMemoryIsNotCarriedOver) {
   tracker.update(mostly_sliding(14, 16, 0.7).view(), 0);
   const FrameContacts& stuck = tracker.update(mostly_sliding(14, 16, 0.1).view(), 1);
   EXPECT_EQ(stuck.contacts.at(0).quantities.friction_source, FrictionSource::prior);
+}
+
+/// The same contact, 15 pillars (19 mm) further on.
+ForceField moved(const ForceField& field) {
+  ForceField wide(field.rows, field.cols + 30);
+  for (std::size_t i = 0; i < field.pillars(); ++i) {
+    load(wide, static_cast<std::uint32_t>(i / field.cols),
+         static_cast<std::uint32_t>(15 + i % field.cols), field.shear_x[i], field.shear_y[i],
+         field.normal[i], field.status[i]);
+  }
+  return wide;
+}
+
+TEST(Friction, IsCarriedOverAsFarAsAContactMayJump) {
+  for (const double reach_mm : {5.0, 50.0}) {
+    ContactTracker tracker(kPitchMm, {.reach_mm = reach_mm});
+    ForceField first = moved(mostly_sliding(8, 8, 0.7));
+    for (auto* plane : {&first.shear_x, &first.shear_y, &first.normal}) {
+      std::rotate(plane->begin(), plane->begin() + 15, plane->end());
+    }
+    std::rotate(first.status.begin(), first.status.begin() + 15, first.status.end());
+    tracker.update(first.view(), 0);
+    const ForceField second = moved(mostly_sliding(8, 8, 0.1));
+    const FrameContacts& frame = tracker.update(second.view(), 1);
+    EXPECT_EQ(frame.contacts.at(0).quantities.friction_source,
+              reach_mm < 19 ? FrictionSource::prior : FrictionSource::carried_over);
+  }
 }
 
 /// A stuck punch: all its pillars have the same ratio, which grows with the shear.
