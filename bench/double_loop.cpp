@@ -11,6 +11,7 @@
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::bench {
 namespace {

@@ -110,7 +110,7 @@ Measurement race_paper(const Session& session) {
   Match match(session);
   SolverPlan plan = match.plan();
   plan.estimator = Estimator::paper;
-  FrameSolver paper(session.device, plan, match.frames(), {.lanes = 1});
+  FrameSolver paper(session.device, plan, match.frames(), {}, {.lanes = 1});
   require_near("the paper's equations", paper.solve(match.frames()[0]),
                solve_on_host(plan, match.frames()[0]).view(), kPaperTolerance);
   match.add("one pillar per work-item", [&](int count) { paper.run(count); });

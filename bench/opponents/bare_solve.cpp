@@ -2,6 +2,7 @@
 
 #include "core/force_scale.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::bench {
 

@@ -15,6 +15,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/tuning.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::cli {

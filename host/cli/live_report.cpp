@@ -10,6 +10,7 @@
 #include "cli/json_text.h"
 #include "cli/latencies.h"
 #include "pillarfield/printable.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
 namespace {

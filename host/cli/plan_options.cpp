@@ -9,6 +9,7 @@
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
 namespace {

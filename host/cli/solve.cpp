@@ -20,6 +20,7 @@
 #include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
 namespace {

@@ -13,6 +13,7 @@
 #include "core/raw_reading.h"
 #include "core/sensel_reader.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 namespace {

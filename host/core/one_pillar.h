@@ -7,6 +7,7 @@
 #include "core/force_scale.h"
 #include "core/pillar_maths.h"
 #include "pillarfield/solver_plan.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 

@@ -9,6 +9,7 @@
 #include "core/scene_limits.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 namespace {

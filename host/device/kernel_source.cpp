@@ -10,7 +10,7 @@
 #include "device/block_lanes.h"
 #include "device/kernel_files.h"
 #include "device/sensel_macro.h"
-#include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 namespace {

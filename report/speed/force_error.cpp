@@ -6,6 +6,7 @@
 #include "bench/variant_solver.h"
 #include "core/pillar_sensels.h"
 #include "pillarfield/status.h"
+#include "pillarfield/tuning.h"
 #include "tests/core/bound.h"
 
 namespace pillarfield::report {

@@ -18,6 +18,7 @@
 #include "core/sensor.h"
 #include "pillarfield/component_ends.h"
 #include "pillarfield/status.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::field_study {
 namespace {

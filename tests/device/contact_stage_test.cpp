@@ -13,6 +13,7 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
 #include "same_bits.h"
 #include "tests/device/test_device.h"
