@@ -1,4 +1,5 @@
-// Your own readings in memory to forces: one frame, in which one pillar is pressed and pulled right.
+// Your own readings in memory to forces: one frame, in which one pillar is pressed and pulled
+// right.
 #include <pillarfield/pillarfield.h>
 
 #include <cstdio>
