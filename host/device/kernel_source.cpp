@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "core/force_scale.h"
-#include "core/wake_levels.h"
 #include "device/block_lanes.h"
 #include "device/kernel_files.h"
 #include "device/sensel_macro.h"
 #include "pillarfield/processor.h"
+#include "skin/force_scale.h"
+#include "solve/wake_levels.h"
 
 namespace pillarfield {
 namespace {
