@@ -1,7 +1,7 @@
-#include "core/host_solve.h"
 #include "fuzz/some_frames.h"
 #include "fuzz/targets.h"
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/solver_plan.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bench/variants.h"
-#include "core/host_solve.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield::bench {

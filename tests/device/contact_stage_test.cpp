@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "contacts/contact_estimator.h"
-#include "core/host_solve.h"
+#include "contacts/estimator/contact_estimator.h"
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"

@@ -10,9 +10,9 @@
 #include <random>
 #include <thread>
 
-#include "core/host_solve.h"
 #include "device/slot_turns.h"
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
 #include "tests/device/test_device.h"

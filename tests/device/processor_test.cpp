@@ -11,8 +11,8 @@
 #include <numbers>
 #include <optional>
 
-#include "core/host_solve.h"
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"
 #include "same_bits.h"

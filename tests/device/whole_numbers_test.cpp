@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "core/host_solve.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/tuning.h"
 #include "random_plan.h"

@@ -10,7 +10,7 @@
 namespace pillarfield {
 
 /// @cond internal
-struct SilentBlocks;  // core/silent_blocks.h
+struct SilentBlocks;  // solve/silent_blocks.h
 /// @endcond
 
 /// A run of adjacent loaded pillars in one row.

@@ -1,3 +1,0 @@
-#pragma once
-
-#include "pillarfield/host_solve.h"
