@@ -1,5 +1,4 @@
-// Your own readings in memory to forces: one frame, in which one pillar is pressed and pulled
-// right.
+// From readings in memory to forces: a frame in which one pillar is pressed and pulled right.
 #include <pillarfield/pillarfield.h>
 
 #include <cstdio>

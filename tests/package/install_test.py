@@ -95,7 +95,7 @@ class Readme(unittest.TestCase):
 
         import h5py
         with h5py.File(folder / "mine_forces.h5") as forces:
-            normal = forces["forces/normal"][:].sum(axis=(1, 2))
+            normal = forces["force/normal"][:].sum(axis=(1, 2))
         self.assertAlmostEqual(normal[:100].max(), 0, delta=0.1)
         self.assertAlmostEqual(normal[100:].mean(), 25, delta=0.2)  # 50 pillars of 160 counts
 
