@@ -71,6 +71,27 @@ class Examples(unittest.TestCase):
         self.assertNotIn("libOpenCL", run("readelf", "--dynamic", "examples/simulate"))
         self.assertIn("libOpenCL", run("readelf", "--dynamic", "examples/solve_frame"))
 
+    def test_the_core_is_found_without_opencl_and_hdf5(self):
+        folder = WORK / "core"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(core LANGUAGES CXX)\n"
+            "find_package(pillarfield REQUIRED COMPONENTS core)\n"
+            "add_executable(core main.cpp)\ntarget_link_libraries(core PRIVATE pillarfield::core)\n")
+        (folder / "main.cpp").write_text(
+            "#include <pillarfield/pillarfield.h>\n"
+            "int main() {\n"
+            "  pillarfield::SolverPlan plan;\n"
+            "  plan.skin.rows = plan.skin.cols = 2;\n"
+            "  const std::uint8_t readings[] = {80, 80, 80, 80};  // 0.25 N\n"
+            "  const auto forces = solve_on_host(plan, {readings, plan.sensel_type, 2, 2, 2});\n"
+            "  return forces.normal[0] == 0.25F ? 0 : 1;\n"
+            "}\n")
+        run("cmake", "-S", "core", "-B", "core/build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={PREFIX}",
+            "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_HDF5=ON")
+        run("cmake", "--build", "core/build")
+        run("core/build/core")
+
 
 class Readme(unittest.TestCase):
     def test_its_program_is_the_example(self):
