@@ -16,9 +16,8 @@ namespace pillarfield {
 /// Options of FaultFinder.
 struct FaultOptions {
   std::uint32_t least_frames = 30;  ///< frames in which parity must predict a sensel
-  double still_factor = 10;  ///< a reading is still if its range is below this multiple of noise
-  double moving_factor =
-      5;  ///< a prediction moves if its deviation is above this multiple of noise
+  double still_factor = 10;         ///< a still reading's range is below this multiple of its noise
+  double moving_factor = 5;         ///< a moving prediction's deviation is above this one
 };
 
 /// The result of FaultFinder.

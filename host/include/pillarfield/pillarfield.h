@@ -18,23 +18,20 @@
 /// In the order in which you meet them:
 ///
 /// - Skin: the size of the skin and the constants of its sensels. Four sensels carry a pillar.
-/// - Calibration: what differs from sensel to sensel (tare, gain, dead zone, mask, noise), one
-/// plane
-///   each. take_tare(), equilibrate(), calibrate_load() and FaultFinder measure it step by step
-///   into a SkinCalibration; apply() puts that into a plan.
-/// - FrameView, FrameBuffer: one frame of readings, yours or owned.
+/// - Calibration: one plane for each property that differs from sensel to sensel: tare, gain, dead
+///   zone, mask, noise. take_tare(), equilibrate(), calibrate_load() and FaultFinder measure them
+///   step by step into a SkinCalibration; apply() puts that into a plan.
+/// - FrameView, FrameBuffer: one frame of readings, in your memory or in its own.
 /// - SolverPlan: the skin, its calibration, the estimator, and what to compute beside forces.
 /// - Processor solves frames on an OpenCL device, several in flight. solve_on_host() solves one in
-/// the
-///   calling thread, without OpenCL.
+///   the calling thread, without OpenCL.
 /// - ForceFieldView: the result, a view into the processor. ForceField owns its memory.
 /// - status: a byte per pillar says which sensels were usable, and whether the force is ambiguous.
-///   region_of() gives the paper's region: 1 and 2 are determined; 3 is ambiguous.
+///   region_of() gives the paper's region: 1 and 2 are determined, 3 is ambiguous.
 /// - ContactTracker: the contacts of frame after frame, each with its force, torque, centre of
 ///   pressure, friction and slip, and an id that stays.
 /// - Files: open_frames() and RecordingWriter for recordings, create_force_sink() and
-/// ForceFileReader
-///   for forces, create_contact_sink() for contacts, read_calibration_file() and
+///   ForceFileReader for forces, create_contact_sink() for contacts, read_calibration_file() and
 ///   write_calibration_file().
 /// - Simulator makes frames with exact truth from a Scene; Comparison and Coverage measure errors.
 ///
