@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
 #include "cli/calibrate_report.h"
 #include "cli/json_text.h"
-#include "cli/number_range.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/printable.h"
@@ -15,16 +13,9 @@
 namespace pillarfield::cli {
 namespace {
 
-struct EquilibrateCommand {
-  std::vector<std::string> files;
-  std::vector<double> pressures_kpa;
-  EquilibrationOptions equilibration;
-  StepOptions step;
-};
-
 void print_json(const EquilibrateCommand& command, const EquilibrationResult& result,
                 std::uint64_t frames) {
-  nlohmann::ordered_json json = {{"output", command.step.output},
+  nlohmann::ordered_json json = {{"output", command.output},
                                  {"frames", frames},
                                  {"levels", result.levels},
                                  {"counts_per_newton", *result.calibration.counts_per_newton},
@@ -40,7 +31,7 @@ void print_json(const EquilibrateCommand& command, const EquilibrationResult& re
 void print_text(const EquilibrateCommand& command, const EquilibrationResult& result,
                 std::uint64_t frames) {
   fmt::print(
-      "Equilibrated {} x {} sensels from {} frames at {} kPa\n"
+      "Equilibrated {} x {} sensels from {} frames at {:g} kPa\n"
       "  gain          {:8.2f} % standard deviation, mean 1\n"
       "  sensitivity   {:8.2f} counts per newton and pillar\n",
       result.calibration.rows, result.calibration.cols, frames,
@@ -57,7 +48,7 @@ void print_text(const EquilibrateCommand& command, const EquilibrationResult& re
                100 * result.nonlinearity);
   }
   print_findings(result.calibration, result.findings);
-  fmt::print("Wrote {}\n", printable(command.step.output));
+  fmt::print("Wrote {}\n", printable(command.output));
 }
 
 void print_remarks(const EquilibrateCommand& command, const EquilibrationResult& result) {
@@ -69,8 +60,10 @@ void print_remarks(const EquilibrateCommand& command, const EquilibrationResult&
              printable(command.files.back()), 100 * result.shear);
 }
 
-void run(const EquilibrateCommand& command) {
-  const StepInput input = read_input(command.files, command.step);
+}  // namespace
+
+void calibrate(const EquilibrateCommand& command) {
+  const StepInput input = read_input(command.files, command);
   std::vector<UniformPress> presses;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
     presses.push_back({input.files[i], command.pressures_kpa[i]});
@@ -80,41 +73,13 @@ void run(const EquilibrateCommand& command) {
       "equilibrate", names_of(command.files), input.frames,
       fmt::format("pressures_kpa = {}, most_unevenness = {}", fmt::join(command.pressures_kpa, " "),
                   command.equilibration.most_unevenness)));
-  write_calibration_file(command.step.output, result.calibration, command.step.replace);
+  write_calibration_file(command.output, result.calibration, command.replace);
   print_remarks(command, result);
-  if (command.step.json) {
+  if (command.json) {
     print_json(command, result, input.frames);
-  } else {
+  } else if (!command.quiet) {
     print_text(command, result, input.frames);
   }
-}
-
-}  // namespace
-
-void add_calibrate_equilibrate(CLI::App& calibrate, Work& work) {
-  const auto options = std::make_shared<EquilibrateCommand>();
-  CLI::App* const command = calibrate.add_subcommand(
-      "equilibrate", "Gains, and with several pressures dead zones, from uniform pressure");
-  command->add_option("UNIFORM", options->files, "Frames under uniform pressure, a file for each")
-      ->required();
-  command
-      ->add_option("--pressure-kpa", options->pressures_kpa,
-                   "Pressure of each file, in their order: P1,P2,...")
-      ->required()
-      ->check(number_range(1e-6, 1e6).description(""))
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_calibration_option(*command, options->step);
-  command
-      ->add_option("--max-unevenness", options->equilibration.most_unevenness,
-                   "Largest share by which the pressure may vary from pillar to pillar")
-      ->check(number_range(0, 1e6).description(""))
-      ->capture_default_str();
-  add_step_options(*command, options->step, "Calibration to write (HDF5)");
-  command->callback([options, &work] {
-    require_one_each("--pressure-kpa", options->files, options->pressures_kpa);
-    work = [options] { run(*options); };
-  });
 }
 
 }  // namespace pillarfield::cli

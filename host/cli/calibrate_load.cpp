@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
-#include "cli/choice.h"
 #include "cli/json_text.h"
-#include "cli/number_range.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/load_calibration.h"
 #include "pillarfield/printable.h"
@@ -18,18 +15,11 @@ namespace {
 /// Beyond this share the load stands on pillars that are ambiguous.
 constexpr double kMuchAmbiguous = 0.05;
 
-struct LoadCommand {
-  std::vector<std::string> files;
-  std::vector<double> loads_n;
-  LoadModel model = LoadModel::linear;
-  StepOptions step;
-};
-
 const char* name_of(LoadModel model) { return model == LoadModel::power ? "power" : "linear"; }
 
 void print_json(const LoadCommand& command, const LoadResult& result, std::uint64_t frames) {
   const SkinCalibration& calibration = result.calibration;
-  nlohmann::ordered_json json = {{"output", command.step.output},
+  nlohmann::ordered_json json = {{"output", command.output},
                                  {"frames", frames},
                                  {"model", name_of(command.model)},
                                  {"counts_per_newton", *calibration.counts_per_newton},
@@ -68,7 +58,7 @@ void print_text(const LoadCommand& command, const LoadResult& result, std::uint6
                load.load_n, load.solved_n, 100 * (load.solved_n / load.load_n - 1),
                100 * load.ambiguous_share);
   }
-  fmt::print("Wrote {}\n", printable(command.step.output));
+  fmt::print("Wrote {}\n", printable(command.output));
 }
 
 void print_remarks(const LoadCommand& command, const LoadResult& result) {
@@ -87,8 +77,10 @@ void print_remarks(const LoadCommand& command, const LoadResult& result) {
   }
 }
 
-void run(const LoadCommand& command) {
-  const StepInput input = read_input(command.files, command.step);
+}  // namespace
+
+void calibrate(const LoadCommand& command) {
+  const StepInput input = read_input(command.files, command);
   std::vector<KnownLoad> loads;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
     loads.push_back({input.files[i], command.loads_n[i]});
@@ -98,41 +90,13 @@ void run(const LoadCommand& command) {
       step_done("load", names_of(command.files), input.frames,
                 fmt::format("loads_n = {}, model = {}", fmt::join(command.loads_n, " "),
                             name_of(command.model))));
-  write_calibration_file(command.step.output, result.calibration, command.step.replace);
+  write_calibration_file(command.output, result.calibration, command.replace);
   print_remarks(command, result);
-  if (command.step.json) {
+  if (command.json) {
     print_json(command, result, input.frames);
-  } else {
+  } else if (!command.quiet) {
     print_text(command, result, input.frames);
   }
-}
-
-}  // namespace
-
-void add_calibrate_load(CLI::App& calibrate, Work& work) {
-  const auto options = std::make_shared<LoadCommand>();
-  CLI::App* const command = calibrate.add_subcommand(
-      "load", "Counts per newton, and a power law, from known normal loads");
-  command
-      ->add_option("FRAMES", options->files, "Frames under a load that stands still, a file each")
-      ->required();
-  command
-      ->add_option("--load-n", options->loads_n,
-                   "Normal load of each file, in their order: L1,L2,... or given again for each")
-      ->required()
-      ->check(number_range(1e-6, 1e6).description(""))
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_choice<LoadModel>(
-      *command, "--model", options->model,
-      {{"linear", LoadModel::linear}, {"power", LoadModel::power}},
-      "linear: in proportion; power: by a power law, from two loads or more [linear]");
-  add_calibration_option(*command, options->step);
-  add_step_options(*command, options->step, "Calibration to write (HDF5)");
-  command->callback([options, &work] {
-    require_one_each("--load-n", options->files, options->loads_n);
-    work = [options] { run(*options); };
-  });
 }
 
 }  // namespace pillarfield::cli

@@ -6,11 +6,11 @@
 #include <array>
 #include <optional>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
+#include "cli/number_text.h"
 #include "cli/progress.h"
-#include "cli/trust_option.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/error.h"
@@ -20,14 +20,6 @@
 
 namespace pillarfield::cli {
 namespace {
-
-struct CompareOptions {
-  std::string forces;
-  std::string recording;
-  ReadOptions read;
-  bool json = false;
-  bool quiet = false;
-};
 
 struct Row {
   std::string name;
@@ -86,7 +78,7 @@ void print_row(const Row& row) {
                                 ? 0
                                 : 100 * static_cast<double>(errors.status_mismatches) /
                                       static_cast<double>(errors.pillars);
-  fmt::print("{:<8} {:>10} {} {}", row.name, errors.pillars, fitted(errors.rms_n, 9, 4),
+  fmt::print("{:<8} {:>13} {} {}", row.name, grouped(errors.pillars), fitted(errors.rms_n, 9, 4),
              fitted(errors.p95_n, 9, 4));
   if (row.name == "none") {
     fmt::print(" {:>8} {:>8} {:>9} {:>9}", "-", "-", "-", "-");
@@ -95,15 +87,15 @@ void print_row(const Row& row) {
                fitted(100 * errors.p95_relative, 8, 1, "%"), errors.theta_rms_rad,
                errors.phi_rms_rad);
   }
-  fmt::print(" {:>9.2f}%\n", mismatches);
+  fmt::print(" {:>9.1f}%\n", mismatches);
 }
 
 void print_text(const std::vector<Row>& rows, std::uint64_t frames, const CompareOptions& options) {
   fmt::print("{} against the truth in {}, {} frames\n\n", printable(options.forces),
-             printable(options.recording), frames);
-  fmt::print("{:<8} {:>10} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
+             printable(options.recording), grouped(frames));
+  fmt::print("{:<8} {:>13} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
              "of the true force", "angle RMS, rad", "status");
-  fmt::print("{:<8} {:>10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
+  fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
              "RMS", "95 %", "RMS", "95 %", "theta", "phi", "differs");
   for (const Row& row : rows) print_row(row);
   fmt::print(
@@ -115,14 +107,14 @@ void print_text(const std::vector<Row>& rows, std::uint64_t frames, const Compar
 }
 
 void print_coverage(const Coverage& coverage) {
-  fmt::print("\n{:<8} {:>10} {:^29} {:>12}\n", "solved", "", "truths within 1.96 deviations",
+  fmt::print("\n{:<8} {:>13} {:^29} {:>12}\n", "solved", "", "truths within 1.96 deviations",
              "between");
-  fmt::print("{:<8} {:>10} {:>9} {:>9} {:>9} {:>12}\n", "region", "pillars", "shear_x", "shear_y",
+  fmt::print("{:<8} {:>13} {:>9} {:>9} {:>9} {:>12}\n", "region", "pillars", "shear_x", "shear_y",
              "normal", "the ends");
   for (const Region region : kCoveredRegions) {
     const RegionCoverage of_region = coverage.region(region);
-    fmt::print("{:<8} {:>10} {:>8.2f}% {:>8.2f}% {:>8.2f}% {:>11.2f}%\n", name_of(region),
-               of_region.pillars, 100 * of_region.shear_x, 100 * of_region.shear_y,
+    fmt::print("{:<8} {:>13} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>11.1f}%\n", name_of(region),
+               grouped(of_region.pillars), 100 * of_region.shear_x, 100 * of_region.shear_y,
                100 * of_region.normal, 100 * of_region.ends);
   }
   fmt::print(
@@ -155,6 +147,8 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   return frames;
 }
 
+}  // namespace
+
 void compare(const CompareOptions& options) {
   const ForceFileReader forces(options.forces, options.read);
   const std::unique_ptr<FrameSource> recording = open_frames(options.recording, options.read);
@@ -183,22 +177,6 @@ void compare(const CompareOptions& options) {
     print_text(rows, frames, options);
     if (coverage) print_coverage(*coverage);
   }
-}
-
-}  // namespace
-
-void add_compare(CLI::App& app, Work& work) {
-  const auto options = std::make_shared<CompareOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "compare", "Tell how far solved forces are from the truth, region by region");
-  command->add_option("FORCES", options->forces, "Force fields written by solve (.h5)")->required();
-  command
-      ->add_option("RECORDING", options->recording, "The recording they come from, with its truth")
-      ->required();
-  add_trust_option(*command, options->read);
-  command->add_flag("--json", options->json, "Print the table as JSON");
-  command->add_flag("-q,--quiet", options->quiet, "Show no progress");
-  command->callback([options, &work] { work = [options] { compare(*options); }; });
 }
 
 }  // namespace pillarfield::cli

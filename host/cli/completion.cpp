@@ -1,8 +1,8 @@
 // pillarfield completion: scripts by which shells complete the command.
 
-#include <fmt/format.h>
+#include "cli/completion.h"
 
-#include "cli/command.h"
+#include <fmt/format.h>
 
 namespace pillarfield::cli {
 namespace {
@@ -92,21 +92,9 @@ std::string fish_lines(const CLI::App& app, const std::string& called) {
 
 }  // namespace
 
-void add_completion(CLI::App& app, Work& work) {
-  const auto shell = std::make_shared<std::string>();
-  CLI::App* const command = app.add_subcommand(
-      "completion", "Print a completion script: source <(pillarfield completion bash)");
-  command->add_option("SHELL", *shell, "bash, zsh or fish")
-      ->required()
-      ->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  command->callback([shell, &app, &work] {
-    work = [shell, &app] {
-      const std::string script = *shell == "fish"  ? fish_lines(app, "")
-                                 : *shell == "zsh" ? zsh_script(app)
-                                                   : bash_script(app);
-      fmt::print("{}", script);
-    };
-  });
+std::string completion_script(const CLI::App& app, const std::string& shell) {
+  if (shell == "fish") return fish_lines(app, "");
+  return shell == "zsh" ? zsh_script(app) : bash_script(app);
 }
 
 }  // namespace pillarfield::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace pillarfield {
 
@@ -22,5 +23,8 @@ struct ReadOptions {
 /// runs no handler of signals or of exit, and prints nothing. Once a file has passed it may be
 /// opened with ReadOptions::trust.
 void probe_file(const std::filesystem::path& path);
+
+/// The version of the HDF5 library, as "1.10.8".
+[[nodiscard]] std::string hdf5_version();
 
 }  // namespace pillarfield

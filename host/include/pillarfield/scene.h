@@ -53,6 +53,7 @@ struct Scene {
   bool angles = false;
   bool uncertainty = false;
   std::optional<double> baseline_time_s;  ///< time constant with which the tare follows a drift
+  std::vector<std::string> remarks;       ///< on what its file says, as of former names
   std::variant<std::vector<Contact>, Chart> load;
   std::vector<Body> bodies;   ///< beside contacts, not beside a chart
   double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies; incompressible
