@@ -34,7 +34,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
   std::string nearest;
   std::size_t fewest = word.size() / 3 + 1;
   for (const std::string& candidate : candidates) {
-    const bool begins = word.size() > 3 && candidate.starts_with(word);
+    const bool begins = word.size() >= 3 && candidate.starts_with(word);
     const std::size_t edits = begins ? 1 : edits_between(word, candidate);
     if (edits >= fewest + (nearest.empty() ? 1 : 0)) continue;
     fewest = edits;

@@ -267,23 +267,6 @@ class WrongInput(Calibrate):
         self.assert_fails("solve", small, "--calibration", tared, "-o", self.folder / "new.h5",
                           says=["small.h5", "60 x 40", "60 x 60"])
 
-    def test_wrong_command_lines_end_with_2(self):
-        for arguments in ([], ["tare"], ["tare", "a"], ["equilibrate", "a", "-o", "b"],
-                          ["equilibrate", "a", "b", "--pressure-kpa", "1", "--calibration", "c",
-                           "-o", "d"],
-                          ["equilibrate", "a", "--pressure-kpa", "0", "--calibration", "c", "-o",
-                           "d"],
-                          ["load", "a", "--load-n", "-3", "--calibration", "c", "-o", "d"],
-                          ["load", "a", "--load-n", "1,2", "--calibration", "c", "-o", "d"],
-                          ["load", "a", "--load-n", "1", "--calibration", "c", "-o", "d",
-                           "--model", "cubic"],
-                          ["tare", "a", "-o", "b", "--threshold-factor", "-1"],
-                          ["apply", "a"]):
-            with self.subTest(arguments=arguments):
-                result = run("calibrate", *arguments, expect=2)
-                self.assertEqual(result.stdout, "")
-                self.assertNotEqual(result.stderr, "")
-
 
 if __name__ == "__main__":
     unittest.main()

@@ -243,8 +243,6 @@ class Contacts(CommandTest):
         self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
                           "--contact-reach", "1e9", says=["the command line"])
         self.assert_folder_holds(*before)
-        result = run("solve", self.recording, "-o", self.forces, "--minimum-pillars", 4, expect=2)
-        self.assertIn("--contacts", result.stderr)
 
     def test_interrupt_leaves_no_half_table(self):
         run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 4000,
@@ -261,11 +259,6 @@ class Contacts(CommandTest):
             self.assertEqual(process.wait(60), 1)
         self.assertEqual(self.csv.read_text(encoding="utf-8"), "precious")
         self.assert_folder_holds("contacts.csv", "several.h5")
-
-    def test_completion_knows_the_options(self):
-        script = run("completion", "bash").stdout
-        for option in ("--contacts", "--minimum-pillars", "--friction", "--contact-reach"):
-            self.assertIn(option, script)
 
 
 if __name__ == "__main__":

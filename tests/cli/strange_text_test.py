@@ -68,8 +68,8 @@ class StrangeText(CommandTest):
                          "i\ufffdn.h5")
         compared = json.loads(output_of("compare", forces, recording, "--json")[0])
         self.assertEqual(compared["frames"], 10)
-        live = json.loads(output_of("live", recording, "--seconds", "0.1", "--json")[0])
-        self.assertTrue(live["source"].endswith("i\ufffdn.h5"))
+        paced = json.loads(output_of("pace", recording, "--seconds", "0.1", "--json")[0])
+        self.assertTrue(paced["source"].endswith("i\ufffdn.h5"))
         calibration = name(b"k\xff.h5")
         for step, written in ((["tare", recording, "--preloaded"], calibration),
                               (["apply", calibration, recording], name(b"l\xff.h5"))):
@@ -102,7 +102,7 @@ class StrangeText(CommandTest):
     def test_names_of_files_do_not_command_the_terminal(self):
         absent = self.folder / f"{ESCAPES}.h5"
         for command in (["info", absent], ["solve", absent, "-o", "a.h5"],
-                        ["compare", absent, absent], ["live", absent],
+                        ["compare", absent, absent], ["pace", absent],
                         ["calibrate", "tare", absent, "-o", "a.h5"]):
             self.assertIn(ESCAPED, self.either(*command)[1])
         self.assertIn(ESCAPED, self.either("simulate", self.scene, "-o", absent)[0])
