@@ -71,6 +71,10 @@ CLI::Validator one_of(const std::vector<std::string>& words, const std::string& 
   return {complaint, ""};
 }
 
+std::string complaint_of_stream(const std::string& text) {
+  return text == "-" ? "'-' names no stream; ./- is a file of this name" : "";
+}
+
 /// Adds arguments under one heading of a command's help.
 class Group {
  public:
@@ -79,7 +83,15 @@ class Group {
   template <class Target>
   CLI::Option* text(const std::string& names, Target& target, const char* kind,
                     const char* description) {
-    return command_->add_option(names, target, description)->type_name(kind)->group(heading_);
+    return command_->add_option(names, target, description)
+        ->type_name(kind)
+        ->group(heading_)
+        ->check(CLI::Validator(complaint_of_stream, ""));
+  }
+
+  template <class Target>
+  void file(const std::string& name, Target& target, const char* description) {
+    text(name, target, "FILE", description)->required();
   }
 
   template <class Target>
@@ -132,11 +144,15 @@ class Group {
 
 // Arguments that several commands have.
 
+void add_help(CLI::App* command) {
+  command->set_help_flag("-h,--help", "Print this help and exit")->group("General");
+}
+
 void add_general(CLI::App* command, PrintOptions& options, const char* json, const char* quiet) {
   Group general(command, "General");
   general.flag("--json", options.json, json);
   general.flag("-q,--quiet", options.quiet, quiet);
-  command->set_help_flag("-h,--help", "Print this help and exit")->group("General");
+  add_help(command);
 }
 
 constexpr const char* kQuietWriter = "Print nothing but errors, warnings and what --json asks for";
@@ -243,7 +259,8 @@ struct Command {
 
 template <class Options>
 Command<Options> add_command(CLI::App& parent, Work& work, void (*run)(const Options&),
-                             const char* name, const char* description, const char* examples) {
+                             const char* name, const char* description,
+                             const std::string& examples) {
   const auto options = std::make_shared<Options>();
   CLI::App* const command = parent.add_subcommand(name, description);
   command->footer(examples);
@@ -258,7 +275,7 @@ void add_simulate(CLI::App& parent, Work& work) {
       "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
       "  pillarfield simulate scenes/sliding.toml -o noisy.h5 --frames 20 --seed 7\n");
   Group input(command, "Input");
-  input.text("SCENE", options->scene, "FILE", "Scene (TOML), see docs/scenes.md")->required();
+  input.file("SCENE", options->scene, "Scene (TOML), see docs/scenes.md");
   input.whole("--frames", options->frames, "N", "Number of frames [the scene's]", 1, 100'000'000);
   input.whole("--seed", options->seed, "N", "Seed of the sensor's noise [the scene's]", 0,
               kLargestSeed);
@@ -278,8 +295,7 @@ void add_solve(CLI::App& parent, Work& work) {
       "  pillarfield solve demo.h5 -o forces.npy --outputs angles,uncertainty --noise 0.5\n"
       "  pillarfield solve demo.h5 -o forces.h5 --estimator contact --contacts contacts.csv\n");
   Group input(command, "Input");
-  input.text("INPUT", options->input, "FILE", "Recording (HDF5) or Tekscan ASCII export")
-      ->required();
+  input.file("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export");
   add_output(command, *options, "Force fields; the ending chooses: .h5, .csv or .npy");
   add_sensor(command, options->plan);
   add_solver(command, options->plan);
@@ -310,10 +326,8 @@ void add_pace(CLI::App& parent, Work& work) {
       "  pillarfield pace scenes/demo.toml --rate 500 --everything --seconds 2\n");
   command->alias("live");
   Group input(command, "Input");
-  input
-      .text("SOURCE", options->source, "FILE",
-            "Scene (TOML), recording (HDF5) or Tekscan ASCII export, replayed from memory")
-      ->required();
+  input.file("SOURCE", options->source,
+             "Scene (TOML), recording (HDF5) or Tekscan ASCII export, replayed from memory");
   input.whole("--memory-limit", options->memory_limit_mib, "MIB",
               "Load at most so much of it beforehand [1024]", 1, 1U << 20U);
   Group pacing(command, "Pace");
@@ -349,9 +363,8 @@ void add_compare(CLI::App& parent, Work& work) {
       "  pillarfield compare sliding_forces.h5 sliding.h5\n"
       "  pillarfield compare sliding_forces.h5 sliding.h5 --json\n");
   Group input(command, "Input");
-  input.text("FORCES", options->forces, "FILE", "Force fields of solve (.h5)")->required();
-  input.text("RECORDING", options->recording, "FILE", "Their recording, with its truth")
-      ->required();
+  input.file("FORCES", options->forces, "Force fields of solve (.h5)");
+  input.file("RECORDING", options->recording, "Their recording, with its truth");
   add_trust(command, options->read);
   add_general(command, *options, "Print the table as JSON", kQuietReport);
 }
@@ -372,6 +385,15 @@ void add_step(CLI::App* command, StepOptions& options, bool goes_on, const char*
 
 constexpr const char* kCalibration = "Calibration (HDF5)";
 
+// Examples that the steps share.
+constexpr const char* kIdleSkin =
+    "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
+    "  pillarfield calibrate tare idle.h5 -o tared.h5\n";
+constexpr const char* kPressedSkin =
+    "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
+    "  pillarfield simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5\n"
+    "  pillarfield calibrate tare idle.h5 -o tared.h5\n";
+
 /// Complains unless there is a value of `option` for each file.
 void require_one_each(const char* option, const std::vector<std::string>& files,
                       const std::vector<double>& values) {
@@ -383,12 +405,10 @@ void require_one_each(const char* option, const std::vector<std::string>& files,
 void add_tare(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<TareCommand>(
       parent, work, calibrate, "tare", "Tare, noise and threshold from frames of the idle skin.",
-      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o strict.h5 --threshold-factor 6\n");
+      std::string(kIdleSkin) +
+          "  pillarfield calibrate tare idle.h5 -o strict.h5 --threshold-factor 6\n");
   Group input(command, "Input");
-  input.text("UNLOADED", options->unloaded, "FILE", "Frames in which nothing touches the skin")
-      ->required();
+  input.file("UNLOADED", options->unloaded, "Frames in which nothing touches the skin");
   input.text("--calibration", options->calibration, "FILE",
              "Calibration whose tare is renewed; the rest of it is kept [none]");
   Group step(command, "Tare");
@@ -403,14 +423,12 @@ void add_equilibrate(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<EquilibrateCommand>(
       parent, work, calibrate, "equilibrate",
       "Gains, and with several pressures dead zones, from uniform pressure.",
-      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-      "  pillarfield simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
-      "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration tared.h5 "
-      "-o equal.h5\n");
+      std::string(kPressedSkin) +
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
+          "tared.h5 "
+          "-o equal.h5\n");
   Group(command, "Input")
-      .text("UNIFORM", options->files, "FILE", "Frames under uniform pressure, a file for each")
-      ->required();
+      .file("UNIFORM", options->files, "Frames under uniform pressure, a file for each");
   Group step(command, "Equilibration");
   step.numbers("--pressure-kpa", options->pressures_kpa, "P1,P2,...",
                "Pressure of each file, in their order");
@@ -425,13 +443,11 @@ void add_equilibrate(CLI::App& parent, Work& work) {
 void add_load(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<LoadCommand>(
       parent, work, calibrate, "load", "Counts per newton, and a power law, from known loads.",
-      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-      "  pillarfield simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
-      "  pillarfield calibrate load pressed.h5 --load-n 200 --calibration tared.h5 -o loaded.h5\n");
+      std::string(kPressedSkin) +
+          "  pillarfield calibrate load pressed.h5 --load-n 200 --calibration tared.h5 -o "
+          "loaded.h5\n");
   Group(command, "Input")
-      .text("FRAMES", options->files, "FILE", "Frames under a load that stands still, a file each")
-      ->required();
+      .file("FRAMES", options->files, "Frames under a load that stands still, a file each");
   Group step(command, "Load");
   step.numbers("--load-n", options->loads_n, "L1,L2,...",
                "Normal load of each file, in their order");
@@ -453,8 +469,7 @@ void add_faults(CLI::App& parent, Work& work) {
       "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
       "  pillarfield calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5\n");
   Group(command, "Input")
-      .text("FRAMES", options->frames, "FILE", "Frames in which the skin is pressed all over")
-      ->required();
+      .file("FRAMES", options->frames, "Frames in which the skin is pressed all over");
   Group step(command, "Faults");
   FaultOptions& faults = options->faults;
   step.whole("--min-frames", faults.least_frames, "N",
@@ -471,13 +486,10 @@ void add_apply(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<ApplyCommand>(
       parent, work, calibrate, "apply",
       "Copy a recording, its raw readings unchanged, and put a calibration into the copy.",
-      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
-      "  pillarfield calibrate apply tared.h5 idle.h5 -o calibrated.h5\n");
+      std::string(kIdleSkin) + "  pillarfield calibrate apply tared.h5 idle.h5 -o calibrated.h5\n");
   Group input(command, "Input");
-  input.text("CALIBRATION", options->calibration, "FILE", "Calibration")->required();
-  input.text("RECORDING", options->recording, "FILE", "Recording or Tekscan export to copy")
-      ->required();
+  input.file("CALIBRATION", options->calibration, "Calibration");
+  input.file("RECORDING", options->recording, "Recording or Tekscan export to copy");
   add_step(command, *options, false, "Recording (HDF5)");
 }
 
@@ -485,9 +497,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   CLI::App* const steps = parent.add_subcommand(
       "calibrate", "Measure what the sensels of a skin do, step by step; see docs/calibration.md.");
   steps->footer(
-      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-      "  pillarfield simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
+      std::string(kPressedSkin) +
       "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration tared.h5 "
       "-o equal.h5\n"
       "  pillarfield solve pressed.h5 --calibration equal.h5 -o forces.h5\n");
@@ -497,7 +507,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   add_load(*steps, work);
   add_faults(*steps, work);
   add_apply(*steps, work);
-  steps->set_help_flag("-h,--help", "Print this help and exit")->group("General");
+  add_help(steps);
 }
 
 void add_testbed(CLI::App& parent, Work& work) {
@@ -566,13 +576,17 @@ void add_completion(CLI::App& parent, Work& work) {
       "  pillarfield completion bash >pillarfield.bash\n"
       "  source <(pillarfield completion bash)\n");
   const auto shell = std::make_shared<std::string>();
-  Group(command, "Input")
-      .text("SHELL", *shell, "SHELL", "bash, zsh or fish")
+  const auto words = std::make_shared<std::vector<std::string>>();
+  Group input(command, "Input");
+  input.text("SHELL", *shell, "SHELL", "bash, zsh or fish")
       ->required()
-      ->check(one_of({"bash", "zsh", "fish"}));
-  command->set_help_flag("-h,--help", "Print this help and exit")->group("General");
-  command->callback([shell, &parent, &work] {
-    work = [text = completion_script(parent, *shell)] { fmt::print("{}", text); };
+      ->check(one_of({"bash", "zsh", "fish"}, "words"));
+  // What the scripts ask: `completion words -- calibrate tare`.
+  command->add_option("WORDS", *words)->group("");
+  add_help(command);
+  command->callback([=, &parent, &work] {
+    work = [text = *shell == "words" ? completion_words(parent, *words)
+                                     : completion_script(*shell)] { fmt::print("{}", text); };
   });
 }
 
@@ -645,7 +659,7 @@ Work parse_arguments(int argc, char** argv) {
   CLI::Option* const asks_version =
       general.flag("--version", version, "Print version, build and libraries, and exit");
   general.flag("--json", json, "With --version: print them as JSON")->needs(asks_version);
-  app.set_help_flag("-h,--help", "Print this help and exit")->group("General");
+  add_help(&app);
   try {
     std::ranges::reverse(words);
     app.parse(words);

@@ -5,6 +5,7 @@
 #include "cli/calibrate_input.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
+#include "cli/number_text.h"
 #include "cli/progress.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/printable.h"
@@ -44,8 +45,8 @@ void calibrate(const ApplyCommand& command) {
     const nlohmann::ordered_json json = {{"output", command.output}, {"frames", source->frames()}};
     fmt::print("{}\n", json_text(json));
   } else if (!command.quiet) {
-    fmt::print("Copied {} frames, with the calibration beside them\nWrote {}\n", source->frames(),
-               printable(command.output));
+    fmt::print("Copied {}, with the calibration beside them\nWrote {}\n",
+               counted(source->frames(), "frame"), printable(command.output));
   }
 }
 

@@ -5,11 +5,8 @@
 #include "cli/calibrate_input.h"
 #include "cli/calibrate_report.h"
 #include "cli/interrupt.h"
-#include "cli/json_text.h"
+#include "cli/number_text.h"
 #include "cli/progress.h"
-#include "pillarfield/calibration_file.h"
-#include "pillarfield/fault_finder.h"
-#include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -30,38 +27,25 @@ FaultResult find_faults(const FaultsCommand& command) {
   return finder.result();
 }
 
-void print_json(const FaultsCommand& command, const FaultResult& result) {
-  nlohmann::ordered_json json = {{"output", command.output}, {"frames", result.frames}};
-  add_findings(json, result.calibration, result.findings);
-  json["untested"] = result.untested;
-  fmt::print("{}\n", json_text(json));
-}
-
-void print_text(const FaultsCommand& command, const FaultResult& result) {
-  const std::size_t sensels = std::size_t{result.calibration.rows} * result.calibration.cols;
-  fmt::print("Tested {} x {} sensels with {} frames\n", result.calibration.rows,
-             result.calibration.cols, result.frames);
-  print_findings(result.calibration, result.findings);
-  fmt::print("Untested: {} of {} sensels, which nothing asked to answer; --json lists them\n",
-             result.untested.size(), sensels);
-  fmt::print("Wrote {}\n", printable(command.output));
-}
-
 }  // namespace
 
 void calibrate(const FaultsCommand& command) {
-  FaultResult result = find_faults(command);
+  const FaultResult result = find_faults(command);
+  const SkinCalibration& calibration = result.calibration;
   const FaultOptions& faults = command.faults;
-  result.calibration.history.push_back(
-      step_done("faults", names_of({command.frames}), result.frames,
-                fmt::format("least_frames = {}, still_factor = {}, moving_factor = {}",
-                            faults.least_frames, faults.still_factor, faults.moving_factor)));
-  write_calibration_file(command.output, result.calibration, command.replace);
-  if (command.json) {
-    print_json(command, result);
-  } else if (!command.quiet) {
-    print_text(command, result);
-  }
+  finish_step(
+      command, calibration, "faults", {command.frames}, result.frames,
+      fmt::format("least_frames = {}, still_factor = {}, moving_factor = {}", faults.least_frames,
+                  faults.still_factor, faults.moving_factor),
+      {.headline = fmt::format("Tested {} x {} sensels with {}", calibration.rows, calibration.cols,
+                               counted(result.frames, "frame")),
+       .facts = {},
+       .findings = &result.findings,
+       .more = {{"untested", result.untested}},
+       .lines = {fmt::format("Untested: {} of {} sensels, never predicted to change; --json lists "
+                             "them",
+                             grouped(result.untested.size()),
+                             grouped(std::size_t{calibration.rows} * calibration.cols))}});
 }
 
 }  // namespace pillarfield::cli

@@ -62,13 +62,4 @@ StepInput read_input(const std::vector<std::string>& files, const StepOptions& o
   return input;
 }
 
-std::vector<std::string> names_of(const std::vector<std::string>& files) {
-  std::vector<std::string> names;
-  names.reserve(files.size());
-  for (const std::string& file : files) {
-    names.push_back(std::filesystem::path(file).filename().string());
-  }
-  return names;
-}
-
 }  // namespace pillarfield::cli

@@ -35,7 +35,4 @@ struct StepInput {
 /// that goes before.
 StepInput read_input(const std::vector<std::string>& files, const StepOptions& options);
 
-/// The names of files without their folders, as they are kept in a history.
-std::vector<std::string> names_of(const std::vector<std::string>& files);
-
 }  // namespace pillarfield::cli

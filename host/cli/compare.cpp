@@ -91,8 +91,8 @@ void print_row(const Row& row) {
 }
 
 void print_text(const std::vector<Row>& rows, std::uint64_t frames, const CompareOptions& options) {
-  fmt::print("{} against the truth in {}, {} frames\n\n", printable(options.forces),
-             printable(options.recording), grouped(frames));
+  fmt::print("{} against the truth in {}, {}\n\n", printable(options.forces),
+             printable(options.recording), counted(frames, "frame"));
   fmt::print("{:<8} {:>13} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
              "of the true force", "angle RMS, rad", "status");
   fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",

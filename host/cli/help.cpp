@@ -54,6 +54,7 @@ std::string usage(const CLI::App& app) {
   std::string line = "Usage: " + full_name(app);
   bool has_more = false;
   for (const CLI::Option* option : app.get_options()) {
+    if (option->get_group().empty()) continue;
     if (option->get_positional()) {
       const std::string name =
           option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
@@ -89,6 +90,7 @@ std::string help_of(const CLI::App& app) {
     text += row(command->get_name(), command->get_description());
   }
   for (const std::string& group : app.get_groups()) {
+    if (group.empty()) continue;
     text += fmt::format("\n{}:\n", group);
     for (const CLI::Option* option : app.get_options()) {
       if (option->get_group() == group) text += row(name_of(*option), option->get_description());

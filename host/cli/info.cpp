@@ -26,15 +26,17 @@ using Json = nlohmann::ordered_json;
 /// A file is opened several times; it is probed once, before, unless it is trusted.
 constexpr ReadOptions kProbed = {.trust = true};
 
-/// A value as text; of an object or a list, the values of its members.
+/// A value as text: of a list its members, of an object also their names.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_float()) return rounded(value.get<double>());
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (!value.is_structured()) return json_text(value);
   std::vector<std::string> parts;
-  for (const Json& part : value) parts.push_back(text_of(part));
-  return fmt::format("{}", fmt::join(parts, ", "));
+  for (const auto& [key, part] : value.items()) {
+    parts.push_back(value.is_object() ? key + " " + text_of(part) : text_of(part));
+  }
+  return fmt::format("{}", fmt::join(parts, value.is_object() ? ", " : " "));
 }
 
 void print_fact(const std::string& key, const Json& value) {

@@ -81,7 +81,8 @@ void print_histogram(const std::vector<LatencyBin>& bins) {
   for (const LatencyBin& bin : bins) {
     const double share = static_cast<double>(bin.frames) / static_cast<double>(fullest->frames);
     fmt::print("  {:>8.3f} to {:>8.3f} {:>9}  {}\n", milliseconds(bin.from), milliseconds(bin.to),
-               bin.frames, std::string(static_cast<std::size_t>(std::ceil(kBarWidth * share)), '#'));
+               bin.frames,
+               std::string(static_cast<std::size_t>(std::ceil(kBarWidth * share)), '#'));
   }
 }
 

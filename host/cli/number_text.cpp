@@ -12,6 +12,10 @@ std::string grouped(std::uint64_t number) {
   return digits;
 }
 
+std::string counted(std::uint64_t number, const char* noun) {
+  return fmt::format("{} {}{}", grouped(number), noun, number == 1 ? "" : "s");
+}
+
 std::string rounded(double number) {
   constexpr double kFiveDigits = 1e4;
   constexpr double kWhole = 1e15;

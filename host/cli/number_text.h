@@ -9,6 +9,9 @@ namespace pillarfield::cli {
 /// "1,234,567".
 [[nodiscard]] std::string grouped(std::uint64_t number);
 
+/// "1 frame", "1,200 frames".
+[[nodiscard]] std::string counted(std::uint64_t number, const char* noun);
+
 /// Five significant digits, all those before the point, an exponent for the tiniest only:
 /// "0.63246", "12,346".
 [[nodiscard]] std::string rounded(double number);

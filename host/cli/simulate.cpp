@@ -36,10 +36,10 @@ void print_summary(const SimulateOptions& options, const Scene& scene, double se
   if (options.quiet) return;
   const double millimetres = skin.sensel_pitch_mm;
   fmt::print(
-      "Simulated '{}': {} frames at {} Hz of {} x {} sensels ({:.0f} x {:.0f} mm, {} pillars) "
+      "Simulated '{}': {} at {} Hz of {} x {} sensels ({:.0f} x {:.0f} mm, {} pillars) "
       "in {:.2f} s\nWrote {} with the true force of every pillar\n",
-      printable(scene.title), grouped(scene.frames), rounded(scene.rate_hz), skin.rows, skin.cols,
-      skin.cols * millimetres, skin.rows * millimetres, grouped(skin.pillars()), seconds,
+      printable(scene.title), counted(scene.frames, "frame"), rounded(scene.rate_hz), skin.rows,
+      skin.cols, skin.cols * millimetres, skin.rows * millimetres, grouped(skin.pillars()), seconds,
       printable(options.output));
 }
 

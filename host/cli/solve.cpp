@@ -154,7 +154,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   const auto frames = static_cast<double>(summary.frames);
   const auto pillars = static_cast<double>(regions.all());
   const DeviceInfo& device = processor.device().info();
-  fmt::print("Solved {} frames of {} x {} pillars on {} ({}, {})\n", grouped(summary.frames),
+  fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.frames, "frame"),
              plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
              processor.shares_memory() ? "zero copy" : "staged");
   fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million pillars/s\n",
@@ -179,6 +179,19 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
                contacts->most_at_once(), printable(options.contacts.file));
   }
   fmt::print("Wrote {}\n", printable(options.output));
+}
+
+/// Where all pillars are in contact, the tare is likely to be missing.
+void warn_of_tare(const SolveOptions& options, const SolverPlan& plan, const RegionCount& regions) {
+  constexpr double kNearlyAll = 0.95;
+  if (!plan.calibration.tare.empty() || regions.all() == 0 ||
+      static_cast<double>(regions.in_contact()) < kNearlyAll * static_cast<double>(regions.all())) {
+    return;
+  }
+  fmt::print(stderr,
+             "{}: {} of all pillars are in contact and it has no tare; measure one with "
+             "'pillarfield calibrate tare'\n",
+             printable(options.input), percent(regions.in_contact(), regions.all()));
 }
 
 void check_solve_outputs(const SolveOptions& options) {
@@ -226,6 +239,7 @@ void solve(const SolveOptions& asked) {
   SolveSummary summary = pipeline.summary();
   summary.startup_seconds = startup_seconds;
   summary.seconds = watch.seconds() - startup_seconds;
+  warn_of_tare(options, plan, summary.regions);
   if (options.json) {
     print_json(options, plan, processor, summary, contacts ? &*contacts : nullptr,
                source->remarks());

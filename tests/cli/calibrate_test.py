@@ -149,7 +149,7 @@ class Chain(Calibrate):
         self.assertIn("linear", facts["history"][2]["parameters"])
         self.assertRegex(facts["history"][0]["date_utc"], r"^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
         text = run("info", loaded).stdout
-        self.assertIn("equilibrate, pressed_0.2.h5, pressed_0.7.h5, 200", text)
+        self.assertIn("step equilibrate, sources pressed_0.2.h5 pressed_0.7.h5, frames 200", text)
 
     def test_a_power_law_is_found_and_undone(self):
         sensor = SENSOR.replace("dead_zone_counts = 3", "power_law_exponent = 1.3\n"

@@ -193,6 +193,7 @@ class Completion(CommandTest):
     def complete(self, *words):
         """What bash offers for the last of `words`."""
         script = run("completion", "bash").stdout + (
+            f"PATH={pathlib.Path(PROGRAM).parent}:$PATH\n"
             f"COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; _pillarfield\n"
             'printf "%s\\n" "${COMPREPLY[@]}"\n')
         result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
@@ -206,10 +207,15 @@ class Completion(CommandTest):
         self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "--pre"),
                          ["--preloaded"])
         self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "eq"), [])
+        self.assertEqual(self.complete("pillarfield", "--vers"), ["--version"])
+        self.assertEqual(self.complete("pillarfield", "solve", "a.h5", "--noise", "3", "--mem"),
+                         ["--memory"])
 
     def test_other_shells(self):
         self.assertIn("bashcompinit", run("completion", "zsh").stdout)
         self.assertIn("complete -c pillarfield", run("completion", "fish").stdout)
+        words = run("completion", "words", "--", "calibrate").stdout  # what fish shows
+        self.assertIn("\ntare\tTare, noise and threshold", "\n" + words)
         for shell in ("zsh", "fish"):
             if shutil.which(shell):
                 script = self.folder / "script"
