@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "cli/commands.h"
@@ -36,10 +38,38 @@ std::vector<Row> rows_of(const Comparison& comparison) {
   return rows;
 }
 
+/// The sum of all forces of the skin, frame by frame.
+class Resultant {
+ public:
+  void add(const ForceFieldView& solved, const ForceFieldView& truth) {
+    ++frames_;
+    for (const auto plane :
+         {&ForceFieldView::shear_x, &ForceFieldView::shear_y, &ForceFieldView::normal}) {
+      const double of_truth = sum(truth.*plane);
+      truth_ += of_truth * of_truth;
+      error_ += std::pow(sum(solved.*plane) - of_truth, 2);
+    }
+  }
+  [[nodiscard]] double true_rms_n() const { return rms(truth_); }
+  [[nodiscard]] double error_rms_n() const { return rms(error_); }
+
+ private:
+  static double sum(std::span<const float> plane) {
+    return std::accumulate(plane.begin(), plane.end(), 0.0);
+  }
+  [[nodiscard]] double rms(double squares) const {
+    return frames_ == 0 ? 0 : std::sqrt(squares / static_cast<double>(frames_));
+  }
+
+  std::uint64_t frames_ = 0;
+  double truth_ = 0;
+  double error_ = 0;
+};
+
 constexpr std::array kCoveredRegions = {Region::one, Region::two, Region::three, Region::four};
 
-void print_json(const std::vector<Row>& rows, const std::optional<Coverage>& coverage,
-                std::uint64_t frames) {
+void print_json(const std::vector<Row>& rows, const Resultant& resultant,
+                const std::optional<Coverage>& coverage, std::uint64_t frames) {
   nlohmann::ordered_json regions;
   for (const auto& [name, errors] : rows) {
     regions[name] = {{"pillars", errors.pillars},
@@ -51,7 +81,11 @@ void print_json(const std::vector<Row>& rows, const std::optional<Coverage>& cov
                      {"theta_rms_rad", errors.theta_rms_rad},
                      {"phi_rms_rad", errors.phi_rms_rad}};
   }
-  nlohmann::ordered_json json = {{"frames", frames}, {"regions", regions}};
+  nlohmann::ordered_json json = {
+      {"frames", frames},
+      {"regions", regions},
+      {"resultant",
+       {{"true_rms_n", resultant.true_rms_n()}, {"error_rms_n", resultant.error_rms_n()}}}};
   if (coverage) {
     for (const Region region : kCoveredRegions) {
       const RegionCoverage of_region = coverage->region(region);
@@ -90,7 +124,8 @@ void print_row(const Row& row) {
   fmt::print(" {:>9.1f}%\n", mismatches);
 }
 
-void print_text(const std::vector<Row>& rows, std::uint64_t frames, const CompareOptions& options) {
+void print_text(const std::vector<Row>& rows, const Resultant& resultant, std::uint64_t frames,
+                const CompareOptions& options) {
   fmt::print("{} against the truth in {}, {}\n\n", printable(options.forces),
              printable(options.recording), counted(frames, "frame"));
   fmt::print("{:<8} {:>13} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
@@ -98,6 +133,9 @@ void print_text(const std::vector<Row>& rows, std::uint64_t frames, const Compar
   fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
              "RMS", "95 %", "RMS", "95 %", "theta", "phi", "differs");
   for (const Row& row : rows) print_row(row);
+  fmt::print("\nResultant force of the skin, RMS over frames: {} N, error {} N\n",
+             rounded(resultant.true_rms_n()),
+             rounded(std::round(1e4 * resultant.error_rms_n()) / 1e4));
   fmt::print(
       "\nForce error: length of (solved - true). 95 %: that share of the pillars has at most "
       "this.\n"
@@ -157,6 +195,7 @@ void compare(const CompareOptions& options) {
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
+  Resultant resultant;
   std::optional<Coverage> coverage;
   if (info.uncertainty) coverage.emplace();
   {
@@ -166,15 +205,16 @@ void compare(const CompareOptions& options) {
       forces.read(index, solved);
       recording->read_truth(index, truth);
       comparison.add(solved.view(), truth.view());
+      resultant.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
   }
   const std::vector<Row> rows = rows_of(comparison);
   if (options.json) {
-    print_json(rows, coverage, frames);
+    print_json(rows, resultant, coverage, frames);
   } else {
-    print_text(rows, frames, options);
+    print_text(rows, resultant, frames, options);
     if (coverage) print_coverage(*coverage);
   }
 }

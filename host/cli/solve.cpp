@@ -181,10 +181,11 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// Where all pillars are in contact, the tare is likely to be missing.
-void warn_of_tare(const SolveOptions& options, const SolverPlan& plan, const RegionCount& regions) {
+/// Where nearly all pillars of a real skin are in contact, its tare is likely to be missing.
+void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
+                  const RegionCount& regions) {
   constexpr double kNearlyAll = 0.95;
-  if (!plan.calibration.tare.empty() || regions.all() == 0 ||
+  if (source.has_truth() || !plan.calibration.tare.empty() || regions.all() == 0 ||
       static_cast<double>(regions.in_contact()) < kNearlyAll * static_cast<double>(regions.all())) {
     return;
   }
@@ -239,7 +240,7 @@ void solve(const SolveOptions& asked) {
   SolveSummary summary = pipeline.summary();
   summary.startup_seconds = startup_seconds;
   summary.seconds = watch.seconds() - startup_seconds;
-  warn_of_tare(options, plan, summary.regions);
+  warn_of_tare(options, *source, plan, summary.regions);
   if (options.json) {
     print_json(options, plan, processor, summary, contacts ? &*contacts : nullptr,
                source->remarks());

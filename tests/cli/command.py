@@ -16,6 +16,26 @@ PROGRAM = os.environ["PILLARFIELD"]
 SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
 SCENES = SOURCE / "scenes"
 
+BALL = """
+title = "A ball"
+[skin]
+pillars = [20, 20]
+threshold_counts = 2
+[time]
+frames = 6
+[sensor]
+adc_bits = 8
+noise_counts = 0.5
+[[contact]]
+shape = "sphere"
+motion = "slide"
+contact_radius_mm = 8
+load_n = 20
+position_mm = [0, 0]
+friction = 0.5
+direction_deg = 30
+"""
+
 
 def run(*arguments, expect=0, **options):
     """Runs the command and returns its result; its exit status must be `expect`."""

@@ -1,36 +1,14 @@
 """The `pillarfield` command as a user meets it."""
 
 import shutil
-import signal
-import subprocess
-import time
 import unittest
 
 import h5py
+import numpy
 
-from command import PROGRAM, SCENES, SOURCE, CommandTest, run, run_json
+from command import BALL, SCENES, SOURCE, CommandTest, run, run_json
 
 FINGER = SOURCE.parent / "shared/data/tekscan/iscan_6900_finger_45deg.csv"
-
-SMALL_SCENE = """
-title = "A ball"
-[skin]
-pillars = [20, 20]
-threshold_counts = 2
-[time]
-frames = 6
-[sensor]
-adc_bits = 8
-noise_counts = 0.5
-[[contact]]
-shape = "sphere"
-motion = "slide"
-contact_radius_mm = 8
-load_n = 20
-position_mm = [0, 0]
-friction = 0.5
-direction_deg = 30
-"""
 
 # Of the pillars that are ambiguous in one frame, some were determined in the one before.
 GROWING_SHEAR = """
@@ -61,7 +39,7 @@ class Work(CommandTest):
     def setUp(self):
         super().setUp()
         self.scene = self.folder / "ball.toml"
-        self.scene.write_text(SMALL_SCENE)
+        self.scene.write_text(BALL)
         self.recording = self.folder / "ball.h5"
         self.forces = self.folder / "forces.h5"
 
@@ -82,7 +60,7 @@ class Work(CommandTest):
         self.assertGreater(regions["1"]["rms_n"], 0.3 / 320)
 
     def test_estimators_and_uncertainty(self):
-        self.scene.write_text(SMALL_SCENE.replace("threshold_counts = 2", "threshold_counts = 3"))
+        self.scene.write_text(BALL.replace("threshold_counts = 2", "threshold_counts = 3"))
         run("simulate", self.scene, "-o", self.recording)
         errors = {}
         for estimator in ("direct", "paper"):
@@ -116,8 +94,31 @@ class Work(CommandTest):
                       "Wrote"):
             self.assertIn(words, text)
         text = run("compare", self.forces, self.recording).stdout
-        for words in ("RMS", "95 %", "theta", "loaded"):
+        for words in ("RMS", "95 %", "theta", "loaded", "Resultant force"):
             self.assertIn(words, text)
+
+    def test_a_skin_without_tare_is_warned_of(self):
+        run("simulate", SCENES / "new_skin_pressed.toml", "-o", self.recording, "--uncalibrated",
+            "--frames", 2)
+        with h5py.File(self.recording, "r+") as file:
+            del file["truth"]  # of simulated skins all may well be pressed
+        for tare, warnings in ((None, 1), (0, 0)):
+            if tare is not None:
+                with h5py.File(self.recording, "r+") as file:
+                    file["calibration/tare"] = numpy.zeros(file["frames/raw"].shape[1:], "f4")
+            said = run("solve", self.recording, "-o", self.forces, "-q").stderr
+            self.assertEqual(said.count("100.0 % of all pillars are in contact"), warnings, said)
+
+    def test_the_resultant_is_compared(self):
+        run("simulate", self.scene, "-o", self.recording)
+        run("solve", self.recording, "-o", self.forces)
+        with h5py.File(self.forces) as forces, h5py.File(self.recording) as recording:
+            solved, truth = (numpy.stack([file[plane][:].sum(axis=(1, 2), dtype="f8")
+                                          for plane in ("shear_x", "shear_y", "normal")])
+                             for file in (forces["force"], recording["truth"]))
+        resultant = run_json("compare", self.forces, self.recording)["resultant"]
+        for key, forces in (("true_rms_n", truth), ("error_rms_n", solved - truth)):
+            self.assertAlmostEqual(resultant[key], (forces**2).sum(axis=0).mean()**0.5, places=9)
 
     def test_errors_of_any_size_keep_their_columns(self):
         run("simulate", self.scene, "-o", self.recording)
@@ -188,26 +189,15 @@ class Work(CommandTest):
     def test_knowledge_of_friction_is_checked(self):
         run("simulate", self.scene, "-o", self.recording)
         contact = ("solve", self.recording, "-o", self.forces, "--estimator", "contact")
-        self.scene.write_text(SMALL_SCENE + "[solver]\nfriction = 20\n")
+        self.scene.write_text(BALL + "[solver]\nfriction = 20\n")
         self.assert_fails(*contact, "--scene", self.scene,
                           says=["ball.toml:", "friction", "0.1", "9.9"])
         self.assert_fails(*contact, "--friction-prior", "0.05,0.5", says=["median", "0.05"])
         self.assert_fails(*contact, "--friction-prior", "1,9", says=["spread"])
 
-    def test_what_is_known_of_friction_is_taken_by_every_estimator(self):
-        run("simulate", self.scene, "-o", self.recording)
-        for estimator in ("direct", "paper", "contact"):
-            copies = [self.folder / f"{name}.npy" for name in ("with", "without")]
-            for copy, known in zip(copies, (("--friction", 0.8, "--friction-bound", 3,
-                                             "--friction-prior", "2,0.1", "--unrelated-frames"),
-                                            ())):
-                run("solve", self.recording, "-o", copy, "--estimator", estimator, *known)
-            if estimator != "contact":  # Only contacts use it.
-                self.assertEqual(copies[0].read_bytes(), copies[1].read_bytes())
-
     def test_keys_of_the_former_estimator_are_gone(self):
         for key in ("slips = true", "frames_close = true", "sweeps = 8"):
-            self.scene.write_text(SMALL_SCENE + f'[solver]\nestimator = "field"\n{key}\n')
+            self.scene.write_text(BALL + f'[solver]\nestimator = "field"\n{key}\n')
             self.assert_fails("simulate", self.scene, "-o", self.folder / "none.h5",
                               says=["ball.toml:", key.split()[0]])
 
@@ -245,7 +235,7 @@ class Work(CommandTest):
         self.assertEqual(run_json("info", self.forces)["segment_point"], 0.5)
         run(*solve, "--estimator", "paper")
         self.assertNotIn("segment_point", run_json("info", self.forces))
-        self.scene.write_text(SMALL_SCENE + "[solver]\nsegment_point = 0.625\n")
+        self.scene.write_text(BALL + "[solver]\nsegment_point = 0.625\n")
         run(*solve, "--scene", self.scene)
         self.assertEqual(run_json("info", self.forces)["segment_point"], 0.625)
         self.assert_fails(*solve, "--segment-point", 0.5, "--estimator", "paper",
@@ -266,7 +256,7 @@ class Work(CommandTest):
         self.assertIn("kernel void solve_frame", text)
         self.assertIn("#define PF_FULL_SCALE 4080\n", text)
         self.assertNotIn("#define PF_TARE", text)
-        self.scene.write_text(SMALL_SCENE.replace("noise_counts", "tare_counts = 3\nnoise_counts"))
+        self.scene.write_text(BALL.replace("noise_counts", "tare_counts = 3\nnoise_counts"))
         self.assertIn("#define PF_TARE", run("info", "--kernel", self.scene).stdout)
 
     def test_devices_are_listed(self):
@@ -301,7 +291,7 @@ class BadInput(CommandTest):
 
     def test_recording_cut_at_many_lengths(self):
         scene = self.folder / "ball.toml"
-        scene.write_text(SMALL_SCENE)
+        scene.write_text(BALL)
         whole = self.folder / "whole.h5"
         run("simulate", scene, "-o", whole)
         content = whole.read_bytes()
@@ -313,15 +303,15 @@ class BadInput(CommandTest):
 
     def test_wrong_scene_names_its_line(self):
         scene = self.folder / "wrong.toml"
-        scene.write_text(SMALL_SCENE + "colour = 3\n")
-        line = len(SMALL_SCENE.splitlines()) + 1
+        scene.write_text(BALL + "colour = 3\n")
+        line = len(BALL.splitlines()) + 1
         self.assert_fails("simulate", scene, "-o", self.folder / "out.h5",
                           says=[f"wrong.toml:{line}", "colour", "load_n"])
         self.assert_folder_holds("wrong.toml")
 
     def test_output_that_cannot_be_written(self):
         scene = self.folder / "ball.toml"
-        scene.write_text(SMALL_SCENE)
+        scene.write_text(BALL)
         self.assert_fails("simulate", scene, "-o", self.folder / "no/such/place.h5",
                           says=["no/such/place.h5"])
         run("simulate", scene, "-o", self.folder / "ball.h5")
@@ -331,56 +321,14 @@ class BadInput(CommandTest):
 
     def test_forces_of_another_patch_are_not_compared(self):
         scene = self.folder / "ball.toml"
-        scene.write_text(SMALL_SCENE)
+        scene.write_text(BALL)
         run("simulate", scene, "-o", self.folder / "a.h5")
         run("solve", self.folder / "a.h5", "-o", self.folder / "forces.h5")
-        scene.write_text(SMALL_SCENE.replace("[20, 20]", "[20, 22]"))
+        scene.write_text(BALL.replace("[20, 20]", "[20, 22]"))
         run("simulate", scene, "-o", self.folder / "b.h5")
         self.assert_fails("compare", self.folder / "forces.h5", self.folder / "b.h5",
                           says=["20 x 20", "20 x 22"])
         self.assert_fails("compare", self.folder / "a.h5", self.folder / "b.h5", says=["a.h5"])
-
-
-class Interruption(CommandTest):
-    """A process that ends while it records leaves every flushed frame readable."""
-
-    def record_until(self, ending):
-        scene = self.folder / "ball.toml"
-        scene.write_text(SMALL_SCENE.replace("frames = 6", "frames = 1000000"))
-        part = self.folder / "long.h5.part"
-        process = subprocess.Popen([PROGRAM, "simulate", scene, "-o", self.folder / "long.h5"],
-                                   stderr=subprocess.PIPE, text=True)
-        deadline = time.monotonic() + 60
-        # The first chunks of all datasets are a megabyte before many frames are flushed.
-        while not (part.exists() and part.stat().st_size > 4_000_000):
-            self.assertIsNone(process.poll(), "it ended by itself")
-            self.assertLess(time.monotonic(), deadline, "nothing was written")
-            time.sleep(0.02)
-        process.send_signal(ending)
-        _, complaint = process.communicate(timeout=60)
-        return part, process.returncode, complaint
-
-    def check_part(self, part):
-        facts = run_json("info", part)
-        self.assertGreater(facts["frames"], 16)
-        self.assertTrue(facts["truth"])
-        solved = run_json("solve", part, "-o", self.folder / "forces.h5")
-        self.assertEqual(solved["frames"], facts["frames"])
-        regions = run_json("compare", self.folder / "forces.h5", part)["regions"]
-        self.assertLess(regions["1"]["rms_n"], 1.5 / 320)
-
-    def test_killed(self):
-        part, status, _ = self.record_until(signal.SIGKILL)
-        self.assertEqual(status, -signal.SIGKILL)
-        self.assertFalse((self.folder / "long.h5").exists())
-        self.check_part(part)
-
-    def test_interrupted(self):
-        part, status, complaint = self.record_until(signal.SIGINT)
-        self.assertEqual(status, 1)
-        self.assertIn("interrupted after", complaint)
-        self.assertIn("long.h5", complaint)
-        self.check_part(part)
 
 
 class RealFrames(CommandTest):

@@ -147,16 +147,6 @@ class Contacts(CommandTest):
             run("solve", self.recording, "-o", forces, "--contacts", self.csv)
             self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)
 
-    def test_given_friction(self):
-        for estimator in ("direct", "contact"):
-            self.solve("--contacts", self.csv, "--estimator", estimator, "--friction", 2)
-            for row in self.rows():
-                if row["row"] != "ended":
-                    self.assertEqual((row["friction"], row["friction_source"]), ("2", "given"))
-                    self.assertGreater(float(row["friction_deviation"]), 0)
-        text = run("solve", self.recording, "-o", self.forces, "--contacts", self.csv).stdout
-        self.assertIn("Contacts: ", text)
-
     def friction_of(self, *arguments):
         """What the table says of all rows, and what the force file says it was given."""
         run("solve", self.recording, "-o", self.forces, "--contacts", self.csv, *arguments)

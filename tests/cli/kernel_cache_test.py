@@ -7,18 +7,7 @@ import shutil
 import subprocess
 import unittest
 
-from command import PROGRAM, CommandTest, on_terminal, run, run_json
-
-SCENE = """
-[skin]
-pillars = [2, 2]
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 1
-load_n = 1
-position_mm = [0, 0]
-"""
+from command import BALL, PROGRAM, CommandTest, on_terminal, run, run_json
 
 # A library that ends the process that loads it.
 PLANTED = "__attribute__((constructor)) static void planted(void) { _Exit(42); }"
@@ -35,7 +24,7 @@ class KernelCache(CommandTest):
     def setUp(self):
         super().setUp()
         scene = self.folder / "scene.toml"
-        scene.write_text(SCENE)
+        scene.write_text(BALL)
         self.recording = self.folder / "recording.h5"
         self.outputs = 0
         run("simulate", scene, "-o", self.recording)

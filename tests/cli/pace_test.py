@@ -4,26 +4,9 @@ import signal
 import time
 import unittest
 
-from command import PROGRAM, SCENES, CommandTest, on_terminal, run, run_json
+from command import BALL, PROGRAM, SCENES, CommandTest, on_terminal, run, run_json
 
-SCENE = """
-title = "A ball"
-[skin]
-pillars = [16, 16]
-threshold_counts = 3
-[time]
-frames = 6
-[sensor]
-adc_bits = 8
-noise_counts = 0.5
-tare_counts = 4
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 8
-load_n = 20
-position_mm = [0, 0]
-"""
+SCENE = BALL.replace("[20, 20]", "[16, 16]").replace("noise_counts", "tare_counts = 4\nnoise_counts")
 
 KEYS = ["source", "device", "zero_copy", "estimator", "stages", "pillar_rows", "pillar_cols",
         "frames_in_source", "frames_loaded", "rate_hz", "deadline_ms", "backlog_frames",

@@ -9,24 +9,9 @@ import unittest
 import h5py
 import numpy
 
-from command import PROGRAM, CommandTest, run
+from command import BALL, PROGRAM, CommandTest, run
 
-SCENE = """
-title = "{title}"
-[skin]
-pillars = [4, 4]
-[time]
-frames = 10
-[sensor]
-adc_bits = 8
-noise_counts = 0.5
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 3
-load_n = 2
-position_mm = [0, 0]
-"""
+SCENE = BALL.replace("A ball", "{title}").replace("frames = 6", "frames = 10")
 
 ESCAPES = "a\x1b[31mb\x1b]0;c\x07\x9b2Jd\x7f"
 ESCAPED = r"a\u001b[31mb\u001b]0;c\u0007\u009b2Jd\u007f"
