@@ -6,9 +6,9 @@
 #include <numbers>
 #include <string>
 
-#include "core/one_pillar.h"
 #include "report/section.h"
 #include "report/table.h"
+#include "solve/one_pillar.h"
 
 namespace pillarfield::report {
 namespace {

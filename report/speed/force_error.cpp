@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "bench/variant_solver.h"
-#include "core/pillar_sensels.h"
 #include "pillarfield/status.h"
+#include "skin/pillar_sensels.h"
 #include "tests/core/bound.h"
 
 namespace pillarfield::report {

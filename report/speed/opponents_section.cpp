@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "bench/plain_names.h"
+#include "bench/timing/plain_names.h"
 #include "report/speed/section.h"
 #include "report/table.h"
 

@@ -39,7 +39,7 @@ each sensel has a tare, a gain (± 10 %), a dead zone, or is dead (3 in 1000), a
 - **Counts** are those of uint8 sensels. *All regions* has the ambiguous forces of regions 3 and 4 too, of which a part stays unknown whoever solves;
   their share is the last column.
 
-`float` is the OpenCL kernels. `double` is a C++ loop over the same `kernels/maths`, compiled for this processor and for each set of stages, on all threads; it
+`float` is the OpenCL kernels. `double` is a C++ loop over the same `kernels/pillar`, compiled for this processor and for each set of stages, on all threads; it
 stores its results as float32. That loop is the only place where fields are solved in double.
 
 ![Error over the bound against time over the bare copy](pictures/performance/error_and_time.png)
