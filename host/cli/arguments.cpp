@@ -9,7 +9,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 
 #include "cli/commands.h"
@@ -158,15 +157,18 @@ void add_general(CLI::App* command, PrintOptions& options, const char* json, con
 constexpr const char* kQuietWriter = "Print nothing but errors, warnings and what --json asks for";
 constexpr const char* kQuietReport = "Show no progress";
 
-void add_output(CLI::App* command, WriteOptions& options, const char* description) {
-  Group output(command, "Output");
-  output.text("-o,--output", options.output, "FILE", description)->required();
-  const auto replace = [&options] { options.replace = Replace::anything; };
+void add_overwrite(CLI::App* command, Replace& replace) {
   command
-      ->add_flag_callback("--overwrite", replace,
-                          "Replace an output that exists, whatever it holds; never a file that is "
-                          "read")
+      ->add_flag_callback(
+          "--overwrite", [&replace] { replace = Replace::anything; },
+          "Replace an output that exists, whatever it holds; never a file that is "
+          "read")
       ->group("Output");
+}
+
+void add_output(CLI::App* command, WriteOptions& options, const char* description) {
+  Group(command, "Output").text("-o,--output", options.output, "FILE", description)->required();
+  add_overwrite(command, options.replace);
 }
 
 void add_trust(CLI::App* command, ReadOptions& options) {
@@ -250,17 +252,13 @@ void add_device(CLI::App* command, DeviceOptions& options) {
       "shared: zero copy; staged: copied to the device [auto]");
 }
 
-/// A command that is called with its options, which live as long as the work.
+/// A command and its options, which live as long as the work.
 template <class Options>
-struct Command {
-  CLI::App* app;
-  std::shared_ptr<Options> options;
-};
-
-template <class Options>
-Command<Options> add_command(CLI::App& parent, Work& work, void (*run)(const Options&),
-                             const char* name, const char* description,
-                             const std::string& examples) {
+std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Work& work,
+                                                           void (*run)(const Options&),
+                                                           const char* name,
+                                                           const char* description,
+                                                           const std::string& examples) {
   const auto options = std::make_shared<Options>();
   CLI::App* const command = parent.add_subcommand(name, description);
   command->footer(examples);
@@ -537,14 +535,10 @@ void add_testbed(CLI::App& parent, Work& work) {
                "Resolution of the applied force [0.1]");
   probe.whole("--runs", options->runs, "N", "Repetitions of the experiment [1000]", 2, 1'000'000);
   probe.whole("--seed", parameters.seed, "N", "Seed of all randomness [1]", 0, kLargestSeed);
-  Group output(command, "Output");
-  output.text("--figures", options->figures, "FOLDER",
-              "Draw Figures 3, 4, 5 and 8 here, as SVG and PNG (gnuplot)");
-  command
-      ->add_flag_callback(
-          "--overwrite", [options = options] { options->replace = Replace::anything; },
-          "Replace figures that exist, whatever they hold")
-      ->group("Output");
+  Group(command, "Output")
+      .text("--figures", options->figures, "FOLDER",
+            "Draw Figures 3, 4, 5 and 8 here, as SVG and PNG (gnuplot)");
+  add_overwrite(command, options->replace);
   add_general(command, *options, "Print the results as JSON", kQuietReport);
 }
 
@@ -590,19 +584,6 @@ void add_completion(CLI::App& parent, Work& work) {
   });
 }
 
-/// The names of the commands of `app` and of its options.
-std::vector<std::string> names_in(const CLI::App& app, bool options) {
-  std::vector<std::string> names;
-  if (options) {
-    for (const CLI::Option* option : app.get_options()) {
-      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    }
-  } else {
-    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
-  }
-  return names;
-}
-
 /// The command that the words called before one was wrong.
 const CLI::App& called_of(const CLI::App& app) {
   const std::vector<CLI::App*> called = app.get_subcommands();
@@ -610,18 +591,22 @@ const CLI::App& called_of(const CLI::App& app) {
 }
 
 std::string complaint_of(const CLI::App& command, const CLI::ParseError& error) {
-  const std::vector<std::string> commands = names_in(command, false);
+  std::vector<std::string> commands;
+  for (const CLI::App* each : command.get_subcommands({})) commands.push_back(each->get_name());
   const std::vector<std::string> left = command.remaining();
   if (left.empty()) {
-    if (error.get_exit_code() != static_cast<int>(CLI::ExitCodes::RequiredError) ||
-        commands.empty()) {
+    if (commands.empty() || dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) {
       return error.what();
     }
     return fmt::format("no command is given; it is one of {}", fmt::join(commands, ", "));
   }
   const std::string word = left.front().substr(0, left.front().find('='));
-  if (word.starts_with('-') && word != "-") {
-    return fmt::format("'{}' is not an option{}", word, suggestion(word, names_in(command, true)));
+  if (word.starts_with('-')) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    return fmt::format("'{}' is not an option{}", word, suggestion(word, options));
   }
   if (commands.empty()) return fmt::format("'{}' is one argument too many", left.front());
   return fmt::format("'{}' is not a command{}", left.front(), suggestion(word, commands));

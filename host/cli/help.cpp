@@ -50,29 +50,19 @@ std::string name_of(const CLI::Option& option) {
   return is_flag ? names : fmt::format("{} {}", names, option.get_type_name());
 }
 
+/// The arguments that are required, or go by their place.
 std::string usage(const CLI::App& app) {
   std::string line = "Usage: " + full_name(app);
-  bool has_more = false;
   for (const CLI::Option* option : app.get_options()) {
-    if (option->get_group().empty()) continue;
-    if (option->get_positional()) {
-      const std::string name =
-          option->get_name(true) + (option->get_expected_max() > 1 ? "..." : "");
-      line += option->get_required() ? " " + name : " [" + name + "]";
-    } else if (!option->get_required()) {
-      has_more = true;
+    if (option->get_group().empty() || !(option->get_positional() || option->get_required())) {
+      continue;
     }
+    std::string words = name_of(*option);
+    if (words.starts_with("-o, ")) words = "-o " + option->get_type_name();
+    if (option->get_positional() && option->get_expected_max() > 1) words += "...";
+    line += option->get_required() ? " " + words : " [" + words + "]";
   }
-  for (const CLI::Option* option : app.get_options()) {
-    if (option->get_positional() || !option->get_required()) continue;
-    const bool has_short = !option->get_snames().empty();
-    line += fmt::format(
-        " {} {}",
-        has_short ? "-" + option->get_snames().front() : "--" + option->get_lnames().front(),
-        option->get_type_name());
-  }
-  const bool has_commands = !app.get_subcommands({}).empty();
-  return line + (has_commands ? " COMMAND" : "") + (has_more ? " [OPTION...]" : "") + "\n";
+  return line + (app.get_subcommands({}).empty() ? "" : " COMMAND") + " [OPTION...]\n";
 }
 
 }  // namespace

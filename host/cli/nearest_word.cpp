@@ -28,23 +28,18 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongest = 40;  // No name of ours is longer, and the table is quadratic.
   if (word.size() > kLongest) return {};
   std::string nearest;
-  std::size_t fewest = word.size() / 3 + 1;
+  std::size_t too_many = word.size() / 3 + 2;
   for (const std::string& candidate : candidates) {
     const bool begins = word.size() >= 3 && candidate.starts_with(word);
     const std::size_t edits = begins ? 1 : edits_between(word, candidate);
-    if (edits >= fewest + (nearest.empty() ? 1 : 0)) continue;
-    fewest = edits;
+    if (edits >= too_many) continue;
+    too_many = edits;
     nearest = candidate;
   }
-  return nearest;
-}
-
-std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_word(word, candidates);
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 

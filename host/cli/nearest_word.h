@@ -6,12 +6,9 @@
 
 namespace pillarfield::cli {
 
-/// The candidate with the fewest edits from `word` (a letter inserted, deleted or replaced, or two
-/// neighbours exchanged), or that begins with it; empty where even that takes too many.
-[[nodiscard]] std::string nearest_word(std::string_view word,
-                                       const std::vector<std::string>& candidates);
-
-/// "; did you mean 'X'?" for the nearest candidate; empty where there is none.
+/// "; did you mean 'X'?" for the candidate that begins with `word`, or that is made of it by the
+/// fewest edits: a letter inserted, deleted or replaced, or two neighbours exchanged. Empty where
+/// even that takes too many.
 [[nodiscard]] std::string suggestion(std::string_view word,
                                      const std::vector<std::string>& candidates);
 
