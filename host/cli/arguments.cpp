@@ -119,8 +119,8 @@ class Group {
   void choice(const std::string& name, Target& target,
               const std::vector<std::pair<std::string, Value>>& choices, const char* description,
               const std::string& former = "", const std::string& word = "") {
-    std::vector<std::string> words;
-    for (const auto& each : choices) words.push_back(each.first);
+    std::vector<std::string> words(choices.size());
+    std::ranges::transform(choices, words.begin(), &std::pair<std::string, Value>::first);
     const auto take = [=, &target](const std::string& given) {
       if (given == former) note_former_name(name + " " + former, name + " " + word);
       const std::string& meant = given == former ? word : given;

@@ -63,6 +63,7 @@ void print_step_json(const StepReport& report, const SkinCalibration& calibratio
 /// The names of files without their folders.
 std::vector<std::string> names_of(const std::vector<std::string>& files) {
   std::vector<std::string> names;
+  names.reserve(files.size());
   for (const std::string& file : files) {
     names.push_back(std::filesystem::path(file).filename().string());
   }

@@ -120,7 +120,7 @@ struct InfoOptions : PrintOptions {
 };
 
 void simulate(const SimulateOptions& options);
-void solve(const SolveOptions& options);
+void solve(const SolveOptions& asked);
 void pace(const PaceOptions& options);
 void compare(const CompareOptions& options);
 void calibrate(const TareCommand& command);

@@ -220,15 +220,6 @@ class Apply(Calibrate):
             self.assertEqual(new["skin"].attrs["threshold_counts"],
                              calibration["skin"].attrs["threshold_counts"])
 
-    def test_nothing_is_written_over_what_is_read(self):
-        tared, _ = self.tared()
-        recording = self.pressed(0.3, frames=20)
-        before = recording.read_bytes()
-        self.assert_fails("calibrate", "apply", tared, recording, "-o", recording,
-                          says=["pressed_0.3.h5", "another file"])
-        self.assert_fails("calibrate", "tare", recording, "-o", recording, says=["another file"])
-        self.assertEqual(recording.read_bytes(), before)
-
 
 class WrongInput(Calibrate):
     """One clear line, exit status 1, and nothing written."""

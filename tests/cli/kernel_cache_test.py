@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import unittest
 
-from command import BALL, PROGRAM, CommandTest, on_terminal, run, run_json
+from command import BALL, PROGRAM, CommandTest, on_terminal, run
 
 # A library that ends the process that loads it.
 PLANTED = "__attribute__((constructor)) static void planted(void) { _Exit(42); }"
@@ -121,14 +121,6 @@ class KernelCache(CommandTest):
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
             self.assertIn("limited to 200 MiB: raise the limit (ulimit -v)",
                           result.stdout + result.stderr)
-
-    def test_startup_is_kept_out_of_the_rate(self):
-        solved = run_json("solve", self.recording, "-o", self.output())
-        self.assertGreater(solved["startup_seconds"], 0)
-        text = run("solve", self.recording, "-o", self.output()).stdout
-        self.assertRegex(text, r"reading, solving, writing +[\d.]+ s, [\d.,]+ frames/s")
-        self.assertRegex(text, r"opening, compiling +[\d.]+ s\n")
-        self.assertNotIn("alone", text)
 
 
 if __name__ == "__main__":

@@ -93,14 +93,6 @@ class Run(PaceTest):
         report = self.pace(recording, "--rate", 50, "--seconds", 0.08)
         self.assertEqual((report["scheduled"], report["frames_loaded"]), (4, 4))
 
-    def test_everything(self):
-        report = self.pace(self.scene, "--rate", 50, "--seconds", 0.1, "--everything")
-        for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
-            self.assertIn(stage, report["stages"])
-        plain = self.pace(self.scene, "--rate", 50, "--seconds", 0.1)
-        for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
-            self.assertNotIn(stage, plain["stages"])
-
     def test_contacts(self):
         contact = ("--estimator", "contact", "--friction", 0.8, "--unrelated-frames")
         report = self.pace(self.scene, "--rate", 50, "--seconds", 0.3, *contact)
@@ -131,6 +123,10 @@ class Run(PaceTest):
         solved = run_json(*solve, "--noise", 0.5)
         paced = self.pace(recording, "--rate", 50, "--seconds", 0.1, "--everything", "--noise", 0.5)
         self.assertEqual(solved["stages"], paced["stages"])
+        plain = self.pace(recording, "--rate", 50, "--seconds", 0.1)
+        for stage in ("parity_test", "angles", "uncertainty", "follow_baseline"):
+            self.assertIn(stage, paced["stages"])
+            self.assertNotIn(stage, plain["stages"])
 
     def test_memory_is_bounded(self):
         scene = self.folder / "large.toml"
