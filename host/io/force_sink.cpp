@@ -53,7 +53,7 @@ OutputKind kind_of_force_file(const std::filesystem::path& path) {
   if (ending == ".h5" || ending == ".hdf5") return OutputKind::forces;
   if (ending == ".csv") return OutputKind::force_table;
   if (ending == ".npy") return OutputKind::force_array;
-  throw Error(path.string(), "its ending names no format of forces",
+  throw Error(path.string(), "its ending is not that of a force file",
               "end it in .h5, .hdf5, .csv or .npy");
 }
 

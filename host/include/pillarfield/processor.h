@@ -28,6 +28,7 @@ struct DeviceInfo {
   int index = 0;  ///< for open_device()
   std::string name;
   std::string platform;
+  std::string version;         ///< of OpenCL and its driver: "OpenCL 3.0 PoCL HSTR: ..."
   std::string type;            ///< "CPU", "GPU", "accelerator" or "other"
   int lanes = 1;               ///< pillars that a work-item solves at once
   bool shares_memory = false;  ///< uses the host's memory, so Memory::shared is possible

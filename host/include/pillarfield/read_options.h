@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace pillarfield {
 
@@ -20,5 +21,8 @@ struct ReadOptions {
 /// Cost: some milliseconds (docs/formats.md). The child runs no signal or exit handlers and prints
 /// nothing. A file that passes may be opened with ReadOptions::trust.
 void probe_file(const std::filesystem::path& path);
+
+/// The version of the HDF5 library, as "1.10.8".
+[[nodiscard]] std::string hdf5_version();
 
 }  // namespace pillarfield
