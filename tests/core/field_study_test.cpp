@@ -1,4 +1,4 @@
-#include "field_study.h"
+#include "evaluation/field_study.h"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@
 
 #include "core/contact_traction.h"
 #include "core/pillar_maths.h"
-#include "field_study_histories.h"
-#include "field_study_scenes.h"
-#include "field_study_twins.h"
+#include "evaluation/field_study_histories.h"
+#include "evaluation/field_study_scenes.h"
+#include "evaluation/field_study_twins.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield::field_study {

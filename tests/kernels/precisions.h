@@ -11,7 +11,7 @@
 #include <string>
 
 #include "core/pillar_maths.h"
-#include "oracle.h"
+#include "evaluation/oracle.h"
 
 /// One test body for the C++ forms of kernels/maths: its types by precision. The functions that
 /// take one of these types are found by argument-dependent lookup.
