@@ -10,11 +10,7 @@
 namespace pillarfield::bench {
 namespace {
 
-using Arithmetic;
-using NoisyFrames;
-using SolveVariant;
-
-constexpr std::uint32_t kSide = 160;  ///< of some 12000 pillars with a bound: errors to 0.6 %
+constexpr std::uint32_t kErrorSide = 160;  ///< of some 12000 pillars with a bound: errors to 0.6 %
 
 ForceError error_of(const SolveVariant& variant, const SolverPlan& plan,
                     const NoisyFrames& frames) {
@@ -23,7 +19,7 @@ ForceError error_of(const SolveVariant& variant, const SolverPlan& plan,
 }
 
 ForceError error_of(const SolveVariant& variant) {
-  const SolverPlan plan = plan_of(variant, kSide);
+  const SolverPlan plan = plan_of(variant, kErrorSide);
   return error_of(variant, plan, NoisyFrames(plan, 1));
 }
 
@@ -58,16 +54,16 @@ TEST(ForceError, IsTheSameInDouble) {
 
 TEST(ForceError, SeesASolveThatIsOffByTwoPercent) {
   const SolveVariant variant;
-  SolverPlan plan = plan_of(variant, kSide);
+  SolverPlan plan = plan_of(variant, kErrorSide);
   const NoisyFrames frames(plan, 1);
   plan.skin.counts_per_newton *= 1.02;
   EXPECT_GT(error_of(variant, plan, frames).over_bound, 1.2);
 }
 
 TEST(ForceError, SeesACalibrationThatIsNotUsed) {
-  const SolverPlan known = plan_of({.stage = "calibration"}, kSide);
+  const SolverPlan known = plan_of({.stage = "calibration"}, kErrorSide);
   const SolveVariant bare;
-  EXPECT_GT(error_of(bare, plan_of(bare, kSide), NoisyFrames(known, 1)).over_bound, 2);
+  EXPECT_GT(error_of(bare, plan_of(bare, kErrorSide), NoisyFrames(known, 1)).over_bound, 2);
 }
 
 }  // namespace
