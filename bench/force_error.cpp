@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "bench/variant_solver.h"
-#include "core/pillar_sensels.h"
 #include "evaluation/bound.h"
 #include "pillarfield/status.h"
+#include "skin/pillar_sensels.h"
 
 namespace pillarfield::bench {
 namespace {

@@ -7,10 +7,10 @@
 #include <random>
 #include <utility>
 
-#include "core/ideal_readings.h"
-#include "core/pillar_sensels.h"
-#include "core/raw_reading.h"
 #include "pillarfield/status.h"
+#include "simulation/ideal_readings.h"
+#include "skin/pillar_sensels.h"
+#include "skin/raw_reading.h"
 
 namespace pillarfield::bench {
 namespace {

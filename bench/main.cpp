@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/plain_names.h"
-#include "bench/rows.h"
+#include "bench/cases/rows.h"
+#include "bench/timing/plain_names.h"
 #include "device/device_state.h"
 #include "pillarfield/error.h"
 

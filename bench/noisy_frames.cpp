@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "base/random.h"
 #include "bench/solve_variant.h"
-#include "core/random.h"
 
 namespace pillarfield::bench {
 namespace {

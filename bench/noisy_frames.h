@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bench/frames.h"
-#include "core/pillar_maths.h"
 #include "pillarfield/solver_plan.h"
+#include "solve/pillar_maths.h"
 
 namespace pillarfield::bench {
 

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "bench/frames.h"
-#include "bench/plain_names.h"
+#include "bench/timing/plain_names.h"
 #include "bench/variants.h"
 #include "pillarfield/error.h"
-#include "viewer/field/frame_supply.h"
-#include "viewer/field/solved_producer.h"
 #include "viewer/options.h"
+#include "viewer/source/frame_supply.h"
+#include "viewer/source/solved_producer.h"
 
 namespace pillarfield::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/session.h"
-#include "viewer/draw/painter.h"
+#include "viewer/render/painter.h"
 
 namespace pillarfield::bench {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/race.h"
+#include "bench/timing/race.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield::bench {

@@ -12,7 +12,7 @@ namespace pillarfield::bench {
 /// What computes, and how exactly.
 enum class Arithmetic : std::uint8_t {
   device_float,  ///< the kernels
-  host_double,   ///< a C++ loop over kernels/maths, on all threads; its results are stored as float
+  host_double,  ///< a C++ loop over kernels/pillar, on all threads; its results are stored as float
 };
 
 /// How results other than the status are stored.

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "bench/double_loop.h"
+#include "bench/baselines/double_loop.h"
 #include "bench/frame_solver.h"
 #include "bench/solve_variant.h"
 

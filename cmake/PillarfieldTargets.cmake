@@ -45,7 +45,7 @@ function(pillarfield_compile_options target)
   endif()
 endfunction()
 
-# A floor of the library: pillarfield_<name>, exported as pillarfield::<name>.
+# A module of the library: pillarfield_<name>, exported as pillarfield::<name>.
 function(pillarfield_library name)
   add_library(pillarfield_${name} STATIC ${ARGN})
   add_library(pillarfield::${name} ALIAS pillarfield_${name})

@@ -33,7 +33,7 @@ add_custom_target(all_tests)
 add_dependencies(all_tests default_tests)
 
 # pillarfield_test_entry(<name> [LONG] [SANITIZED] [TARGETS <targets...>]): says of the test <name> when it
-# runs and which targets it needs. Its label is the floor that its name begins with.
+# runs and which targets it needs. Its label is the module that its name begins with.
 function(pillarfield_test_entry name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED" "" "TARGETS")
   string(REGEX REPLACE "[_.].*" "" labels ${name})
@@ -49,7 +49,7 @@ function(pillarfield_test_entry name)
   endif()
 endfunction()
 
-# pillarfield_test_program(<name> LINK <floors...> SOURCES <files...>): a GoogleTest program.
+# pillarfield_test_program(<name> LINK <modules...> SOURCES <files...>): a GoogleTest program.
 function(pillarfield_test_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "LINK;SOURCES")
   add_executable(${name} EXCLUDE_FROM_ALL ${arg_SOURCES})
@@ -65,7 +65,7 @@ function(pillarfield_test_options target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# pillarfield_test(<floor>_<subject> [LONG] [SANITIZED] [LEAKS] LINK <floors...> SOURCES <files...>): the
+# pillarfield_test(<module>_<subject> [LONG] [SANITIZED] [LEAKS] LINK <modules...> SOURCES <files...>): the
 # same, and its tests are a test of the project. LEAKS: with sanitizers, leaks are errors.
 function(pillarfield_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED;LEAKS" "" "")
@@ -100,7 +100,7 @@ function(pillarfield_oclgrind_test name program filter)
   set_tests_properties(oclgrind.${name} PROPERTIES TIMEOUT 480 SKIP_RETURN_CODE 77)
 endfunction()
 
-# pillarfield_python_test(<floor>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...> TARGETS <targets...>):
+# pillarfield_python_test(<module>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...> TARGETS <targets...>):
 # a Python script that passes by exiting with 0. It needs h5py and NumPy, which may be there for the
 # system's Python only, and that need not be the first on the path. Without them the test is skipped.
 find_program(PILLARFIELD_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)

@@ -1,6 +1,6 @@
 /* The only file that knows the language, the precision and the number of lanes.
  *
- * It gives kernels/maths six types and four macros. The same text then compiles four ways:
+ * It gives kernels/pillar six types and four macros. The same text then compiles four ways:
  *
  *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
  *   Real     float, or floatN of lanes  floatN         float                  double
@@ -32,7 +32,7 @@
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
  *
- * What may stand in kernels/maths is what means the same in all of them: masks joined by && and
+ * What may stand in kernels/pillar is what means the same in all of them: masks joined by && and
  * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts; choices
  * written c ? x : y with both sides of lane type; structs passed by value; of Counts in programs of
  * whole numbers + - and comparisons alone; if (any_lane(mask)) where what it leaves out changes no

@@ -23,7 +23,7 @@ uint status_of(uint pillar) {
   return field[scene.force.w + (pillar >> 2u)] >> (8u * (pillar & 3u)) & 255u;
 }
 
-// The status byte: kernels/maths/status.h.
+// The status byte: kernels/pillar/status.h.
 bool is_usable(uint status) { return (status & 15u) != 0u; }
 bool is_ambiguous(uint status) { return (status & 16u) != 0u; }
 bool is_saturated(uint status) { return (status & 32u) != 0u; }

@@ -38,7 +38,7 @@ PF_CONSTANT uint kScaleConstant = 1u;     // kSequential, ...
 PF_CONSTANT uint kReadingsConstant = 2u;  // kReadings8, ...
 PF_CONSTANT uint kMeansConstant = 3u;     // whether a pixel may show the mean of several pillars
 
-// What the heat map shows; the order of Quantity in viewer/picture/quantity.h.
+// What the heat map shows; the order of Quantity in viewer/style/quantity.h.
 PF_CONSTANT uint kNormal = 0u;
 PF_CONSTANT uint kShear = 1u;
 PF_CONSTANT uint kShearX = 2u;
@@ -51,13 +51,13 @@ PF_CONSTANT uint kStatus = 8u;
 PF_CONSTANT uint kUncertainty = 9u;
 PF_CONSTANT uint kParity = 10u;
 
-// How a value becomes a colour; the order of Scale in viewer/picture/quantity.h.
+// How a value becomes a colour; the order of Scale in viewer/style/quantity.h.
 PF_CONSTANT uint kSequential = 0u;
 PF_CONSTANT uint kDiverging = 1u;
 PF_CONSTANT uint kCyclic = 2u;
 PF_CONSTANT uint kClasses = 3u;
 
-// Colours outside the maps; the order of Special in viewer/picture/colour_map.h.
+// Colours outside the maps; the order of Special in viewer/style/colour_map.h.
 PF_CONSTANT uint kIdle = 0u;
 PF_CONSTANT uint kSaturated = 1u;
 PF_CONSTANT uint kInconsistent = 2u;

@@ -1,4 +1,4 @@
-// The surface that the skin lies on: frame_at() of viewer/picture/view.h in single precision, of
+// The surface that the skin lies on: frame_at() of viewer/style/view.h in single precision, of
 // which the tests make sure. `kind` is SurfaceKind; millimetres. Lengths of a sheet are kept.
 #ifndef PF_SURFACE_GLSL
 #define PF_SURFACE_GLSL

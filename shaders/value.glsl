@@ -1,5 +1,5 @@
 // What the heat map shows of a pillar. The same operations as value_of() in
-// viewer/picture/quantity.cpp.
+// viewer/style/quantity.cpp.
 #ifndef PILLARFIELD_SHADERS_VALUE
 #define PILLARFIELD_SHADERS_VALUE
 
@@ -73,7 +73,7 @@ float value_of(uint pillar, uint status) {
   return 0.0;
 }
 
-// The colour of its own that a pillar has, or kMapped: special_of() of viewer/picture/colour_map.h.
+// The colour of its own that a pillar has, or kMapped: special_of() of viewer/style/colour_map.h.
 const uint kMapped = 0xffffffffu;
 
 uint region_colour(uint usable) {

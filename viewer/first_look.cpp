@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "pillarfield/error.h"
-#include "viewer/draw/scene.h"
 #include "viewer/options.h"
-#include "viewer/picture/ticks.h"
+#include "viewer/render/scene.h"
+#include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -8,11 +8,11 @@
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
-#include "viewer/app/export.h"
+#include "viewer/app/export/export.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/opening.h"
-#include "viewer/draw/painter.h"
-#include "viewer/draw/scene.h"
+#include "viewer/render/painter.h"
+#include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {

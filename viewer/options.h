@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/picture/look.h"
+#include "viewer/style/look.h"
 
 namespace pillarfield::viewer {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contacts/contact_estimator.h"
+#include "contacts/estimator/contact_estimator.h"
 #include "device/device_state.h"
 #include "device/slot_memory.h"
 #include "pillarfield/contact_map.h"

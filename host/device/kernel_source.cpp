@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "core/force_scale.h"
-#include "core/wake_levels.h"
 #include "device/block_lanes.h"
 #include "device/kernel_files.h"
 #include "device/sensel_macro.h"
 #include "pillarfield/processor.h"
+#include "skin/force_scale.h"
+#include "solve/wake_levels.h"
 
 namespace pillarfield {
 namespace {
@@ -155,8 +155,8 @@ void append(std::string& source, const KernelFile& file) {
 
 /// Whether a program of whole numbers has a use for a file: the others are of fractions.
 bool serves_whole_numbers(std::string_view file) {
-  return file != "maths/elementary.h" && file != "maths/paper_solve.h" &&
-         file != "maths/angles.h" && file != "maths/uncertainty.h";
+  return file != "pillar/elementary.h" && file != "pillar/paper_solve.h" &&
+         file != "pillar/angles.h" && file != "pillar/uncertainty.h";
 }
 
 }  // namespace

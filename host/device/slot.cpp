@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/wake_levels.h"
+#include "solve/wake_levels.h"
 
 namespace pillarfield {
 namespace {

@@ -5,10 +5,10 @@
 #include <memory>
 #include <span>
 
-#include "core/silent_blocks.h"
 #include "device/opencl.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/processor.h"
+#include "solve/silent_blocks.h"
 
 namespace pillarfield {
 

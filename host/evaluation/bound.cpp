@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/random.h"
+#include "base/random.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield::bound {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/one_pillar.h"
+#include "solve/one_pillar.h"
 
 /// The least error that noise allows, and the error that an estimator has
 /// (docs/derivations/bound.md). A sensel reads max(0, V) and noise of `noise_counts`; it is usable

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/host_solve.h"
-#include "core/ideal_readings.h"
-#include "core/pillar_maths.h"
 #include "pillarfield/simulator.h"
+#include "simulation/ideal_readings.h"
+#include "solve/host_solve.h"
+#include "solve/pillar_maths.h"
 
 namespace pillarfield::coverage_study {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <numbers>
 
-#include "core/one_pillar.h"
 #include "evaluation/oracle.h"
+#include "solve/one_pillar.h"
 
 namespace pillarfield::errata {
 namespace {

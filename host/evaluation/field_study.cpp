@@ -11,13 +11,13 @@
 #include <thread>
 #include <utility>
 
-#include "contacts/contact_estimator.h"
-#include "core/host_solve.h"
-#include "core/ideal_readings.h"
-#include "core/scene_limits.h"
-#include "core/sensor.h"
+#include "contacts/estimator/contact_estimator.h"
 #include "pillarfield/component_ends.h"
 #include "pillarfield/status.h"
+#include "simulation/ideal_readings.h"
+#include "simulation/scene/scene_limits.h"
+#include "simulation/sensor.h"
+#include "solve/host_solve.h"
 
 namespace pillarfield::field_study {
 namespace {

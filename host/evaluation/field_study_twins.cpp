@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <numbers>
 
-#include "core/ideal_readings.h"
 #include "pillarfield/error.h"
+#include "simulation/ideal_readings.h"
 
 namespace pillarfield::field_study {
 namespace {

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "core/pillar_maths.h"
 #include "evaluation/field_contacts.h"
+#include "solve/pillar_maths.h"
 
 /// Two bodies that no estimator can tell from each other.
 namespace pillarfield::field_study {

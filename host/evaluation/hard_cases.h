@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/one_pillar.h"
 #include "evaluation/oracle.h"
+#include "solve/one_pillar.h"
 
 /// Pillars that are hard to solve, by name: for the tests, and for the table of docs/accuracy.md.
 namespace pillarfield::hard_cases {

@@ -7,13 +7,13 @@
 
 #include "evaluation/exact.h"
 
-/// A pillar by another way than kernels/maths, and with none of its code: equation (2) of the paper
-/// with its sines and cosines, Gaussian elimination, and bisection, in 113 bits.
+/// A pillar by another way than kernels/pillar, and with none of its code: equation (2) of the
+/// paper with its sines and cosines, Gaussian elimination, and bisection, in 113 bits.
 namespace pillarfield::oracle {
 
 using exact::Exact;
 
-/// As in kernels/maths: newtons, shear on the skin, + right and + up, pressing positive.
+/// As in kernels/pillar: newtons, shear on the skin, + right and + up, pressing positive.
 struct Force {
   Exact shear_x;
   Exact shear_y;

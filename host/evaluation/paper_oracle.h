@@ -6,7 +6,7 @@
 #include "evaluation/oracle.h"
 
 /// The paper's equations (2), (5), (7) and (8), errata mended, in 113 bits: ratios of readings,
-/// tangents and angles as they are printed, and none of the code of kernels/maths.
+/// tangents and angles as they are printed, and none of the code of kernels/pillar.
 namespace pillarfield::oracle {
 
 /// What the equations leave open in regions 1 and 2: the sensels i, j of (5), and the one whose

@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/contact_hdf5_reader.h"
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_planes.h"
-#include "io/hdf5_attribute.h"
-#include "io/hdf5_file.h"
-#include "io/hdf5_links.h"
-#include "io/hdf5_number_type.h"
-#include "io/hdf5_readers.h"
-#include "io/hdf5_stored_frames.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/contact_hdf5_reader.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/links.h"
+#include "io/hdf5/number_type.h"
+#include "io/hdf5/readers.h"
+#include "io/hdf5/stored_frames.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/skin.h"

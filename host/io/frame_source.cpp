@@ -1,6 +1,6 @@
 #include "io/file_kind.h"
-#include "io/hdf5_readers.h"
-#include "io/tekscan_source.h"
+#include "io/hdf5/readers.h"
+#include "io/tekscan/source.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 

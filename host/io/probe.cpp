@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/child_process.h"
 #include "io/calibration_format.h"
-#include "io/child_process.h"
 #include "io/file_kind.h"
 #include "io/force_format.h"
-#include "io/hdf5_attribute.h"
-#include "io/hdf5_file.h"
-#include "io/hdf5_readers.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/readers.h"
 #include "io/recording_format.h"
 #include "pillarfield/error.h"
 #include "pillarfield/read_options.h"

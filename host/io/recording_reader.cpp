@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "io/file_source.h"
-#include "io/hdf5_file.h"
-#include "io/hdf5_links.h"
-#include "io/hdf5_number_type.h"
-#include "io/hdf5_readers.h"
-#include "io/hdf5_stored_frames.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/links.h"
+#include "io/hdf5/number_type.h"
+#include "io/hdf5/readers.h"
+#include "io/hdf5/stored_frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "io/hdf5_attribute.h"
-#include "io/hdf5_file.h"
-#include "io/hdf5_frames.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "pillarfield/error.h"

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5_attribute.h"
-#include "io/hdf5_links.h"
-#include "io/hdf5_plane.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/links.h"
+#include "io/hdf5/plane.h"
 #include "io/recording_format.h"
 #include "pillarfield/error.h"
 

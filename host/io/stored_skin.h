@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "io/hdf5_file.h"
+#include "io/hdf5/file.h"
 #include "pillarfield/calibration.h"
 #include "pillarfield/skin.h"
 

@@ -6,7 +6,7 @@
 
 #include "testbed/testbed.h"
 
-/// The curves of the paper's figures, computed by kernels/maths.
+/// The curves of the paper's figures, computed by kernels/pillar.
 namespace pillarfield::testbed {
 
 /// A direction from which a force comes, rad.

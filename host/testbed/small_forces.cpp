@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/host_solve.h"
-#include "core/ideal_readings.h"
-#include "core/sensor.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/status.h"
+#include "simulation/ideal_readings.h"
+#include "simulation/sensor.h"
+#include "solve/host_solve.h"
 #include "testbed/testbed.h"
 
 namespace pillarfield::testbed {

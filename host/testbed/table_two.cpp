@@ -8,8 +8,8 @@
 #include <limits>
 #include <optional>
 
-#include "core/ideal_readings.h"
 #include "pillarfield/status.h"
+#include "simulation/ideal_readings.h"
 
 namespace pillarfield::testbed {
 namespace {

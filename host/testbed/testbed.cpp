@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "core/random.h"
+#include "base/random.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::testbed {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/one_pillar.h"
-#include "core/pillar_maths.h"
+#include "solve/one_pillar.h"
+#include "solve/pillar_maths.h"
 
 /// The testbed of the paper (its sections IV and V), simulated: one pillar on four sensors, and a
 /// probe that presses from three directions with 10 to 100 N (docs/testbed.md).

@@ -1,7 +1,7 @@
 // The copy kernels need every byte that they are said to read, and write every one that they are
 // said to write.
 
-#include "bench/ceiling.h"
+#include "bench/timing/ceiling.h"
 
 #include <gtest/gtest.h>
 

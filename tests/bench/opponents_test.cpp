@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "bench/baselines/agreement.h"
+#include "bench/baselines/loop_solver.h"
+#include "bench/baselines/plain_loop.h"
+#include "bench/baselines/vectorised.h"
+#include "bench/baselines/vectorised_avx2.h"
+#include "bench/baselines/vectorised_avx512.h"
 #include "bench/frames.h"
-#include "bench/opponents/agreement.h"
-#include "bench/opponents/loop_solver.h"
-#include "bench/opponents/plain_loop.h"
-#include "bench/opponents/vectorised.h"
-#include "bench/opponents/vectorised_avx2.h"
-#include "bench/opponents/vectorised_avx512.h"
 #include "bench/variants.h"
-#include "core/host_solve.h"
 #include "pillarfield/error.h"
+#include "solve/host_solve.h"
 
 namespace pillarfield::bench {
 namespace {

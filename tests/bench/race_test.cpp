@@ -1,6 +1,6 @@
 // Races by a clock of the test's own: who is how fast is known.
 
-#include "bench/race.h"
+#include "bench/timing/race.h"
 
 #include <gtest/gtest.h>
 

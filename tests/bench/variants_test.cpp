@@ -9,12 +9,12 @@
 #include <cstring>
 #include <set>
 
-#include "bench/double_loop.h"
+#include "bench/baselines/double_loop.h"
 #include "bench/noisy_frames.h"
 #include "bench/solve_variant.h"
-#include "core/host_solve.h"
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
+#include "solve/host_solve.h"
 
 namespace pillarfield::bench {
 namespace {

@@ -2,7 +2,7 @@
 // fingertip: what it gains over the paper's midpoint, what it may not touch, and hard cases by
 // name.
 
-#include "contacts/contact_estimator.h"
+#include "contacts/estimator/contact_estimator.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include <limits>
 #include <string>
 
-#include "core/host_solve.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
+#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

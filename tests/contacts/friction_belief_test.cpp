@@ -1,10 +1,10 @@
-#include "contacts/friction_belief.h"
+#include "contacts/estimator/friction_belief.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "contacts/friction_evidence.h"
+#include "contacts/estimator/friction_evidence.h"
 
 namespace pillarfield {
 namespace {

@@ -1,4 +1,4 @@
-#include "contacts/pressure_regression.h"
+#include "contacts/estimator/pressure_regression.h"
 
 #include <gtest/gtest.h>
 

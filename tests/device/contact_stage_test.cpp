@@ -6,8 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "contacts/contact_estimator.h"
-#include "core/host_solve.h"
+#include "contacts/estimator/contact_estimator.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"
@@ -15,6 +14,7 @@
 #include "pillarfield/status.h"
 #include "random_plan.h"
 #include "same_bits.h"
+#include "solve/host_solve.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {

@@ -10,11 +10,11 @@
 #include <random>
 #include <thread>
 
-#include "core/host_solve.h"
 #include "device/slot_turns.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
+#include "solve/host_solve.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {

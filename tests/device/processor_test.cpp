@@ -11,10 +11,10 @@
 #include <numbers>
 #include <optional>
 
-#include "core/host_solve.h"
 #include "pillarfield/error.h"
 #include "random_plan.h"
 #include "same_bits.h"
+#include "solve/host_solve.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {

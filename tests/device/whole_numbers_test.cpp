@@ -9,9 +9,9 @@
 #include <optional>
 #include <span>
 
-#include "core/host_solve.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
+#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <string>
 
-#include "core/pillar_maths.h"
 #include "evaluation/oracle.h"
+#include "solve/pillar_maths.h"
 
-/// One test body for the C++ forms of kernels/maths: its types by precision. The functions that
+/// One test body for the C++ forms of kernels/pillar: its types by precision. The functions that
 /// take one of these types are found by argument-dependent lookup.
 namespace pillarfield {
 

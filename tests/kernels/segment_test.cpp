@@ -1,7 +1,7 @@
-// The segment of an ambiguous pillar: what host/contacts/segment.h says of it is what the direct
+// The segment of an ambiguous pillar: what host/solve/segment.h says of it is what the direct
 // solve says (docs/derivations/segment.md).
 
-#include "contacts/segment.h"
+#include "solve/segment.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "kernels/maths/status.h"
+#include "kernels/pillar/status.h"
 
 namespace pillarfield {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulation/body_history.h"
+#include "simulation/body/body_history.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/simulator.h"
-#include "tests/core/message.h"
+#include "tests/base/message.h"
 
 namespace pillarfield {
 namespace {

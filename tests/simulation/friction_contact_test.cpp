@@ -1,4 +1,4 @@
-#include "simulation/friction_contact.h"
+#include "simulation/body/friction_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/half_space.h"
+#include "simulation/body/half_space.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/height_map.h"
+#include "simulation/body/height_map.h"
 
 #include <gtest/gtest.h>
 #include <png.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "simulation/body_history.h"
-#include "tests/core/message.h"
+#include "simulation/body/body_history.h"
+#include "tests/base/message.h"
 
 namespace pillarfield {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulation/normal_contact.h"
+#include "simulation/body/normal_contact.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulation/random_field.h"
+#include "simulation/body/random_field.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
-#include "tests/core/message.h"
+#include "tests/base/message.h"
 
 namespace pillarfield {
 namespace {

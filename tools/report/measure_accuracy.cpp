@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "core/one_pillar.h"
 #include "evaluation/bound.h"
 #include "evaluation/case_accuracy.h"
 #include "evaluation/coverage_study.h"
 #include "evaluation/errata.h"
+#include "solve/one_pillar.h"
 #include "testbed/small_forces.h"
 #include "testbed/table_two.h"
 

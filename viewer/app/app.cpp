@@ -11,17 +11,17 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
-#include "viewer/app/changes.h"
-#include "viewer/app/controls.h"
-#include "viewer/app/draw_clock.h"
-#include "viewer/app/frame_writer.h"
-#include "viewer/app/front.h"
-#include "viewer/app/interface_input.h"
+#include "viewer/app/export/frame_writer.h"
+#include "viewer/app/input/changes.h"
+#include "viewer/app/input/controls.h"
+#include "viewer/app/input/interface_input.h"
 #include "viewer/app/opening.h"
-#include "viewer/app/presenter.h"
-#include "viewer/app/redraws.h"
-#include "viewer/app/style.h"
-#include "viewer/app/window.h"
+#include "viewer/app/window/draw_clock.h"
+#include "viewer/app/window/front.h"
+#include "viewer/app/window/presenter.h"
+#include "viewer/app/window/redraws.h"
+#include "viewer/app/window/style.h"
+#include "viewer/app/window/window.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/app/screen.h"
-#include "viewer/draw/scene.h"
+#include "viewer/app/window/screen.h"
+#include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {

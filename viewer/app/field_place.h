@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "viewer/field/field_producer.h"
-#include "viewer/field/selection.h"
-#include "viewer/picture/look.h"
+#include "viewer/source/field_producer.h"
+#include "viewer/source/selection.h"
+#include "viewer/style/look.h"
 
 namespace pillarfield::viewer {
 

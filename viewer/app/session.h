@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "viewer/field/player.h"
-#include "viewer/field/selection.h"
-#include "viewer/picture/look.h"
+#include "viewer/source/player.h"
+#include "viewer/source/selection.h"
+#include "viewer/style/look.h"
 
 namespace pillarfield::viewer {
 

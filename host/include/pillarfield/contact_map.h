@@ -9,7 +9,7 @@
 
 namespace pillarfield {
 
-struct SilentBlocks;  // core/silent_blocks.h
+struct SilentBlocks;  // solve/silent_blocks.h
 
 /// Loaded pillars of one row, side by side.
 struct ContactRun {

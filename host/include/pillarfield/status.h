@@ -3,7 +3,7 @@
 #include <cstdint>
 
 /// The status byte of a pillar: which of its readings the force was solved from, and what is
-/// wrong with it. The values are those of kernels/maths/status.h.
+/// wrong with it. The values are those of kernels/pillar/status.h.
 namespace pillarfield::status {
 
 inline constexpr std::uint8_t kSensel1 = 1;           ///< upper right sensel usable

@@ -3,9 +3,9 @@
 #include <imgui.h>
 
 #include "tests/viewer/app/fake_session.h"
-#include "tests/viewer/field/touched_field.h"
-#include "viewer/app/contact_words.h"
-#include "viewer/app/panels.h"
+#include "tests/viewer/source/touched_field.h"
+#include "viewer/app/panels/contact_words.h"
+#include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // What the viewer writes: pictures, names of sequences, tables.
-#include "viewer/app/export.h"
+#include "viewer/app/export/export.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "viewer/app/changes.h"
-#include "viewer/app/shortcuts.h"
+#include "viewer/app/input/changes.h"
+#include "viewer/app/input/shortcuts.h"
 
 namespace pillarfield::viewer {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "viewer/field/direction.h"
+#include "viewer/source/direction.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/viewer/app/fake_session.h"
-#include "viewer/app/controls.h"
+#include "viewer/app/input/controls.h"
 
 namespace pillarfield::viewer {
 namespace {

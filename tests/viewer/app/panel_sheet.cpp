@@ -5,12 +5,12 @@
 #include <set>
 
 #include "tests/viewer/app/made_field.h"
-#include "viewer/app/export.h"
-#include "viewer/app/panel_ink.h"
-#include "viewer/app/panels.h"
-#include "viewer/app/pins.h"
-#include "viewer/draw/interface.h"
-#include "viewer/draw/target.h"
+#include "viewer/app/export/export.h"
+#include "viewer/app/input/pins.h"
+#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/render/interface.h"
+#include "viewer/render/target.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -3,9 +3,9 @@
 #include <imgui.h>
 
 #include "tests/viewer/app/made_field.h"
-#include "viewer/app/panel_ink.h"
-#include "viewer/app/panels.h"
-#include "viewer/app/region_sums.h"
+#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/region_sums.h"
 
 namespace pillarfield::viewer {
 namespace {

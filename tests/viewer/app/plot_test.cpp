@@ -1,5 +1,5 @@
 // Where values lie in plots, and what is left of curves and shares on whole pixels.
-#include "viewer/app/plot.h"
+#include "viewer/app/panels/plot.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <numeric>
 #include <random>
 
-#include "viewer/app/panel_ink.h"
+#include "viewer/app/panels/panel_ink.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // The paper's diagram of regions, what is drawn of a pillar in it, its bars, and the pins' numbers.
-#include "viewer/app/region_plot.h"
+#include "viewer/app/panels/region_plot.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <random>
 
 #include "tests/viewer/app/made_field.h"
-#include "viewer/app/pins.h"
-#include "viewer/app/reading_bars.h"
-#include "viewer/field/direction.h"
+#include "viewer/app/input/pins.h"
+#include "viewer/app/panels/reading_bars.h"
+#include "viewer/source/direction.h"
 
 namespace pillarfield::viewer {
 namespace {

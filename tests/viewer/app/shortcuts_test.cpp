@@ -1,6 +1,6 @@
 // The table of shortcuts: no key twice, and each does something.
 
-#include "viewer/app/shortcuts.h"
+#include "viewer/app/input/shortcuts.h"
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Values in words: numbers with what is known of them, directions, states.
-#include "viewer/app/value_words.h"
+#include "viewer/app/panels/value_words.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "viewer/app/plot.h"
+#include "viewer/app/panels/plot.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -11,7 +11,7 @@
 #include <functional>
 
 #include "pillarfield/error.h"
-#include "viewer/app/export.h"
+#include "viewer/app/export/export.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "viewer/app/draw_clock.h"
-#include "viewer/app/redraws.h"
-#include "viewer/app/screen.h"
+#include "viewer/app/window/draw_clock.h"
+#include "viewer/app/window/redraws.h"
+#include "viewer/app/window/screen.h"
 
 namespace pillarfield::viewer {
 namespace {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "bench/baselines/bare_solve.h"
+#include "bench/baselines/thread_team.h"
+#include "bench/frames.h"
+#include "pillarfield/force_field.h"
+
+namespace pillarfield::bench {
+
+/// A C++ loop over frames, of each of which the threads take piece after piece. Two results are
+/// kept in turns, as a processor of two slots does.
+class LoopSolver {
+ public:
+  LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads);
+
+  /// Solves so many frames, going on where it stopped.
+  void run(const Frames& frames, int count);
+
+  /// Solves one frame; the result stays until two more are solved.
+  ForceFieldView solve(const FrameView& frame);
+
+  /// The result of the last frame.
+  [[nodiscard]] ForceFieldView last() const;
+
+ private:
+  static constexpr std::size_t kResults = 2;
+  static constexpr std::size_t kPieces = 32;  ///< of a frame
+  struct Result {
+    explicit Result(const Skin& skin);
+    ForcePlanes planes();
+    [[nodiscard]] ForceFieldView view(const Skin& skin) const;
+    FrameBuffer shear_x;  ///< page by page, as what a processor writes
+    FrameBuffer shear_y;
+    FrameBuffer normal;
+    FrameBuffer status;
+  };
+  template <class FrameOf>
+  void solve_frames(std::size_t count, FrameOf frame_of);
+  void solve_piece(const FrameView& frame, const ForcePlanes& to, std::size_t piece) const;
+
+  Skin skin_;
+  BareSolve solve_;
+  SolveRows solve_rows_;
+  std::vector<Result> results_;
+  std::size_t solved_ = 0;
+  ThreadTeam team_;
+};
+
+}  // namespace pillarfield::bench

@@ -1,0 +1,52 @@
+#include "base/work_team.h"
+
+#include <algorithm>
+
+namespace pillarfield {
+
+WorkTeam::WorkTeam(std::size_t members) {
+  for (std::size_t i = 1; i < members; ++i) helpers_.emplace_back([this, i] { help(i); });
+}
+
+WorkTeam::~WorkTeam() {
+  {
+    const std::scoped_lock lock(mutex_);
+    leaving_ = true;
+  }
+  wanted_.notify_all();
+  for (std::thread& helper : helpers_) helper.join();
+}
+
+void WorkTeam::run(std::size_t pieces, const Work& work) {
+  std::unique_lock lock(mutex_);
+  work_ = &work;
+  next_ = 0;
+  pieces_ = pieces;
+  const std::size_t woken = std::min(helpers_.size(), pieces - std::min<std::size_t>(pieces, 1));
+  for (std::size_t i = 0; i < woken; ++i) wanted_.notify_one();
+  take_pieces(lock, 0);
+  done_.wait(lock, [this] { return busy_ == 0; });
+}
+
+void WorkTeam::take_pieces(std::unique_lock<std::mutex>& lock, std::size_t member) {
+  while (next_ < pieces_) {
+    const std::size_t piece = next_++;
+    ++busy_;
+    lock.unlock();
+    (*work_)(piece, member);
+    lock.lock();
+    --busy_;
+  }
+}
+
+void WorkTeam::help(std::size_t member) {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wanted_.wait(lock, [this] { return leaving_ || next_ < pieces_; });
+    if (leaving_) return;
+    take_pieces(lock, member);
+    if (busy_ == 0) done_.notify_one();
+  }
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,257 @@
+#include "pillarfield/equilibration.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "base/quantile.h"
+#include "calibration/finding_list.h"
+#include "calibration/response_fit.h"
+#include "pillarfield/error.h"
+#include "skin/pillar_sensels.h"
+
+namespace pillarfield {
+namespace {
+
+/// Where more than this share of the sensels fails in one way, the press is at fault.
+constexpr double kFailingShare = 0.2;
+/// A sensel that answers so many times less or more than its fellows is not one of them.
+constexpr double kUnequal = 10;
+
+void require_presses(const SkinCalibration& before, std::span<const UniformPress> presses) {
+  if (presses.empty()) throw Error("equilibration", "no press is given", "give one at least");
+  if (before.planes.tare.empty()) {
+    throw Error("calibration", "has no tare", "take the tare of the unloaded skin first");
+  }
+  for (const auto& [frames, pressure_kpa] : presses) {
+    require_fitting(before, frames.skin(), frames.name());
+    require_frames(frames, kLeastPressFrames);
+    if (pressure_kpa > 0 && std::isfinite(pressure_kpa)) continue;
+    throw Error(frames.name(), fmt::format("its pressure is {} kPa", pressure_kpa),
+                "it must be above zero");
+  }
+}
+
+/// The responses of all sensels; those of no pillar, and those not good, stay silent.
+std::vector<Response> fit_all(const ResponseFit& fit, const Skin& skin, const FindingList& found) {
+  std::vector<Response> responses(skin.sensels());
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    for (const std::size_t i : sensels) {
+      if (found.good(i)) responses[i] = fit(i);
+    }
+  });
+  return responses;
+}
+
+SenselFault fault_of(Response::Kind kind) {
+  if (kind == Response::Kind::saturated) return SenselFault::saturated;
+  return kind == Response::Kind::silent ? SenselFault::silent : SenselFault::unequal;
+}
+
+void mask_those_that_do_not_answer(const std::vector<Response>& responses, const Skin& skin,
+                                   FindingList& found) {
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    for (const std::size_t i : sensels) {
+      if (!found.good(i) || responses[i].kind == Response::Kind::good) continue;
+      found.mask(i, fault_of(responses[i].kind));
+    }
+  });
+}
+
+void require_answers(const FindingList& found, std::size_t asked, const std::string& name) {
+  std::size_t saturated = 0;
+  for (const SenselFinding& finding : found.findings()) {
+    saturated += finding.fault == SenselFault::saturated ? 1 : 0;
+  }
+  const std::size_t silent = found.findings().size() - saturated;
+  const double limit = kFailingShare * static_cast<double>(asked);
+  if (static_cast<double>(saturated) > limit) {
+    throw Error(name, fmt::format("{} of {} sensels are at full scale", saturated, asked),
+                "press less");
+  }
+  if (asked > 0 && static_cast<double>(silent) <= limit) return;
+  throw Error(name, fmt::format("{} of {} sensels do not answer", silent, asked),
+              "press the whole skin evenly, and harder than its dead zone and noise");
+}
+
+/// What all good sensels have in common.
+class Consensus {
+ public:
+  Consensus(const std::vector<Response>& responses, const FindingList& found)
+      : responses_(responses), found_(found) {}
+
+  [[nodiscard]] double median_newtons_per_count() const {
+    std::vector<double> values;
+    for_good([&](const Response& r) { values.push_back(r.newtons_per_count); });
+    return median(values);
+  }
+
+  /// k for which the gains have the mean 1.
+  [[nodiscard]] double counts_per_newton() const {
+    double newtons_per_count = 0;
+    double swallowed = 0;
+    double count = 0;
+    for_good([&](const Response& r) {
+      newtons_per_count += r.newtons_per_count;
+      swallowed += r.swallowed;
+      ++count;
+    });
+    return (count + swallowed) / newtons_per_count;
+  }
+
+  [[nodiscard]] double gain_spread(double k) const {
+    double squares = 0;
+    double count = 0;
+    for_good([&](const Response& r) {
+      const double gain = k * r.newtons_per_count - r.swallowed;
+      squares += (gain - 1) * (gain - 1);
+      ++count;
+    });
+    return std::sqrt(squares / count);
+  }
+
+  [[nodiscard]] double nonlinearity() const {
+    double misfit = 0;
+    double answered = 0;
+    for_good([&](const Response& r) {
+      misfit += r.misfit;
+      answered += r.answered;
+    });
+    return answered > 0 ? std::sqrt(misfit / answered) : 0;
+  }
+
+  [[nodiscard]] double median_dead_zone(double k) const {
+    std::vector<double> values;
+    for_good([&](const Response& r) { values.push_back(k * r.dead_zone_n); });
+    return median(values);
+  }
+
+ private:
+  template <class Use>
+  void for_good(Use use) const {
+    for (std::size_t i = 0; i < responses_.size(); ++i) {
+      if (found_.good(i) && responses_[i].kind == Response::Kind::good) use(responses_[i]);
+    }
+  }
+
+  const std::vector<Response>& responses_;
+  const FindingList& found_;
+};
+
+void mask_unequal(const std::vector<Response>& responses, double typical, FindingList& found) {
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    if (!found.good(i) || responses[i].kind != Response::Kind::good) continue;
+    const double ratio = responses[i].newtons_per_count / typical;
+    if (ratio > kUnequal || ratio < 1 / kUnequal) found.mask(i, SenselFault::unequal);
+  }
+}
+
+/// Whether whole pillars differ by more than their own four sensels explain, by an analysis of
+/// variance of the logarithms over pillars with four good sensels: the part that the four share.
+double unevenness_of(const std::vector<Response>& responses, const Skin& skin,
+                     const FindingList& found) {
+  double pillars = 0;
+  double sum = 0;
+  double between = 0;
+  double within = 0;
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    double mean = 0;
+    double squares = 0;
+    for (const std::size_t i : sensels) {
+      if (!found.good(i)) return;
+      const double answer = std::log(responses[i].newtons_per_count);
+      mean += answer / 4;
+      squares += answer * answer;
+    }
+    ++pillars;
+    sum += mean;
+    between += mean * mean;
+    within += squares - 4 * mean * mean;
+  });
+  if (pillars < 2) return 0;
+  const double mean_square_within = within / (3 * pillars);
+  const double mean_square_between = 4 * (between - sum * sum / pillars) / (pillars - 1);
+  return std::sqrt(std::max(0.0, (mean_square_between - mean_square_within) / 4));
+}
+
+/// The mean shear over the mean normal force, from pillars with four good sensels. Sensels differ
+/// at random, shear presses the same side of every pillar: by D1, with V = kN (1 + c), the shear is
+/// √2 times the mean contrast of the sides.
+double shear_of(const std::vector<Response>& responses, const Skin& skin,
+                const FindingList& found) {
+  double pillars = 0;
+  double right = 0;
+  double up = 0;
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    std::array<double, 4> answers{};
+    for (std::size_t n = 0; n < sensels.size(); ++n) {
+      if (!found.good(sensels.at(n))) return;
+      answers.at(n) = -std::log(responses[sensels.at(n)].newtons_per_count);
+    }
+    ++pillars;
+    right += (answers[0] + answers[3] - answers[1] - answers[2]) / 4;
+    up += (answers[0] + answers[1] - answers[2] - answers[3]) / 4;
+  });
+  return pillars == 0 ? 0 : std::numbers::sqrt2 * std::hypot(right, up) / pillars;
+}
+
+void require_even(double unevenness, double most, const std::string& name) {
+  if (unevenness <= most) return;
+  throw Error(name,
+              fmt::format("from pillar to pillar the pressure varies by {:.1f} %, beyond {:.1f} %",
+                          100 * unevenness, 100 * most),
+              "press evenly, as with an inflated membrane, or allow more unevenness");
+}
+
+/// Gains, and dead zones where several pressures told them; sensels that are not good have 1 and 0.
+void fill_planes(const std::vector<Response>& responses, double k, bool several,
+                 const FindingList& found, Calibration& planes) {
+  planes.gain.assign(responses.size(), 1);
+  if (several) planes.dead_zone.assign(responses.size(), 0);
+  for (std::size_t i = 0; i < responses.size(); ++i) {
+    const Response& response = responses[i];
+    if (!found.good(i) || response.kind != Response::Kind::good) continue;
+    planes.gain[i] = static_cast<float>(k * response.newtons_per_count - response.swallowed);
+    if (several) planes.dead_zone[i] = static_cast<float>(k * response.dead_zone_n);
+  }
+  planes.mask = found.mask_plane();
+}
+
+}  // namespace
+
+EquilibrationResult equilibrate(const SkinCalibration& before,
+                                std::span<const UniformPress> presses,
+                                const EquilibrationOptions& options) {
+  require_presses(before, presses);
+  const FrameStatistics& last = presses.back().frames;
+  const Skin& skin = last.skin();
+  const ResponseFit fit(presses, before.planes);
+  FindingList found(before.planes.mask, last);
+  const std::size_t masked_before = skin.sensels() - found.count_good();
+  const std::vector<Response> responses = fit_all(fit, skin, found);
+  mask_those_that_do_not_answer(responses, skin, found);
+  require_answers(found, 4 * skin.pillars() - std::min(4 * skin.pillars(), masked_before),
+                  last.name());
+  const Consensus consensus(responses, found);
+  mask_unequal(responses, consensus.median_newtons_per_count(), found);
+
+  EquilibrationResult result;
+  const double k = consensus.counts_per_newton();
+  result.levels = fit.levels();
+  result.unevenness = unevenness_of(responses, skin, found);
+  require_even(result.unevenness, options.most_unevenness, last.name());
+  result.shear = shear_of(responses, skin, found);
+  result.gain_spread = consensus.gain_spread(k);
+  result.nonlinearity = fit.levels() > 2 ? consensus.nonlinearity() : 0;
+  result.calibration = before;
+  fill_planes(responses, k, fit.levels() > 1, found, result.calibration.planes);
+  result.dead_zone_counts = consensus.median_dead_zone(k);
+  result.calibration.counts_per_newton = k;
+  if (before.threshold_factor) set_threshold(result.calibration, *before.threshold_factor);
+  result.findings = found.findings();
+  return result;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,188 @@
+#include "pillarfield/fault_finder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "calibration/finding_list.h"
+#include "pillarfield/error.h"
+#include "skin/pillar_sensels.h"
+#include "skin/raw_reading.h"
+#include "solve/sensel_reader.h"
+
+namespace pillarfield {
+namespace {
+
+namespace maths = single_precision;
+
+/// The other three of a pillar as seen from sensel n: its neighbours, and the one opposite.
+struct Others {
+  std::size_t neighbour;
+  std::size_t other_neighbour;
+  std::size_t opposite;
+};
+constexpr std::array<Others, 4> kOthers = {{{1, 3, 2}, {0, 2, 3}, {1, 3, 0}, {0, 2, 1}}};
+
+}  // namespace
+
+FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
+                         const SkinCalibration& calibration, const FaultOptions& options)
+    : statistics_(std::move(name), skin, type),
+      calibration_(calibration),
+      options_(options),
+      implied_(skin.sensels()) {
+  require_fitting(calibration, skin, statistics_.name());
+  plan_.skin = skin;
+  plan_.sensel_type = type;
+  apply(calibration, plan_.skin, plan_.calibration);
+}
+
+void FaultFinder::add(const FrameView& frame) {
+  statistics_.add(frame);
+  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) { imply(row, col, frame); });
+}
+
+void FaultFinder::imply(std::size_t row, std::size_t col, const FrameView& frame) {
+  const maths::Pillar pillar = SenselReader(plan_, frame).pillar(row, col);
+  const std::array sensels = {pillar.s1, pillar.s2, pillar.s3, pillar.s4};
+  const auto places = pillar_sensels(plan_.skin, row, col);
+  for (std::size_t n = 0; n < sensels.size(); ++n) {
+    Implied& implied = implied_[places.at(n)];
+    if (sensels.at(n).usable != 0) ++implied.usable;
+    const auto& [a, b, opposite] = kOthers.at(n);
+    const maths::Sensel& p = sensels.at(a);
+    const maths::Sensel& q = sensels.at(b);
+    const maths::Sensel& r = sensels.at(opposite);
+    if ((p.usable & q.usable & r.usable) == 0) continue;
+    const Sight sight = sight_of(places.at(n));
+    const double left =
+        std::clamp(double{p.reading} + q.reading - r.reading, sight.least, sight.most);
+    ++implied.frames;
+    const double step = left - implied.mean;
+    implied.mean += step / implied.frames;
+    implied.squares += step * (left - implied.mean);
+  }
+}
+
+/// What V a sensel can tell apart: more than silence hides, less than its full scale.
+FaultFinder::Sight FaultFinder::sight_of(std::size_t sensel) const {
+  const Skin& skin = plan_.skin;
+  const Calibration& planes = plan_.calibration;
+  const double dead_zone = planes.dead_zone.empty() ? 0 : planes.dead_zone[sensel];
+  const double least = skin.threshold_counts + dead_zone;
+  if (!skin.full_scale_counts) return {least, std::numeric_limits<double>::infinity()};
+  const double tare = planes.tare.empty() ? 0 : planes.tare[sensel];
+  const double gain = planes.gain.empty() ? 1 : planes.gain[sensel];
+  const double corrected = std::max(0.0, (*skin.full_scale_counts - tare) * gain);
+  const double most = skin.power_law ? straightened(*skin.power_law, corrected) : corrected;
+  return {least, std::max(least, most + dead_zone)};
+}
+
+/// Judges the sensels of one pillar by what all frames told.
+class FaultFinder::Verdict {
+ public:
+  Verdict(const FaultFinder& finder, FindingList& found, FaultResult& result)
+      : finder_(finder), found_(found), result_(result) {}
+
+  void judge(const std::array<std::size_t, 4>& sensels) {
+    for (const std::size_t i : sensels) {
+      if (found_.good(i) && tells_nothing(i)) found_.mask(i, SenselFault::not_a_number);
+    }
+    std::array<bool, 4> moves{};
+    std::uint32_t loaded_frames = 0;
+    for (std::size_t n = 0; n < sensels.size(); ++n) {
+      moves.at(n) = found_.good(sensels.at(n)) && !is_still(sensels.at(n));
+      if (moves.at(n)) {
+        loaded_frames = std::max(loaded_frames, finder_.implied_[sensels.at(n)].usable);
+      }
+    }
+    const bool loaded = loaded_frames >= finder_.options_.least_frames;
+    const auto moving = std::count(moves.begin(), moves.end(), true);
+    moving_ += static_cast<std::size_t>(moving);
+    for (std::size_t n = 0; n < sensels.size(); ++n) {
+      if (!moves.at(n) && found_.good(sensels.at(n))) judge_still(sensels.at(n), loaded, moving);
+    }
+  }
+
+  /// Sensels that moved, in all pillars judged so far.
+  [[nodiscard]] std::size_t moving() const { return moving_; }
+
+ private:
+  /// A still one, of whose pillar so many others move.
+  void judge_still(std::size_t sensel, bool loaded, std::ptrdiff_t moving) {
+    if (moving == 3 && should_move(sensel)) {
+      found_.mask(sensel, fault_of(sensel));
+    } else if (moving < 3 && loaded) {
+      found_.suspect(sensel, SenselFault::undecided);
+    } else {
+      const std::uint32_t cols = finder_.plan_.skin.cols;
+      result_.untested.emplace_back(static_cast<std::uint32_t>(sensel / cols),
+                                    static_cast<std::uint32_t>(sensel % cols));
+    }
+  }
+
+  [[nodiscard]] const SenselStatistics& read(std::size_t sensel) const {
+    return finder_.statistics_.sensels()[sensel];
+  }
+
+  [[nodiscard]] bool tells_nothing(std::size_t sensel) const {
+    return 2 * read(sensel).readings < finder_.statistics_.frames();
+  }
+
+  /// Of a raw reading.
+  [[nodiscard]] double noise(std::size_t sensel) const {
+    const Calibration& planes = finder_.plan_.calibration;
+    return planes.noise.empty() ? reading_noise(finder_.plan_) : planes.noise[sensel];
+  }
+
+  [[nodiscard]] bool is_still(std::size_t sensel) const {
+    const double range = double{read(sensel).highest} - read(sensel).lowest;
+    return range <= finder_.options_.still_factor * noise(sensel);
+  }
+
+  /// Whether parity asked the sensel to move, by more than the noise of three readings explains.
+  [[nodiscard]] bool should_move(std::size_t sensel) const {
+    const Implied& implied = finder_.implied_[sensel];
+    if (implied.frames < std::max(2U, finder_.options_.least_frames)) return false;
+    const Calibration& planes = finder_.plan_.calibration;
+    const double gain = planes.gain.empty() ? 1 : planes.gain[sensel];
+    const double deviation = std::sqrt(implied.squares / (implied.frames - 1));
+    return deviation > 0 &&
+           deviation >= finder_.options_.moving_factor * std::sqrt(3.0) * gain * noise(sensel);
+  }
+
+  [[nodiscard]] SenselFault fault_of(std::size_t sensel) const {
+    if (2 * read(sensel).saturated > read(sensel).readings) return SenselFault::saturated;
+    const bool answers = 2 * finder_.implied_[sensel].usable > finder_.statistics_.frames();
+    return answers ? SenselFault::stuck : SenselFault::silent;
+  }
+
+  const FaultFinder& finder_;
+  FindingList& found_;
+  FaultResult& result_;
+  std::size_t moving_ = 0;
+};
+
+FaultResult FaultFinder::result() const {
+  require_frames(statistics_, options_.least_frames);
+  FaultResult result;
+  FindingList found(plan_.calibration.mask, statistics_);
+  Verdict verdict(*this, found, result);
+  for_each_pillar(plan_.skin, [&](auto, auto, const auto& sensels) { verdict.judge(sensels); });
+  if (verdict.moving() == 0) {
+    throw Error(statistics_.name(),
+                fmt::format("no sensel moved in its {} frames", statistics_.frames()),
+                "press the skin here and there, as with a rolling ball, while it is recorded");
+  }
+  result.calibration = calibration_;
+  result.calibration.planes.mask = found.mask_plane();
+  result.findings = found.findings();
+  result.frames = statistics_.frames();
+  return result;
+}
+
+}  // namespace pillarfield

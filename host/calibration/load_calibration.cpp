@@ -1,0 +1,271 @@
+#include "pillarfield/load_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/status.h"
+#include "solve/host_solve.h"
+
+namespace pillarfield {
+namespace {
+
+/// A load of which more than this share of the touched pillars is saturated tells nothing.
+constexpr double kSaturatedShare = 0.2;
+/// Loads that tell an exponent differ at least by this factor.
+constexpr double kDifferent = 1.1;
+constexpr double kExponentAccuracy = 1e-5;
+/// Loads that come out worse than this, root mean square, belong to other readings.
+constexpr double kMostMisfit = 0.5;
+
+/// The mean of the frames as one frame; a sensel that was ever at full scale is.
+FrameBuffer mean_frame(const FrameStatistics& frames) {
+  const Skin& skin = frames.skin();
+  FrameBuffer mean(SenselType::f32, skin.rows, skin.cols);
+  const auto readings = mean.readings<float>();
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const SenselStatistics& sensel = frames.sensels()[i];
+    readings[i] = static_cast<float>(sensel.saturated > 0 ? *skin.full_scale_counts : sensel.mean);
+    if (sensel.readings == 0) readings[i] = std::nanf("");
+  }
+  return mean;
+}
+
+/// The frames of a load, averaged, and their solution in counts: with k = 1.
+class Press {
+ public:
+  Press(const KnownLoad& load, const SkinCalibration& calibration)
+      : load_n_(load.load_n), name_(load.frames.name()), mean_(mean_frame(load.frames)) {
+    plan_.skin = load.frames.skin();
+    plan_.sensel_type = SenselType::f32;
+    apply(calibration, plan_.skin, plan_.calibration);
+  }
+
+  [[nodiscard]] double load_n() const { return load_n_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+  /// By a calibration that differs from that of the constructor in its constants only.
+  [[nodiscard]] ForceField solve(const SkinCalibration& calibration,
+                                 double segment_point = kSegmentPoint) const {
+    SolverPlan plan = plan_;
+    plan.segment_point = segment_point;
+    plan.skin.threshold_counts = calibration.threshold_counts.value_or(plan.skin.threshold_counts);
+    plan.skin.power_law = calibration.power_law;
+    plan.skin.counts_per_newton = 1;
+    return solve_on_host(plan, mean_.view());
+  }
+
+ private:
+  double load_n_;
+  std::string name_;
+  FrameBuffer mean_;
+  SolverPlan plan_;
+};
+
+/// The normal force of a field, in the units of its planes.
+struct NormalSum {
+  double all = 0;
+  double open = 0;  ///< of pillars whose parity sum is only known to lie in an interval from 0
+  std::uint64_t touched = 0;
+  std::uint64_t saturated = 0;
+};
+
+/// Whether neither diagonal has both its sensels, so that parity does not give the sum.
+bool is_open(std::uint8_t bits) {
+  constexpr std::uint8_t kRising = status::kSensel1 | status::kSensel3;
+  constexpr std::uint8_t kFalling = status::kSensel2 | status::kSensel4;
+  return (bits & status::kAmbiguous) != 0 && (bits & kRising) != kRising &&
+         (bits & kFalling) != kFalling;
+}
+
+NormalSum sum_normal(const ForceField& field) {
+  NormalSum sum;
+  for (std::size_t i = 0; i < field.pillars(); ++i) {
+    const std::uint8_t bits = field.status[i];
+    if (bits == 0) continue;
+    ++sum.touched;
+    sum.all += field.normal[i];
+    if (is_open(bits)) sum.open += field.normal[i];
+    if ((bits & status::kSaturated) != 0) ++sum.saturated;
+  }
+  return sum;
+}
+
+void require_loads(std::span<const KnownLoad> loads, const SkinCalibration& before) {
+  if (loads.empty()) throw Error("load", "no load is given", "give one at least");
+  for (const auto& [frames, load_n] : loads) {
+    require_fitting(before, frames.skin(), frames.name());
+    require_frames(frames, 1);
+    if (load_n > 0 && std::isfinite(load_n)) continue;
+    throw Error(frames.name(), fmt::format("its load is {} N", load_n), "it must be above zero");
+  }
+}
+
+void require_contact(const Press& press, const NormalSum& sum) {
+  if (!(sum.all > 0)) {
+    throw Error(press.name(), fmt::format("shows no contact, and a load of {} N", press.load_n()),
+                "check the calibration's tare and threshold, or give the frames with the load on");
+  }
+  const double limit = kSaturatedShare * static_cast<double>(sum.touched);
+  if (static_cast<double>(sum.saturated) <= limit) return;
+  throw Error(press.name(),
+              fmt::format("{} of {} touched pillars are saturated", sum.saturated, sum.touched),
+              "press less, or on a larger area");
+}
+
+/// Natural logarithm of counts per newton by each load.
+std::vector<double> log_ratios(const std::vector<Press>& presses,
+                               const SkinCalibration& calibration) {
+  std::vector<double> ratios;
+  for (const Press& press : presses) {
+    const NormalSum sum = sum_normal(press.solve(calibration));
+    require_contact(press, sum);
+    ratios.push_back(std::log(sum.all / press.load_n()));
+  }
+  return ratios;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double variance_of(const std::vector<double>& values) {
+  const double mean = mean_of(values);
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return squares / static_cast<double>(values.size());
+}
+
+/// Where a function that falls and then rises is least.
+template <class Function>
+double least_of(Function function, double low, double high, double accuracy) {
+  const double section = (std::sqrt(5.0) - 1) / 2;
+  double left = high - section * (high - low);
+  double right = low + section * (high - low);
+  double at_left = function(left);
+  double at_right = function(right);
+  while (high - low > accuracy) {
+    if (at_left < at_right) {
+      high = std::exchange(right, left);
+      at_right = at_left;
+      left = high - section * (high - low);
+      at_left = function(left);
+    } else {
+      low = std::exchange(left, right);
+      at_left = at_right;
+      right = low + section * (high - low);
+      at_right = function(right);
+    }
+  }
+  return (low + high) / 2;
+}
+
+/// The reading at which the power law changes nothing: geometric mean over the loads of the mean
+/// reading of a pillar, each weighted with itself.
+double typical_reading(const std::vector<Press>& presses, const SkinCalibration& linear) {
+  std::vector<double> logs;
+  for (const Press& press : presses) {
+    const ForceField field = press.solve(linear);
+    require_contact(press, sum_normal(field));
+    double sum = 0;
+    double squares = 0;
+    for (const float normal : field.normal) {
+      sum += normal;
+      squares += double{normal} * normal;
+    }
+    logs.push_back(std::log(squares / sum));
+  }
+  return std::exp(mean_of(logs));
+}
+
+void require_different(std::span<const KnownLoad> loads) {
+  const auto [least, most] = std::ranges::minmax_element(loads, {}, &KnownLoad::load_n);
+  if (most->load_n >= kDifferent * least->load_n) return;
+  throw Error(
+      "load",
+      fmt::format("loads of {} to {} N do not tell a power law", least->load_n, most->load_n),
+      "give loads that differ, at best several times");
+}
+
+PowerLaw fit_power_law(const std::vector<Press>& presses, const SkinCalibration& linear) {
+  const double reference =
+      std::clamp(typical_reading(presses, linear), kMinReferenceCounts, kMaxReferenceCounts);
+  const auto variance = [&](double exponent) {
+    SkinCalibration candidate = linear;
+    set_power_law(candidate, PowerLaw{exponent, reference});
+    return variance_of(log_ratios(presses, candidate));
+  };
+  const double exponent = least_of(variance, kMinExponent, kMaxExponent, kExponentAccuracy);
+  if (exponent > kMinExponent + 2 * kExponentAccuracy &&
+      exponent < kMaxExponent - 2 * kExponentAccuracy) {
+    return {exponent, reference};
+  }
+  throw Error("load",
+              fmt::format("no exponent in [{}, {}] fits the loads", kMinExponent, kMaxExponent),
+              "check which load belongs to which file");
+}
+
+LoadResult result_of(const std::vector<Press>& presses, SkinCalibration calibration) {
+  LoadResult result;
+  const std::vector<double> ratios = log_ratios(presses, calibration);
+  const double k = std::exp(mean_of(ratios));
+  calibration.counts_per_newton = k;
+  double log_least = 0;
+  double log_most = 0;
+  double squares = 0;
+  for (const Press& press : presses) {
+    const NormalSum sum = sum_normal(press.solve(calibration));
+    const double relative = sum.all / (k * press.load_n()) - 1;
+    squares += relative * relative;
+    log_least += std::log(std::max(0.0, sum.all - sum.open) / press.load_n());
+    // With all intervals at their middle, twice that is the upper end.
+    const NormalSum middle = sum_normal(press.solve(calibration, 0.5));
+    log_most += std::log((middle.all + middle.open) / press.load_n());
+    result.loads.push_back({press.load_n(), sum.all / k, sum.open / sum.all, sum.saturated});
+  }
+  const auto count = static_cast<double>(presses.size());
+  result.misfit = std::sqrt(squares / count);
+  result.least_counts_per_newton = std::exp(log_least / count);
+  result.most_counts_per_newton = std::exp(log_most / count);
+  result.calibration = std::move(calibration);
+  return result;
+}
+
+void require_fit(const std::vector<Press>& presses, const LoadResult& result) {
+  if (result.misfit <= kMostMisfit) return;
+  const auto error = [](const LoadResidual& load) {
+    return std::abs(std::log(load.solved_n / load.load_n));
+  };
+  const auto worst = std::ranges::max_element(result.loads, {}, error);
+  const auto index = static_cast<std::size_t>(worst - result.loads.begin());
+  throw Error(presses[index].name(),
+              fmt::format("its load of {} N comes out as {:.4g} N", worst->load_n, worst->solved_n),
+              "check which load belongs to which file");
+}
+
+}  // namespace
+
+LoadResult calibrate_load(const SkinCalibration& before, std::span<const KnownLoad> loads,
+                          LoadModel model) {
+  require_loads(loads, before);
+  SkinCalibration calibration = before;
+  set_power_law(calibration, std::nullopt);
+  std::vector<Press> presses;
+  presses.reserve(loads.size());
+  for (const KnownLoad& load : loads) presses.emplace_back(load, calibration);
+  if (model == LoadModel::power) {
+    require_different(loads);
+    set_power_law(calibration, fit_power_law(presses, calibration));
+  }
+  LoadResult result = result_of(presses, std::move(calibration));
+  require_fit(presses, result);
+  return result;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,128 @@
+#include "pillarfield/skin_calibration.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <utility>
+
+#include "base/quantile.h"
+#include "pillarfield/error.h"
+#include "pillarfield/version.h"
+
+namespace pillarfield {
+namespace {
+
+/// The share of the good sensels whose noise the threshold is made for.
+constexpr double kQuietShare = 0.99;
+
+/// A skin of its size with the constants that it has, and defaults for the others.
+Skin skin_of(const SkinCalibration& calibration) {
+  Skin skin;
+  skin.rows = calibration.rows;
+  skin.cols = calibration.cols;
+  skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
+  skin.counts_per_newton = calibration.counts_per_newton.value_or(skin.counts_per_newton);
+  skin.power_law = calibration.power_law;
+  return skin;
+}
+
+/// Of two masks, either of which may be empty: missing in one is missing.
+std::vector<std::uint8_t> both_good(const std::vector<std::uint8_t>& a,
+                                    std::vector<std::uint8_t> b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] = a[i] != 0 ? b[i] : 0;
+  return b;
+}
+
+/// The noise of each good sensel in counts of its corrected reading.
+std::vector<double> corrected_noise(const Calibration& planes) {
+  std::vector<double> noise;
+  noise.reserve(planes.noise.size());
+  for (std::size_t i = 0; i < planes.noise.size(); ++i) {
+    if (!planes.mask.empty() && planes.mask[i] == 0) continue;
+    const double gain = planes.gain.empty() ? 1 : planes.gain[i];
+    noise.push_back(gain * planes.noise[i]);
+  }
+  return noise;
+}
+
+}  // namespace
+
+CalibrationStep step_done(std::string step, std::vector<std::string> sources, std::uint64_t frames,
+                          std::string parameters) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  return {std::move(step),
+          std::move(sources),
+          frames,
+          std::move(parameters),
+          fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", utc),
+          kVersion};
+}
+
+SkinCalibration blank_calibration(const Skin& skin) {
+  SkinCalibration calibration;
+  calibration.rows = skin.rows;
+  calibration.cols = skin.cols;
+  return calibration;
+}
+
+void mask_missing(SkinCalibration& calibration, const std::vector<std::uint8_t>& mask) {
+  calibration.planes.mask = both_good(mask, std::move(calibration.planes.mask));
+}
+
+void check(const SkinCalibration& calibration, std::string_view where) {
+  const Skin skin = skin_of(calibration);
+  check(skin, where);
+  check(calibration.planes, skin, where);
+  if (!calibration.threshold_factor) return;
+  const double factor = *calibration.threshold_factor;
+  if (factor >= 0 && factor <= kMaxThresholdFactor) return;
+  throw Error(where, fmt::format("threshold_factor is {}", factor),
+              fmt::format("it must lie in [0, {}]", kMaxThresholdFactor));
+}
+
+void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where) {
+  if (calibration.rows == skin.rows && calibration.cols == skin.cols) return;
+  throw Error(where,
+              fmt::format("has {} x {} sensels, and the calibration is one of {} x {}", skin.rows,
+                          skin.cols, calibration.rows, calibration.cols),
+              "give the calibration of this very skin");
+}
+
+void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) {
+  require_fitting(calibration, skin, "calibration");
+  std::vector<std::uint8_t> mask = both_good(planes.mask, calibration.planes.mask);
+  planes = calibration.planes;
+  planes.mask = std::move(mask);
+  skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
+  // A power law and the counts per newton are known together.
+  if (!calibration.counts_per_newton) return;
+  skin.counts_per_newton = *calibration.counts_per_newton;
+  skin.power_law = calibration.power_law;
+}
+
+void set_threshold(SkinCalibration& calibration, double factor) {
+  std::vector<double> noise = corrected_noise(calibration.planes);
+  if (noise.empty()) {
+    throw Error("calibration", "no good sensel has a known noise", "take the tare first");
+  }
+  const double threshold = factor * quantile(noise, kQuietShare);
+  const auto& law = calibration.power_law;
+  calibration.threshold_factor = factor;
+  calibration.threshold_counts = law ? straightened(*law, threshold) : threshold;
+}
+
+void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law) {
+  const std::optional<PowerLaw> old = std::exchange(calibration.power_law, law);
+  std::optional<double>& threshold = calibration.threshold_counts;
+  if (threshold && old) {
+    threshold = straightened({1 / old->exponent, old->reference_counts}, *threshold);
+  }
+  if (threshold && law) threshold = straightened(*law, *threshold);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,185 @@
+#include "contacts/estimator/friction_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kMostPredicted = 16;
+
+/// Where the noise is not known, the largest force of a contact is taken to be so many times it.
+constexpr double kPeakOverNoise = 64;
+
+double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> runs) {
+  float largest = 0;
+  for (const ContactRun& run : runs) {
+    for (std::uint32_t col = run.first; col < run.end; ++col) {
+      largest = std::max(largest, forces.normal[std::size_t{run.row} * forces.cols + col]);
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::optional<ContactModel::Estimate> ContactModel::predicted(
+    std::uint32_t row, std::uint32_t col, double high, const ContactParameters& parameters) const {
+  if (!pressure) return std::nullopt;
+  const PressureRegression::Prediction found = pressure->at(box.x_of(col), box.y_of(row));
+  if (!(found.square > 0)) return std::nullopt;
+  const double normal = std::min(std::sqrt(found.square), high + noise_n);
+  const double factor = parameters.regression_factor;
+  const double own = parameters.prediction_deviation * normal;
+  return Estimate{normal, factor * factor * found.variance / (4 * found.square) +
+                              noise_n * noise_n + own * own};
+}
+
+FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowledge& knowledge,
+                                     std::size_t members, const ContactParameters& parameters)
+    : sensor_(sensor),
+      parameters_(parameters),
+      likelihood_(parameters),
+      prior_(knowledge),
+      given_(knowledge.given),
+      remember_(knowledge.memory),
+      workspaces_(members) {}
+
+void FrictionEstimator::begin(const ContactMap& map) {
+  std::swap(beliefs_, beliefs_before_);
+  std::swap(histories_, histories_before_);
+  beliefs_.assign(map.contacts(), prior_);
+  histories_.assign(map.contacts(), {});
+  models_.assign(map.contacts(), {});
+  friction_.assign(map.contacts(), {});
+  if (!remember_) return;
+  std::swap(traces_, traces_before_);
+  traces_.runs.assign(map.runs_by_row().begin(), map.runs_by_row().end());
+  traces_.ids.assign(map.contacts(), 0);
+  traces_.centres.clear();
+  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
+    double pillars = 0;
+    double row = 0;
+    double col = 0;
+    for (const ContactRun& run : map.runs(contact)) {
+      const double length = run.end - run.first;
+      pillars += length;
+      row += length * run.row;
+      col += length * 0.5 * (run.first + run.end - 1.0);
+    }
+    traces_.centres.push_back(
+        {sensor_.pitch_mm * col / pillars, -sensor_.pitch_mm * row / pillars});
+  }
+  const ContactMatches matches = match_contacts(traces_before_, traces_, sensor_.reach_mm);
+  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
+    const std::uint32_t before = matches.earlier[contact] != kNoContact ? matches.earlier[contact]
+                                                                        : matches.parents[contact];
+    if (before == kNoContact) continue;
+    beliefs_[contact] = beliefs_before_[before].carried(prior_, parameters_.forgetting);
+    histories_[contact] = histories_before_[before];
+  }
+}
+
+void FrictionEstimator::learn(const ForceFieldView& forces, const ContactMap& map,
+                              std::uint32_t contact, std::size_t member) {
+  ContactModel& model = models_[contact];
+  FrictionBelief& belief = beliefs_[contact];
+  Workspace& work = workspaces_[member];
+  ContactSamples& samples = work.samples;
+  const auto runs = map.runs(contact);
+  model.noise_n =
+      sensor_.noise_n ? *sensor_.noise_n : largest_normal(forces, runs) / kPeakOverNoise;
+  samples.take(forces, runs, model.noise_n, sensor_.segment_end, parameters_);
+  model.box = samples.box();
+  // Those that were passed over may still be ambiguous.
+  model.any_ambiguous = !samples.ambiguous().empty() || samples.any_passed_over();
+
+  FrictionCurve log_likelihood{};
+  likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, log_likelihood);
+  likelihood_.add_lower_bounds(samples.bounds(), parameters_.effective_pillars, log_likelihood);
+  if (!samples.ambiguous().empty()) {
+    if (!samples.pressure().empty()) samples.add_edges();
+    model.pressure = PressureRegression::fit(samples.pressure());
+    work.predicted.clear();
+    if (model.pressure) predict(forces, model, work);
+    likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
+                                  log_likelihood);
+  }
+  if (!samples.ratios().empty() || !samples.bounds().empty()) belief.update(log_likelihood);
+  for (std::size_t i = 0; model.any_ambiguous && i < ContactModel::kNodes; ++i) {
+    model.frictions[i] =
+        static_cast<float>(belief.quantile((static_cast<double>(i) + 0.5) / ContactModel::kNodes));
+  }
+  friction_[contact] = reported(contact, log_likelihood, work);
+}
+
+/// What is predicted of ambiguous pillars tells of the friction, too.
+void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel& model,
+                                Workspace& work) const {
+  constexpr double kMostDeviation = 0.35;  // relative, of a prediction that is used
+  constexpr double kStep = 0.02;           // relative, of the derivative of the ratio
+  const std::vector<std::uint32_t>& ambiguous = work.samples.ambiguous();
+  const std::size_t step = (ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
+  for (std::size_t i = 0; i < ambiguous.size(); i += step) {
+    const std::uint32_t index = ambiguous[i];
+    const Segment segment = segment_at(forces, index, sensor_.segment_end);
+    const std::uint32_t row = index / forces.cols;
+    const auto found = model.predicted(row, index - row * forces.cols, segment.high, parameters_);
+    if (!found) continue;
+    const double normal = found->normal;
+    const double deviation = std::sqrt(found->variance) / normal;
+    if (!(deviation < kMostDeviation && normal > parameters_.least_normal * model.noise_n))
+      continue;
+    const double steepness = std::abs(std::log(segment.ratio_at(normal * (1 + kStep)) /
+                                               segment.ratio_at(normal * (1 - kStep)))) /
+                             (2 * kStep);
+    const double own = deviation_of_ratio(normal, model.noise_n, parameters_);
+    work.predicted.push_back(
+        {segment.ratio_at(normal), std::hypot(deviation * steepness, own), ShownRatio::kNoCeiling});
+  }
+}
+
+/// Whether a contact bears as much at its edge as elsewhere: under such a face all pillars may
+/// stick and still show nearly one ratio of shear to normal force (section 5).
+bool FrictionEstimator::is_face(Workspace& work) const {
+  if (!work.samples.has_edges()) work.samples.add_edges();
+  return work.samples.edge_load() > parameters_.face_load;
+}
+
+/// Whether a ratio that pillars share stayed when what the contact bears changed. What sticks does
+/// not: its ratios grow together. `observed`: this frame shows it.
+bool FrictionEstimator::stays(double friction, bool observed, const Workspace& work,
+                              History& history) const {
+  if (std::abs(friction - history.friction) > parameters_.same_friction * friction) history = {};
+  const std::vector<ShownRatio>& ratios = work.samples.ratios();
+  if (!observed || ratios.empty()) return history.stayed;
+  double mean = 0;
+  for (const ShownRatio& pillar : ratios) mean += pillar.ratio / static_cast<double>(ratios.size());
+  if (history.friction == 0) {
+    history = {friction, mean, false};
+  } else if (std::abs(mean / history.mean_ratio - 1) > parameters_.other_load) {
+    history.stayed = true;
+  }
+  return history.stayed;
+}
+
+/// What is reported of a belief, and how it was learnt.
+ContactFriction FrictionEstimator::reported(std::uint32_t contact,
+                                            const FrictionCurve& log_likelihood, Workspace& work) {
+  const FrictionBelief& belief = beliefs_[contact];
+  ContactFriction friction{belief.quantile(0.5), belief.spread(), FrictionSource::prior};
+  if (given_) return {*given_, friction.spread, FrictionSource::given};
+  if (friction.spread > parameters_.reported_spread) return friction;
+  FrictionBelief alone = prior_;
+  alone.update(log_likelihood);
+  const bool observed =
+      alone.spread() <= parameters_.reported_spread &&
+      std::abs(alone.quantile(0.5) / friction.median - 1) <= parameters_.same_friction;
+  const bool certain = stays(friction.median, observed, work, histories_[contact]);
+  if (!certain && is_face(work)) return friction;
+  friction.source = observed ? FrictionSource::observed : FrictionSource::carried_over;
+  return friction;
+}
+
+}  // namespace pillarfield

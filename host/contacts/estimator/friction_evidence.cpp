@@ -1,0 +1,153 @@
+#include "contacts/estimator/friction_evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/wide.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kPoints = FrictionGrid::kPoints;
+
+/// Ratios from which likelihoods are densities: a pillar that follows no rule has one of these.
+constexpr double kOutlierRange = 6;
+
+/// So many factors, which are 1e-4 at least and 100 at most, have a product that a double holds.
+constexpr std::size_t kFactors = 64;
+
+using Factors = std::array<double, kPoints>;
+using Powers = std::array<float, kPoints>;
+
+double normal_cumulative(double deviations) {
+  return 0.5 * std::erfc(-deviations / std::numbers::sqrt2);
+}
+
+/// Multiplies likelihoods point by point and sums their logarithms now and then.
+class LogProduct {
+ public:
+  LogProduct() { product_.fill(1); }
+
+  Factors& next() {
+    if (factors_++ == kFactors) flush();
+    return product_;
+  }
+
+  void add_to(FrictionCurve& log_likelihood, double weight) {
+    flush();
+    for (std::size_t i = 0; i < kPoints; ++i) log_likelihood[i] += weight * logarithm_[i];
+  }
+
+ private:
+  void flush() {
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      logarithm_[i] += std::log(product_[i]);
+    }
+    product_.fill(1);
+    factors_ = 1;
+  }
+
+  Factors product_{};
+  FrictionCurve logarithm_{};
+  std::size_t factors_ = 0;
+};
+
+/// One pillar's likelihood of slipping at a point's friction or sticking below it (C3).
+struct SlipOrStick {
+  const float* density;
+  const float* cumulative;
+  const float* below_ceiling;
+  float slip;
+  float stick;
+  float least_factor;
+  float outlier;
+};
+
+PF_WIDE void multiply(Factors& product, const SlipOrStick& pillar, const Powers& stick_factor) {
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    const float factor =
+        stick_factor[i] > pillar.least_factor ? stick_factor[i] : pillar.least_factor;
+    const float likelihood = pillar.slip * pillar.density[i] * pillar.below_ceiling[i] +
+                             pillar.stick * factor * pillar.cumulative[i] + pillar.outlier;
+    product[i] *= static_cast<double>(likelihood);
+  }
+}
+
+PF_WIDE void multiply(Factors& product, const float* cumulative, float outliers) {
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    product[i] *= static_cast<double>(cumulative[i] * (1 - outliers) + outliers);
+  }
+}
+
+double weight_of(std::size_t pillars, double effective) {
+  return std::min(1.0, effective / static_cast<double>(pillars));
+}
+
+}  // namespace
+
+FrictionLikelihood::FrictionLikelihood(const ContactParameters& parameters)
+    : parameters_(parameters) {
+  for (std::size_t k = 0; k < kWidths; ++k) {
+    Width& width = widths_[k];
+    width.deviation = parameters.ratio_deviation * std::pow(2.0, 0.5 * static_cast<double>(k));
+    const double scale = 1 / (width.deviation * std::sqrt(2 * std::numbers::pi));
+    for (std::size_t i = 0; i < width.density.size(); ++i) {
+      const double points = static_cast<double>(i) - static_cast<double>(kPoints);
+      const double deviations = points * FrictionGrid::kStep / width.deviation;
+      width.density[i] = static_cast<float>(scale * std::exp(-0.5 * deviations * deviations));
+      width.cumulative[i] = static_cast<float>(normal_cumulative(deviations));
+    }
+  }
+  for (std::size_t i = 0; i < below_ceiling_.size(); ++i) {
+    const double points = static_cast<double>(i) - static_cast<double>(kPoints);
+    below_ceiling_[i] = static_cast<float>(
+        normal_cumulative(-points * FrictionGrid::kStep / parameters.ceiling_deviation));
+  }
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    stick_factor_[i] = static_cast<float>(
+        std::pow(FrictionGrid::at(static_cast<double>(i)), -parameters.stick_exponent));
+  }
+}
+
+const FrictionLikelihood::Width& FrictionLikelihood::width_of(double deviation) const {
+  for (const Width& width : widths_) {
+    if (deviation <= width.deviation * 1.19) return width;  // Nearer than the next, 1.41 as wide.
+  }
+  return widths_.back();
+}
+
+void FrictionLikelihood::add_slip_or_stick(const std::vector<ShownRatio>& pillars, double effective,
+                                           FrictionCurve& log_likelihood) const {
+  if (pillars.empty()) return;
+  const double slips = parameters_.slip_probability * (1 - parameters_.outliers);
+  const double sticks = (1 - parameters_.slip_probability) * (1 - parameters_.outliers);
+  LogProduct product;
+  for (const ShownRatio& pillar : pillars) {
+    const Width& width = width_of(pillar.deviation);
+    const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
+    const std::size_t at_ceiling = kPoints - FrictionGrid::nearest(pillar.ceiling);
+    multiply(product.next(),
+             {width.density.data() + at, width.cumulative.data() + at,
+              below_ceiling_.data() + at_ceiling,
+              static_cast<float>(slips / std::max(FrictionGrid::kLeast, pillar.ratio)),
+              static_cast<float>(sticks), stick_factor_[FrictionGrid::nearest(pillar.ceiling)],
+              static_cast<float>(parameters_.outliers / kOutlierRange)},
+             stick_factor_);
+  }
+  product.add_to(log_likelihood, weight_of(pillars.size(), effective));
+}
+
+void FrictionLikelihood::add_lower_bounds(const std::vector<ShownRatio>& pillars, double effective,
+                                          FrictionCurve& log_likelihood) const {
+  if (pillars.empty()) return;
+  LogProduct product;
+  for (const ShownRatio& pillar : pillars) {
+    const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
+    multiply(product.next(), width_of(pillar.deviation).cumulative.data() + at,
+             static_cast<float>(parameters_.outliers));
+  }
+  product.add_to(log_likelihood, weight_of(pillars.size(), effective));
+}
+
+}  // namespace pillarfield

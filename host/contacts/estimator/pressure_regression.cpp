@@ -1,0 +1,102 @@
+#include "contacts/estimator/pressure_regression.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kLeastSamples = 12;
+constexpr int kRounds = 3;  ///< of reweighting
+/// A residual of so many standard deviations has half its weight.
+constexpr double kHalfWeight = 2;
+/// A pivot of Cholesky's factorisation below this share of the diagonal: the samples lie on a line.
+constexpr double kLeastPivot = 1e-9;
+
+}  // namespace
+
+bool PressureRegression::factorise(Matrix& matrix) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    const double diagonal = matrix[i][i];
+    for (std::size_t j = 0; j <= i; ++j) {
+      double sum = matrix[i][j];
+      for (std::size_t k = 0; k < j; ++k) sum -= matrix[i][k] * matrix[j][k];
+      if (i != j) {
+        matrix[i][j] = sum / matrix[j][j];
+      } else {
+        if (!(sum > kLeastPivot * diagonal)) return false;
+        matrix[i][i] = std::sqrt(sum);
+      }
+    }
+  }
+  return true;
+}
+
+void PressureRegression::forward(const Matrix& factor, Terms& values) {
+  for (std::size_t i = 0; i < kTerms; ++i) {
+    for (std::size_t k = 0; k < i; ++k) values[i] -= factor[i][k] * values[k];
+    values[i] /= factor[i][i];
+  }
+}
+
+void PressureRegression::backward(const Matrix& factor, Terms& values) {
+  for (std::size_t i = kTerms; i-- > 0;) {
+    for (std::size_t k = i + 1; k < kTerms; ++k) values[i] -= factor[k][i] * values[k];
+    values[i] /= factor[i][i];
+  }
+}
+
+std::optional<PressureRegression> PressureRegression::fit(const std::vector<Sample>& samples) {
+  if (samples.size() < kLeastSamples) return std::nullopt;
+  PressureRegression result;
+  std::vector<double> residuals(samples.size(), 0);
+  for (int round = 0; round < kRounds; ++round) {
+    const double bend = kHalfWeight * kHalfWeight * result.mean_square_;
+    const auto weight_of = [&](std::size_t i) {
+      const double square = residuals[i] * residuals[i];
+      return samples[i].weight * (bend > 0 ? bend / (bend + square) : 1);
+    };
+    Matrix matrix{};
+    Terms right{};
+    double weights = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Terms terms = terms_of(samples[i].x, samples[i].y);
+      const double weight = weight_of(i);
+      weights += weight;
+      for (std::size_t row = 0; row < kTerms; ++row) {
+        for (std::size_t col = 0; col <= row; ++col) {
+          matrix[row][col] += weight * terms[row] * terms[col];
+        }
+        right[row] += weight * terms[row] * samples[i].square;
+      }
+    }
+    if (!factorise(matrix)) return std::nullopt;
+    forward(matrix, right);
+    backward(matrix, right);
+    result.coefficients_ = right;
+    result.factor_ = matrix;
+    double squares = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double weight = weight_of(i);
+      const Terms terms = terms_of(samples[i].x, samples[i].y);
+      double fitted = 0;
+      for (std::size_t k = 0; k < kTerms; ++k) fitted += right[k] * terms[k];
+      residuals[i] = samples[i].square - fitted;
+      squares += weight * residuals[i] * residuals[i];
+    }
+    result.mean_square_ = squares / std::max(weights - static_cast<double>(kTerms), 2.0);
+  }
+  return result;
+}
+
+PressureRegression::Prediction PressureRegression::at(double x, double y) const {
+  Terms terms = terms_of(x, y);
+  double square = 0;
+  for (std::size_t k = 0; k < kTerms; ++k) square += coefficients_[k] * terms[k];
+  forward(factor_, terms);
+  double leverage = 0;
+  for (const double each : terms) leverage += each * each;
+  return {square, mean_square_ * (1 + leverage)};
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,117 @@
+#include "io/hdf5/attribute.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "io/hdf5/number_type.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield::hdf5 {
+namespace {
+
+constexpr std::size_t kLongestText = 1 << 16;
+
+void write_scalar(const File& file, hid_t object, const char* name, hid_t stored_type,
+                  hid_t memory_type, const void* value) {
+  const std::string failure = fmt::format("cannot write attribute '{}'", name);
+  const Handle space = own(H5Screate(H5S_SCALAR), file.path, failure);
+  const Handle attribute =
+      own(H5Acreate2(object, name, stored_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), file.path,
+          failure);
+  require(H5Awrite(attribute.get(), memory_type, value), file.path, failure);
+}
+
+Handle text_type(const File& file, std::size_t size) {
+  Handle type = own(H5Tcopy(H5T_C_S1), file.path, "cannot make a string type");
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  H5Tset_size(type.get(), size);
+  return type;
+}
+
+/// An attribute that was found, its type, and the words for its failures.
+struct Attribute {
+  Handle id;
+  Handle type;
+  std::string failure;
+};
+
+std::optional<Attribute> open_single(const File& file, hid_t object, const char* name) {
+  Attribute attribute;
+  attribute.failure = fmt::format("attribute '{}' cannot be read", name);
+  const htri_t found = H5Aexists(object, name);
+  require(found, file.path, attribute.failure, kDamaged);
+  if (found == 0) return std::nullopt;
+  attribute.id = own(H5Aopen(object, name, H5P_DEFAULT), file.path, attribute.failure);
+  attribute.type = own(H5Aget_type(attribute.id.get()), file.path, attribute.failure);
+  const Handle space = own(H5Aget_space(attribute.id.get()), file.path, attribute.failure);
+  if (H5Sget_simple_extent_npoints(space.get()) != 1) {
+    throw Error(file.path.string(), fmt::format("attribute '{}' is no single value", name),
+                "store one value");
+  }
+  return attribute;
+}
+
+std::string read_variable_text(const File& file, const Attribute& attribute) {
+  // The stored character set has to be asked for: HDF5 does not convert between them.
+  const Handle type = text_type(file, H5T_VARIABLE);
+  H5Tset_cset(type.get(), H5Tget_cset(attribute.type.get()));
+  char* text = nullptr;
+  require(H5Aread(attribute.id.get(), type.get(), static_cast<void*>(&text)), file.path,
+          attribute.failure);
+  std::string copy = text == nullptr ? "" : text;
+  H5free_memory(text);
+  return copy;
+}
+
+std::string read_fixed_text(const File& file, const Attribute& attribute) {
+  const std::size_t size = H5Tget_size(attribute.type.get());
+  if (size > kLongestText) throw Error(file.path.string(), attribute.failure, "it is too long");
+  std::string text(size, '\0');
+  require(H5Aread(attribute.id.get(), attribute.type.get(), text.data()), file.path,
+          attribute.failure);
+  text.resize(std::min(text.find('\0'), text.size()));
+  if (H5Tget_strpad(attribute.type.get()) == H5T_STR_SPACEPAD) {
+    text.resize(text.find_last_not_of(' ') + 1);
+  }
+  return text;
+}
+
+}  // namespace
+
+void write_attribute(const File& file, hid_t object, const char* name, int value) {
+  write_scalar(file, object, name, H5T_STD_I64LE, H5T_NATIVE_INT, &value);
+}
+
+void write_attribute(const File& file, hid_t object, const char* name, double value) {
+  write_scalar(file, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+}
+
+void write_attribute(const File& file, hid_t object, const char* name, const std::string& value) {
+  const Handle type = text_type(file, value.size() + 1);
+  write_scalar(file, object, name, type.get(), type.get(), value.c_str());
+}
+
+std::optional<double> read_number(const File& file, hid_t object, const char* name) {
+  const auto attribute = open_single(file, object, name);
+  if (!attribute) return std::nullopt;
+  require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
+  double value = 0;
+  require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file.path, attribute->failure);
+  return value;
+}
+
+std::optional<std::string> read_text(const File& file, hid_t object, const char* name) {
+  const auto attribute = open_single(file, object, name);
+  if (!attribute) return std::nullopt;
+  if (H5Tget_class(attribute->type.get()) != H5T_STRING) {
+    throw Error(file.path.string(),
+                fmt::format("attribute '{}' is no string but {}", name,
+                            name_of_type(attribute->type.get())),
+                "store a string");
+  }
+  const bool variable = H5Tis_variable_str(attribute->type.get()) > 0;
+  return variable ? read_variable_text(file, *attribute) : read_fixed_text(file, *attribute);
+}
+
+}  // namespace pillarfield::hdf5

@@ -1,0 +1,187 @@
+#include "io/hdf5/driver.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+#if __has_include(<H5FDdevelop.h>)
+#include <H5FDdevelop.h>
+#endif
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::hdf5 {
+namespace {
+
+/// What the file access list carries to the driver.
+struct DriverOptions {
+  int descriptor = -1;  ///< of an empty file; the driver works on a duplicate
+  std::shared_ptr<WriteHealth> health;
+};
+
+struct DriverFile : H5FD_t {
+  int descriptor = -1;
+  haddr_t allocated_end = 0;
+  haddr_t file_end = 0;
+  std::shared_ptr<WriteHealth> health;
+};
+
+DriverFile& ours(H5FD_t* file) { return *static_cast<DriverFile*>(file); }
+const DriverFile& ours(const H5FD_t* file) { return *static_cast<const DriverFile*>(file); }
+
+void* copy_options(const void* options) {
+  return new DriverOptions(*static_cast<const DriverOptions*>(options));
+}
+
+herr_t free_options(void* options) {
+  delete static_cast<DriverOptions*>(options);
+  return 0;
+}
+
+H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
+  const auto* options = static_cast<const DriverOptions*>(H5Pget_driver_info(access));
+  if (options == nullptr) return nullptr;
+  const int descriptor = fcntl(options->descriptor, F_DUPFD_CLOEXEC, 0);
+  if (descriptor < 0) {
+    options->health->error_number = errno;
+    return nullptr;
+  }
+  auto file = std::make_unique<DriverFile>();
+  file->descriptor = descriptor;
+  file->health = options->health;
+  return file.release();
+}
+
+herr_t close_file(H5FD_t* file) {
+  const std::unique_ptr<DriverFile> owned(&ours(file));
+  if (::close(owned->descriptor) != 0 && owned->health->error_number == 0) {
+    owned->health->error_number = errno;
+  }
+  return 0;
+}
+
+herr_t query(const H5FD_t*, unsigned long* features) {
+  *features = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA |
+              H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_SUPPORTS_SWMR_IO |
+              H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
+  return 0;
+}
+
+haddr_t allocated_end(const H5FD_t* file, H5FD_mem_t) { return ours(file).allocated_end; }
+
+herr_t set_allocated_end(H5FD_t* file, H5FD_mem_t, haddr_t end) {
+  ours(file).allocated_end = end;
+  return 0;
+}
+
+haddr_t file_end(const H5FD_t* file, H5FD_mem_t) { return ours(file).file_end; }
+
+herr_t read_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size, void* block) {
+  auto* out = static_cast<char*>(block);
+  while (size > 0) {
+    const ssize_t got = pread(ours(file).descriptor, out, size, static_cast<off_t>(address));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return -1;
+    if (got == 0) {  // allocated, but not yet in the file
+      std::memset(out, 0, size);
+      return 0;
+    }
+    out += got;
+    address += static_cast<haddr_t>(got);
+    size -= static_cast<size_t>(got);
+  }
+  return 0;
+}
+
+herr_t write_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size,
+                   const void* block) {
+  DriverFile& target = ours(file);
+  target.file_end = std::max<haddr_t>(target.file_end, address + size);
+  const auto* next = static_cast<const char*>(block);
+  while (size > 0 && target.health->error_number == 0) {
+    const ssize_t put = pwrite(target.descriptor, next, size, static_cast<off_t>(address));
+    if (put < 0 && errno != EINTR) target.health->error_number = errno;
+    if (put < 0) continue;
+    next += put;
+    address += static_cast<haddr_t>(put);
+    size -= static_cast<size_t>(put);
+  }
+  return 0;
+}
+
+herr_t truncate_file(H5FD_t* file, hid_t, hbool_t) {
+  DriverFile& target = ours(file);
+  if (target.file_end == target.allocated_end || target.health->error_number != 0) return 0;
+  if (ftruncate(target.descriptor, static_cast<off_t>(target.allocated_end)) != 0) {
+    target.health->error_number = errno;
+  }
+  target.file_end = target.allocated_end;
+  return 0;
+}
+
+/// HDF5 holds the lock while it creates the file, and marks only a locked file as being written.
+herr_t lock_file(H5FD_t* file, hbool_t exclusive) {
+  const int kind = exclusive ? LOCK_EX : LOCK_SH;
+  const bool locked = flock(ours(file).descriptor, kind | LOCK_NB) == 0;
+  return locked || errno == ENOSYS ? 0 : -1;
+}
+
+herr_t unlock_file(H5FD_t* file) {
+  const bool unlocked = flock(ours(file).descriptor, LOCK_UN) == 0;
+  return unlocked || errno == ENOSYS ? 0 : -1;
+}
+
+H5FD_class_t driver_class() {
+  H5FD_class_t driver = {};
+#ifdef H5FD_CLASS_VERSION  // HDF5 1.14 and later
+  driver.version = H5FD_CLASS_VERSION;
+  driver.value = 512;  // the first that is not reserved
+#endif
+  driver.name = "pillarfield";
+  driver.maxaddr = (haddr_t{1} << 62) - 1;
+  driver.fc_degree = H5F_CLOSE_WEAK;
+  driver.fapl_size = sizeof(DriverOptions);
+  driver.fapl_copy = copy_options;
+  driver.fapl_free = free_options;
+  driver.open = open_file;
+  driver.close = close_file;
+  driver.query = query;
+  driver.get_eoa = allocated_end;
+  driver.set_eoa = set_allocated_end;
+  driver.get_eof = file_end;
+  driver.read = read_block;
+  driver.write = write_block;
+  driver.truncate = truncate_file;
+  driver.lock = lock_file;
+  driver.unlock = unlock_file;
+  constexpr H5FD_mem_t kPools[H5FD_MEM_NTYPES] = H5FD_FLMAP_DICHOTOMY;
+  std::copy(std::begin(kPools), std::end(kPools), std::begin(driver.fl_map));
+  return driver;
+}
+
+}  // namespace
+
+void require_written(const WriteHealth& health, const std::filesystem::path& file) {
+  if (health.error_number == 0) return;
+  throw Error(file.string(),
+              std::string("cannot be written: ") + std::strerror(health.error_number),
+              "check its directory and the space left on its disk");
+}
+
+Handle surviving_access(const std::shared_ptr<WriteHealth>& health, const OutputFile& output) {
+  const std::filesystem::path& file = output.part_path();
+  constexpr const char* kFailure = "HDF5 does not take a file driver";
+  Handle access = own(H5Pcreate(H5P_FILE_ACCESS), file, kFailure);
+  const H5FD_class_t driver = driver_class();
+  const Handle registered = own(H5FDregister(&driver), file, kFailure);
+  const DriverOptions options = {output.descriptor(), health};
+  require(H5Pset_driver(access.get(), registered.get(), &options), file, kFailure);
+  return access;
+}
+
+}  // namespace pillarfield::hdf5

@@ -1,0 +1,112 @@
+#include "io/hdf5/file.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "io/file_kind.h"
+#include "io/hdf5/attribute.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield::hdf5 {
+namespace {
+
+constexpr const char* kLayout = "docs/formats.md describes the file that is expected";
+constexpr const char* kCannotWrite = "cannot be written";
+
+std::string advice_for(std::string_view found, std::string_view wanted) {
+  if (found == "pillarfield-forces") {
+    return "it holds solved forces; give the recording they were solved from";
+  }
+  if (found == "pillarfield-calibration") {
+    return "it holds a calibration; give the recording it is for";
+  }
+  if (found != "pillarfield-recording") return kLayout;
+  return wanted == "pillarfield-calibration" ? "it holds readings; calibrate with them first"
+                                             : "it holds readings; solve it first";
+}
+
+/// HDF5 reads what a live writer may just be changing up to 100 times, twice as long after each
+/// failure; in a damaged file that would last for ever. Twenty-five times take 33 ms.
+Handle reading_access(const std::filesystem::path& path, bool unclosed) {
+  constexpr unsigned kReadAttempts = 25;
+  Handle access = own(H5Pcreate(H5P_FILE_ACCESS), path, "cannot be opened as HDF5");
+  if (unclosed) H5Pset_metadata_read_attempts(access.get(), kReadAttempts);
+  return access;
+}
+
+}  // namespace
+
+File open_to_read(const std::filesystem::path& path, bool probing) {
+  if (kind_of(path) != FileKind::hdf5) throw Error(path.string(), "is no HDF5 file", kLayout);
+  const WriterState state = writer_state(path);
+  if (state == WriterState::abandoned) {
+    throw Error(path.string(), "was never closed by its writer, and holds nothing that was flushed",
+                "wait for the writer, or write it again");
+  }
+  File file;
+  file.path = path;
+  file.probing = probing;
+  file.unclosed = state == WriterState::swmr;
+  const unsigned mode = H5F_ACC_RDONLY | (file.unclosed ? H5F_ACC_SWMR_READ : 0u);
+  const Handle access = reading_access(path, file.unclosed);
+  file.id =
+      own(H5Fopen(path.c_str(), mode, access.get()), path, "cannot be opened as HDF5", kDamaged);
+  return file;
+}
+
+void require_format(const File& file, std::string_view format, int version) {
+  const auto found = read_text(file, file.id.get(), "format");
+  if (!found) {
+    throw Error(file.path.string(),
+                fmt::format("is an HDF5 file but no {}: it has no 'format'", format), kLayout);
+  }
+  if (*found != format) {
+    throw Error(file.path.string(), fmt::format("its format is '{:.60}', not '{}'", *found, format),
+                advice_for(*found, format));
+  }
+  const auto found_version = read_number(file, file.id.get(), "version");
+  if (!found_version) throw Error(file.path.string(), "has no attribute 'version'", kLayout);
+  if (*found_version != version) {
+    throw Error(file.path.string(),
+                fmt::format("its version is {}, and this program reads version {}", *found_version,
+                            version),
+                "use a program of its age or newer");
+  }
+}
+
+File create(const OutputFile& output) {
+  const std::filesystem::path& path = output.part_path();
+  File file;
+  file.path = path;
+  file.health = std::make_shared<WriteHealth>();
+  const Handle access = surviving_access(file.health, output);
+  require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path,
+          kCannotWrite);
+  file.id = own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), path,
+                kCannotWrite, "see that no other program has it open");
+  return file;
+}
+
+void start_appending(const File& file) {
+  flush(file);  // HDF5 reads back what it wrote so far, and must find it
+  require(H5Fstart_swmr_write(file.id.get()), file.path, kCannotWrite);
+  require_written(*file.health, file.path);
+}
+
+void flush(const File& file) {
+  require(H5Fflush(file.id.get(), H5F_SCOPE_GLOBAL), file.path, kCannotWrite);
+  require_written(*file.health, file.path);
+}
+
+void close(File& file) {
+  if (!file.id.close()) fail(file.path, kCannotWrite);
+  require_written(*file.health, file.path);
+}
+
+Handle create_group(const File& file, const char* name) {
+  return own(H5Gcreate2(file.id.get(), name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), file.path,
+             kCannotWrite);
+}
+
+}  // namespace pillarfield::hdf5

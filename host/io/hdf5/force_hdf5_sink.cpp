@@ -1,0 +1,175 @@
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "io/force_format.h"
+#include "io/force_planes.h"
+#include "io/force_sink.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/contact_hdf5_tables.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/frames.h"
+#include "pillarfield/error.h"
+#include "pillarfield/version.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint64_t kFlushEvery = 16;  // frames
+
+constexpr const char* kConvention =
+    "shear_x (+ right, growing column) and shear_y (+ up, falling row) act on the skin; normal is "
+    "positive when pressed; (theta, phi) is the direction from which the force comes, rad";
+
+class Hdf5Sink final : public ForceSink {
+ public:
+  Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replace replace);
+  ~Hdf5Sink() override;
+
+  void append(const ForceFieldView& forces, double time_s) override;
+  void append_contacts(const FrameContacts& contacts) override;
+  void finish() override;
+
+ private:
+  void write_info();
+  void create_datasets();
+  void require_open() const;
+  void require_contacts() const;
+  void put(const ForceFieldView& forces, double time_s);
+  void flush();
+
+  ForceFileInfo info_;
+  FramePlanes frame_planes_;
+  std::filesystem::path path_;
+  OutputFile part_;
+  hdf5::File file_;
+  std::vector<hdf5::GrowingDataset> planes_;  // those of all_planes(), in that order
+  hdf5::GrowingDataset status_;
+  hdf5::GrowingDataset time_;
+  ContactTables contacts_;
+  std::uint64_t frames_ = 0;
+  std::uint64_t flushed_ = 0;
+};
+
+Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replace replace)
+    : info_(std::move(info)),
+      frame_planes_(info_),
+      path_(path),
+      part_(path, OutputKind::forces, replace),
+      file_(hdf5::create(part_)) {
+  write_info();
+  create_datasets();
+  hdf5::start_appending(file_);
+}
+
+Hdf5Sink::~Hdf5Sink() {
+  const hdf5::QuietErrors quiet;
+  if (flushed_ > 0) part_.keep();
+  planes_.clear();
+  status_ = {};
+  time_ = {};
+  contacts_ = {};
+  file_ = {};
+}
+
+void Hdf5Sink::write_info() {
+  const hid_t root = file_.id.get();
+  hdf5::write_attribute(file_, root, "format", std::string(force_format::kName));
+  hdf5::write_attribute(file_, root, "version", force_format::kVersion);
+  hdf5::write_attribute(file_, root, force_format::kUnit, std::string("N"));
+  hdf5::write_attribute(file_, root, force_format::kSignConvention, std::string(kConvention));
+  hdf5::write_attribute(file_, root, force_format::kEstimator, info_.estimator);
+  if (info_.segment_point) {
+    hdf5::write_attribute(file_, root, force_format::kSegmentPoint, *info_.segment_point);
+  }
+  hdf5::write_attribute(file_, root, force_format::kDevice, info_.device);
+  hdf5::write_attribute(file_, root, force_format::kSource, info_.source);
+  hdf5::write_attribute(file_, root, force_format::kProgramVersion, std::string(kVersion));
+  hdf5::write_attribute(file_, root, force_format::kPillarPitch, info_.pillar_pitch_mm);
+}
+
+void Hdf5Sink::create_datasets() {
+  const hdf5::Handle force = hdf5::create_group(file_, force_format::kForce);
+  const hdf5::Handle uncertainty =
+      info_.uncertainty ? hdf5::create_group(file_, force_format::kUncertainty) : hdf5::Handle();
+  const hdf5::FrameShape shape = {info_.rows, info_.cols};
+  for (const ForcePlane& plane : all_planes(info_)) {
+    const std::string name = "/" + plane.group + "/" + plane.name;
+    planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, shape);
+  }
+  status_ = {file_, force_format::kStatus, H5T_STD_U8LE, shape};
+  time_ = {file_, force_format::kTime, H5T_IEEE_F64LE, {}};
+  if (info_.contacts) contacts_ = {file_, *info_.contacts};
+}
+
+void Hdf5Sink::require_open() const {
+  if (file_.id.valid()) return;
+  throw Error(path_.string(), "is finished", "start another file");
+}
+
+void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
+  std::size_t index = 0;
+  frame_planes_.take(forces);
+  for (const ForcePlane& plane : all_planes(info_)) {
+    planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
+  }
+  status_.put(frames_, H5T_NATIVE_UINT8, forces.status.data());
+  time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);
+}
+
+/// Those of all frames so far.
+void Hdf5Sink::require_contacts() const {
+  if (!info_.contacts || contacts_.frames() == frames_) return;
+  throw Error(path_.string(), "a frame is without its contacts", "append them after each frame");
+}
+
+void Hdf5Sink::flush() {
+  if (info_.contacts) contacts_.write();
+  hdf5::flush(file_);
+  flushed_ = frames_;
+  part_.sync_at_intervals();
+}
+
+void Hdf5Sink::append(const ForceFieldView& forces, double time_s) {
+  const hdf5::QuietErrors quiet;
+  require_open();
+  require_contacts();
+  check(forces, time_s, info_, path_.string());
+  put(forces, time_s);
+  ++frames_;
+  if (!info_.contacts && frames_ % kFlushEvery == 0) flush();
+}
+
+void Hdf5Sink::append_contacts(const FrameContacts& contacts) {
+  const hdf5::QuietErrors quiet;
+  require_open();
+  if (!info_.contacts) return ForceSink::append_contacts(contacts);
+  if (contacts_.frames() >= frames_) {
+    throw Error(path_.string(), "a frame has its contacts already", "append the next frame first");
+  }
+  contacts_.append(contacts);
+  if (frames_ % kFlushEvery == 0) flush();
+}
+
+void Hdf5Sink::finish() {
+  const hdf5::QuietErrors quiet;
+  require_open();
+  require_contacts();
+  flush();
+  for (auto& plane : planes_) plane.close();
+  status_.close();
+  time_.close();
+  contacts_.close();
+  hdf5::close(file_);
+  part_.commit();
+}
+
+}  // namespace
+
+std::unique_ptr<ForceSink> create_hdf5_sink(const std::filesystem::path& path,
+                                            const ForceFileInfo& info, Replace replace) {
+  const hdf5::QuietErrors quiet;
+  return std::make_unique<Hdf5Sink>(path, info, replace);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,110 @@
+#include "io/hdf5/stored_frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "io/hdf5/links.h"
+#include "io/hdf5/number_type.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield::hdf5 {
+namespace {
+
+/// NumPy stores truth values as an enumeration of int8.
+Handle number_type(const std::filesystem::path& path, const std::string& name,
+                   const Handle& dataset) {
+  const std::string failure = fmt::format("{} has no type", name);
+  Handle type = own(H5Dget_type(dataset.get()), path, failure, kDamaged);
+  if (H5Tget_class(type.get()) == H5T_ENUM) {
+    type = own(H5Tget_super(type.get()), path, failure, kDamaged);
+  }
+  require_number(path, name, type.get());
+  return type;
+}
+
+}  // namespace
+
+void require_modest(const File& file, const std::string& name, double values) {
+  if (!file.probing || values <= static_cast<double>(kMostProbedValues)) return;
+  throw Error(file.path.string(),
+              fmt::format("{} has {} values in a frame or plane, more than {}", name, values,
+                          kMostProbedValues),
+              "so many are read only from a file that you trust (--trust-input)");
+}
+
+StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_t frame_rank)
+    : path_(file.path), name_(name), dataset_(open_object(file, name.c_str())) {
+  if (H5Iget_type(dataset_.get()) != H5I_DATASET) {
+    throw Error(path_.string(), fmt::format("{} is no dataset", name),
+                "docs/formats.md tells what the file must hold");
+  }
+  type_ = number_type(path_, name_, dataset_);
+  storage_ = storage_of(file, dataset_, name_);
+  if (storage_.extent.size() != frame_rank + 1) {
+    throw Error(path_.string(), fmt::format("{} has {} dimensions", name, storage_.extent.size()),
+                fmt::format("it needs {}; docs/formats.md names them", frame_rank + 1));
+  }
+  require_stored(file, dataset_, name_, storage_);
+  if (!storage_.filters.empty()) {
+    chunks_ = std::make_unique<FilteredChunks>(path_, name_, storage_);
+  }
+  if (!file.probing) return;
+  double values = 1;
+  for (const hsize_t size : shape()) values *= static_cast<double>(size);
+  require_modest(file, name_, values);
+  touch();
+}
+
+/// Leads HDF5 over all that reading frames will lead it over.
+void StoredFrames::touch() const {
+  if (!storage_.holds_values()) return;
+  if (chunks_) return chunks_->touch(dataset_);
+  double value = 0;
+  std::vector<hsize_t> at(storage_.extent.size(), 0);
+  const std::vector<hsize_t> one(at.size(), 1);
+  read_selection(at, one, H5T_NATIVE_DOUBLE, &value);
+  for (std::size_t d = 0; d < at.size(); ++d) at[d] = storage_.extent[d] - 1;
+  read_selection(at, one, H5T_NATIVE_DOUBLE, &value);
+}
+
+void StoredFrames::get_all(std::uint64_t first, std::uint64_t count, hid_t memory_type,
+                           void* frames) const {
+  if (count == 0) return;
+  std::vector<hsize_t> start(storage_.extent.size(), 0);
+  std::vector<hsize_t> size = storage_.extent;
+  start[0] = first;
+  size[0] = count;
+  if (!chunks_) return read_selection(start, size, memory_type, frames);
+  if (H5Tequal(type_.get(), memory_type) > 0) {
+    return chunks_->copy(dataset_, first, count, static_cast<std::byte*>(frames));
+  }
+  std::size_t values = 1;
+  for (const hsize_t each : size) values *= each;
+  const std::size_t bytes = values * H5Tget_size(memory_type);
+  std::vector<std::byte> converted(std::max(bytes, values * storage_.value_bytes));
+  chunks_->copy(dataset_, first, count, converted.data());
+  require(H5Tconvert(type_.get(), memory_type, values, converted.data(), nullptr, H5P_DEFAULT),
+          path_, fmt::format("{} cannot be converted", name_), kDamaged);
+  std::memcpy(frames, converted.data(), bytes);
+}
+
+void StoredFrames::read_selection(const std::vector<hsize_t>& start,
+                                  const std::vector<hsize_t>& count, hid_t memory_type,
+                                  void* values) const {
+  const std::string failure = start[0] == 0 && count[0] == storage_.extent[0]
+                                  ? fmt::format("{} cannot be read", name_)
+                                  : fmt::format("frame {} of {} cannot be read", start[0], name_);
+  const int rank = static_cast<int>(start.size());
+  const Handle source =
+      own(H5Screate_simple(rank, storage_.extent.data(), nullptr), path_, failure);
+  require(H5Sselect_hyperslab(source.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
+                              nullptr),
+          path_, failure);
+  const Handle target = own(H5Screate_simple(rank, count.data(), nullptr), path_, failure);
+  require(H5Dread(dataset_.get(), memory_type, target.get(), source.get(), H5P_DEFAULT, values),
+          path_, failure, kDamaged);
+}
+
+}  // namespace pillarfield::hdf5

@@ -1,0 +1,154 @@
+#include "io/output/replaceable.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "io/calibration_format.h"
+#include "io/file_kind.h"
+#include "io/force_format.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/file.h"
+#include "io/recording_format.h"
+#include "pillarfield/error.h"
+#include "pillarfield/recording.h"
+
+namespace pillarfield {
+namespace {
+
+/// What a file is, by its content.
+struct FoundContent {
+  std::optional<OutputKind> kind;  ///< unset: nothing that this project writes
+  std::string words;               ///< "holds a recording"
+};
+
+FoundContent hdf5_content(const std::filesystem::path& path) {
+  const hdf5::QuietErrors quiet;
+  const hdf5::File file = hdf5::open_to_read(path);
+  const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
+  if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
+  if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};
+  if (format == force_format::kName) return {OutputKind::forces, "holds force fields"};
+  return {std::nullopt, "is an HDF5 file of another kind"};
+}
+
+/// How a file of text, numbers or pixels begins.
+struct Beginning {
+  OutputKind kind;
+  const char* words;
+  std::size_t offset;
+  std::string_view bytes;
+};
+
+constexpr std::array<Beginning, 7> kBeginnings = {{
+    {OutputKind::force_table, "is a table of forces", 0, "frame,time_s,row,col,shear_x_n,"},
+    {OutputKind::contact_table, "is a table of contacts", 0, "row,frame,time_s,id,parent,"},
+    {OutputKind::contact_list, "is a list of contacts", 0, R"({"format":"pillarfield-contacts")"},
+    {OutputKind::png, "is a picture", 0, "\x89PNG\r\n\x1a\n"},
+    {OutputKind::video, "is a video", 4, "ftyp"},              // MP4, QuickTime
+    {OutputKind::video, "is a video", 0, "\x1a\x45\xdf\xa3"},  // Matroska, WebM
+    {OutputKind::svg, "is a drawing", 0, "<svg"},
+}};
+
+FoundContent content_by_beginning(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string head(1024, '\0');
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(file.gcount()));
+  for (const Beginning& beginning : kBeginnings) {
+    if (head.size() < beginning.offset) continue;
+    if (head.compare(beginning.offset, beginning.bytes.size(), beginning.bytes) == 0) {
+      return {beginning.kind, beginning.words};
+    }
+  }
+  const auto has = [&](const char* words) { return head.find(words) != std::string::npos; };
+  if (head.starts_with("\x93NUMPY") && has("('shear_x', '<f4'), ('shear_y', '<f4')")) {
+    return {OutputKind::force_array, "is an array of forces"};
+  }
+  if (head.starts_with("<?xml") && has("<svg")) return {OutputKind::svg, "is a drawing"};
+  return {std::nullopt, path.extension() == ".toml" ? "is a scene, or another TOML file"
+                                                    : "is no earlier output of this kind"};
+}
+
+FoundContent content_of(const std::filesystem::path& path) {
+  switch (kind_of(path)) {
+    case FileKind::hdf5:
+      return hdf5_content(path);
+    case FileKind::tekscan:
+      return {std::nullopt, "is a Tekscan export"};
+    case FileKind::other:
+      break;
+  }
+  return content_by_beginning(path);
+}
+
+bool is_empty_file(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::file_size(path, error) == 0 && !error;
+}
+
+bool is_result(OutputKind kind) {
+  return kind != OutputKind::recording && kind != OutputKind::calibration &&
+         kind != OutputKind::text;
+}
+
+/// Frames that an unfinished recording holds.
+std::uint64_t frames_in(const std::filesystem::path& part) {
+  try {
+    return open_frames(part)->frames();
+  } catch (const Error& error) {
+    throw Error(part.string(),
+                fmt::format("holds a recording that cannot be read ({})", error.what()),
+                "rename or remove it");
+  }
+}
+
+}  // namespace
+
+void require_replaceable(const std::filesystem::path& path, OutputKind kind, Replace replace) {
+  std::error_code ignored;
+  const auto status = std::filesystem::symlink_status(path, ignored);
+  if (!std::filesystem::exists(status)) return;
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error(path.string(), "exists and is no regular file", "choose another name");
+  }
+  if (replace == Replace::nothing) throw Error(path.string(), "exists", "choose another name");
+  if (replace == Replace::anything || is_empty_file(path)) return;
+  FoundContent found;
+  try {
+    found = content_of(path);
+  } catch (const Error&) {
+    found.words = "cannot be read";
+  }
+  if (found.kind == kind && is_result(kind)) return;
+  throw Error(path.string(), "exists and " + found.words,
+              "choose another name, or replace it with --overwrite");
+}
+
+void require_worthless(const std::filesystem::path& path) {
+  if (is_empty_file(path)) return;
+  FoundContent found;
+  try {
+    found = content_of(path);
+  } catch (const Error&) {
+    return;  // A writer died before it had flushed anything.
+  }
+  if (found.kind == OutputKind::recording) {
+    const std::uint64_t frames = frames_in(path);
+    if (frames == 0) return;
+    throw Error(path.string(),
+                fmt::format("holds {} frames of a recording that was cut short", frames),
+                "rename or remove it");
+  }
+  const bool is_worth_keeping =
+      found.kind ? !is_result(*found.kind) : kind_of(path) != FileKind::other;
+  if (!is_worth_keeping) return;
+  throw Error(path.string(), found.words, "rename or remove it");
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,244 @@
+#include "io/tekscan/parser.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "io/tekscan/line_reader.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint32_t kLargestReading = 65535;
+
+bool begins_frame(std::string_view line) { return line.starts_with("Frame"); }
+bool ends_data(std::string_view line) { return line.starts_with("@@"); }
+
+/// The cell that begins `rest`, which is moved behind it.
+std::string_view take_cell(std::string_view& rest) {
+  const std::size_t comma = rest.find(',');
+  const std::string_view cell = trimmed(rest.substr(0, comma));
+  rest = comma == std::string_view::npos ? std::string_view() : rest.substr(comma + 1);
+  return cell;
+}
+
+/// What a line like "Frame 7, 0.6,, 12/2/2019 6:21:52PM,,,Raw Sum=,,310" tells.
+struct FrameLine {
+  std::uint64_t number = 0;
+  std::optional<double> time_s;
+  std::optional<double> raw_sum;
+};
+
+std::optional<double> raw_sum_in(std::string_view line) {
+  constexpr std::string_view kLabel = "Raw Sum";
+  const std::size_t label = line.find(kLabel);
+  if (label == std::string_view::npos) return std::nullopt;
+  line.remove_prefix(label + kLabel.size());
+  const std::size_t number = line.find_first_not_of("=, \t");
+  if (number == std::string_view::npos) return std::nullopt;
+  line.remove_prefix(number);
+  return number_in<double>(take_cell(line));
+}
+
+class Parser {
+ public:
+  explicit Parser(const std::filesystem::path& path) : path_(path), lines_(path) {}
+
+  TekscanExport parse();
+
+ private:
+  bool next_line();
+  void read_header();
+  void require_header();
+  [[nodiscard]] FrameLine frame_line() const;
+  void read_frame();
+  void check_order(const FrameLine& frame) const;
+  void next_row(const FrameLine& frame, std::uint32_t row);
+  std::uint64_t read_row(std::uint32_t row);
+  std::uint32_t read_cell(std::string_view cell, std::uint32_t row, std::uint32_t col);
+  void put(std::uint32_t row, std::uint32_t col, std::uint32_t reading, bool sensel);
+
+  std::filesystem::path path_;
+  LineReader lines_;
+  bool at_end_ = false;
+  TekscanExport data_;
+  std::uint32_t rows_ = 0;
+  std::uint32_t cols_ = 0;
+};
+
+/// Moves to the next line that is not blank.
+bool Parser::next_line() {
+  do {
+    at_end_ = !lines_.next();
+  } while (!at_end_ && trimmed(lines_.line()).empty());
+  return !at_end_;
+}
+
+/// Leaves the parser at the first frame's line.
+void Parser::read_header() {
+  while (next_line() && !begins_frame(lines_.line())) {
+    data_.header.take(lines_.line(), lines_.place());
+  }
+  if (at_end_) {
+    throw Error(lines_.place(), "the export ends before its first frame",
+                "export it again, with the frames");
+  }
+}
+
+void Parser::require_header() {
+  const auto require = [&](const std::optional<std::uint32_t>& size, const char* key) {
+    if (!size) {
+      throw Error(lines_.place(), fmt::format("no line before this frame gives {}", key),
+                  "export it again, with its header");
+    }
+    if (*size > kMaxSensels) {
+      throw Error(path_.string(), fmt::format("{} is {}", key, *size),
+                  fmt::format("at most {} are read", kMaxSensels));
+    }
+    return *size;
+  };
+  rows_ = require(data_.header.rows, "ROWS");
+  cols_ = require(data_.header.cols, "COLS");
+}
+
+FrameLine Parser::frame_line() const {
+  std::string_view rest = lines_.line();
+  FrameLine frame;
+  frame.raw_sum = raw_sum_in(rest);
+  const std::string_view title = take_cell(rest);
+  const auto number = number_in<std::uint64_t>(title.substr(std::strlen("Frame")));
+  if (!number) {
+    throw Error(lines_.place(), fmt::format("'{:.60}' numbers no frame", title),
+                "it must be like 'Frame 1'");
+  }
+  frame.number = *number;
+  frame.time_s = number_in<double>(take_cell(rest));
+  if (frame.time_s && !std::isfinite(*frame.time_s)) frame.time_s.reset();
+  return frame;
+}
+
+void Parser::check_order(const FrameLine& frame) const {
+  if (!data_.numbers.empty() && frame.number <= data_.numbers.back()) {
+    throw Error(lines_.place(),
+                fmt::format("frame {} comes after frame {}", frame.number, data_.numbers.back()),
+                "one file must hold one export");
+  }
+  if (!data_.numbers.empty() && frame.time_s.has_value() == data_.times_s.empty()) {
+    throw Error(lines_.place(), "some frames give their time and others do not",
+                "export the whole movie at once");
+  }
+}
+
+void Parser::read_frame() {
+  const FrameLine frame = frame_line();
+  const std::string place = lines_.place();
+  check_order(frame);
+  std::uint64_t sum = 0;
+  for (std::uint32_t row = 0; row < rows_; ++row) {
+    next_row(frame, row);
+    sum += read_row(row);
+  }
+  if (frame.raw_sum && *frame.raw_sum != static_cast<double>(sum)) {
+    throw Error(place,
+                fmt::format("the readings of frame {} add up to {}, not to its raw sum {}",
+                            frame.number, sum, *frame.raw_sum),
+                "the file was altered; export it again");
+  }
+  data_.numbers.push_back(frame.number);
+  if (frame.time_s) data_.times_s.push_back(*frame.time_s);
+}
+
+void Parser::next_row(const FrameLine& frame, std::uint32_t row) {
+  if (next_line() && !begins_frame(lines_.line()) && !ends_data(lines_.line())) return;
+  throw Error(lines_.place(),
+              fmt::format("frame {} ends after {} of {} rows", frame.number, row, rows_),
+              "the export was cut short or its ROWS is wrong; export it again");
+}
+
+/// Takes one row of cells and returns the sum of its readings. Commas may trail behind them.
+std::uint64_t Parser::read_row(std::uint32_t row) {
+  std::string_view rest = lines_.line();
+  std::uint64_t sum = 0;
+  for (std::uint32_t col = 0; col < cols_; ++col) {
+    if (rest.empty()) {
+      throw Error(lines_.place(), fmt::format("the row has {} of {} columns", col, cols_),
+                  "the line was cut short or COLS is wrong; export it again");
+    }
+    sum += read_cell(take_cell(rest), row, col);
+  }
+  if (rest.find_first_not_of(", \t") != std::string_view::npos) {
+    throw Error(lines_.place(), fmt::format("the row has more than {} columns", cols_),
+                "COLS is wrong; export it again");
+  }
+  return sum;
+}
+
+std::uint32_t Parser::read_cell(std::string_view cell, std::uint32_t row, std::uint32_t col) {
+  if (cell == "B") {
+    put(row, col, 0, false);
+    return 0;
+  }
+  const auto reading = number_in<std::uint32_t>(cell);
+  if (!reading || *reading > kLargestReading) {
+    throw Error(
+        fmt::format("{}, column {}", lines_.place(), col + 1),
+        cell.empty() ? "the cell is empty" : fmt::format("'{:.60}' is no raw reading", cell),
+        fmt::format("it must be a whole number in [0, {}], or B", kLargestReading));
+  }
+  put(row, col, *reading, true);
+  return *reading;
+}
+
+/// The mask grows with the cells of the first frame, so that a header cannot ask for memory.
+void Parser::put(std::uint32_t row, std::uint32_t col, std::uint32_t reading, bool sensel) {
+  data_.readings.append(static_cast<std::uint16_t>(reading));
+  if (data_.numbers.empty()) {
+    data_.mask.push_back(sensel ? 1 : 0);
+  } else if (!sensel) {
+    data_.mask[std::size_t{row} * cols_ + col] = 0;
+  }
+}
+
+TekscanExport Parser::parse() {
+  read_header();
+  require_header();
+  do {
+    if (!begins_frame(lines_.line())) {
+      throw Error(lines_.place(), fmt::format("a frame has more than {} rows", rows_),
+                  "ROWS is wrong; export it again");
+    }
+    read_frame();
+  } while (next_line() && !ends_data(lines_.line()));
+  return std::move(data_);
+}
+
+}  // namespace
+
+void CompactReadings::append(std::uint16_t reading) {
+  if (!wide_.empty()) {
+    wide_.push_back(reading);
+  } else if (reading <= 255) {
+    narrow_.push_back(static_cast<std::uint8_t>(reading));
+  } else {
+    wide_.assign(narrow_.begin(), narrow_.end());
+    wide_.push_back(reading);
+    narrow_ = {};
+  }
+}
+
+void CompactReadings::copy(std::size_t first, std::size_t count, void* out) const {
+  if (wide_.empty()) {
+    std::memcpy(out, narrow_.data() + first, count);
+  } else {
+    std::memcpy(out, wide_.data() + first, count * sizeof(std::uint16_t));
+  }
+}
+
+TekscanExport parse_tekscan(const std::filesystem::path& path) { return Parser(path).parse(); }
+
+}  // namespace pillarfield

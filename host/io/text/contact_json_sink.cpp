@@ -1,0 +1,109 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "base/utf8.h"
+#include "io/contact_columns.h"
+#include "io/contact_sink.h"
+#include "io/output/text_part.h"
+
+namespace pillarfield {
+namespace {
+
+/// A string of JSON, quotes and all; a byte that is not UTF-8 becomes the replacement character.
+std::string json_string(std::string_view text) {
+  std::string json = "\"";
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto code = static_cast<unsigned char>(text.front());
+    if (length == 0) {
+      json += "\xef\xbf\xbd";
+    } else if (code == '"' || code == '\\') {
+      json += '\\';
+      json += text.front();
+    } else if (code < 0x20) {
+      json += fmt::format("\\u{:04x}", code);
+    } else {
+      json += text.substr(0, length);
+    }
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return json + '"';
+}
+
+/// `"name":value` for each column, set apart by commas.
+template <class Row>
+std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& row) {
+  std::string members;
+  for (const auto& column : columns) {
+    const std::string value = text_of(column, row, "null");
+    const bool is_word = column.kind == ColumnKind::word;
+    members += fmt::format("{}\"{}\":{}", members.empty() ? "" : ",", column.name,
+                           is_word ? json_string(value) : value);
+  }
+  return members;
+}
+
+/// One object; each frame is a line of it.
+class JsonSink final : public ContactSink {
+ public:
+  JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace);
+
+  void append(const FrameContacts& frame) override;
+  void finish() override;
+
+ private:
+  std::filesystem::path path_;
+  TextPart file_;
+  std::uint64_t frames_ = 0;
+};
+
+JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace)
+    : path_(path), file_(path, OutputKind::contact_list, replace) {
+  const auto& friction = info.options.friction.given;
+  file_.write(
+      fmt::format("{{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":{},"
+                  "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+                  "\"reach_mm\":{},\"frames\":[",
+                  json_string(info.source), info.pillar_pitch_mm, info.options.minimum_pillars,
+                  friction ? fmt::format("{}", *friction) : "null", info.options.reach_mm));
+}
+
+void JsonSink::append(const FrameContacts& frame) {
+  file_.require_open();
+  check(frame, path_);
+  file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
+                          frames_ == 0 ? "" : ",", frames_, frame.time_s,
+                          members_of(quantity_columns(), frame.patch)));
+  const char* separator = "";
+  for (const TrackedContact& contact : frame.contacts) {
+    file_.write(fmt::format("{}{{{},{}}}", separator, members_of(identity_columns(), contact),
+                            members_of(quantity_columns(), contact.quantities)));
+    separator = ",";
+  }
+  file_.write("],\"ended\":[");
+  separator = "";
+  for (const EndedContact& contact : frame.ended) {
+    file_.write(fmt::format("{}{{{}}}", separator, members_of(ended_columns(), contact)));
+    separator = ",";
+  }
+  file_.write("]}");
+  ++frames_;
+}
+
+void JsonSink::finish() {
+  file_.require_open();
+  file_.write("\n]}\n");
+  file_.finish();
+}
+
+}  // namespace
+
+std::unique_ptr<ContactSink> create_contact_json_sink(const std::filesystem::path& path,
+                                                      const ContactFileInfo& info,
+                                                      Replace replace) {
+  return std::make_unique<JsonSink>(path, info, replace);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,155 @@
+#include "simulation/body/body_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "simulation/body/height_map.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr double kNoBody = std::numeric_limits<double>::infinity();
+
+/// How much an arc of `radius` has risen, `along` from where it leaves the flat; none beyond it.
+double arc_height(double along, double radius) {
+  if (along <= 0) return 0;
+  if (along > radius) return kNoBody;
+  // Not radius − √(radius² − along²), which loses its digits.
+  return along * along / (radius + std::sqrt(radius * radius - along * along));
+}
+
+class EllipsoidRelief final : public Relief {
+ public:
+  explicit EllipsoidRelief(const std::array<double, 3>& radii_mm) : radii_(radii_mm) {}
+
+  [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
+    const double u = x_mm / radii_[0];
+    const double v = y_mm / radii_[1];
+    const double square = u * u + v * v;
+    return square > 1 ? kNoBody : radii_[2] * square / (1 + std::sqrt(1 - square));
+  }
+  [[nodiscard]] PlaneVector reach_mm() const override { return {radii_[0], radii_[1]}; }
+
+ private:
+  std::array<double, 3> radii_;
+};
+
+class CylinderRelief final : public Relief {
+ public:
+  explicit CylinderRelief(const Body& body)
+      : radius_(body.radius_mm), half_length_(body.length_mm / 2), edge_(body.edge_radius_mm) {}
+
+  [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
+    const double along = std::abs(x_mm);
+    if (along > half_length_) return kNoBody;
+    return arc_height(std::abs(y_mm), radius_) + arc_height(along - (half_length_ - edge_), edge_);
+  }
+  [[nodiscard]] PlaneVector reach_mm() const override { return {half_length_, radius_}; }
+
+ private:
+  double radius_;
+  double half_length_;
+  double edge_;
+};
+
+class PunchRelief final : public Relief {
+ public:
+  explicit PunchRelief(const Body& body) : radius_(body.radius_mm), edge_(body.edge_radius_mm) {}
+
+  [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
+    const double r = std::hypot(x_mm, y_mm);
+    return r > radius_ ? kNoBody : arc_height(r - (radius_ - edge_), edge_);
+  }
+  [[nodiscard]] PlaneVector reach_mm() const override { return {radius_, radius_}; }
+
+ private:
+  double radius_;
+  double edge_;
+};
+
+/// Bilinear between the middles of pixels, constant in the outer half of those at the border.
+class MapRelief final : public Relief {
+ public:
+  MapRelief(HeightMap map, const Body& body)
+      : map_(std::move(map)), size_(body.height_map_size_mm), depth_(body.height_map_depth_mm) {}
+
+  [[nodiscard]] double height_mm(double x_mm, double y_mm) const override {
+    if (std::abs(x_mm) > size_[0] / 2 || std::abs(y_mm) > size_[1] / 2) return kNoBody;
+    const Pixel col = pixel(0.5 + x_mm / size_[0], map_.cols);
+    const Pixel row = pixel(0.5 - y_mm / size_[1], map_.rows);
+    const auto height = [&](std::size_t r) {
+      const double* const left = &map_.heights[r * map_.cols + col.first];
+      return std::lerp(left[0], left[1], col.fraction);
+    };
+    return depth_ * (1 - std::lerp(height(row.first), height(row.first + 1), row.fraction));
+  }
+  [[nodiscard]] PlaneVector reach_mm() const override { return {size_[0] / 2, size_[1] / 2}; }
+
+ private:
+  /// The pixel before a place and how far that is on the way to the next.
+  struct Pixel {
+    std::size_t first;
+    double fraction;
+  };
+
+  static Pixel pixel(double share, std::size_t count) {
+    const auto pixels = static_cast<double>(count);
+    const double at = std::clamp(share * pixels - 0.5, 0.0, pixels - 1);
+    const double first = std::min(std::floor(at), pixels - 2);
+    return {static_cast<std::size_t>(first), at - first};
+  }
+
+  HeightMap map_;
+  std::array<double, 2> size_;
+  double depth_;
+};
+
+}  // namespace
+
+std::unique_ptr<Relief> make_relief(const Body& body) {
+  switch (body.shape) {
+    case BodyShape::sphere:
+      return std::make_unique<EllipsoidRelief>(
+          std::array<double, 3>{body.radius_mm, body.radius_mm, body.radius_mm});
+    case BodyShape::ellipsoid:
+      return std::make_unique<EllipsoidRelief>(body.radii_mm);
+    case BodyShape::cylinder:
+      return std::make_unique<CylinderRelief>(body);
+    case BodyShape::punch:
+      return std::make_unique<PunchRelief>(body);
+    case BodyShape::height_map:
+      break;
+  }
+  return std::make_unique<MapRelief>(read_height_map(body.height_map), body);
+}
+
+BodySurface::BodySurface(const Body& body, double pillar_pitch_mm, std::uint64_t seed,
+                         std::uint64_t number)
+    : relief_(make_relief(body)),
+      friction_(body.friction),
+      roughness_mm_(body.roughness_um * 1e-3),
+      friction_variation_(body.friction_variation) {
+  if (roughness_mm_ > 0) {
+    roughness_ =
+        RandomField::self_affine({seed, random::Stream::roughness, number}, pillar_pitch_mm / 8,
+                                 body.roughness_length_mm, body.roughness_exponent);
+  }
+  if (friction_variation_ > 0) {
+    friction_field_ = RandomField::smooth({seed, random::Stream::friction, number},
+                                          body.friction_variation_length_mm);
+  }
+}
+
+double BodySurface::height_mm(double x_mm, double y_mm) const {
+  const double height = relief_->height_mm(x_mm, y_mm);
+  return roughness_ ? height + roughness_mm_ * roughness_->at(x_mm, y_mm) : height;
+}
+
+double BodySurface::friction(double x_mm, double y_mm) const {
+  if (!friction_field_) return friction_;
+  return friction_ * (1 + friction_variation_ * friction_field_->at(x_mm, y_mm));
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "pillarfield/body.h"
+#include "simulation/body/random_field.h"
+#include "simulation/closed_form/pillar_grid.h"
+
+namespace pillarfield {
+
+/// A shape without its roughness, in the body's frame.
+class Relief {
+ public:
+  Relief() = default;
+  virtual ~Relief() = default;
+  Relief(const Relief&) = delete;
+  Relief& operator=(const Relief&) = delete;
+
+  /// Above the shape's lowest point, mm; infinite where there is no body.
+  [[nodiscard]] virtual double height_mm(double x_mm, double y_mm) const = 0;
+
+  /// Half sizes of the rectangle about the origin beyond which there is no body.
+  [[nodiscard]] virtual PlaneVector reach_mm() const = 0;
+};
+
+/// The shape of a body; reads its height map where it has one. Throws Error.
+[[nodiscard]] std::unique_ptr<Relief> make_relief(const Body& body);
+
+/// A body's surface: its shape, its roughness and its friction.
+class BodySurface {
+ public:
+  /// `number` counts the scene's bodies: each has roughness and friction of its own.
+  BodySurface(const Body& body, double pillar_pitch_mm, std::uint64_t seed, std::uint64_t number);
+
+  /// Of the surface at a place in the body's frame; infinite where there is none. Roughness may
+  /// make it negative.
+  [[nodiscard]] double height_mm(double x_mm, double y_mm) const;
+  [[nodiscard]] double friction(double x_mm, double y_mm) const;
+  [[nodiscard]] PlaneVector reach_mm() const { return relief_->reach_mm(); }
+
+ private:
+  std::unique_ptr<Relief> relief_;
+  double friction_;
+  double roughness_mm_;
+  double friction_variation_;
+  std::optional<RandomField> roughness_;
+  std::optional<RandomField> friction_field_;
+};
+
+}  // namespace pillarfield

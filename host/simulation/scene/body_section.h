@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pillarfield/body.h"
+#include "simulation/scene/toml_section.h"
+
+namespace pillarfield {
+
+/// Reads a [[body]]. `folder` comes before the path of a height map that is relative; the file is
+/// not opened. Throws Error.
+[[nodiscard]] Body read_body(TomlSection& section, const std::filesystem::path& folder);
+
+}  // namespace pillarfield

@@ -1,0 +1,186 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "base/range.h"
+#include "pillarfield/scene.h"
+#include "solve/friction_limits.h"
+
+namespace pillarfield {
+
+/// A number of a scene: its key in the file, where it is kept, and what it may be.
+template <class Part>
+struct Quantity {
+  std::string_view key;
+  double Part::*member;
+  Range range;
+};
+
+// The one table of what a scene may say, used to read a file and to check a scene made in code.
+
+inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
+    {"sensel_pitch_mm", &Skin::sensel_pitch_mm, {1e-3, 1e3}},
+    {"counts_per_newton", &Skin::counts_per_newton, {kMinCountsPerNewton, kMaxCountsPerNewton}},
+    {"threshold_counts", &Skin::threshold_counts, {0, kMaxCounts}},
+}};
+inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
+
+inline constexpr std::array<Quantity<SensorModel>, 7> kSensorQuantities = {{
+    {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},
+    {"gain_spread", &SensorModel::gain_spread, {0, 0.3, false, true}},
+    {"tare_counts", &SensorModel::tare_counts, {0, 1e6}},
+    {"tare_spread_counts", &SensorModel::tare_spread_counts, {0, 1e6}},
+    {"drift_counts_per_s", &SensorModel::drift_counts_per_s, {0, 1e6}},
+    {"noise_counts", &SensorModel::noise_counts, {0, 1e6}},
+    {"dead_share", &SensorModel::dead_share, {0, 1}},
+}};
+inline constexpr int kMaxAdcBits = 16;
+inline constexpr Range kPowerLawExponent = {kMinExponent, kMaxExponent};
+inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceCounts};
+
+/// A number of a contact, and the contacts that have it.
+struct ContactQuantity {
+  Quantity<Contact> quantity;
+  bool required = false;
+  bool (*applies)(ContactShape shape, ContactMotion motion) = nullptr;
+};
+
+/// Whether a motion pushes the skin in a direction.
+[[nodiscard]] constexpr bool is_directed(ContactMotion motion) {
+  return motion != ContactMotion::press && motion != ContactMotion::spin;
+}
+
+/// Whether a motion leaves a part of the contact sticking.
+[[nodiscard]] constexpr bool sticks(ContactMotion motion) {
+  return motion == ContactMotion::partial_slip || motion == ContactMotion::roll;
+}
+
+inline constexpr std::array<ContactQuantity, 6> kContactQuantities = {{
+    {{"contact_radius_mm", &Contact::contact_radius_mm, {1e-3, 1e4}},
+     true,
+     [](ContactShape, ContactMotion) { return true; }},
+    {{"reference_load_n", &Contact::reference_load_n, {1e-6, 1e6}},
+     false,
+     [](ContactShape shape, ContactMotion) { return shape != ContactShape::flat_punch; }},
+    {{"length_mm", &Contact::length_mm, {1e-3, 1e5}},
+     true,
+     [](ContactShape shape, ContactMotion) { return shape == ContactShape::cylinder; }},
+    {{"friction", &Contact::friction, {0, 10}},
+     true,
+     [](ContactShape, ContactMotion motion) { return motion != ContactMotion::press; }},
+    {{"direction_deg", &Contact::direction_deg, {-360, 360}},
+     false,
+     [](ContactShape shape, ContactMotion motion) {
+       return shape == ContactShape::cylinder || is_directed(motion);
+     }},
+    {{"tangential_ratio", &Contact::tangential_ratio, {0, 1, true, true}},
+     true,
+     [](ContactShape, ContactMotion motion) { return sticks(motion); }},
+}};
+
+/// A number of a body, and the shapes that have it.
+struct BodyQuantity {
+  Quantity<Body> quantity;
+  bool required = false;
+  bool (*applies)(BodyShape shape) = nullptr;
+};
+
+/// Whether a body of this shape has a single radius.
+[[nodiscard]] constexpr bool has_radius(BodyShape shape) {
+  return shape == BodyShape::sphere || shape == BodyShape::cylinder || shape == BodyShape::punch;
+}
+
+inline constexpr Range kBodySizeMm = {1e-2, 1e4};
+inline constexpr std::array<BodyQuantity, 10> kBodyQuantities = {{
+    {{"radius_mm", &Body::radius_mm, kBodySizeMm}, true, has_radius},
+    {{"length_mm", &Body::length_mm, kBodySizeMm},
+     true,
+     [](BodyShape shape) { return shape == BodyShape::cylinder; }},
+    {{"edge_radius_mm", &Body::edge_radius_mm, {0, 1e4}},
+     false,
+     [](BodyShape shape) { return shape == BodyShape::cylinder || shape == BodyShape::punch; }},
+    {{"height_map_depth_mm", &Body::height_map_depth_mm, {0, 1e3, true}},
+     true,
+     [](BodyShape shape) { return shape == BodyShape::height_map; }},
+    {{"roughness_um", &Body::roughness_um, {0, 1e4}}, false, [](BodyShape) { return true; }},
+    {{"roughness_exponent", &Body::roughness_exponent, {0, 1, true}},
+     false,
+     [](BodyShape) { return true; }},
+    {{"roughness_length_mm", &Body::roughness_length_mm, kBodySizeMm},
+     false,
+     [](BodyShape) { return true; }},
+    {{"friction", &Body::friction, {0, 10}}, true, [](BodyShape) { return true; }},
+    {{"friction_variation", &Body::friction_variation, {0, 1}},
+     false,
+     [](BodyShape) { return true; }},
+    {{"friction_variation_length_mm", &Body::friction_variation_length_mm, kBodySizeMm},
+     false,
+     [](BodyShape) { return true; }},
+}};
+inline constexpr std::int64_t kMaxSubsteps = 1000;
+inline constexpr std::size_t kMaxBodies = 100;
+inline constexpr Range kModulusKpa = {1, 1e6};
+
+inline constexpr Range kPathTimeS = {0, 1e9};
+inline constexpr Range kPathPositionMm = {-1e6, 1e6};
+inline constexpr Range kPathLoadN = {0, 1e6};
+inline constexpr Range kPathAngleDeg = {-1e6, 1e6};
+
+inline constexpr Range kRateHz = {1e-6, 1e6};
+inline constexpr std::uint32_t kMaxFrames = 100'000'000;
+inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
+inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
+inline constexpr Range kSegmentPoints = {0, 1, true};
+
+inline constexpr Range kMaxThetaDeg = {0, 90};
+inline constexpr Range kMagnitudeN = {0, 1e6, true};
+inline constexpr std::uint32_t kMaxPillars = kMaxSensels / 2;  ///< rows or columns
+inline constexpr std::uint64_t kMaxSkinSensels = 100'000'000;  ///< rows times columns: 40 m²
+
+/// A shape or motion with its name in files.
+template <class Value>
+struct Named {
+  std::string_view name;
+  Value value;
+};
+
+inline constexpr std::array<Named<ContactShape>, 3> kShapes = {{
+    {"sphere", ContactShape::sphere},
+    {"flat_punch", ContactShape::flat_punch},
+    {"cylinder", ContactShape::cylinder},
+}};
+inline constexpr std::array<Named<ContactMotion>, 5> kMotions = {{
+    {"press", ContactMotion::press},
+    {"slide", ContactMotion::slide},
+    {"partial_slip", ContactMotion::partial_slip},
+    {"spin", ContactMotion::spin},
+    {"roll", ContactMotion::roll},
+}};
+
+inline constexpr std::array<Named<BodyShape>, 5> kBodyShapes = {{
+    {"sphere", BodyShape::sphere},
+    {"ellipsoid", BodyShape::ellipsoid},
+    {"cylinder", BodyShape::cylinder},
+    {"punch", BodyShape::punch},
+    {"height_map", BodyShape::height_map},
+}};
+
+inline constexpr std::array<Named<Estimator>, 4> kEstimators = {{
+    {"direct", Estimator::direct},
+    {"paper", Estimator::paper},
+    {"contact", Estimator::contact},
+    {"field", Estimator::contact},  // its former name
+}};
+
+/// Whether the closed forms know this motion of this shape.
+[[nodiscard]] bool is_possible(ContactShape shape, ContactMotion motion);
+
+/// What an analogue-to-digital converter reads at most, 2^bits − 1; unset without one.
+[[nodiscard]] std::optional<double> full_scale_of(const SensorModel& sensor);
+
+/// Throws Error, its place being `where`, when anything in `scene` is out of its range.
+void check(const Scene& scene, const char* where);
+
+}  // namespace pillarfield

@@ -1,0 +1,337 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <system_error>
+
+#include "pillarfield/error.h"
+#include "pillarfield/scene.h"
+#include "simulation/closed_form/chart.h"
+#include "simulation/scene/body_section.h"
+#include "simulation/scene/named_value.h"
+#include "simulation/scene/path_section.h"
+#include "simulation/scene/scene_limits.h"
+#include "simulation/scene/toml_depth.h"
+#include "simulation/scene/toml_section.h"
+
+namespace pillarfield {
+namespace {
+
+/// Reads the numbers of a table into the members they belong to.
+template <class Part, std::size_t count>
+void read_quantities(TomlSection& section, const std::array<Quantity<Part>, count>& quantities,
+                     Part& part) {
+  for (const auto& [key, member, range] : quantities) {
+    if (const auto value = section.number(key, range)) part.*member = *value;
+  }
+}
+
+// [sensor]
+
+/// What a sensel reads at most; with a converter, what that can express unless the scene says less.
+std::optional<double> read_full_scale(TomlSection& section, const SensorModel& sensor) {
+  const std::optional<double> largest = full_scale_of(sensor);
+  if (!largest) return section.number("full_scale_counts", kFullScaleCounts);
+  const auto whole = section.whole_number("full_scale_counts", 1, std::lround(*largest));
+  return whole ? static_cast<double>(*whole) : largest;
+}
+
+/// A reading must have room between threshold and full scale.
+void check_full_scale(const TomlSection& section, const Skin& skin) {
+  if (!skin.full_scale_counts || *skin.full_scale_counts > skin.threshold_counts) return;
+  section.fail(section.has("full_scale_counts") ? "full_scale_counts" : "adc_bits",
+               fmt::format("gives a full scale of {}", *skin.full_scale_counts),
+               fmt::format("more than threshold_counts, {}", skin.threshold_counts));
+}
+
+std::optional<PowerLaw> read_power_law(TomlSection& section) {
+  constexpr std::string_view kExponent = "power_law_exponent";
+  constexpr std::string_view kReference = "power_law_reference_counts";
+  const auto exponent = section.number(kExponent, kPowerLawExponent);
+  const auto reference = section.number(kReference, kPowerLawReference);
+  if (!exponent && !reference) return std::nullopt;
+  if (!exponent) section.fail_missing(kExponent, kPowerLawExponent.text());
+  if (!reference) section.fail_missing(kReference, kPowerLawReference.text());
+  return PowerLaw{*exponent, *reference};
+}
+
+void read_sensor(TomlSection section, Scene& scene) {
+  read_quantities(section, kSensorQuantities, scene.sensor);
+  if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
+    scene.sensor.adc_bits = static_cast<int>(*bits);
+  }
+  scene.skin.full_scale_counts = read_full_scale(section, scene.sensor);
+  scene.skin.power_law = read_power_law(section);
+  section.finish();
+  check_full_scale(section, scene.skin);
+}
+
+// [time] and [solver]
+
+void read_time(TomlSection section, Scene& scene) {
+  scene.rate_hz = section.number("rate_hz", kRateHz).value_or(scene.rate_hz);
+  if (const auto frames = section.whole_number("frames", 1, kMaxFrames)) {
+    scene.frames = static_cast<std::uint32_t>(*frames);
+  }
+  if (const auto seed = section.whole_number("seed", 0, std::numeric_limits<std::int64_t>::max())) {
+    scene.seed = static_cast<std::uint64_t>(*seed);
+  }
+  section.finish();
+}
+
+/// What is known of friction.
+void read_friction(TomlSection& section, FrictionKnowledge& friction) {
+  friction.given = section.number("friction", kFrictions);
+  friction.bound = section.number("friction_bound", kFrictionBound);
+  if (const auto prior =
+          section.numbers("friction_prior", 2, {kPriorSpread.low, kFrictions.high})) {
+    friction.median = (*prior)[0];
+    friction.spread = (*prior)[1];
+    if (friction.median < kFrictions.low || friction.spread > kPriorSpread.high) {
+      section.fail("friction_prior", "has a median below 0.1 or a spread above 3",
+                   "friction_prior = [1.0, 0.5]");
+    }
+  }
+  friction.memory = section.flag("memory").value_or(friction.memory);
+}
+
+void read_solver(TomlSection section, Scene& scene) {
+  scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
+  scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
+  scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
+  scene.segment_point =
+      section.number("segment_point", kSegmentPoints).value_or(scene.segment_point);
+  scene.angles = section.flag("angles").value_or(scene.angles);
+  scene.uncertainty = section.flag("uncertainty").value_or(scene.uncertainty);
+  if (scene.uncertainty && scene.estimator == Estimator::paper) {
+    section.fail("uncertainty", "comes with the paper's estimator, which has none",
+                 R"(estimator = "direct" or "contact")");
+  }
+  read_friction(section, scene.friction);
+  section.finish();
+}
+
+// The size of the skin
+
+/// Rows and columns of pillars, as a scene asks for them.
+struct PillarCounts {
+  double rows;
+  double cols;
+};
+
+/// Gives the skin the size that `key` asks for.
+void set_size(const TomlSection& section, std::string_view key, PillarCounts counts, Skin& skin) {
+  const Range allowed = {1, kMaxPillars};
+  const bool fits = 4 * counts.rows * counts.cols <= double{kMaxSkinSensels};
+  if (!allowed.contains(counts.rows) || !allowed.contains(counts.cols) || !fits) {
+    section.fail(key, fmt::format("means {} x {} pillars", counts.rows, counts.cols),
+                 fmt::format("1 to {} each way, {} in all", kMaxPillars, kMaxSkinSensels / 4));
+  }
+  skin.rows = 2 * static_cast<std::uint32_t>(counts.rows);
+  skin.cols = 2 * static_cast<std::uint32_t>(counts.cols);
+}
+
+/// Whole pillars along a length; one that lacks no more than a rounding is whole.
+double pillars_along(double length_mm, const Skin& skin) {
+  return std::floor(length_mm / skin.pillar_pitch_mm() + 1e-9);
+}
+
+void read_size(TomlSection& section, Skin& skin) {
+  const auto size_mm = section.numbers("size_mm", 2, {0, 1e8, true});
+  const auto pillars = section.numbers("pillars", 2, {1, kMaxPillars});
+  if (size_mm && pillars) section.fail("pillars", "comes with size_mm", "one of the two");
+  if (size_mm) {
+    const PillarCounts counts = {pillars_along(size_mm->back(), skin),
+                                 pillars_along(size_mm->front(), skin)};
+    set_size(section, "size_mm", counts, skin);
+    return;
+  }
+  if (!pillars) section.fail_missing("size_mm", "size_mm = [x, y] or pillars = [rows, columns]");
+  const PillarCounts counts = {pillars->front(), pillars->back()};
+  if (counts.rows != std::floor(counts.rows) || counts.cols != std::floor(counts.cols)) {
+    section.fail("pillars", "has a fraction", "whole numbers, [rows, columns]");
+  }
+  set_size(section, "pillars", counts, skin);
+}
+
+// [chart] and [skin]
+
+/// Reads a chart and gives the skin a pillar for each of its forces.
+Chart read_chart(TomlSection section, Skin& skin) {
+  Chart chart;
+  if (const auto count = section.whole_number("directions", 1, kMaxPillars)) {
+    chart.directions = static_cast<std::uint32_t>(*count);
+  }
+  if (const auto count = section.whole_number("inclinations", 1, kMaxPillars)) {
+    chart.inclinations = static_cast<std::uint32_t>(*count);
+  }
+  chart.max_theta_deg = section.number("max_theta_deg", kMaxThetaDeg).value_or(chart.max_theta_deg);
+  if (const auto magnitudes = section.numbers("magnitudes_n", 0, kMagnitudeN)) {
+    chart.magnitudes_n = *magnitudes;
+  }
+  section.finish();
+  const PillarCounts counts = {static_cast<double>(pillar_rows(chart)),
+                               static_cast<double>(chart.directions)};
+  set_size(section, "inclinations", counts, skin);
+  return chart;
+}
+
+void read_skin(TomlSection section, Scene& scene) {
+  read_quantities(section, kSkinQuantities, scene.skin);
+  scene.modulus_kpa = section.number("modulus_kpa", kModulusKpa).value_or(scene.modulus_kpa);
+  if (!std::holds_alternative<Chart>(scene.load)) read_size(section, scene.skin);
+  for (const std::string_view key : {"size_mm", "pillars"}) {
+    if (!std::holds_alternative<Chart>(scene.load) || !section.has(key)) continue;
+    section.fail(key, "comes with [chart]", "no size, for the chart sets it");
+  }
+  section.finish();
+}
+
+// [[contact]]
+
+/// A shape and a motion as the file writes them.
+std::string name_of(ContactShape shape, ContactMotion motion) {
+  return fmt::format(R"(shape = "{}", motion = "{}")",
+                     kShapes[static_cast<std::size_t>(shape)].name,
+                     kMotions[static_cast<std::size_t>(motion)].name);
+}
+
+void read_shape(TomlSection& section, Contact& contact) {
+  const auto shape = read_name(section, "shape", kShapes);
+  if (!shape) section.fail_missing("shape", quoted(kShapes));
+  contact.shape = *shape;
+}
+
+void read_motion(TomlSection& section, Contact& contact) {
+  std::vector<Named<ContactMotion>> possible;
+  for (const auto& motion : kMotions) {
+    if (is_possible(contact.shape, motion.value)) possible.push_back(motion);
+  }
+  const auto motion = read_name(section, "motion", kMotions);
+  if (!motion) section.fail_missing("motion", quoted(possible));
+  contact.motion = *motion;
+  if (is_possible(contact.shape, contact.motion)) return;
+  section.fail("motion", "does not go with the shape: " + name_of(contact.shape, contact.motion),
+               quoted(possible));
+}
+
+/// Reads the numbers that this shape and motion have, and refuses those that they have not.
+void read_contact_quantities(TomlSection& section, Contact& contact) {
+  for (const auto& [quantity, required, applies] : kContactQuantities) {
+    if (!applies(contact.shape, contact.motion)) {
+      if (section.has(quantity.key)) {
+        section.fail(quantity.key, "does not apply to " + name_of(contact.shape, contact.motion),
+                     "no such key");
+      }
+      continue;
+    }
+    const auto value = section.number(quantity.key, quantity.range);
+    if (!value && required) section.fail_missing(quantity.key, quantity.range.text());
+    if (value) contact.*quantity.member = *value;
+  }
+}
+
+/// Reads where a contact is and how hard it presses, from a key of its path or from the contact
+/// itself where it stays in place.
+ContactKey read_state(TomlSection& section) {
+  const auto position = section.numbers("position_mm", 2, kPathPositionMm);
+  if (!position) section.fail_missing("position_mm", "a list of 2, [x, y] in millimetres");
+  const auto load = section.number("load_n", kPathLoadN);
+  if (!load) section.fail_missing("load_n", kPathLoadN.text());
+  return {0, position->front(), position->back(), *load};
+}
+
+/// The load at which a contact has its radius, where the scene does not say: the heaviest.
+double heaviest_load(const std::vector<ContactKey>& path) {
+  const double heaviest = std::ranges::max(path, {}, &ContactKey::load_n).load_n;
+  return heaviest > 0 ? heaviest : 1;
+}
+
+Contact read_contact(TomlSection& section) {
+  Contact contact;
+  read_shape(section, contact);
+  read_motion(section, contact);
+  read_contact_quantities(section, contact);
+  if (contact.motion == ContactMotion::spin) {
+    contact.clockwise = section.flag("clockwise").value_or(false);
+  }
+  contact.path =
+      read_path<ContactKey>(section, "path of [[contact]]", {"position_mm", "load_n"}, read_state);
+  if (!section.has("reference_load_n")) contact.reference_load_n = heaviest_load(contact.path);
+  section.finish();
+  return contact;
+}
+
+// The whole
+
+/// What touches the skin: a chart, or contacts and bodies, of which there may be none. `folder` is
+/// where height maps are.
+void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& scene) {
+  TomlSection chart = root.table("chart");
+  auto contacts = root.tables("contact", "[[contact]]");
+  auto bodies = root.tables("body", "[[body]]");
+  if (chart.is_present() && contacts)
+    root.fail("chart", "comes with [[contact]]", "one of the two");
+  if (chart.is_present() && bodies) root.fail("chart", "comes with [[body]]", "one of the two");
+  if (chart.is_present()) {
+    scene.load = read_chart(std::move(chart), scene.skin);
+    return;
+  }
+  std::vector<Contact> load;
+  if (contacts) {
+    for (TomlSection& contact : *contacts) load.push_back(read_contact(contact));
+  }
+  scene.load = std::move(load);
+  if (!bodies) return;
+  for (TomlSection& body : *bodies) scene.bodies.push_back(read_body(body, folder));
+}
+
+Scene read_scene(TomlSection root, const std::filesystem::path& folder) {
+  Scene scene;
+  scene.title = root.text("title").value_or("");
+  read_load(root, folder, scene);
+  read_skin(root.table("skin"), scene);
+  read_sensor(root.table("sensor"), scene);
+  read_time(root.table("time"), scene);
+  read_solver(root.table("solver"), scene);
+  root.finish();
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& name) {
+  check_key_depth(text, name);
+  try {
+    const toml::table table = toml::parse(text, name);
+    Scene scene = read_scene(TomlSection(&table, "the scene", name),
+                             std::filesystem::path(name).parent_path());
+    check(scene, name.c_str());
+    return scene;
+  } catch (const toml::parse_error& error) {
+    throw Error(fmt::format("{}:{}", name, error.source().begin.line),
+                fmt::format("is not TOML: {}", error.description()),
+                "mend the line, or see docs/scenes.md for an example");
+  }
+}
+
+Scene load_scene(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMaxBytes = 16 << 20;
+  const Error unreadable(path.string(), "cannot be read", "name a scene file (.toml)");
+  // The size first: only a regular file has one, and opening a pipe would wait for its writer.
+  std::error_code failed;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
+  if (failed) throw unreadable;
+  if (bytes > kMaxBytes) {
+    throw Error(path.string(), fmt::format("has {} bytes", bytes), "a scene has 16 MiB at most");
+  }
+  std::ifstream file(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.is_open() || file.bad()) throw unreadable;
+  return parse_scene(text, path.string());
+}
+
+}  // namespace pillarfield

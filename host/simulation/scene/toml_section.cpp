@@ -1,0 +1,147 @@
+#include "simulation/scene/toml_section.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+/// A value as a message shows it.
+std::string describe(const toml::node& node) {
+  if (const auto* number = node.as_integer()) return fmt::format("is {}", number->get());
+  if (const auto* number = node.as_floating_point()) return fmt::format("is {}", number->get());
+  if (const auto* flag = node.as_boolean()) return fmt::format("is {}", flag->get());
+  if (const auto* text = node.as_string()) return fmt::format("is \"{:.40}\"", text->get());
+  if (const auto* array = node.as_array()) return fmt::format("is a list of {}", array->size());
+  return node.is_table() ? "is a table" : "is a date or time";
+}
+
+/// The number in a node, whole or not; unset where it is no number or out of range.
+std::optional<double> number_in(const toml::node& node, const Range& range) {
+  if (!node.is_number()) return std::nullopt;
+  const std::optional<double> value = node.value<double>();
+  return value && range.contains(*value) ? value : std::nullopt;
+}
+
+}  // namespace
+
+bool TomlSection::has(std::string_view key) const { return table_ && table_->contains(key); }
+
+std::optional<double> TomlSection::number(std::string_view key, const Range& range) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const std::optional<double> value = number_in(*node, range);
+  if (!value) fail_at(node->source(), key, describe(*node), range.text());
+  return value;
+}
+
+std::optional<std::int64_t> TomlSection::whole_number(std::string_view key, std::int64_t low,
+                                                      std::int64_t high) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const auto* value = node->as_integer();
+  if (value && value->get() >= low && value->get() <= high) return value->get();
+  fail_at(node->source(), key, describe(*node),
+          fmt::format("a whole number from {} to {}", low, high));
+}
+
+std::optional<bool> TomlSection::flag(std::string_view key) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  if (const auto* value = node->as_boolean()) return value->get();
+  fail_at(node->source(), key, describe(*node), "true or false");
+}
+
+std::optional<std::string> TomlSection::text(std::string_view key) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  if (const auto* value = node->as_string()) return value->get();
+  fail_at(node->source(), key, describe(*node), "a text in quotes");
+}
+
+std::optional<std::vector<double>> TomlSection::numbers(std::string_view key, std::size_t count,
+                                                        const Range& range) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const std::string allowed = count == 0
+                                  ? fmt::format("a list, each {}", range.text())
+                                  : fmt::format("a list of {}, each {}", count, range.text());
+  const toml::array* array = node->as_array();
+  if (!array || array->empty() || (count != 0 && array->size() != count)) {
+    fail_at(node->source(), key, describe(*node), allowed);
+  }
+  std::vector<double> values;
+  for (const toml::node& element : *array) {
+    const std::optional<double> value = number_in(element, range);
+    if (!value) fail_at(element.source(), key, "has an element that " + describe(element), allowed);
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::optional<std::vector<TomlSection>> TomlSection::tables(std::string_view key,
+                                                            const std::string& title) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const std::string allowed = fmt::format("a list of tables, {}", title);
+  const toml::array* array = node->as_array();
+  if (!array || array->empty()) fail_at(node->source(), key, describe(*node), allowed);
+  std::vector<TomlSection> sections;
+  for (const toml::node& element : *array) {
+    if (!element.is_table()) {
+      fail_at(element.source(), key, "has an element that " + describe(element), allowed);
+    }
+    sections.emplace_back(element.as_table(), title, *file_);
+  }
+  return sections;
+}
+
+TomlSection TomlSection::table(std::string_view key) {
+  const std::string title = fmt::format("[{}]", key);
+  const toml::node* node = find(key);
+  if (node && !node->is_table()) {
+    fail_at(node->source(), key, describe(*node), "a table, " + title);
+  }
+  return {node ? node->as_table() : nullptr, title, *file_};
+}
+
+void TomlSection::finish() const {
+  if (!table_) return;
+  for (const auto& [key, node] : *table_) {
+    if (std::find(asked_.begin(), asked_.end(), key.str()) != asked_.end()) continue;
+    fail_at(key.source(), key.str(), "is unknown here", fmt::format("{}", fmt::join(asked_, ", ")));
+  }
+}
+
+void TomlSection::fail(std::string_view key, std::string_view is, std::string_view allowed) const {
+  const toml::node* node = table_ ? table_->get(key) : nullptr;
+  fail_at(node ? node->source() : source(), key, is, allowed);
+}
+
+void TomlSection::fail_missing(std::string_view key, std::string_view allowed) const {
+  fail_at(source(), key, "is missing", allowed);
+}
+
+const toml::node* TomlSection::find(std::string_view key) {
+  asked_.push_back(key);
+  return table_ ? table_->get(key) : nullptr;
+}
+
+toml::source_region TomlSection::source() const {
+  return table_ ? table_->source() : toml::source_region{};
+}
+
+void TomlSection::fail_at(const toml::source_region& source, std::string_view key,
+                          std::string_view is, std::string_view allowed) const {
+  // A section that is absent has no line.
+  const std::string place =
+      source.begin.line == 0 ? *file_ : fmt::format("{}:{}", *file_, source.begin.line);
+  throw Error(place, fmt::format("key '{:.40}' in {} {}", key, title_, is),
+              fmt::format("allowed: {}", allowed));
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,171 @@
+#include "simulation/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "base/random.h"
+
+namespace pillarfield {
+namespace {
+
+/// The part of a plane that belongs to a row as long as `signal`.
+template <class T>
+std::span<const T> row_of(const std::vector<T>& plane, std::uint32_t row, std::size_t cols) {
+  return std::span(plane).subspan(row * cols, cols);
+}
+
+/// A plane made row by row from standard normal variates.
+template <class Map>
+std::vector<float> normal_plane(const Scene& scene, random::Stream stream, Map map) {
+  std::vector<float> plane(scene.skin.sensels());
+  for (std::uint32_t row = 0; row < scene.skin.rows; ++row) {
+    const auto values =
+        std::span(plane).subspan(std::size_t{row} * scene.skin.cols, scene.skin.cols);
+    random::fill_normal({scene.seed, stream, 0, row}, values);
+    std::transform(values.begin(), values.end(), values.begin(),
+                   [&](float variate) { return static_cast<float>(map(double{variate})); });
+  }
+  return plane;
+}
+
+/// The calibration's gain, 1/g. Sensitivities g are lognormal with mean 1 and the given standard
+/// deviation, and so always positive.
+std::vector<float> draw_gains(const Scene& scene) {
+  const double variance = std::log1p(scene.sensor.gain_spread * scene.sensor.gain_spread);
+  const double deviation = std::sqrt(variance);
+  return normal_plane(scene, random::Stream::sensitivity,
+                      [=](double n) { return std::exp(variance / 2 - deviation * n); });
+}
+
+/// Tares are normal; what would lie below zero is zero.
+std::vector<float> draw_tares(const Scene& scene) {
+  const SensorModel& model = scene.sensor;
+  return normal_plane(scene, random::Stream::tare, [&](double n) {
+    return std::max(0.0, model.tare_counts + model.tare_spread_counts * n);
+  });
+}
+
+std::vector<std::uint8_t> draw_mask(const Scene& scene) {
+  const std::uint32_t cols = scene.skin.cols;
+  std::vector<std::uint8_t> mask;
+  mask.reserve(scene.skin.sensels());
+  std::vector<double> chance(cols);
+  for (std::uint32_t row = 0; row < scene.skin.rows; ++row) {
+    random::fill_uniform({scene.seed, random::Stream::dead, 0, row}, chance);
+    for (const double value : chance) mask.push_back(value < scene.sensor.dead_share ? 0 : 1);
+  }
+  return mask;
+}
+
+Calibration draw_calibration(const Scene& scene) {
+  const SensorModel& model = scene.sensor;
+  Calibration calibration;
+  if (model.tare_counts > 0 || model.tare_spread_counts > 0) calibration.tare = draw_tares(scene);
+  if (model.gain_spread > 0) calibration.gain = draw_gains(scene);
+  if (model.dead_zone_counts > 0) {
+    calibration.dead_zone.assign(scene.skin.sensels(), static_cast<float>(model.dead_zone_counts));
+  }
+  if (model.dead_share > 0) calibration.mask = draw_mask(scene);
+  return calibration;
+}
+
+/// To the nearest whole count, halves up, within the converter's range.
+template <class Count>
+void round_to(std::span<const double> signal, double full_scale, std::span<Count> out) {
+  std::transform(signal.begin(), signal.end(), out.begin(), [=](double value) {
+    // No call of a library for each sensel; it differs from lround just below a half.
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
+    return static_cast<Count>(std::clamp(value, 0.0, full_scale) + 0.5);
+  });
+}
+
+std::optional<PowerLaw> inverse(const std::optional<PowerLaw>& law) {
+  if (!law) return std::nullopt;
+  return PowerLaw{1 / law->exponent, law->reference_counts};
+}
+
+}  // namespace
+
+Sensor::Sensor(const Scene& scene)
+    : model_(scene.sensor),
+      full_scale_counts_(
+          scene.skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity())),
+      bend_(inverse(scene.skin.power_law)),
+      seed_(scene.seed),
+      rate_hz_(scene.rate_hz),
+      calibration_(draw_calibration(scene)) {}
+
+SenselType Sensor::sensel_type() const {
+  if (!model_.adc_bits) return SenselType::f32;
+  return *model_.adc_bits <= 8 ? SenselType::u8 : SenselType::u16;
+}
+
+void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
+                      FrameBuffer& raw) const {
+  respond(row, signal);
+  if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
+  if (model_.noise_counts > 0) add_noise(frame, row, signal);
+  if (!calibration_.mask.empty()) silence_dead(row, signal);
+  convert(row, signal, raw);
+}
+
+void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
+  if (model_.dead_zone_counts > 0) {
+    // The plane is single precision, and exact readings want the very number it holds.
+    const double dead_zone = calibration_.dead_zone.front();
+    for (double& value : signal) value = std::max(0.0, value - dead_zone);
+  }
+  if (bend_) {
+    for (double& value : signal) value = value > 0 ? straightened(*bend_, value) : value;
+  }
+  if (!calibration_.gain.empty()) {
+    const auto gain = row_of(calibration_.gain, row, signal.size());
+    for (std::size_t i = 0; i < signal.size(); ++i) signal[i] /= gain[i];
+  }
+  if (!calibration_.tare.empty()) {
+    const auto tare = row_of(calibration_.tare, row, signal.size());
+    for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += tare[i];
+  }
+}
+
+void Sensor::add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
+  std::vector<float> speed(signal.size());
+  random::fill_normal({seed_, random::Stream::drift, 0, row}, speed);
+  const double spread_counts = model_.drift_counts_per_s * static_cast<double>(frame) / rate_hz_;
+  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += spread_counts * speed[i];
+}
+
+void Sensor::add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
+  std::vector<float> noise(signal.size());
+  random::fill_normal({seed_, random::Stream::noise, frame, row}, noise);
+  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += model_.noise_counts * noise[i];
+}
+
+void Sensor::silence_dead(std::uint32_t row, std::span<double> signal) const {
+  const auto good = row_of(calibration_.mask, row, signal.size());
+  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = good[i] != 0 ? signal[i] : 0;
+}
+
+void Sensor::convert(std::uint32_t row, std::span<const double> signal, FrameBuffer& raw) const {
+  const auto row_in = [&](auto readings) {
+    return readings.subspan(row * signal.size(), signal.size());
+  };
+  switch (sensel_type()) {
+    case SenselType::u8:
+      round_to(signal, full_scale_counts_, row_in(raw.readings<std::uint8_t>()));
+      return;
+    case SenselType::u16:
+      round_to(signal, full_scale_counts_, row_in(raw.readings<std::uint16_t>()));
+      return;
+    case SenselType::f32:
+      break;
+  }
+  const auto out = row_in(raw.readings<float>());
+  std::transform(signal.begin(), signal.end(), out.begin(), [&](double value) {
+    return static_cast<float>(std::min(value, full_scale_counts_));
+  });
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,58 @@
+#include "pillarfield/frame_statistics.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "skin/raw_reading.h"
+
+namespace pillarfield {
+namespace {
+
+/// Beyond it, as in the solve, a reading is none.
+constexpr auto kLargest = static_cast<float>(kMaxCounts);
+
+}  // namespace
+
+void SenselStatistics::add(float reading, float full_scale) {
+  if (!(std::abs(reading) <= kLargest)) return;
+  lowest = readings == 0 ? reading : std::min(lowest, reading);
+  highest = readings == 0 ? reading : std::max(highest, reading);
+  ++readings;
+  if (reading >= full_scale) ++saturated;
+  const double step = reading - mean;
+  mean += step / readings;
+  squares += step * (reading - mean);
+}
+
+double SenselStatistics::deviation() const {
+  return readings < 2 ? 0 : std::sqrt(squares / (readings - 1));
+}
+
+FrameStatistics::FrameStatistics(std::string name, const Skin& skin, SenselType type)
+    : name_(std::move(name)), skin_(skin), type_(type), sensels_(skin.sensels()) {}
+
+void FrameStatistics::add(const FrameView& frame) {
+  require_frame(frame, skin_, type_, name_);
+  const auto full_scale =
+      static_cast<float>(skin_.full_scale_counts.value_or(std::numeric_limits<double>::infinity()));
+  for_each_row(frame, [&](std::size_t row, const auto* readings) {
+    SenselStatistics* const sensels = &sensels_[row * skin_.cols];
+    for (std::size_t col = 0; col < skin_.cols; ++col) {
+      sensels[col].add(static_cast<float>(readings[col]), full_scale);
+    }
+  });
+  ++frames_;
+}
+
+void require_frames(const FrameStatistics& statistics, std::uint32_t least) {
+  if (statistics.frames() >= least) return;
+  throw Error(statistics.name(), fmt::format("has {} frames", statistics.frames()),
+              fmt::format("give at least {}", least));
+}
+
+}  // namespace pillarfield

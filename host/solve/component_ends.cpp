@@ -1,0 +1,98 @@
+#include "pillarfield/component_ends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solve/segment.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr double kDeviations95 = 1.96;
+
+struct Interval {
+  double low;
+  double high;
+
+  [[nodiscard]] Interval wider(double by) const { return {low - by, high + by}; }
+};
+
+/// One component of a pillar's force.
+struct Component {
+  double value;
+  double deviation;
+
+  [[nodiscard]] Interval interval() const {
+    return Interval{value, value}.wider(kDeviations95 * deviation);
+  }
+  /// What of the deviation is noise, if the rest is this.
+  [[nodiscard]] double noise_beside(double other) const {
+    return std::sqrt(std::max(deviation * deviation - other * other, 0.0));
+  }
+};
+
+/// The part of the deviation of a segment's normal force that is not noise (U9).
+double ambiguity_of(double high, double point) {
+  constexpr double kPoint = 0.875;
+  constexpr double kOfPoint = 0.12;
+  return std::hypot(kOfPoint, point - kPoint) * high;
+}
+
+/// The ends of a segment at whose `point` the direct solve put the force (F1, F2): of the component
+/// of the shear that changes along it, and of the normal force.
+void set_segment(double point, const Component& moving, const Component& normal,
+                 Interval& of_moving, Interval& of_normal) {
+  const double high = normal.value / point;
+  const double ambiguity = ambiguity_of(high, point);
+  const double least = std::abs(moving.value) - std::numbers::sqrt2 * (high - normal.value);
+  const double most = std::abs(moving.value) + std::numbers::sqrt2 * normal.value;
+  const double noise = moving.noise_beside(std::numbers::sqrt2 * ambiguity);
+  of_moving = std::signbit(moving.value) ? Interval{-most, -least} : Interval{least, most};
+  of_moving = of_moving.wider(kDeviations95 * noise);
+  of_normal = {0, high + kDeviations95 * normal.noise_beside(ambiguity)};
+}
+
+}  // namespace
+
+const char* name_of(ComponentEnd end) {
+  switch (end) {
+    case ComponentEnd::shear_x_low:
+      return "shear_x_low";
+    case ComponentEnd::shear_x_high:
+      return "shear_x_high";
+    case ComponentEnd::shear_y_low:
+      return "shear_y_low";
+    case ComponentEnd::shear_y_high:
+      return "shear_y_high";
+    case ComponentEnd::normal_low:
+      return "normal_low";
+    case ComponentEnd::normal_high:
+      break;
+  }
+  return "normal_high";
+}
+
+std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, std::size_t pillar,
+                                                 const std::optional<double>& direct_point) {
+  const auto component = [&](std::span<const float> values, Uncertainty deviation) {
+    return Component{values[pillar], forces.uncertainty[deviation][pillar]};
+  };
+  const Component x = component(forces.shear_x, Uncertainty::shear_x);
+  const Component y = component(forces.shear_y, Uncertainty::shear_y);
+  const Component normal = component(forces.normal, Uncertainty::normal);
+  Interval of_x = x.interval();
+  Interval of_y = y.interval();
+  Interval of_normal = normal.interval();
+  const std::uint8_t status = forces.status[pillar];
+  if (direct_point && is_ambiguous(status) && normal.value > 0) {
+    const bool vertical = moves_vertically(status);
+    set_segment(*direct_point, vertical ? y : x, normal, vertical ? of_y : of_x, of_normal);
+  }
+  if (normal.value >= 0) of_normal.low = std::max(of_normal.low, 0.0);
+  const auto number = [](double value) { return static_cast<float>(value); };
+  return {number(of_x.low),  number(of_x.high),     number(of_y.low),
+          number(of_y.high), number(of_normal.low), number(of_normal.high)};
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,141 @@
+#include "pillarfield/solver_plan.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "pillarfield/error.h"
+#include "skin/force_scale.h"
+#include "solve/friction_limits.h"
+
+namespace pillarfield {
+namespace {
+
+/// Throws where a value that may be absent lies outside [0, high].
+void check_counts(std::optional<double> value, const char* name, double high,
+                  std::string_view where) {
+  if (!value || (*value >= 0 && *value <= high)) return;
+  throw Error(where, fmt::format("{} is {}", name, *value),
+              fmt::format("it must lie in [0, {}]", high));
+}
+
+/// Root mean square of the noise of the sensels that are not masked.
+double mean_noise(const Calibration& calibration) {
+  double squares = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < calibration.noise.size(); ++i) {
+    if (!calibration.mask.empty() && calibration.mask[i] == 0) continue;
+    squares += double{calibration.noise[i]} * calibration.noise[i];
+    ++count;
+  }
+  return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
+}
+
+constexpr int kMaxBaselineInterval = 1024;
+
+/// Where the noise is not known, the threshold is taken to be so many deviations.
+constexpr double kThresholdDeviations = 4;
+
+}  // namespace
+
+void check(const FrictionKnowledge& friction, std::string_view where) {
+  const auto require = [&](const char* name, double value, double least, double most) {
+    if (value >= least && value <= most) return;
+    throw Error(where, fmt::format("{} is {}", name, value),
+                fmt::format("it must lie in [{}, {}]", least, most));
+  };
+  require("the median of the friction's prior", friction.median, kFrictions.low, kFrictions.high);
+  require("the spread of the friction's prior", friction.spread, kPriorSpread.low,
+          kPriorSpread.high);
+  if (friction.given) {
+    require("the friction", *friction.given, kFrictions.low, kFrictions.high);
+  }
+  if (friction.bound) {
+    require("the bound of the friction", *friction.bound, kFrictionBound.low, kFrictionBound.high);
+  }
+}
+
+const char* name_of(Estimator estimator) {
+  switch (estimator) {
+    case Estimator::direct:
+      return "direct";
+    case Estimator::paper:
+      return "paper";
+    case Estimator::contact:
+      break;
+  }
+  return "contact";
+}
+
+void check(const SolverPlan& plan, std::string_view where) {
+  check(plan.skin, where);
+  check(plan.calibration, plan.skin, where, plan.sensel_type);
+  check_counts(plan.parity_tolerance_counts, "parity_tolerance_counts", kMaxCounts, where);
+  check_counts(plan.noise_counts, "noise_counts", kMaxNoiseCounts, where);
+  if (!(plan.segment_point > 0 && plan.segment_point <= 1)) {
+    throw Error(where, fmt::format("segment_point is {}", plan.segment_point),
+                "it must lie in (0, 1]");
+  }
+  if (plan.baseline_rate && !(*plan.baseline_rate > 0 && *plan.baseline_rate <= 1)) {
+    throw Error(where, fmt::format("baseline_rate is {}", *plan.baseline_rate),
+                "it must lie in (0, 1]");
+  }
+  if (plan.baseline_interval < 1 || plan.baseline_interval > kMaxBaselineInterval) {
+    throw Error(where, fmt::format("baseline_interval is {}", plan.baseline_interval),
+                fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
+  }
+  check(plan.friction, where);
+  if (plan.estimator == Estimator::contact && plan.half_output) {
+    throw Error(where, "the contact estimator has no results of half precision",
+                "leave out half_output (--half), or take the direct estimator");
+  }
+  if (!plan.uncertainty) return;
+  if (plan.estimator == Estimator::paper) {
+    throw Error(where, "the paper's estimator has no uncertainty",
+                "take the estimator direct or contact");
+  }
+  if (!plan.noise_counts && plan.calibration.noise.empty()) {
+    throw Error(where, "uncertainty is asked for, and the noise of the sensels is not known",
+                "give noise_counts, or a calibration with a noise plane");
+  }
+}
+
+double baseline_rate(double time_constant_s, double frame_interval_s) {
+  return -std::expm1(-frame_interval_s / time_constant_s);
+}
+
+double baseline_turn_rate(const SolverPlan& plan) {
+  const double rate = plan.baseline_rate.value_or(0);
+  if (plan.baseline_interval == 1) return rate;
+  return -std::expm1(plan.baseline_interval * std::log1p(-rate));
+}
+
+double reading_noise(const SolverPlan& plan) {
+  const double noise = plan.noise_counts.value_or(0);
+  const double rounding = plan.sensel_type == SenselType::f32 ? 0 : 1.0 / 12;
+  return std::sqrt(noise * noise + rounding);
+}
+
+double reading_noise_n(const SolverPlan& plan) {
+  const bool known = plan.noise_counts || !plan.calibration.noise.empty();
+  const double counts =
+      known ? reading_noise(plan) : plan.skin.threshold_counts / kThresholdDeviations;
+  return counts / plan.skin.counts_per_newton;
+}
+
+double hidden_normal_n(const Skin& skin) {
+  return force_scale(skin.counts_per_newton).normal * skin.threshold_counts;
+}
+
+double region_doubt(const SolverPlan& plan) {
+  if (!plan.calibration.noise.empty()) return region_doubt(mean_noise(plan.calibration));
+  return plan.noise_counts ? region_doubt(reading_noise(plan)) : 0;
+}
+
+double region_doubt(double noise_counts) {
+  // Parity leaves V_p + V_q - V_r, three readings, each with its noise.
+  return 5 * std::sqrt(3.0) * noise_counts;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,75 @@
+#include "solve/wake_levels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solve/pillar_maths.h"
+
+namespace pillarfield {
+namespace {
+
+/// The reading at which the power law reaches the threshold. Powers are not rounded alike
+/// everywhere, so a little below.
+double threshold_before_power_law(const SolverPlan& plan) {
+  const double threshold = plan.skin.threshold_counts;
+  if (!plan.skin.power_law) return threshold;
+  const PowerLaw& law = *plan.skin.power_law;
+  const double reading =
+      law.reference_counts * std::pow(threshold / law.reference_counts, 1 / law.exponent);
+  return reading * (1 - 1e-4);
+}
+
+double largest_reading(SenselType type) {
+  switch (type) {
+    case SenselType::u8:
+      return 255;
+    case SenselType::u16:
+      return 65535;
+    case SenselType::f32:
+      break;
+  }
+  return kMaxCounts;
+}
+
+}  // namespace
+
+WakeRange wake_range(const SolverPlan& plan) {
+  const bool whole = plan.sensel_type != SenselType::f32;
+  const double largest = largest_reading(plan.sensel_type);
+  WakeRange range{};
+  range.threshold = threshold_before_power_law(plan);
+  range.step = whole ? 1 : 0;
+  range.lowest = whole ? 0 : -kMaxCounts;
+  range.highest = std::min(largest, plan.skin.full_scale_counts.value_or(largest));
+  if (whole) range.highest = std::floor(range.highest);
+  range.never = largest;
+  return range;
+}
+
+bool has_wake_plane(const SolverPlan& plan) {
+  const Calibration& calibration = plan.calibration;
+  return !calibration.tare.empty() || !calibration.gain.empty() || !calibration.mask.empty() ||
+         plan.baseline_rate.has_value();
+}
+
+std::vector<float> wake_levels(const SolverPlan& plan) {
+  const Calibration& calibration = plan.calibration;
+  const WakeRange range = wake_range(plan);
+  const auto threshold = static_cast<float>(range.threshold);
+  const auto lowest = static_cast<float>(range.lowest);
+  const auto highest = static_cast<float>(range.highest);
+  std::vector<float> levels(has_wake_plane(plan) ? plan.skin.sensels() : 1);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const float tare = calibration.tare.empty() ? 0 : calibration.tare[i];
+    const float gain = calibration.gain.empty() ? 1 : calibration.gain[i];
+    const float level =
+        single_precision::wake_level(tare, gain, threshold, static_cast<float>(range.step), lowest);
+    levels[i] = std::min(std::max(level, lowest), highest);
+    if (!calibration.mask.empty() && calibration.mask[i] == 0) {
+      levels[i] = static_cast<float>(range.never);
+    }
+  }
+  return levels;
+}
+
+}  // namespace pillarfield

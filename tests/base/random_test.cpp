@@ -1,0 +1,110 @@
+#include "base/random.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <vector>
+
+namespace pillarfield::random {
+namespace {
+
+/// The known answers that the method's authors publish with it.
+TEST(Random, PhiloxGivesTheKnownAnswers) {
+  EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Block{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  constexpr std::uint32_t kOnes = 0xffffffff;
+  EXPECT_EQ(philox({kOnes, kOnes, kOnes, kOnes}, {kOnes, kOnes}),
+            (Block{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
+            (Block{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+std::vector<float> normal_row(const Row& row, std::size_t count) {
+  std::vector<float> values(count);
+  fill_normal(row, values);
+  return values;
+}
+
+std::vector<float> many_normals() {
+  std::vector<float> all;
+  for (std::uint32_t row = 0; row < 400; ++row) {
+    const std::vector<float> values = normal_row({5, Stream::noise, 3, row}, 1000);
+    all.insert(all.end(), values.begin(), values.end());
+  }
+  return all;
+}
+
+TEST(Random, NormalVariatesHaveTheMomentsOfTheNormalDistribution) {
+  const std::vector<float> all = many_normals();
+  double moments[5] = {};
+  for (const float value : all) {
+    for (int power = 1; power <= 4; ++power) moments[power] += std::pow(double{value}, power);
+  }
+  const auto count = static_cast<double>(all.size());
+  const double error = 5 / std::sqrt(count);
+  EXPECT_NEAR(moments[1] / count, 0, error);
+  EXPECT_NEAR(moments[2] / count, 1, std::sqrt(2) * error);
+  EXPECT_NEAR(moments[3] / count, 0, std::sqrt(15) * error);
+  EXPECT_NEAR(moments[4] / count, 3, std::sqrt(96) * error);
+}
+
+TEST(Random, NormalVariatesFollowTheNormalDistribution) {
+  std::vector<float> all = many_normals();
+  std::sort(all.begin(), all.end());
+  const auto count = static_cast<double>(all.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double expected = std::erfc(-double{all[i]} / std::numbers::sqrt2) / 2;
+    largest = std::max(largest, std::abs(expected - static_cast<double>(i) / count));
+  }
+  // Kolmogorov and Smirnov: 1.95 / sqrt(n) is passed once in a thousand.
+  EXPECT_LT(largest, 1.95 / std::sqrt(count));
+}
+
+double correlation(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) sum += double{a[i]} * double{b[i]};
+  return sum / static_cast<double>(std::min(a.size(), b.size()));
+}
+
+TEST(Random, SeedsStreamsFramesRowsAndNeighboursAreIndependent) {
+  constexpr std::size_t kCount = 60000;
+  const Row row{1, Stream::noise, 0, 0};
+  const std::vector<float> values = normal_row(row, kCount);
+  for (const Row& other : {Row{2, Stream::noise, 0, 0}, Row{1ULL << 40, Stream::noise, 0, 0},
+                           Row{1, Stream::tare, 0, 0}, Row{1, Stream::noise, 1, 0},
+                           Row{1, Stream::noise, 1ULL << 33, 0}, Row{1, Stream::noise, 0, 1}}) {
+    EXPECT_NEAR(correlation(values, normal_row(other, kCount)), 0, 5 / std::sqrt(kCount));
+  }
+  for (const std::ptrdiff_t lag : {1, 2, 3, 4}) {
+    EXPECT_NEAR(correlation(values, {values.begin() + lag, values.end()}), 0,
+                5 / std::sqrt(kCount));
+  }
+}
+
+TEST(Random, AShorterRowIsTheBeginningOfALongerOne) {
+  const Row row{9, Stream::tare, 2, 65533};
+  const std::vector<float> longer = normal_row(row, 103);
+  for (const std::size_t count : {1U, 2U, 4U, 5U, 102U}) {
+    const std::vector<float> shorter = normal_row(row, count);
+    EXPECT_TRUE(std::equal(shorter.begin(), shorter.end(), longer.begin())) << count;
+  }
+}
+
+TEST(Random, UniformVariatesFillTheUnitInterval) {
+  std::vector<double> values(60000);
+  fill_uniform({3, Stream::dead, 0, 7}, values);
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  EXPECT_GE(*least, 0);
+  EXPECT_LT(*most, 1);
+  for (const double share : {0.001, 0.1, 0.5, 0.9}) {
+    const auto below =
+        std::count_if(values.begin(), values.end(), [=](double value) { return value < share; });
+    EXPECT_NEAR(static_cast<double>(below) / 60000, share, 5 * std::sqrt(share / 60000));
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield::random

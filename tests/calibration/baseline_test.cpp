@@ -1,0 +1,153 @@
+// A baseline that drifts is followed where nothing touches the skin, and nowhere else.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "pillarfield/simulator.h"
+#include "solve/host_solve.h"
+
+namespace pillarfield {
+namespace {
+
+/// A ball of 4 mm contact radius pressed on a patch of 15 x 15 pillars, or nothing.
+Scene pressed_scene(double load_n) {
+  Scene scene;
+  scene.skin.rows = 30;
+  scene.skin.cols = 30;
+  scene.skin.threshold_counts = 4;
+  scene.sensor.tare_counts = 40;
+  scene.sensor.tare_spread_counts = 3;
+  scene.sensor.noise_counts = 1;
+  scene.frames = 10'000;
+  if (load_n == 0) {
+    scene.load = std::vector<Contact>();
+    return scene;
+  }
+  Contact ball;
+  ball.contact_radius_mm = 4;
+  ball.reference_load_n = load_n;
+  ball.path = {{0, 0, 0, load_n}};
+  scene.load = std::vector<Contact>{ball};
+  return scene;
+}
+
+/// Frames of a scene, solved one after the other with a baseline that follows.
+class Follower {
+ public:
+  Follower(const Scene& scene, double time_constant_s)
+      : simulator_(scene),
+        raw_(simulator_.sensel_type(), scene.skin.rows, scene.skin.cols),
+        truth_(scene.skin.pillar_rows(), scene.skin.pillar_cols()),
+        unloaded_(simulator_.calibration().tare) {
+    plan_.skin = scene.skin;
+    plan_.sensel_type = simulator_.sensel_type();
+    plan_.calibration = simulator_.calibration();
+    plan_.baseline_rate = baseline_rate(time_constant_s, 1 / scene.rate_hz);
+  }
+
+  ForceField step() {
+    simulator_.render(frame_++, raw_, truth_);
+    ForceField forces = solve_on_host(plan_, raw_.view());
+    follow_baseline_on_host(plan_, raw_.view(), forces);
+    return forces;
+  }
+
+  [[nodiscard]] const std::vector<float>& tare() const { return plan_.calibration.tare; }
+  [[nodiscard]] const std::vector<float>& unloaded() const { return unloaded_; }
+  [[nodiscard]] const ForceField& truth() const { return truth_; }
+
+ private:
+  Simulator simulator_;
+  FrameBuffer raw_;
+  ForceField truth_;
+  std::vector<float> unloaded_;
+  SolverPlan plan_;
+  std::uint64_t frame_ = 0;
+};
+
+double total_normal(const ForceField& forces) {
+  return std::accumulate(forces.normal.begin(), forces.normal.end(), 0.0);
+}
+
+/// The mean of the total over so many frames.
+double mean_total(Follower& follower, int frames) {
+  double total = 0;
+  for (int i = 0; i < frames; ++i) total += total_normal(follower.step());
+  return total / frames;
+}
+
+TEST(Baseline, AConstantPressDoesNotFadeInTenThousandFrames) {
+  // Followed within a second, for a hundred: what could fade would be gone.
+  Follower follower(pressed_scene(20), 1);
+  const double at_first = mean_total(follower, 200);
+  for (int i = 0; i < 9'600; ++i) follower.step();
+  const double at_last = mean_total(follower, 200);
+  EXPECT_NEAR(at_first, 20, 0.4);
+  // 500 pressed sensels of one count of noise make 0.005 N in a mean of 200.
+  EXPECT_NEAR(at_last, at_first, 0.03);
+}
+
+TEST(Baseline, IsFrozenAtTheFringeOfAContact) {
+  // So light that the outermost pillars flicker about the threshold.
+  Follower follower(pressed_scene(2), 1);
+  for (int i = 0; i < 1'000; ++i) follower.step();
+  const ForceField& truth = follower.truth();
+  int frozen = 0;
+  int flickering = 0;
+  for (std::size_t row = 0; row < truth.rows; ++row) {
+    for (std::size_t col = 0; col < truth.cols; ++col) {
+      if (truth.normal[row * truth.cols + col] == 0) continue;
+      ++frozen;
+      flickering += truth.normal[row * truth.cols + col] < 4 / 320.0 ? 1 : 0;
+      for (const std::size_t at : {2 * row * 30 + 2 * col, (2 * row + 1) * 30 + 2 * col + 1}) {
+        EXPECT_EQ(follower.tare()[at], follower.unloaded()[at]);
+      }
+    }
+  }
+  EXPECT_GT(frozen, 20);
+  EXPECT_GT(flickering, 3);
+}
+
+/// Root mean square over the sensels of the tare's distance from the drifted baseline.
+double tracking_error(const Follower& follower, const Scene& scene, int frames) {
+  // The drift is linear: two noiseless frames show it.
+  Scene quiet = scene;
+  quiet.sensor.noise_counts = 0;
+  const Simulator simulator(quiet);
+  FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
+  ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
+  simulator.render(static_cast<std::uint64_t>(frames), raw, truth);
+  double squares = 0;
+  for (std::size_t i = 0; i < follower.tare().size(); ++i) {
+    const double error = follower.tare()[i] - raw.readings<float>()[i];
+    squares += error * error;
+  }
+  return std::sqrt(squares / static_cast<double>(follower.tare().size()));
+}
+
+TEST(Baseline, FollowsTheDriftOfAnUntouchedSkin) {
+  Scene scene = pressed_scene(0);
+  scene.sensor.drift_counts_per_s = 0.3;
+  constexpr int kFrames = 10'000;
+  Follower follower(scene, 2);
+  const double adrift = tracking_error(follower, scene, kFrames);
+  EXPECT_NEAR(adrift, 30, 2) << "0.3 counts per second for 100 seconds";
+  for (int i = 0; i < kFrames; ++i) follower.step();
+  // It lags by 0.3 counts/s times 2 s, and has sqrt(rate / 2) = 0.05 of the noise.
+  EXPECT_LT(tracking_error(follower, scene, kFrames), 0.8);
+}
+
+TEST(Baseline, ComesBackAfterAContact) {
+  Scene scene = pressed_scene(20);
+  std::get<std::vector<Contact>>(scene.load).front().path = {
+      {0, 0, 0, 20}, {10, 0, 0, 20}, {10.01, 0, 0, 0}};
+  scene.sensor.drift_counts_per_s = 0.05;
+  Follower follower(scene, 1);
+  for (int i = 0; i < 2'000; ++i) follower.step();
+  EXPECT_LT(tracking_error(follower, scene, 2'000), 0.2);
+}
+
+}  // namespace
+}  // namespace pillarfield

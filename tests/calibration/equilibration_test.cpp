@@ -1,0 +1,269 @@
+// Equilibration: gains, dead zones and counts per newton from uniform pressure.
+
+#include "pillarfield/equilibration.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "pillarfield/tare.h"
+#include "tests/base/message.h"
+#include "tests/calibration/pressed_skin.h"
+
+namespace pillarfield {
+namespace {
+
+using core_test::message_of;
+using core_test::PressedSkin;
+
+constexpr std::uint32_t kFrames = 100;
+
+/// One count of noise, 10 % of gain spread; readings of whole counts.
+SensorModel spread_sensor() {
+  SensorModel sensor;
+  sensor.tare_counts = 12;
+  sensor.tare_spread_counts = 1.5;
+  sensor.gain_spread = 0.1;
+  sensor.noise_counts = 1;
+  sensor.adc_bits = 12;
+  return sensor;
+}
+
+const double kNoise = std::sqrt(1 + 1 / 12.0);
+
+SkinCalibration tared(PressedSkin& skin) {
+  return take_tare(blank_calibration(skin.skin()), skin.bare(kFrames), {}).calibration;
+}
+
+double mean_of(const std::vector<float>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// The largest and the root mean square of |found / expected − 1|.
+struct Errors {
+  double largest = 0;
+  double rms = 0;
+};
+Errors relative_errors(const std::vector<float>& found, const std::vector<float>& expected,
+                       double scale) {
+  Errors errors;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const double error = std::abs(found[i] / (scale * expected[i]) - 1);
+    errors.largest = std::max(errors.largest, error);
+    errors.rms += error * error / static_cast<double>(found.size());
+  }
+  errors.rms = std::sqrt(errors.rms);
+  return errors;
+}
+
+TEST(Equilibration, OnePressureGivesGainsToOnePercent) {
+  PressedSkin skin(40, 40, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  const FrameStatistics press = skin.press(0.4, kFrames);  // 128 counts
+  const UniformPress presses[] = {{press, skin.pressure_kpa(0.4)}};
+  const EquilibrationResult result = equilibrate(before, presses, {});
+  const std::vector<float>& gain = result.calibration.planes.gain;
+  const Calibration truth = skin.truth();
+  EXPECT_NEAR(mean_of(gain), 1, 1e-6);
+  const double share = 1 / mean_of(truth.gain);
+  const Errors errors = relative_errors(gain, truth.gain, share);
+  EXPECT_LT(errors.largest, 0.01);
+  // The tare and the press have the same error, kNoise / 10, of 128 counts over the gain.
+  EXPECT_NEAR(errors.rms, std::sqrt(2.0) * 0.1 * kNoise / 128, 0.1e-3);
+  // The skin's k, and what the mean of the gains takes from it.
+  EXPECT_NEAR(result.calibration.counts_per_newton.value() / (320 * share), 1, 1e-3);
+  EXPECT_NEAR(result.gain_spread, 0.1, 0.01);
+  EXPECT_EQ(result.levels, 1U);
+  EXPECT_TRUE(result.calibration.planes.dead_zone.empty());
+  EXPECT_TRUE(result.findings.empty());
+  EXPECT_LT(result.unevenness, 0.02);
+}
+
+TEST(Equilibration, TwoPressuresGiveTheDeadZoneToo) {
+  SensorModel sensor = spread_sensor();
+  sensor.dead_zone_counts = 4;
+  PressedSkin skin(40, 40, sensor);
+  const SkinCalibration before = tared(skin);
+  const FrameStatistics low = skin.press(0.2, kFrames);   // 64 counts
+  const FrameStatistics high = skin.press(0.7, kFrames);  // 224 counts
+  const UniformPress presses[] = {{low, skin.pressure_kpa(0.2)}, {high, skin.pressure_kpa(0.7)}};
+  const EquilibrationResult result = equilibrate(before, presses, {});
+  const Calibration truth = skin.truth();
+  const double share = 1 / mean_of(truth.gain);
+  const Errors errors = relative_errors(result.calibration.planes.gain, truth.gain, share);
+  EXPECT_LT(errors.largest, 0.01);
+  EXPECT_NEAR(errors.rms, std::sqrt(2.0) * 0.1 * kNoise / 160, 0.1e-3);
+  EXPECT_NEAR(mean_of(result.calibration.planes.gain), 1, 1e-6);
+  // docs/calibration.md: the variance of z, at gain 1 and with the tare's own.
+  const double z_error = 0.1 * kNoise * std::sqrt(0.5 + 140 * 140 / (160.0 * 160 / 2) + 1);
+  double squares = 0;
+  for (const float z : result.calibration.planes.dead_zone) {
+    EXPECT_NEAR(z, 4 * share, 6 * z_error);
+    squares += (z - 4 * share) * (z - 4 * share);
+  }
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(truth.gain.size())), z_error, 0.1 * z_error);
+  EXPECT_NEAR(result.dead_zone_counts, 4 * share, 0.02);
+  EXPECT_NEAR(result.calibration.counts_per_newton.value() / (320 * share), 1, 1e-3);
+  EXPECT_EQ(result.levels, 2U);
+}
+
+TEST(Equilibration, AKnownDeadZoneServesWithOnePressure) {
+  SensorModel sensor = spread_sensor();
+  sensor.dead_zone_counts = 8;
+  PressedSkin skin(20, 20, sensor);
+  SkinCalibration before = tared(skin);
+  before.planes.dead_zone.assign(skin.skin().sensels(), 8);
+  const FrameStatistics press = skin.press(0.3, kFrames);
+  const UniformPress presses[] = {{press, skin.pressure_kpa(0.3)}};
+  const EquilibrationResult result = equilibrate(before, presses, {});
+  const Calibration truth = skin.truth();
+  const double share = 1 / mean_of(truth.gain);
+  EXPECT_LT(relative_errors(result.calibration.planes.gain, truth.gain, share).largest, 0.01);
+  EXPECT_EQ(result.calibration.planes.dead_zone, before.planes.dead_zone);
+  // (V - z) share + z at 96 counts.
+  EXPECT_NEAR(result.calibration.counts_per_newton.value(), (88 * share + 8) / 0.3, 0.5);
+  EXPECT_NEAR(mean_of(result.calibration.planes.gain), 1, 1e-6);
+}
+
+TEST(Equilibration, WithoutDeadZoneTheLinesStartAtZero) {
+  PressedSkin skin(20, 20, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  const FrameStatistics a = skin.press(0.1, kFrames);
+  const FrameStatistics b = skin.press(0.4, kFrames);
+  const FrameStatistics c = skin.press(0.7, kFrames);
+  const UniformPress presses[] = {
+      {a, skin.pressure_kpa(0.1)}, {b, skin.pressure_kpa(0.4)}, {c, skin.pressure_kpa(0.7)}};
+  const EquilibrationResult result = equilibrate(before, presses, {});
+  EXPECT_LT(result.dead_zone_counts, 0.15);
+  EXPECT_GE(std::ranges::min(result.calibration.planes.dead_zone), 0);
+  EXPECT_LT(result.nonlinearity, 2e-3);
+  EXPECT_EQ(result.levels, 3U);
+}
+
+TEST(Equilibration, DeadAndSaturatedSenselsAreMasked) {
+  SensorModel sensor = spread_sensor();
+  sensor.dead_share = 0.02;
+  PressedSkin skin(20, 20, sensor);
+  const Calibration truth = skin.truth();
+  // The tare does not know them: with a threshold of zero counts they may pass for quiet ones.
+  SkinCalibration before = blank_calibration(skin.skin());
+  before.planes.tare = truth.tare;
+  const FrameStatistics press = skin.press(0.4, kFrames);
+  const UniformPress presses[] = {{press, skin.pressure_kpa(0.4)}};
+  const EquilibrationResult result = equilibrate(before, presses, {});
+  EXPECT_EQ(result.calibration.planes.mask, truth.mask);
+  EXPECT_EQ(result.findings.size(),
+            static_cast<std::size_t>(std::ranges::count(truth.mask, std::uint8_t{0})));
+  for (const SenselFinding& finding : result.findings) {
+    EXPECT_EQ(finding.fault, SenselFault::silent);
+    EXPECT_TRUE(finding.masked);
+  }
+}
+
+TEST(Equilibration, TheThresholdFollowsTheGains) {
+  PressedSkin skin(30, 30, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  const FrameStatistics press = skin.press(0.4, kFrames);
+  const UniformPress presses[] = {{press, skin.pressure_kpa(0.4)}};
+  const SkinCalibration after = equilibrate(before, presses, {}).calibration;
+  std::size_t above = 0;
+  for (std::size_t i = 0; i < after.planes.noise.size(); ++i) {
+    if (4 * after.planes.noise[i] * after.planes.gain[i] > *after.threshold_counts) ++above;
+  }
+  EXPECT_EQ(above, after.planes.noise.size() / 100);
+  EXPECT_GT(*after.threshold_counts, *before.threshold_counts);
+}
+
+/// A ball on the skin: far from uniform.
+FrameStatistics ball_press(PressedSkin& skin, double radius_mm, double load_n) {
+  Scene scene = skin.scene();
+  Contact ball;
+  ball.contact_radius_mm = radius_mm;
+  ball.reference_load_n = load_n;
+  ball.path = {{0, 0, 0, load_n}};
+  scene.load = std::vector<Contact>{ball};
+  return skin.statistics_of(Simulator(scene), 20);
+}
+
+TEST(Equilibration, RefusesAPressureThatIsNotUniform) {
+  PressedSkin skin(20, 20, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  const auto message = [&](const FrameStatistics& press) {
+    const UniformPress presses[] = {{press, 100}};
+    return message_of([&] { (void)equilibrate(before, presses, {}); });
+  };
+  EXPECT_NE(message(ball_press(skin, 5, 20)).find("do not answer"), std::string::npos);
+  EXPECT_NE(message(ball_press(skin, 19, 300)).find("from pillar to pillar"), std::string::npos);
+  EXPECT_NE(message(skin.bare(20)).find("do not answer"), std::string::npos);
+  EXPECT_NE(message(skin.press(100, 20)).find("full scale"), std::string::npos);
+}
+
+TEST(Equilibration, MeasuresUnevenness) {
+  SensorModel sensor = spread_sensor();
+  PressedSkin skin(20, 20, sensor);
+  const SkinCalibration before = tared(skin);
+  // The pressure falls off from the middle to the corners by a tenth.
+  const FrameStatistics press = ball_press(skin, 40, 1500);
+  const UniformPress presses[] = {{press, 300}};
+  const double unevenness = equilibrate(before, presses, {.most_unevenness = 1}).unevenness;
+  double sum = 0;
+  double squares = 0;
+  Scene scene = skin.scene();
+  for (int row = 0; row < 20; ++row) {
+    for (int col = 0; col < 20; ++col) {
+      const double pitch = skin.skin().pillar_pitch_mm();
+      const double r = std::hypot((row - 9.5) * pitch, (col - 9.5) * pitch);
+      const double log_pressure = 0.5 * std::log(1 - r * r / 1600);
+      sum += log_pressure / 400;
+      squares += log_pressure * log_pressure / 400;
+    }
+  }
+  EXPECT_NEAR(unevenness, std::sqrt(squares - sum * sum), 0.015);
+}
+
+TEST(Equilibration, MeasuresShear) {
+  PressedSkin skin(20, 20, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  Scene scene = skin.scene();
+  Contact slider;
+  slider.motion = ContactMotion::slide;
+  slider.friction = 0.1;
+  slider.direction_deg = 70;
+  slider.contact_radius_mm = 60;
+  slider.reference_load_n = 3000;
+  slider.path = {{0, 0, 0, 3000}};
+  scene.load = std::vector<Contact>{slider};
+  const FrameStatistics sheared = skin.statistics_of(Simulator(scene), 20);
+  const UniformPress presses[] = {{sheared, 300}};
+  // The sensels' own spread of 10 % leaves 0.1 √2 / 40 on each axis.
+  EXPECT_NEAR(equilibrate(before, presses, {}).shear, 0.1, 4 * 0.0035);
+  const FrameStatistics straight = skin.press(0.4, 20);
+  const UniformPress upright[] = {{straight, 300}};
+  EXPECT_LT(equilibrate(before, upright, {}).shear, 4 * 0.0035);
+}
+
+TEST(Equilibration, RefusesWhatIsNotEnough) {
+  PressedSkin skin(10, 10, spread_sensor());
+  const SkinCalibration before = tared(skin);
+  const FrameStatistics press = skin.press(0.4, kFrames);
+  const FrameStatistics few = skin.press(0.4, kLeastPressFrames - 1);
+  const auto message = [&](const SkinCalibration& calibration, const UniformPress& one) {
+    return message_of([&] { (void)equilibrate(calibration, {&one, 1}, {}); });
+  };
+  EXPECT_EQ(message(before, {few, 100}), "frames.h5: has 4 frames; give at least 5");
+  EXPECT_EQ(message(before, {press, 0}), "frames.h5: its pressure is 0 kPa; it must be above zero");
+  EXPECT_EQ(message(blank_calibration(skin.skin()), {press, 100}),
+            "calibration: has no tare; take the tare of the unloaded skin first");
+  Skin other = skin.skin();
+  other.rows = 6;
+  SkinCalibration of_another = blank_calibration(other);
+  of_another.planes.tare.assign(other.sensels(), 0);
+  EXPECT_NE(message(of_another, {press, 100}).find("one of 6 x 20"), std::string::npos);
+  EXPECT_NE(message_of([&] { (void)equilibrate(before, {}, {}); }).find("no press"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace pillarfield

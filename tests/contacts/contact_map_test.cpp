@@ -1,0 +1,386 @@
+#include "pillarfield/contact_map.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "pillarfield/status.h"
+#include "solve/silent_blocks.h"
+#include "tests/base/message.h"
+
+namespace pillarfield {
+namespace {
+
+/// Status bytes by row; '#' is a loaded pillar.
+struct Mask {
+  Mask(std::uint32_t mask_rows, std::uint32_t mask_cols)
+      : rows(mask_rows), cols(mask_cols), status(std::size_t{rows} * cols) {}
+
+  explicit Mask(const std::vector<std::string>& lines)
+      : Mask(static_cast<std::uint32_t>(lines.size()),
+             static_cast<std::uint32_t>(lines.empty() ? 0 : lines[0].size())) {
+    for (std::uint32_t row = 0; row < rows; ++row) {
+      for (std::uint32_t col = 0; col < cols; ++col) set(row, col, lines[row][col] == '#');
+    }
+  }
+
+  /// Which bit is usable depends on the place, so that each of them is tried; so do the bits that
+  /// must not count.
+  void set(std::uint32_t row, std::uint32_t col, bool loaded) {
+    const std::size_t place = std::size_t{row} * cols + col;
+    const auto others = static_cast<std::uint8_t>(place % 5 == 0 ? 0xf0 : 0);
+    const auto usable = static_cast<std::uint8_t>(loaded ? 1u << (place * 7 % 4) : 0u);
+    status[place] = others | usable;
+  }
+
+  [[nodiscard]] bool loaded(std::int64_t row, std::int64_t col) const {
+    if (row < 0 || col < 0 || row >= rows || col >= cols) return false;
+    return (status[static_cast<std::size_t>(row * cols + col)] & status::kUsable) != 0;
+  }
+
+  std::uint32_t rows;
+  std::uint32_t cols;
+  std::vector<std::uint8_t> status;
+};
+
+constexpr std::int64_t kNone = -1;
+
+/// The contact of each pillar, by another way: from each pillar that is loaded and not yet
+/// reached, row by row, flood its neighbours, kept on a stack.
+std::vector<std::int64_t> flooded(const Mask& mask, std::int64_t& contacts) {
+  std::vector<std::int64_t> label(mask.status.size(), kNone);
+  contacts = 0;
+  std::vector<std::pair<std::int64_t, std::int64_t>> stack;
+  const auto reach = [&](std::int64_t row, std::int64_t col) {
+    if (!mask.loaded(row, col)) return;
+    std::int64_t& of_pillar = label[static_cast<std::size_t>(row * mask.cols + col)];
+    if (of_pillar != kNone) return;
+    of_pillar = contacts;
+    stack.emplace_back(row, col);
+  };
+  for (std::int64_t row = 0; row < mask.rows; ++row) {
+    for (std::int64_t col = 0; col < mask.cols; ++col) {
+      reach(row, col);
+      if (stack.empty()) continue;
+      while (!stack.empty()) {
+        const auto [r, c] = stack.back();
+        stack.pop_back();
+        for (std::int64_t near = 0; near < 9; ++near) reach(r + near / 3 - 1, c + near % 3 - 1);
+      }
+      ++contacts;
+    }
+  }
+  return label;
+}
+
+/// The contact of each pillar as the runs say; each must be listed once, and in order.
+std::vector<std::int64_t> mapped(const Mask& mask, const ContactMap& map) {
+  std::vector<std::int64_t> label(mask.status.size(), kNone);
+  std::size_t listed = 0;
+  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
+    const auto runs = map.runs(contact);
+    EXPECT_FALSE(runs.empty());
+    listed += runs.size();
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      const ContactRun& run = runs[i];
+      EXPECT_EQ(run.contact, contact);
+      EXPECT_LT(run.first, run.end);
+      EXPECT_TRUE(run.end <= mask.cols && run.row < mask.rows);
+      const bool in_order = i == 0 || runs[i - 1].row < run.row ||
+                            (runs[i - 1].row == run.row && runs[i - 1].end < run.first);
+      EXPECT_TRUE(in_order) << "a gap parts two runs of a row";
+      for (std::uint32_t col = run.first; col < run.end; ++col) {
+        label[std::size_t{run.row} * mask.cols + col] = contact;
+      }
+    }
+  }
+  EXPECT_EQ(listed, map.runs().size());
+  return label;
+}
+
+/// Compares with the flood, which numbers in the documented order; returns how many there are.
+std::int64_t expect_as_flooded(const Mask& mask, ContactMap& map) {
+  map.find(mask.status, mask.rows, mask.cols);
+  std::int64_t contacts = 0;
+  const auto expected = flooded(mask, contacts);
+  EXPECT_EQ(map.contacts(), contacts);
+  EXPECT_TRUE(mapped(mask, map) == expected) << mask.rows << " x " << mask.cols;
+  return contacts;
+}
+
+std::int64_t contacts_of(const Mask& mask) {
+  ContactMap map;
+  return expect_as_flooded(mask, map);
+}
+
+/// A reproducible stream of numbers (splitmix64).
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed) {}
+  std::uint64_t next() {
+    std::uint64_t mixed = state_ += 0x9e3779b97f4a7c15u;
+    mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
+    mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
+    return mixed ^ (mixed >> 31);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+Mask random_mask(std::uint32_t rows, std::uint32_t cols, unsigned percent, std::uint64_t seed) {
+  Mask mask(rows, cols);
+  Numbers numbers(seed);
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t col = 0; col < cols; ++col) {
+      mask.set(row, col, numbers.next() % 100 < percent);
+    }
+  }
+  return mask;
+}
+
+TEST(ContactMap, IsThatOfAFloodOnRandomMasks) {
+  ContactMap map;  // one for all: what it keeps must not show
+  std::uint64_t seed = 0;
+  for (const unsigned percent : {1u, 5u, 15u, 30u, 40u, 50u, 60u, 75u, 90u, 99u}) {
+    for (const auto& [rows, cols] : {std::pair<std::uint32_t, std::uint32_t>{1, 200},
+                                     {200, 1},
+                                     {2, 7},
+                                     {7, 8},
+                                     {9, 9},
+                                     {31, 33},
+                                     {64, 64},
+                                     {50, 131},
+                                     {120, 97}}) {
+      expect_as_flooded(random_mask(rows, cols, percent, ++seed), map);
+      if (HasFailure()) FAIL() << percent << " % of " << rows << " x " << cols;
+    }
+  }
+}
+
+TEST(ContactMap, IsThatOfAFloodOnManySmallMasks) {
+  ContactMap map;
+  for (unsigned bits = 0; bits < 1u << 12; ++bits) {
+    Mask mask(3, 4);
+    for (std::uint32_t place = 0; place < 12; ++place) {
+      mask.set(place / 4, place % 4, (bits >> place & 1u) != 0);
+    }
+    expect_as_flooded(mask, map);
+    if (HasFailure()) FAIL() << bits;
+  }
+}
+
+TEST(ContactMap, EveryStatusByteCountsByItsUsableBits) {
+  for (unsigned status = 0; status < 256; ++status) {
+    for (std::uint32_t col = 0; col < 19; ++col) {
+      std::vector<std::uint8_t> bytes(19, 0xf0);
+      bytes[col] = static_cast<std::uint8_t>(status);
+      ContactMap map;
+      map.find(bytes, 1, 19);
+      ASSERT_EQ(map.contacts(), (status & 15u) != 0 ? 1 : 0) << status;
+      for (const ContactRun& run : map.runs()) ASSERT_EQ(run.first, col);
+    }
+  }
+}
+
+/// Marks of those blocks of so many pillars that have no loaded one.
+struct Marks {
+  Marks(const Mask& mask, std::uint32_t pillars)
+      : stride(mask.cols / pillars + 2), size(pillars), marks(mask.rows * stride) {
+    for (std::uint32_t row = 0; row < mask.rows; ++row) {
+      const std::size_t first = std::size_t{row} * mask.cols;
+      const std::size_t blocks = (first + mask.cols - 1) / size - first / size + 1;
+      std::fill_n(marks.begin() + static_cast<std::ptrdiff_t>(row * stride), blocks,
+                  std::uint8_t{1});
+      for (std::uint32_t col = 0; col < mask.cols; ++col) {
+        if (mask.loaded(row, col)) marks[row * stride + (first + col) / size - first / size] = 0;
+      }
+    }
+  }
+
+  [[nodiscard]] SilentBlocks view() const { return {marks, stride, size}; }
+
+  std::size_t stride;
+  std::uint32_t size;
+  std::vector<std::uint8_t> marks;
+};
+
+TEST(ContactMap, IsTheSameWhereSilentBlocksAreKnown) {
+  std::uint64_t random = 1;
+  for (const std::uint32_t cols : {1U, 3U, 7U, 8U, 15U, 16U, 17U, 50U, 200U, 1100U}) {
+    for (const std::uint32_t pillars : {1U, 2U, 8U, 16U}) {
+      for (const std::uint32_t one_in : {2U, 20U, 400U}) {
+        Mask mask(23, cols);
+        for (std::uint32_t row = 0; row < mask.rows; ++row) {
+          for (std::uint32_t col = 0; col < cols; ++col) {
+            random = random * 6364136223846793005U + 1442695040888963407U;
+            mask.set(row, col, (random >> 33) % one_in == 0);
+          }
+        }
+        ContactMap expected;
+        expected.find(mask.status, mask.rows, mask.cols);
+        ContactMap actual;
+        actual.find(mask.status, mask.rows, mask.cols, Marks(mask, pillars).view());
+        ASSERT_EQ(actual.contacts(), expected.contacts()) << cols << " in blocks of " << pillars;
+        ASSERT_TRUE(std::ranges::equal(actual.runs(), expected.runs(),
+                                       [](const ContactRun& a, const ContactRun& b) {
+                                         return a.row == b.row && a.first == b.first &&
+                                                a.end == b.end && a.contact == b.contact;
+                                       }));
+      }
+    }
+  }
+}
+
+TEST(ContactMap, DoesNotLookIntoSilentBlocks) {
+  Mask mask(3, 40);
+  Marks marks(mask, 16);
+  for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);
+  marks.marks[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
+  ContactMap map;
+  map.find(mask.status, 3, 40, marks.view());
+  ASSERT_EQ(map.runs().size(), 1U);
+  EXPECT_EQ(map.runs()[0].row, 1U);
+  EXPECT_EQ(map.runs()[0].first, 8U);
+  EXPECT_EQ(map.runs()[0].end, 24U);
+}
+
+TEST(ContactMap, OfNothingIsEmpty) {
+  EXPECT_EQ(ContactMap().contacts(), 0);
+  EXPECT_EQ(contacts_of(Mask(0, 0)), 0);
+  EXPECT_EQ(contacts_of(Mask(0, 5)), 0);
+  EXPECT_EQ(contacts_of(Mask(5, 0)), 0);
+  EXPECT_EQ(contacts_of(Mask(40, 70)), 0);
+}
+
+TEST(ContactMap, ForgetsTheFrameBefore) {
+  ContactMap map;
+  expect_as_flooded(random_mask(50, 50, 30, 1), map);
+  EXPECT_EQ(expect_as_flooded(Mask(3, 90), map), 0);
+  EXPECT_TRUE(map.runs().empty());
+}
+
+TEST(ContactMap, OnePillarAnywhere) {
+  for (std::uint32_t row = 0; row < 3; ++row) {
+    for (std::uint32_t col = 0; col < 70; ++col) {
+      Mask mask(3, 70);
+      mask.set(row, col, true);
+      ASSERT_EQ(contacts_of(mask), 1);
+    }
+  }
+}
+
+TEST(ContactMap, WholePatchIsOne) {
+  for (const std::uint32_t size : {1u, 7u, 8u, 9u, 64u, 65u}) {
+    EXPECT_EQ(contacts_of(random_mask(size, size, 100, 1)), 1);
+  }
+}
+
+TEST(ContactMap, CheckerboardHangsTogetherByItsCorners) {
+  for (const std::uint32_t size : {2u, 3u, 64u, 101u}) {
+    Mask mask(size, size);
+    for (std::uint32_t place = 0; place < size * size; ++place) {
+      mask.set(place / size, place % size, (place / size + place % size) % 2 == 0);
+    }
+    EXPECT_EQ(contacts_of(mask), 1);
+  }
+}
+
+TEST(ContactMap, DiagonalLinesAreOne) {
+  for (const bool falling : {false, true}) {
+    Mask mask(90, 90);
+    for (std::uint32_t i = 0; i < 90; ++i) mask.set(i, falling ? i : 89 - i, true);
+    EXPECT_EQ(contacts_of(mask), 1);
+  }
+}
+
+/// Teeth that only the last row joins, and such as only the first row does.
+TEST(ContactMap, CombIsOne) {
+  for (const std::uint32_t spine : {0u, 40u}) {
+    Mask mask(41, 201);
+    for (std::uint32_t row = 0; row < 41; ++row) {
+      for (std::uint32_t col = 0; col < 201; ++col)
+        mask.set(row, col, row == spine || col % 2 == 0);
+    }
+    EXPECT_EQ(contacts_of(mask), 1);
+  }
+}
+
+TEST(ContactMap, SingleRowsAndColumns) {
+  EXPECT_EQ(contacts_of(Mask({"##.#.....###################.#"})), 4);
+  EXPECT_EQ(contacts_of(Mask({"#", "#", ".", "#", ".", ".", "#", "#"})), 3);
+  EXPECT_EQ(contacts_of(Mask({"#"})), 1);
+}
+
+/// A square mask with an arm that winds outwards from beside its centre, and where `sign` is -1
+/// that arm turned by half a circle: both lie in between each other and touch nowhere.
+void add_spiral(Mask& mask, int windings, int sign) {
+  const int centre = static_cast<int>(mask.rows) / 2;
+  int x = 1;
+  int y = 0;
+  const auto draw_to = [&](int to_x, int to_y) {
+    const auto draw = [&](int twice_x, int twice_y) {
+      mask.set(static_cast<std::uint32_t>(centre + sign * twice_y),
+               static_cast<std::uint32_t>(centre + sign * twice_x), true);
+    };
+    for (int i = std::min(2 * x, 2 * to_x); i <= std::max(2 * x, 2 * to_x); ++i) draw(i, 2 * y);
+    x = to_x;
+    for (int i = std::min(2 * y, 2 * to_y); i <= std::max(2 * y, 2 * to_y); ++i) draw(2 * x, i);
+    y = to_y;
+  };
+  for (int k = 0; k < windings; ++k) {
+    draw_to(2 * k + 1, 2 * k + 1);
+    draw_to(-(2 * k + 2), -(2 * k + 2));
+  }
+}
+
+TEST(ContactMap, SpiralIsOne) {
+  for (const int sign : {1, -1}) {
+    Mask mask(101, 101);
+    add_spiral(mask, 12, sign);
+    EXPECT_EQ(contacts_of(mask), 1);
+  }
+}
+
+TEST(ContactMap, InterleavedSpiralsAreTwo) {
+  Mask mask(101, 101);
+  add_spiral(mask, 12, 1);
+  add_spiral(mask, 12, -1);
+  EXPECT_EQ(contacts_of(mask), 2);
+}
+
+TEST(ContactMap, NumbersFollowTheFirstPillarRowByRow) {
+  const Mask mask({"....##...#", "........#.", "#..#......", "#...#..###", "#.##......"});
+  EXPECT_EQ(contacts_of(mask), 5);
+  ContactMap map;
+  map.find(mask.status, mask.rows, mask.cols);
+  const auto first = [&](std::uint32_t contact) {
+    return std::pair(map.runs(contact)[0].row, map.runs(contact)[0].first);
+  };
+  using Place = std::pair<std::uint32_t, std::uint32_t>;
+  EXPECT_EQ(first(0), Place(0, 4));
+  EXPECT_EQ(first(1), Place(0, 9));
+  EXPECT_EQ(first(2), Place(2, 0));
+  EXPECT_EQ(first(3), Place(2, 3));
+  EXPECT_EQ(first(4), Place(3, 7));
+}
+
+TEST(ContactMap, TenThousandContacts) {
+  Mask mask(200, 200);
+  for (std::uint32_t place = 0; place < 10000; ++place) {
+    mask.set(place / 100 * 2, place % 100 * 2, true);
+  }
+  EXPECT_EQ(contacts_of(mask), 10000);
+}
+
+TEST(ContactMap, SizesMustAgree) {
+  const std::vector<std::uint8_t> status(12);
+  ContactMap map;
+  const std::string message = core_test::message_of([&] { map.find(status, 3, 5); });
+  EXPECT_NE(message.find("12 status bytes for 3 x 5 pillars"), std::string::npos) << message;
+}
+
+}  // namespace
+}  // namespace pillarfield

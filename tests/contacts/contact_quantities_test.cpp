@@ -1,0 +1,459 @@
+#include "pillarfield/contact_quantities.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "pillarfield/contact_tracker.h"
+#include "pillarfield/simulator.h"
+#include "pillarfield/status.h"
+#include "solve/host_solve.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr double kPitchMm = 1.25;
+
+void load(ForceField& field, std::uint32_t row, std::uint32_t col, float shear_x, float shear_y,
+          float normal, std::uint8_t status = status::kUsable) {
+  const std::size_t place = std::size_t{row} * field.cols + col;
+  field.shear_x[place] = shear_x;
+  field.shear_y[place] = shear_y;
+  field.normal[place] = normal;
+  field.status[place] = status;
+}
+
+ContactQuantities only_contact(const ForceField& field, const ContactOptions& options = {}) {
+  ContactTracker tracker(kPitchMm, options);
+  const FrameContacts& frame = tracker.update(field.view(), 0);
+  EXPECT_EQ(frame.contacts.size(), 1);
+  return frame.contacts.empty() ? ContactQuantities() : frame.contacts[0].quantities;
+}
+
+TEST(ContactQuantities, OfAFewPillarsAreThoseByHand) {
+  ForceField field(4, 6);  // x of columns: -3.125 ... 3.125 mm, y of rows: 1.875 ... -1.875 mm
+  load(field, 0, 3, 0.5F, 0, 1);
+  load(field, 0, 4, 0, 0.25F, 3);
+  load(field, 1, 5, 0, -0.5F, 4, status::kUsable | status::kAmbiguous);
+  const ContactQuantities contact = only_contact(field);
+  EXPECT_EQ(contact.pillars, 3);
+  EXPECT_EQ(contact.ambiguous, 1);
+  EXPECT_EQ(contact.resolved, 0);
+  EXPECT_DOUBLE_EQ(contact.shear_x_n, 0.5);
+  EXPECT_DOUBLE_EQ(contact.shear_y_n, -0.25);
+  EXPECT_DOUBLE_EQ(contact.normal_n, 8);
+  EXPECT_DOUBLE_EQ(contact.centre.x_mm, (0.625 + 1.875 + 3.125) / 3);
+  EXPECT_DOUBLE_EQ(contact.centre.y_mm, (1.875 + 1.875 + 0.625) / 3);
+  const double x = (1 * 0.625 + 3 * 1.875 + 4 * 3.125) / 8;
+  const double y = (4 * 1.875 + 4 * 0.625) / 8;
+  EXPECT_DOUBLE_EQ(contact.centre_of_pressure.x_mm, x);
+  EXPECT_DOUBLE_EQ(contact.centre_of_pressure.y_mm, y);
+  const double torque = (1.875 - x) * 0.25 + (3.125 - x) * -0.5 - (1.875 - y) * 0.5;
+  EXPECT_NEAR(contact.torque_nmm, torque, 1e-14);
+  EXPECT_DOUBLE_EQ(contact.area_mm2, 3 * kPitchMm * kPitchMm);
+  EXPECT_DOUBLE_EQ(contact.peak_n, 4);
+  EXPECT_DOUBLE_EQ(contact.peak.x_mm, 3.125);
+  EXPECT_DOUBLE_EQ(contact.peak.y_mm, 0.625);
+  EXPECT_DOUBLE_EQ(contact.mean_pressure_kpa, 1000 * 8 / contact.area_mm2);
+}
+
+/// The moment about a point is the sum over pillars of r × F, wherever the point is.
+TEST(ContactQuantities, MomentMovesToAnyPoint) {
+  ForceField field(5, 5);
+  for (std::uint32_t i = 0; i < 25; ++i) {
+    const auto n = static_cast<float>(i);
+    load(field, i / 5, i % 5, 0.1F * n - 1, 0.7F - 0.05F * n, 1 + 0.3F * n);
+  }
+  const ContactQuantities contact = only_contact(field);
+  for (const PatchPlace point : {PatchPlace{0, 0}, {7, -3}, contact.centre_of_pressure}) {
+    Moment expected;
+    for (std::uint32_t i = 0; i < 25; ++i) {
+      const auto row = static_cast<int>(i / 5);
+      const auto col = static_cast<int>(i % 5);
+      const double x = (col - 2) * kPitchMm - point.x_mm;
+      const double y = (2 - row) * kPitchMm - point.y_mm;
+      const auto place = std::size_t{i};
+      expected.x_nmm += y * -double{field.normal[place]};
+      expected.y_nmm -= x * -double{field.normal[place]};
+      expected.z_nmm += x * double{field.shear_y[place]} - y * double{field.shear_x[place]};
+    }
+    const Moment moment = moment_about(point, contact);
+    EXPECT_NEAR(moment.x_nmm, expected.x_nmm, 1e-4);
+    EXPECT_NEAR(moment.y_nmm, expected.y_nmm, 1e-4);
+    EXPECT_NEAR(moment.z_nmm, expected.z_nmm, 1e-4);
+  }
+}
+
+TEST(ContactQuantities, WithoutPressureTheCentreOfPressureIsTheCentre) {
+  ForceField field(3, 3);
+  load(field, 0, 0, 1, 0, 0);
+  load(field, 1, 1, 1, 0, -0.5F);
+  const ContactQuantities contact = only_contact(field, {.friction = {.given = 0.5}});
+  EXPECT_EQ(contact.centre_of_pressure.x_mm, contact.centre.x_mm);
+  EXPECT_EQ(contact.centre_of_pressure.y_mm, contact.centre.y_mm);
+  EXPECT_EQ(contact.slip, SlipState::unknown);
+  EXPECT_FALSE(contact.slip_margin || contact.slipping_share);
+}
+
+TEST(ContactQuantities, TakeAnyForce) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  ForceField field(6, 6);
+  std::uint32_t place = 0;
+  for (const float force : {kNan, kInfinity, -kInfinity, 3e38F, -3e38F, 1e-40F}) {
+    for (std::uint32_t col = 0; col < 6; ++col) {
+      load(field, place, col, col % 2 == 0 ? force : 1, col % 3 == 0 ? force : 1,
+           col < 4 ? force : 1, static_cast<std::uint8_t>(place * 41 + col * 7 + 1));
+    }
+    ++place;
+  }
+  for (const auto& friction : {std::optional<double>(), std::optional(0.5)}) {
+    ContactTracker tracker(kPitchMm, {.friction = {.given = friction}});
+    for (int i = 0; i < 2; ++i) {
+      const FrameContacts& frame = tracker.update(field.view(), i);
+      EXPECT_TRUE(std::isfinite(frame.patch.normal_n));
+      EXPECT_TRUE(std::isfinite(frame.patch.torque_nmm));
+      EXPECT_TRUE(std::isfinite(frame.patch.centre_of_pressure.x_mm));
+    }
+  }
+}
+
+TEST(ContactQuantities, PatchHasWhatSmallContactsBear) {
+  ForceField field(9, 9);
+  load(field, 0, 0, 1, 2, 3);
+  for (std::uint32_t col = 3; col < 6; ++col) load(field, 5, col, 0, 0, 1);
+  ContactTracker tracker(kPitchMm, {.minimum_pillars = 2});
+  const FrameContacts& frame = tracker.update(field.view(), 0);
+  ASSERT_EQ(frame.contacts.size(), 1);
+  EXPECT_EQ(frame.contacts[0].quantities.normal_n, 3);
+  EXPECT_EQ(frame.contacts[0].number, 1);
+  EXPECT_EQ(frame.patch.normal_n, 6);
+  EXPECT_EQ(frame.patch.pillars, 4);
+  EXPECT_EQ(tracker.map().contacts(), 2);
+}
+
+/// A band of pillars, of which the first `slipping` have the ratio 0.5 and the others 0.1; `open`
+/// more are ambiguous.
+ContactQuantities band(int slipping, int sticking, int open, std::optional<double> friction) {
+  ForceField field(1, static_cast<std::uint32_t>(slipping + sticking + open));
+  for (std::uint32_t col = 0; col < field.cols; ++col) {
+    const int i = static_cast<int>(col);
+    const bool slips = i < slipping;
+    const bool is_open = i >= slipping + sticking;
+    load(field, 0, col, slips ? 0.5F : 0.1F, 0, 1,
+         is_open ? status::kSensel1 | status::kSensel2 | status::kAmbiguous : status::kUsable);
+  }
+  return only_contact(field, {.friction = {.given = friction}});
+}
+
+TEST(Slip, StateGoesByTheShareThatSlips) {
+  using enum SlipState;
+  EXPECT_EQ(band(0, 100, 0, 0.5).slip, sticking);
+  EXPECT_EQ(band(10, 90, 0, 0.5).slip, sticking);
+  EXPECT_EQ(band(11, 89, 0, 0.5).slip, partial);
+  EXPECT_EQ(band(89, 11, 0, 0.5).slip, partial);
+  EXPECT_EQ(band(90, 10, 0, 0.5).slip, sliding);
+  EXPECT_EQ(band(100, 0, 0, 0.5).slip, sliding);
+  EXPECT_DOUBLE_EQ(*band(30, 70, 0, 0.5).slipping_share, 0.3);
+}
+
+TEST(Slip, PillarsLeftOpenMayMakeItUnknown) {
+  using enum SlipState;
+  EXPECT_EQ(band(0, 91, 9, 0.5).slip, sticking);
+  EXPECT_EQ(band(0, 80, 20, 0.5).slip, unknown);  // the open ones may slip
+  EXPECT_EQ(band(80, 0, 20, 0.5).slip, sliding);
+  EXPECT_EQ(band(70, 0, 30, 0.5).slip, unknown);
+  EXPECT_EQ(band(30, 30, 40, 0.5).slip, partial);
+  EXPECT_EQ(band(0, 0, 10, 0.5).slip, unknown);
+  EXPECT_DOUBLE_EQ(*band(30, 30, 40, 0.5).slipping_share, 0.5);
+  EXPECT_FALSE(band(0, 0, 10, 0.5).slipping_share);
+}
+
+TEST(Slip, IsUnknownWithoutAFriction) {
+  const ContactQuantities contact = band(10, 90, 0, std::nullopt);
+  EXPECT_EQ(contact.slip, SlipState::unknown);
+  EXPECT_EQ(contact.friction_source, FrictionSource::prior);
+  EXPECT_FALSE(contact.friction || contact.friction_deviation);
+  EXPECT_FALSE(contact.slip_margin || contact.slipping_share);
+}
+
+TEST(Slip, MarginIsOfTheSums) {
+  const ContactQuantities contact = band(50, 50, 0, 0.5);
+  EXPECT_NEAR(*contact.slip_margin, 1 - 0.3 / 0.5, 1e-6);
+  EXPECT_EQ(contact.friction_source, FrictionSource::given);
+}
+
+/// Pillars of one row and column bear this share of the middle's under a rounded body.
+double rounded(std::uint32_t i, std::uint32_t count) {
+  const double place = (2.0 * i + 1) / count - 1;
+  return std::sqrt(1.0001 - place * place);
+}
+
+/// A contact of so many rows and columns under a rounded body, a seventh of whose pillars sticks.
+/// The others have the friction's ratio, in directions of their own, with a little noise.
+ForceField mostly_sliding(std::uint32_t rows, std::uint32_t cols, double friction) {
+  ForceField field(rows + 2, cols + 2);
+  for (std::uint32_t i = 0; i < rows * cols; ++i) {
+    const std::uint32_t row = i / cols;
+    const std::uint32_t col = i % cols;
+    const double normal = rounded(row, rows) * rounded(col, cols);
+    const double direction = 0.1 * i;
+    const double noise = 1 + 0.02 * std::sin(1.7 * i);
+    const bool sticks = i * 2654435761U % 7 == 0;
+    const double shear = normal * (sticks ? 0.3 * friction : friction * noise);
+    load(field, row + 1, col + 1, static_cast<float>(shear * std::cos(direction)),
+         static_cast<float>(shear * std::sin(direction)), static_cast<float>(normal));
+  }
+  return field;
+}
+
+/// A face that presses everywhere alike: so many of its hundred pillars at one ratio, the others at
+/// another.
+ForceField face(int first, double first_ratio, double other_ratio) {
+  ForceField field(12, 12);
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const double ratio = static_cast<int>(i) < first ? first_ratio : other_ratio;
+    load(field, 1 + i / 10, 1 + i % 10, static_cast<float>(ratio), 0, 1);
+  }
+  return field;
+}
+
+TEST(Friction, OfARoundedBodyIsObservedAndCarriedOver) {
+  ContactTracker tracker(kPitchMm);
+  const auto update = [&](double friction) {
+    return tracker.update(mostly_sliding(14, 16, friction).view(), 0).contacts.at(0).quantities;
+  };
+  EXPECT_EQ(update(0).slip, SlipState::unknown);
+  const ContactQuantities slid = update(0.7);
+  EXPECT_EQ(slid.friction_source, FrictionSource::observed);
+  EXPECT_NEAR(*slid.friction, 0.7, 0.02);
+  EXPECT_GT(*slid.friction_deviation, 0);
+  EXPECT_LT(*slid.friction_deviation, 0.02);
+  const ContactQuantities stuck = update(0.1);
+  EXPECT_EQ(stuck.slip, SlipState::sticking);
+  EXPECT_EQ(stuck.friction_source, FrictionSource::carried_over);
+  EXPECT_NEAR(*stuck.friction, 0.7, 0.02);
+}
+
+TEST(Friction, WithoutMemoryIsNotCarriedOver) {
+  ContactTracker tracker(kPitchMm, {.friction = {.memory = false}});
+  tracker.update(mostly_sliding(14, 16, 0.7).view(), 0);
+  const FrameContacts& stuck = tracker.update(mostly_sliding(14, 16, 0.1).view(), 1);
+  EXPECT_EQ(stuck.contacts.at(0).quantities.friction_source, FrictionSource::prior);
+}
+
+/// The same contact, 15 pillars (19 mm) further on.
+ForceField moved(const ForceField& field) {
+  ForceField wide(field.rows, field.cols + 30);
+  for (std::size_t i = 0; i < field.pillars(); ++i) {
+    load(wide, static_cast<std::uint32_t>(i / field.cols),
+         static_cast<std::uint32_t>(15 + i % field.cols), field.shear_x[i], field.shear_y[i],
+         field.normal[i], field.status[i]);
+  }
+  return wide;
+}
+
+TEST(Friction, IsCarriedOverAsFarAsAContactMayJump) {
+  for (const double reach_mm : {5.0, 50.0}) {
+    ContactTracker tracker(kPitchMm, {.reach_mm = reach_mm});
+    ForceField first = moved(mostly_sliding(8, 8, 0.7));
+    for (auto* plane : {&first.shear_x, &first.shear_y, &first.normal}) {
+      std::rotate(plane->begin(), plane->begin() + 15, plane->end());
+    }
+    std::rotate(first.status.begin(), first.status.begin() + 15, first.status.end());
+    tracker.update(first.view(), 0);
+    const ForceField second = moved(mostly_sliding(8, 8, 0.1));
+    const FrameContacts& frame = tracker.update(second.view(), 1);
+    EXPECT_EQ(frame.contacts.at(0).quantities.friction_source,
+              reach_mm < 19 ? FrictionSource::prior : FrictionSource::carried_over);
+  }
+}
+
+/// A stuck punch: all its pillars have the same ratio, which grows with the shear.
+TEST(Friction, OfAFaceThatMayStickIsNotTold) {
+  ContactTracker tracker(kPitchMm);
+  for (const double ratio : {0.3, 0.4, 0.55, 0.55, 0.7}) {
+    const FrameContacts& frame = tracker.update(face(100, ratio, 0).view(), 0);
+    const ContactQuantities& contact = frame.contacts.at(0).quantities;
+    EXPECT_EQ(contact.slip, SlipState::unknown) << ratio;
+    EXPECT_EQ(contact.friction_source, FrictionSource::prior) << ratio;
+  }
+}
+
+/// What was believed is carried over, but to lose the shear again proves nothing.
+TEST(Friction, OfAFaceThatStuckIsNotToldWhenItsShearIsGone) {
+  ContactTracker tracker(kPitchMm);
+  for (const double ratio : {0.4, 0.4, 0.0, 0.1, 0.3, 0.25, 0.0}) {
+    const FrameContacts& frame = tracker.update(face(100, ratio, 0).view(), 0);
+    const ContactQuantities& contact = frame.contacts.at(0).quantities;
+    EXPECT_EQ(contact.friction_source, FrictionSource::prior) << ratio;
+    EXPECT_NE(contact.slip, SlipState::sliding) << ratio;
+  }
+}
+
+TEST(Friction, OfAFaceIsToldOnceItStayedWhileOtherPillarsWereLoaded) {
+  ContactTracker tracker(kPitchMm);
+  const auto update = [&](double other_ratio) {
+    return tracker.update(face(40, 0.8, other_ratio).view(), 0).contacts.at(0).quantities;
+  };
+  EXPECT_EQ(update(0.25).friction_source, FrictionSource::prior);
+  const ContactQuantities later = update(0.5);
+  EXPECT_EQ(later.friction_source, FrictionSource::observed);
+  EXPECT_NEAR(*later.friction, 0.8, 0.02);
+  EXPECT_EQ(later.slip, SlipState::partial);
+}
+
+TEST(Friction, IsNeverBelowARatioThatWasSurelySeen) {
+  ContactTracker tracker(kPitchMm);
+  for (const double friction : {0.5, 0.6, 0.9, 1.2, 0.8, 1.6}) {
+    const FrameContacts& frame = tracker.update(mostly_sliding(20, 20, friction).view(), 0);
+    const ContactQuantities& contact = frame.contacts.at(0).quantities;
+    ASSERT_TRUE(contact.friction) << friction;
+    EXPECT_GT(*contact.friction, 0.97 * friction);
+  }
+}
+
+/// Of a large contact not every pillar is asked. What is learnt is the same within a tenth of what
+/// a pillar's noise is.
+TEST(Friction, OfALargeContactIsSeenInSomeOfItsPillars) {
+  for (const auto& [rows, cols] :
+       {std::pair{10U, 10U}, {30U, 33U}, {30U, 34U}, {63U, 64U}, {200U, 210U}, {300U, 9U}}) {
+    const ContactQuantities contact = only_contact(mostly_sliding(rows, cols, 0.7));
+    ASSERT_TRUE(contact.friction.has_value()) << rows << " x " << cols;
+    EXPECT_NEAR(*contact.friction, 0.7, 0.02) << rows << " x " << cols;
+    EXPECT_EQ(contact.friction_source, FrictionSource::observed);
+    // Of slip all pillars tell.
+    EXPECT_NEAR(*contact.slipping_share, 6.0 / 7, 0.03) << rows << " x " << cols;
+  }
+}
+
+TEST(Slip, StatesAndSourcesHaveNames) {
+  std::set<std::string> names;
+  for (int i = 0; i < 4; ++i) {
+    names.insert(name_of(static_cast<SlipState>(i)));
+    names.insert(name_of(static_cast<FrictionSource>(i)));
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"carried_over", "given", "observed", "partial", "prior",
+                                          "sliding", "sticking", "unknown"}));
+}
+
+/// A scene, solved and followed frame by frame.
+class SolvedScene {
+ public:
+  explicit SolvedScene(const std::string& name)
+      : simulator_(load_scene(std::string(PILLARFIELD_SCENES) + "/" + name)),
+        raw_(simulator_.sensel_type(), scene().skin.rows, scene().skin.cols),
+        truth_(scene().skin.pillar_rows(), scene().skin.pillar_cols()),
+        tracker_(scene().skin.pillar_pitch_mm(), {.minimum_pillars = 5}) {
+    plan_.skin = scene().skin;
+    plan_.sensel_type = simulator_.sensel_type();
+    plan_.calibration = simulator_.calibration();
+    set_solver(plan_, scene());
+    plan_.angles = false;
+    plan_.uncertainty = false;
+  }
+
+  [[nodiscard]] const Scene& scene() const { return simulator_.scene(); }
+
+  const FrameContacts& frame(std::uint64_t index) {
+    simulator_.render(index, raw_, truth_);
+    const ForceField solved = solve_on_host(plan_, raw_.view());
+    return tracker_.update(solved.view(), simulator_.time_of(index));
+  }
+
+  /// Load and place of a contact of the scene.
+  [[nodiscard]] ContactKey key(std::size_t contact, double time_s) const {
+    const auto& path = std::get<std::vector<Contact>>(scene().load).at(contact).path;
+    for (std::size_t i = 1; i < path.size(); ++i) {
+      if (time_s > path[i].time_s) continue;
+      const ContactKey& a = path[i - 1];
+      const ContactKey& b = path[i];
+      const double part = (time_s - a.time_s) / (b.time_s - a.time_s);
+      return {time_s, a.x_mm + part * (b.x_mm - a.x_mm), a.y_mm + part * (b.y_mm - a.y_mm),
+              a.load_n + part * (b.load_n - a.load_n)};
+    }
+    return path.back();
+  }
+
+ private:
+  Simulator simulator_;
+  SolverPlan plan_;
+  FrameBuffer raw_;
+  ForceField truth_;
+  ContactTracker tracker_;
+};
+
+TEST(Scenes, PressedBallBearsItsLoad) {
+  SolvedScene scene("hertz_press.toml");
+  for (std::uint64_t index = 1; index < 40; ++index) {
+    const FrameContacts& frame = scene.frame(index);
+    ASSERT_EQ(frame.contacts.size(), 1);
+    const ContactQuantities& contact = frame.contacts[0].quantities;
+    EXPECT_EQ(frame.contacts[0].id, 1);
+    EXPECT_NEAR(contact.normal_n, scene.key(0, frame.time_s).load_n, 1e-4);
+    EXPECT_NEAR(frame.patch.normal_n, contact.normal_n, 1e-9);
+    EXPECT_NEAR(std::hypot(contact.shear_x_n, contact.shear_y_n), 0, 1e-4);
+    EXPECT_NEAR(std::hypot(contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm), 0,
+                1e-4);
+    EXPECT_EQ(contact.slip, SlipState::unknown);
+  }
+}
+
+/// Noise of half a count, rounding, and a threshold that swallows what the edge bears.
+TEST(Scenes, SeveralContactsBearTheirLoads) {
+  SolvedScene scene("several_contacts.toml");
+  std::set<std::uint64_t> ids;
+  for (std::uint64_t index = 20; index < 95; index += 5) {
+    const FrameContacts& frame = scene.frame(index);
+    ASSERT_EQ(frame.contacts.size(), 3) << index;
+    double sum_n = 0;
+    for (const TrackedContact& tracked : frame.contacts) {
+      ids.insert(tracked.id);
+      const ContactQuantities& contact = tracked.quantities;
+      const PatchPlace& at = contact.centre_of_pressure;
+      const std::size_t which = at.y_mm > 0 ? 0 : at.x_mm < 0 ? 1 : 2;
+      const ContactKey key = scene.key(which, frame.time_s);
+      EXPECT_NEAR(contact.normal_n, key.load_n, 0.01 * key.load_n + 0.1);
+      EXPECT_NEAR(at.x_mm, key.x_mm, 0.1);
+      EXPECT_NEAR(at.y_mm, key.y_mm, 0.1);
+      sum_n += key.load_n;
+      if (which == 2) {  // a punch that turns: it might stick
+        EXPECT_EQ(contact.slip, SlipState::unknown) << index;
+        continue;
+      }
+      const double friction[] = {0.6, 1.0};
+      ASSERT_TRUE(contact.friction.has_value()) << index << " " << which;
+      EXPECT_NEAR(*contact.friction, friction[which], 0.03);
+      const double share[] = {1, 0.7};
+      EXPECT_NEAR(*contact.slip_margin, 1 - share[which], 0.05);
+      EXPECT_EQ(contact.slip, which == 1 ? SlipState::partial : SlipState::sliding) << index;
+    }
+    EXPECT_NEAR(frame.patch.normal_n, sum_n, 0.01 * sum_n);
+  }
+  EXPECT_EQ(ids.size(), 3);
+}
+
+/// The resultant shear of a spin is nothing, its torque and its slip are.
+TEST(Scenes, SpinSlidesThoughItsShearCancels) {
+  SolvedScene scene("spin.toml");
+  const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
+  EXPECT_EQ(contact.slip, SlipState::sliding);
+  EXPECT_NEAR(*contact.friction, 1.6, 0.03);
+  EXPECT_GT(*contact.slip_margin, 0.99);
+  // Under a Hertz pressure, 3 pi / 16 times mu P a; clockwise.
+  EXPECT_NEAR(contact.torque_nmm, -3 * M_PI / 16 * 1.6 * 60 * 16, 0.1 * 900);
+}
+
+TEST(Scenes, PartialSlipAlongAnAxisShowsNoFriction) {
+  SolvedScene scene("partial_slip.toml");
+  const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;
+  EXPECT_EQ(contact.slip, SlipState::unknown);
+  EXPECT_FALSE(contact.friction);
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,435 @@
+#include "pillarfield/contact_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/status.h"
+#include "tests/base/message.h"
+
+namespace pillarfield {
+namespace {
+
+using Ids = std::vector<std::uint64_t>;
+
+constexpr double kPillarPitchMm = 1;
+
+/// A patch of skin on which discs and boxes of loaded pillars are laid.
+class Patch {
+ public:
+  Patch(std::uint32_t rows, std::uint32_t cols) : field_(rows, cols) {}
+
+  Patch& box(int row, int col, int height, int width) {
+    for (int r = row; r < row + height; ++r) {
+      for (int c = col; c < col + width; ++c) load(r, c);
+    }
+    return *this;
+  }
+
+  Patch& disc(double row, double col, double radius) {
+    for (int r = 0; r < static_cast<int>(field_.rows); ++r) {
+      for (int c = 0; c < static_cast<int>(field_.cols); ++c) {
+        if ((r - row) * (r - row) + (c - col) * (c - col) <= radius * radius) load(r, c);
+      }
+    }
+    return *this;
+  }
+
+  [[nodiscard]] ForceFieldView view() const { return field_.view(); }
+
+ private:
+  void load(int row, int col) {
+    const auto place = static_cast<std::size_t>(row) * field_.cols + static_cast<std::size_t>(col);
+    field_.normal[place] = 1;
+    field_.status[place] = status::kUsable;
+  }
+
+  ForceField field_;
+};
+
+Ids ids_of(const FrameContacts& frame) {
+  Ids ids;
+  for (const TrackedContact& contact : frame.contacts) ids.push_back(contact.id);
+  return ids;
+}
+
+Ids ended_ids(const FrameContacts& frame) {
+  Ids ids;
+  for (const EndedContact& contact : frame.ended) ids.push_back(contact.id);
+  return ids;
+}
+
+const TrackedContact& by_id(const FrameContacts& frame, std::uint64_t id) {
+  for (const TrackedContact& contact : frame.contacts) {
+    if (contact.id == id) return contact;
+  }
+  static const TrackedContact none;
+  ADD_FAILURE() << "no contact " << id;
+  return none;
+}
+
+TEST(ContactTracker, ASlidingContactKeepsItsId) {
+  ContactTracker tracker(kPillarPitchMm);
+  for (int i = 0; i < 40; ++i) {
+    const FrameContacts& frame = tracker.update(Patch(20, 60).disc(10, 6 + i, 4).view(), 0.5 * i);
+    ASSERT_EQ(ids_of(frame), Ids{1}) << i;
+    EXPECT_EQ(frame.contacts[0].first_time_s, 0);
+    EXPECT_EQ(frame.contacts[0].age_s, 0.5 * i);
+    EXPECT_FALSE(frame.contacts[0].parent);
+    EXPECT_TRUE(frame.ended.empty());
+  }
+}
+
+TEST(ContactTracker, AContactThatJumpsWithinReachKeepsItsId) {
+  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 8});
+  for (int i = 0; i < 6; ++i) {
+    EXPECT_EQ(ids_of(tracker.update(Patch(9, 70).disc(4, 4 + 8 * i, 2).view(), i)), Ids{1}) << i;
+  }
+  const FrameContacts& frame = tracker.update(Patch(9, 70).disc(4, 53, 2).view(), 6);
+  EXPECT_EQ(ids_of(frame), Ids{2});
+  EXPECT_EQ(ended_ids(frame), Ids{1});
+  EXPECT_FALSE(frame.ended[0].merged_into);
+}
+
+TEST(ContactTracker, MayJumpInAnyDirection) {
+  for (int direction = 0; direction < 16; ++direction) {
+    const double angle = direction * M_PI / 8;
+    const double row = 30.5 + 9 * std::sin(angle);
+    const double col = 30.5 + 9 * std::cos(angle);
+    for (int shift = 0; shift < 12; ++shift) {
+      ContactTracker tracker(kPillarPitchMm);
+      tracker.update(Patch(75, 75).disc(30.5 + shift, 30.5, 2).view(), 0);
+      const Patch jumped = Patch(75, 75).disc(row + shift, col, 2);
+      EXPECT_EQ(ids_of(tracker.update(jumped.view(), 1)), Ids{1}) << direction << " " << shift;
+    }
+  }
+}
+
+TEST(ContactTracker, WithoutReachOnlySharedPillarsCount) {
+  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 0});
+  tracker.update(Patch(9, 20).box(4, 4, 1, 2).view(), 0);
+  EXPECT_EQ(ids_of(tracker.update(Patch(9, 20).box(4, 5, 1, 2).view(), 1)), Ids{1});
+  EXPECT_EQ(ids_of(tracker.update(Patch(9, 20).box(4, 7, 1, 2).view(), 2)), Ids{2});
+}
+
+TEST(ContactTracker, OfASplitTheLargerPartKeepsTheId) {
+  for (const bool larger_right : {false, true}) {
+    ContactTracker tracker(kPillarPitchMm);
+    tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 1);
+    const int left = larger_right ? 7 : 12;
+    Patch parts(10, 30);
+    parts.box(2, 2, 4, left).box(2, 3 + left, 4, 19 - left);
+    const FrameContacts& frame = tracker.update(parts.view(), 2);
+    EXPECT_EQ(ids_of(frame), larger_right ? (Ids{2, 1}) : (Ids{1, 2}));
+    EXPECT_EQ(by_id(frame, 2).parent, 1);
+    EXPECT_EQ(by_id(frame, 2).first_time_s, 2);
+    EXPECT_EQ(by_id(frame, 1).first_time_s, 1);
+    EXPECT_FALSE(by_id(frame, 1).parent);
+    EXPECT_TRUE(frame.ended.empty());
+    // The parent stays known.
+    EXPECT_EQ(by_id(tracker.update(parts.view(), 3), 2).parent, 1);
+  }
+}
+
+TEST(ContactTracker, OfEqualPartsTheFirstKeepsTheId) {
+  ContactTracker tracker(kPillarPitchMm);
+  tracker.update(Patch(10, 30).box(2, 2, 4, 21).view(), 0);
+  const FrameContacts& frame =
+      tracker.update(Patch(10, 30).box(2, 2, 4, 10).box(2, 13, 4, 10).view(), 1);
+  EXPECT_EQ(ids_of(frame), (Ids{1, 2}));
+  EXPECT_EQ(frame.contacts[1].parent, 1);
+}
+
+TEST(ContactTracker, AMergedContactKeepsTheIdThatBroughtMostPillars) {
+  for (const bool larger_right : {false, true}) {
+    ContactTracker tracker(kPillarPitchMm);
+    const int left = larger_right ? 7 : 12;
+    tracker.update(Patch(10, 30).box(2, 2, 4, left).box(2, 3 + left, 4, 19 - left).view(), 1);
+    const FrameContacts& frame = tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 2);
+    const std::uint64_t kept = larger_right ? 2 : 1;
+    EXPECT_EQ(ids_of(frame), Ids{kept});
+    ASSERT_EQ(ended_ids(frame), Ids{3 - kept});
+    EXPECT_EQ(frame.ended[0].merged_into, kept);
+    EXPECT_EQ(frame.ended[0].last_time_s, 1);
+    EXPECT_TRUE(tracker.update(Patch(10, 30).box(2, 2, 4, 20).view(), 3).ended.empty());
+  }
+}
+
+TEST(ContactTracker, OfEqualOnesThatMergeTheLowerIdStays) {
+  ContactTracker tracker(kPillarPitchMm);
+  tracker.update(Patch(10, 30).box(2, 2, 4, 5).box(2, 8, 4, 5).view(), 0);
+  const FrameContacts& frame = tracker.update(Patch(10, 30).box(2, 2, 4, 11).view(), 1);
+  EXPECT_EQ(ids_of(frame), Ids{1});
+  EXPECT_EQ(frame.ended.at(0).merged_into, 1);
+}
+
+TEST(ContactTracker, WhatVanishesAndReturnsIsNew) {
+  ContactTracker tracker(kPillarPitchMm);
+  const Patch pressed = Patch(10, 10).disc(4, 4, 2);
+  EXPECT_EQ(ids_of(tracker.update(pressed.view(), 1)), Ids{1});
+  const FrameContacts& gone = tracker.update(Patch(10, 10).view(), 2);
+  EXPECT_TRUE(gone.contacts.empty());
+  EXPECT_EQ(ended_ids(gone), Ids{1});
+  EXPECT_EQ(gone.ended[0].first_time_s, 1);
+  EXPECT_EQ(gone.ended[0].last_time_s, 1);
+  EXPECT_EQ(gone.patch.pillars, 0);
+  const FrameContacts& back = tracker.update(pressed.view(), 3);
+  EXPECT_EQ(ids_of(back), Ids{2});
+  EXPECT_EQ(back.contacts[0].first_time_s, 3);
+  EXPECT_FALSE(back.contacts[0].parent);
+  EXPECT_TRUE(back.ended.empty());
+}
+
+/// Side by side, in opposite directions, by pillars that they share and by leaps.
+TEST(ContactTracker, TwoThatPassEachOtherStayThemselves) {
+  for (const int step : {1, 3, 6}) {
+    ContactTracker tracker(kPillarPitchMm, {.reach_mm = 7});
+    for (int i = 0; 10 + i * step <= 60; ++i) {
+      const Patch patch = Patch(30, 70).disc(8, 10 + i * step, 2).disc(18, 60 - i * step, 2);
+      EXPECT_EQ(ids_of(tracker.update(patch.view(), i)), (Ids{1, 2})) << step << " " << i;
+    }
+  }
+}
+
+/// One leaps over to where another was, which moves on: shared pillars come before distance.
+TEST(ContactTracker, SharedPillarsComeBeforeDistance) {
+  ContactTracker tracker(kPillarPitchMm);
+  tracker.update(Patch(12, 40).box(2, 4, 4, 4).box(2, 12, 4, 4).view(), 0);
+  const FrameContacts& frame =
+      tracker.update(Patch(12, 40).box(2, 15, 4, 4).box(2, 9, 4, 2).view(), 1);
+  // 2 shares a column with the one from 15 on; the one at 9 shares none and is nearest to 1.
+  EXPECT_EQ(ids_of(frame), (Ids{1, 2}));
+  EXPECT_EQ(frame.contacts[0].quantities.pillars, 8);
+}
+
+TEST(ContactTracker, TheNearestGoesFirst) {
+  ContactTracker tracker(kPillarPitchMm);
+  tracker.update(Patch(10, 40).box(4, 10, 2, 2).view(), 0);
+  const FrameContacts& frame =
+      tracker.update(Patch(10, 40).box(4, 5, 2, 2).box(4, 14, 2, 2).view(), 1);
+  EXPECT_EQ(ids_of(frame), (Ids{2, 1}));
+  EXPECT_FALSE(frame.contacts[0].parent);
+}
+
+TEST(ContactTracker, SmallContactsAreNotFollowed) {
+  ContactTracker tracker(kPillarPitchMm, {.minimum_pillars = 4});
+  EXPECT_TRUE(tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 0).contacts.empty());
+  EXPECT_EQ(ids_of(tracker.update(Patch(9, 9).box(1, 1, 2, 2).view(), 1)), Ids{1});
+  const FrameContacts& frame = tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 2);
+  EXPECT_EQ(ended_ids(frame), Ids{1});
+  EXPECT_FALSE(frame.ended[0].merged_into);
+  EXPECT_EQ(frame.patch.pillars, 3);
+}
+
+TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
+  ContactTracker tracker(kPillarPitchMm);
+  Patch teeth(20, 41);
+  for (int col = 0; col < 41; col += 2) teeth.box(0, col, 20, 1);
+  const Patch whole = Patch(20, 41).box(0, 0, 20, 41);
+  EXPECT_EQ(tracker.update(teeth.view(), 0).contacts.size(), 21);
+  const FrameContacts& merged = tracker.update(whole.view(), 1);
+  EXPECT_EQ(ids_of(merged), Ids{1});
+  EXPECT_EQ(merged.ended.size(), 20);
+  for (const EndedContact& ended : merged.ended) EXPECT_EQ(ended.merged_into, 1);
+  const FrameContacts& split = tracker.update(teeth.view(), 2);
+  EXPECT_EQ(split.contacts.size(), 21);
+  EXPECT_EQ(split.contacts[0].id, 1);
+  for (std::size_t i = 1; i < 21; ++i) EXPECT_EQ(split.contacts[i].parent, 1);
+}
+
+TEST(ContactTracker, TenThousandContactsThatMoveAside) {
+  for (const int step : {1, 3}) {
+    ContactTracker tracker(kPillarPitchMm, {.reach_mm = 3});
+    Ids first;
+    for (int i = 0; i < 3; ++i) {
+      Patch patch(820, 820);
+      for (int contact = 0; contact < 10000; ++contact) {
+        patch.box(contact / 100 * 8, contact % 100 * 8 + i * step, 2, 2);
+      }
+      const FrameContacts& frame = tracker.update(patch.view(), i);
+      ASSERT_EQ(frame.contacts.size(), 10000);
+      if (first.empty()) first = ids_of(frame);
+      EXPECT_EQ(ids_of(frame), first) << step;
+    }
+  }
+}
+
+/// A reach that holds all of them at once.
+TEST(ContactTracker, ThousandsWithinReach) {
+  ContactTracker tracker(kPillarPitchMm, {.reach_mm = 1000});
+  for (int i = 0; i < 2; ++i) {
+    Patch patch(200, 200);
+    for (int contact = 0; contact < 2500; ++contact) {
+      patch.box(contact / 50 * 4 + i, contact % 50 * 4, 1, 1);
+    }
+    const FrameContacts& frame = tracker.update(patch.view(), i);
+    EXPECT_EQ(frame.contacts.front().id, 1);
+    EXPECT_EQ(frame.contacts.back().id, 2500);
+  }
+}
+
+TEST(ContactTracker, IdsAreNeverGivenTwice) {
+  ContactTracker tracker(kPillarPitchMm);
+  std::map<std::uint64_t, double> ended;
+  for (int i = 0; i < 200; ++i) {
+    Patch patch(30, 30);
+    for (int k = 0; k < 5; ++k) patch.disc((i * 7 + k * 11) % 29, (i * i + k * 5) % 29, k % 3);
+    const FrameContacts& frame = tracker.update(patch.view(), i);
+    Ids ids = ids_of(frame);
+    std::sort(ids.begin(), ids.end());
+    EXPECT_TRUE(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
+    for (const EndedContact& contact : frame.ended) {
+      EXPECT_TRUE(ended.emplace(contact.id, i).second);
+      EXPECT_EQ(contact.last_time_s, i - 1);
+    }
+    for (const std::uint64_t id : ids) EXPECT_FALSE(ended.contains(id));
+  }
+}
+
+TEST(ContactTracker, TakesContactsThatWereFound) {
+  ContactTracker finds(kPillarPitchMm);
+  ContactTracker takes(kPillarPitchMm);
+  for (int step = 0; step < 4; ++step) {
+    Patch patch(40, 60);
+    patch.disc(10 + step, 12, 6).disc(25, 20 + 3 * step, 5).box(33, 40, 4, 9 - step);
+    const FrameContacts& expected = finds.update(patch.view(), step);
+    ContactMap map;  // gone when the frame is taken
+    map.find(patch.view().status, 40, 60);
+    const FrameContacts& actual = takes.update(patch.view(), step, {&map, {}});
+    map = {};
+    EXPECT_EQ(ids_of(actual), ids_of(expected));
+    EXPECT_EQ(ended_ids(actual), ended_ids(expected));
+    EXPECT_EQ(actual.patch.pillars, expected.patch.pillars);
+    EXPECT_EQ(actual.patch.torque_nmm, expected.patch.torque_nmm);
+    ASSERT_EQ(takes.map().runs().size(), finds.map().runs().size());
+    EXPECT_EQ(takes.map().contacts(), finds.map().contacts());
+  }
+}
+
+/// Discs that slide, stick, slip in part, or show nothing, and specks: one of nearly all pillars of
+/// the frame, some of a thousand, hundreds of a few.
+ForceField many_contacts(int step) {
+  ForceField field(220, 260);
+  const auto load = [&](std::size_t row, std::size_t col, float ratio, float bears = 1) {
+    const std::size_t place = row * field.cols + col;
+    const std::size_t hash = place * 2654435761U % 1009;
+    field.normal[place] = bears * (0.01F + 0.0001F * static_cast<float>(hash));
+    field.shear_x[place] = ratio * field.normal[place] * 0.6F;
+    field.shear_y[place] = ratio * field.normal[place] * 0.8F;
+    field.status[place] = hash % 11 == 0 ? status::kAmbiguous | status::kSensel1 : status::kUsable;
+  };
+  const auto disc = [&](int row, int col, int radius, float ratio) {
+    for (int r = row - radius; r <= row + radius; ++r) {
+      for (int c = col - radius; c <= col + radius; ++c) {
+        const int away = (r - row) * (r - row) + (c - col) * (c - col);
+        if (away > radius * radius) continue;
+        load(static_cast<std::size_t>(r), static_cast<std::size_t>(c),
+             ratio * (c > col ? 1.0F : 0.9F + 0.01F * static_cast<float>(r % 3)),
+             1.05F - static_cast<float>(away) / static_cast<float>(radius * radius));
+      }
+    }
+  };
+  disc(85, 85 + step, 80, step % 2 == 0 ? 0.7F : 0.0F);  // its friction is carried over
+  for (int i = 0; i < 4; ++i) disc(25 + 45 * i, 220, 18, 0.3F * static_cast<float>(i));
+  for (std::size_t col = 0; col < field.cols; col += 3) {
+    for (std::size_t row = 180; row < field.rows; row += 4) {
+      if (row > 210 || col < 180) load(row, col, 0.2F);
+    }
+  }
+  return field;
+}
+
+void expect_same_bits(const ContactQuantities& actual, const ContactQuantities& expected) {
+  const auto numbers = [](const ContactQuantities& of) {
+    return std::vector<double>{of.shear_x_n,
+                               of.shear_y_n,
+                               of.normal_n,
+                               of.centre.x_mm,
+                               of.centre.y_mm,
+                               of.centre_of_pressure.x_mm,
+                               of.centre_of_pressure.y_mm,
+                               of.torque_nmm,
+                               of.peak_n,
+                               of.peak.x_mm,
+                               of.peak.y_mm,
+                               of.friction.value_or(-1),
+                               of.slipping_share.value_or(-1),
+                               of.slip_margin.value_or(-1)};
+  };
+  EXPECT_EQ(numbers(actual), numbers(expected));
+  EXPECT_EQ(actual.pillars, expected.pillars);
+  EXPECT_EQ(actual.ambiguous, expected.ambiguous);
+  EXPECT_EQ(actual.friction_source, expected.friction_source);
+  EXPECT_EQ(actual.slip, expected.slip);
+}
+
+TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
+  for (const std::optional<double> friction : {std::optional<double>(), {0.6}}) {
+    for (const std::uint32_t threads : {2U, 7U, 0U}) {
+      ContactTracker alone(kPillarPitchMm, {.friction = {.given = friction}, .threads = 1});
+      ContactTracker shared(kPillarPitchMm, {.friction = {.given = friction}, .threads = threads});
+      bool carried_over = false;
+      for (int step = 0; step < 4; ++step) {
+        const ForceField field = many_contacts(step);
+        const FrameContacts& expected = alone.update(field.view(), step);
+        const FrameContacts& actual = shared.update(field.view(), step);
+        ASSERT_GT(expected.contacts.size(), 400U);
+        ASSERT_EQ(ids_of(actual), ids_of(expected));
+        for (std::size_t i = 0; i < expected.contacts.size(); ++i) {
+          expect_same_bits(actual.contacts[i].quantities, expected.contacts[i].quantities);
+        }
+        expect_same_bits(actual.patch, expected.patch);
+        const FrictionSource source = expected.contacts[0].quantities.friction_source;
+        carried_over = carried_over || source == FrictionSource::carried_over;
+      }
+      EXPECT_EQ(carried_over, !friction);
+    }
+  }
+}
+
+TEST(ContactTracker, RefusesWhatMakesNoSense) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto says = [](auto action, const std::string& words) {
+    const std::string message = core_test::message_of(action);
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  for (const double pitch_mm : {0.0, -1.0, kNan}) {
+    says([&] { const ContactTracker tracker(pitch_mm); }, "pillar pitch");
+  }
+  for (const double friction : {0.0, -1.0, 101.0, kNan}) {
+    says([&] { const ContactTracker tracker(1, {.friction = {.given = friction}}); }, "friction");
+  }
+  for (const double force_n : {-1.0, 1e7, kNan}) {
+    says([&] { const ContactTracker tracker(1, {.noise_n = force_n}); }, "noise");
+    says([&] { const ContactTracker tracker(1, {.hidden_n = force_n}); }, "hidden");
+  }
+  for (const double reach_mm : {-1.0, 1001.0, kNan}) {
+    says([&] { const ContactTracker tracker(1, {.reach_mm = reach_mm}); }, "jump");
+  }
+  says([] { const ContactTracker tracker(1, {.threads = 1025}); }, "1025 threads");
+  ContactTracker tracker(kPillarPitchMm);
+  tracker.update(Patch(4, 5).view(), 0);
+  const Patch other(5, 4);
+  says([&] { tracker.update(other.view(), 1); }, "5 x 4 pillars after such of 4 x 5");
+  const Patch same(4, 5);
+  ForceFieldView cut = same.view();
+  cut.normal = {};
+  says([&] { tracker.update(cut, 1); }, "0 forces for 4 x 5 pillars");
+  for (const auto& [rows, cols] : {std::pair{5U, 5U}, {4U, 6U}}) {
+    ContactMap map;
+    map.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
+    says([&] { tracker.update(same.view(), 1, {&map, {}}); }, "of 4 x 5 pillars");
+  }
+  const ContactMap none;
+  const std::vector<ContactFriction> one(1);
+  says([&] { tracker.update(same.view(), 1, {&none, one}); }, "1 frictions for 0 contacts");
+}
+
+}  // namespace
+}  // namespace pillarfield

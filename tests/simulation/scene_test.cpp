@@ -1,0 +1,357 @@
+#include "pillarfield/scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numeric>
+#include <set>
+#include <string>
+
+#include "pillarfield/error.h"
+#include "pillarfield/simulator.h"
+#include "simulation/body/body_path.h"
+#include "simulation/closed_form/contact_traction.h"
+#include "simulation/scene/scene_limits.h"
+
+namespace pillarfield {
+namespace {
+
+const std::filesystem::path kScenes = PILLARFIELD_SCENES;
+
+std::vector<std::filesystem::path> shipped_scenes() {
+  std::vector<std::filesystem::path> paths;
+  for (const auto& entry : std::filesystem::directory_iterator(kScenes)) {
+    if (entry.path().extension() == ".toml") paths.push_back(entry.path());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string text_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST(Scene, EveryKeyReachesItsPlace) {
+  const Scene scene = parse_scene(R"(
+title = "All keys"
+[skin]
+pillars = [30, 40]
+sensel_pitch_mm = 0.5
+counts_per_newton = 200
+threshold_counts = 1.5
+[sensor]
+adc_bits = 10
+full_scale_counts = 1000
+noise_counts = 0.25
+dead_zone_counts = 2
+gain_spread = 0.125
+tare_counts = 5
+tare_spread_counts = 0.75
+drift_counts_per_s = 0.375
+dead_share = 0.0625
+power_law_exponent = 1.25
+power_law_reference_counts = 90
+[time]
+rate_hz = 250
+frames = 12
+seed = 99
+[solver]
+parity_tolerance_counts = 4
+baseline_time_s = 30
+estimator = "direct"
+segment_point = 0.75
+angles = true
+uncertainty = true
+[[contact]]
+shape = "cylinder"
+motion = "roll"
+contact_radius_mm = 3
+reference_load_n = 8
+length_mm = 9
+friction = 0.5
+direction_deg = -30
+tangential_ratio = 0.4
+path = [{time_s = 0, position_mm = [1, 2], load_n = 3}, {time_s = 2.5, position_mm = [-4, 5.5], load_n = 6}]
+[[contact]]
+shape = "flat_punch"
+motion = "spin"
+contact_radius_mm = 2
+friction = 0.9
+clockwise = true
+position_mm = [7, -8]
+load_n = 0.5
+)",
+                                  "all.toml");
+  EXPECT_EQ(scene.title, "All keys");
+  EXPECT_EQ(scene.skin.rows, 60U);
+  EXPECT_EQ(scene.skin.cols, 80U);
+  EXPECT_EQ(scene.skin.sensel_pitch_mm, 0.5);
+  EXPECT_EQ(scene.skin.counts_per_newton, 200);
+  EXPECT_EQ(scene.skin.threshold_counts, 1.5);
+  EXPECT_EQ(scene.skin.full_scale_counts, 1000);
+  EXPECT_EQ(scene.sensor.adc_bits, 10);
+  EXPECT_EQ(scene.sensor.noise_counts, 0.25);
+  EXPECT_EQ(scene.sensor.dead_zone_counts, 2);
+  EXPECT_EQ(scene.sensor.gain_spread, 0.125);
+  EXPECT_EQ(scene.sensor.tare_counts, 5);
+  EXPECT_EQ(scene.sensor.tare_spread_counts, 0.75);
+  EXPECT_EQ(scene.sensor.drift_counts_per_s, 0.375);
+  EXPECT_EQ(scene.sensor.dead_share, 0.0625);
+  ASSERT_TRUE(scene.skin.power_law);
+  EXPECT_EQ(scene.skin.power_law->exponent, 1.25);
+  EXPECT_EQ(scene.skin.power_law->reference_counts, 90);
+  EXPECT_EQ(scene.rate_hz, 250);
+  EXPECT_EQ(scene.frames, 12U);
+  EXPECT_EQ(scene.seed, 99U);
+  EXPECT_EQ(scene.parity_tolerance_counts, 4);
+  EXPECT_EQ(scene.baseline_time_s, 30);
+  EXPECT_EQ(scene.estimator, Estimator::direct);
+  EXPECT_EQ(scene.segment_point, 0.75);
+  EXPECT_TRUE(scene.angles);
+  EXPECT_TRUE(scene.uncertainty);
+  const auto& contacts = std::get<std::vector<Contact>>(scene.load);
+  ASSERT_EQ(contacts.size(), 2U);
+  const Contact& roller = contacts[0];
+  EXPECT_EQ(roller.shape, ContactShape::cylinder);
+  EXPECT_EQ(roller.motion, ContactMotion::roll);
+  EXPECT_EQ(roller.contact_radius_mm, 3);
+  EXPECT_EQ(roller.reference_load_n, 8);
+  EXPECT_EQ(roller.length_mm, 9);
+  EXPECT_EQ(roller.friction, 0.5);
+  EXPECT_EQ(roller.direction_deg, -30);
+  EXPECT_EQ(roller.tangential_ratio, 0.4);
+  ASSERT_EQ(roller.path.size(), 2U);
+  EXPECT_EQ(roller.path[1].time_s, 2.5);
+  EXPECT_EQ(roller.path[1].x_mm, -4);
+  EXPECT_EQ(roller.path[1].y_mm, 5.5);
+  EXPECT_EQ(roller.path[1].load_n, 6);
+  const Contact& punch = contacts[1];
+  EXPECT_TRUE(punch.clockwise);
+  ASSERT_EQ(punch.path.size(), 1U);
+  EXPECT_EQ(punch.path[0].y_mm, -8);
+  EXPECT_EQ(punch.path[0].load_n, 0.5);
+}
+
+TEST(Scene, WhatIsNotListedIsAbsent) {
+  const Scene scene = parse_scene("[skin]\nsize_mm = [20, 10]", "bare.toml");
+  EXPECT_TRUE(std::get<std::vector<Contact>>(scene.load).empty());
+  EXPECT_FALSE(scene.skin.full_scale_counts);
+  EXPECT_FALSE(scene.sensor.adc_bits);
+  EXPECT_FALSE(scene.parity_tolerance_counts);
+  EXPECT_EQ(scene.estimator, Estimator::direct);
+  EXPECT_EQ(scene.segment_point, 0.875);
+  EXPECT_FALSE(scene.angles);
+  EXPECT_FALSE(scene.uncertainty);
+  EXPECT_EQ(scene.skin.counts_per_newton, 320);
+  EXPECT_EQ(scene.rate_hz, 100);
+  EXPECT_TRUE(Simulator(scene).calibration().empty());
+}
+
+TEST(Scene, ASizeHoldsWholePillars) {
+  const auto skin_of = [](const std::string& keys) {
+    return parse_scene("[skin]\nsensel_pitch_mm = 0.5\n" + keys, "size.toml").skin;
+  };
+  EXPECT_EQ(skin_of("size_mm = [7.9, 3.2]").cols, 14U);
+  EXPECT_EQ(skin_of("size_mm = [7.9, 3.2]").rows, 6U);
+  EXPECT_EQ(skin_of("size_mm = [7, 3]").cols, 14U);
+  EXPECT_EQ(skin_of("pillars = [3, 7]").rows, 6U);
+  // 0.3 / (2 * 0.05) is just below 3 in binary.
+  EXPECT_EQ(parse_scene("[skin]\nsensel_pitch_mm = 0.05\nsize_mm = [0.3, 0.3]", "s").skin.rows, 6U);
+}
+
+TEST(Scene, AConverterImpliesItsFullScale) {
+  const auto parse = [](const std::string& bits) {
+    return parse_scene("[skin]\nsize_mm = [9, 9]\n[sensor]\nadc_bits = " + bits, "adc.toml");
+  };
+  EXPECT_EQ(parse("8").skin.full_scale_counts, 255);
+  EXPECT_EQ(parse("16").skin.full_scale_counts, 65535);
+}
+
+TEST(Scene, AContactHasItsRadiusAtItsHeaviestLoadUnlessToldOtherwise) {
+  const auto reference_load = [](const std::string& line) {
+    const Scene scene = parse_scene(
+        "[skin]\nsize_mm = [9, 9]\n[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\n"
+        "contact_radius_mm = 2\npath = [{ time_s = 0, position_mm = [0, 0], load_n = 3 },\n"
+        "  { time_s = 1, position_mm = [0, 0], load_n = 7 }]\n" +
+            line,
+        "contact.toml");
+    return std::get<std::vector<Contact>>(scene.load).at(0).reference_load_n;
+  };
+  EXPECT_EQ(reference_load(""), 7);
+  EXPECT_EQ(reference_load("reference_load_n = 5"), 5);
+}
+
+TEST(Scene, AChartSetsTheSizeOfTheSkin) {
+  const Scene scene = parse_scene(
+      "[chart]\ndirections = 8\ninclinations = 5\nmagnitudes_n = [0.1, 1]\nmax_theta_deg = 60",
+      "c");
+  EXPECT_EQ(scene.skin.pillar_rows(), 10U);
+  EXPECT_EQ(scene.skin.pillar_cols(), 8U);
+  EXPECT_EQ(std::get<Chart>(scene.load).max_theta_deg, 60);
+}
+
+TEST(ShippedScenes, AreTheOnesOfTheDocumentation) {
+  const std::string page = text_of(PILLARFIELD_SCENES_PAGE);
+  const auto scenes = shipped_scenes();
+  EXPECT_GE(scenes.size(), 10U);
+  for (const auto& path : scenes) {
+    EXPECT_NE(page.find("`" + path.filename().string() + "`"), std::string::npos) << path;
+    EXPECT_EQ(text_of(path).substr(0, 2), "# ") << path << " has no head";
+  }
+}
+
+/// The truth's total load is that of the contacts and bodies, so none of them reaches beyond the
+/// skin.
+void expect_whole_load(const Scene& scene, double time_s, const ForceField& truth) {
+  const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load);
+  if (!contacts) return;
+  double load = 0;
+  for (const Contact& contact : *contacts) load += state_at(contact, time_s).load_n;
+  for (const Body& body : scene.bodies) load += state_at(body, time_s).load_n;
+  double sum = 0;
+  for (const float normal : truth.normal) sum += double{normal};
+  EXPECT_NEAR(sum, load, 1e-6 * load);
+}
+
+template <class Count>
+void expect_no_saturation(const FrameBuffer& raw, double full_scale) {
+  for (const Count reading : raw.readings<Count>()) ASSERT_LT(reading, full_scale);
+}
+
+void expect_frame(const Simulator& simulator, std::uint64_t index) {
+  const Skin& skin = simulator.scene().skin;
+  FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
+  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  simulator.render(index, raw, truth);
+  expect_whole_load(simulator.scene(), simulator.time_of(index), truth);
+  if (simulator.sensel_type() == SenselType::u8) {
+    expect_no_saturation<std::uint8_t>(raw, skin.full_scale_counts.value());
+  } else if (simulator.sensel_type() == SenselType::f32) {
+    const auto readings = raw.readings<float>();
+    EXPECT_TRUE(std::ranges::all_of(readings, [](float v) { return std::isfinite(v); }));
+  }
+}
+
+TEST(ShippedScenes, ParseAndRenderTheirFirstAndLastFrame) {
+  for (const auto& path : shipped_scenes()) {
+    SCOPED_TRACE(path.filename().string());
+    const Simulator simulator(load_scene(path));
+    EXPECT_FALSE(simulator.scene().title.empty());
+    expect_frame(simulator, 0);
+    expect_frame(simulator, simulator.scene().frames - 1);
+  }
+}
+
+double reach_of(const Contact& contact, const ContactKey& state) {
+  const double radius = contact_radius_mm(contact, state.load_n);
+  return contact.shape == ContactShape::cylinder ? std::hypot(radius, contact.length_mm / 2)
+                                                 : radius;
+}
+
+/// Where contacts overlap, the closed forms no longer solve the contact problem.
+TEST(ShippedScenes, KeepTheirContactsApart) {
+  for (const auto& path : shipped_scenes()) {
+    const Scene scene = load_scene(path);
+    const auto* contacts = std::get_if<std::vector<Contact>>(&scene.load);
+    if (!contacts) continue;
+    for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
+      const double time = frame / scene.rate_hz;
+      for (auto a = contacts->begin(); a != contacts->end(); ++a) {
+        for (auto b = contacts->begin(); b != a; ++b) {
+          const ContactKey at_a = state_at(*a, time);
+          const ContactKey at_b = state_at(*b, time);
+          EXPECT_GT(std::hypot(at_a.x_mm - at_b.x_mm, at_a.y_mm - at_b.y_mm),
+                    reach_of(*a, at_a) + reach_of(*b, at_b))
+              << path << " frame " << frame << " contacts " << b - contacts->begin() << " and "
+              << a - contacts->begin();
+        }
+      }
+    }
+  }
+}
+
+TEST(ShippedScenes, TheSquareMetreIsTouchedOnFiveToTenPercent) {
+  const Simulator simulator(load_scene(kScenes / "square_metre.toml"));
+  const Skin& skin = simulator.scene().skin;
+  EXPECT_NEAR(skin.pillar_cols() * skin.pillar_pitch_mm(), 1000, skin.pillar_pitch_mm());
+  FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
+  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  for (const std::uint64_t index : {0U, 50U, 99U}) {
+    simulator.render(index, raw, truth);
+    const auto touched = std::ranges::count_if(truth.normal, [](float n) { return n > 0; });
+    const double share = static_cast<double>(touched) / static_cast<double>(truth.pillars());
+    EXPECT_GT(share, 0.05);
+    EXPECT_LT(share, 0.10);
+  }
+}
+
+TEST(ShippedScenes, TheDemoUsesTheScaleAndShowsEveryKindOfContact) {
+  const Simulator simulator(load_scene(kScenes / "demo.toml"));
+  const Skin& skin = simulator.scene().skin;
+  FrameBuffer raw(simulator.sensel_type(), skin.rows, skin.cols);
+  ForceField truth(skin.pillar_rows(), skin.pillar_cols());
+  simulator.render(30, raw, truth);
+  EXPECT_GT(std::ranges::max(raw.readings<std::uint8_t>()), 150);
+  std::set<std::pair<ContactShape, ContactMotion>> kinds;
+  for (const Contact& contact : std::get<std::vector<Contact>>(simulator.scene().load)) {
+    kinds.emplace(contact.shape, contact.motion);
+  }
+  EXPECT_EQ(kinds.size(), 6U);
+}
+
+/// The page's example is a scene, and its tables name every key that a scene may have.
+TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
+  const std::string page = text_of(PILLARFIELD_SCENES_PAGE);
+  const std::size_t begin = page.find("```toml\n");
+  const std::size_t end = page.find("```", begin + 8);
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_NO_THROW(static_cast<void>(parse_scene(page.substr(begin + 8, end - begin - 8), "page")));
+
+  std::vector<std::string> keys = {"title",
+                                   "size_mm",
+                                   "pillars",
+                                   "adc_bits",
+                                   "rate_hz",
+                                   "frames",
+                                   "seed",
+                                   "shape",
+                                   "motion",
+                                   "clockwise",
+                                   "path",
+                                   "time_s",
+                                   "position_mm",
+                                   "load_n",
+                                   "directions",
+                                   "inclinations",
+                                   "max_theta_deg",
+                                   "magnitudes_n",
+                                   "full_scale_counts",
+                                   "parity_tolerance_counts",
+                                   "baseline_time_s",
+                                   "estimator",
+                                   "segment_point",
+                                   "angles",
+                                   "uncertainty"};
+  for (const auto& quantity : kSkinQuantities) keys.emplace_back(quantity.key);
+  for (const auto& quantity : kSensorQuantities) keys.emplace_back(quantity.key);
+  for (const auto& [quantity, required, applies] : kBodyQuantities) {
+    keys.emplace_back(quantity.key);
+  }
+  for (const char* key :
+       {"modulus_kpa", "radii_mm", "height_map", "height_map_size_mm", "substeps", "angle_deg"}) {
+    keys.emplace_back(key);
+  }
+  for (const auto& [quantity, required, applies] : kContactQuantities) {
+    keys.emplace_back(quantity.key);
+  }
+  for (const std::string& key : keys) {
+    EXPECT_NE(page.find("| `" + key + "`"), std::string::npos) << key;
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,190 @@
+#include "simulation/sensor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint32_t kSize = 300;
+
+Scene scene_with(const SensorModel& model) {
+  Scene scene;
+  scene.skin.rows = kSize;
+  scene.skin.cols = kSize;
+  scene.sensor = model;
+  if (model.adc_bits) scene.skin.full_scale_counts = std::ldexp(1.0, *model.adc_bits) - 1;
+  return scene;
+}
+
+/// What the sensor makes of the same V at every sensel.
+FrameBuffer reading_of(double v, const Scene& scene, std::uint64_t frame = 0) {
+  const Sensor sensor(scene);
+  FrameBuffer raw(sensor.sensel_type(), scene.skin.rows, scene.skin.cols);
+  for (std::uint32_t row = 0; row < scene.skin.rows; ++row) {
+    std::vector<double> signal(scene.skin.cols, v);
+    sensor.read_row(frame, row, signal, raw);
+  }
+  return raw;
+}
+
+struct Moments {
+  double mean;
+  double deviation;
+};
+
+template <class Values>
+Moments moments_of(const Values& values) {
+  double sum = 0;
+  double squares = 0;
+  for (const auto value : values) {
+    sum += static_cast<double>(value);
+    squares += static_cast<double>(value) * static_cast<double>(value);
+  }
+  const double mean = sum / static_cast<double>(values.size());
+  return {mean, std::sqrt(squares / static_cast<double>(values.size()) - mean * mean)};
+}
+
+TEST(Sensor, WithNothingListedReadingsAreTheModels) {
+  const Scene scene = scene_with({});
+  EXPECT_TRUE(Sensor(scene).calibration().empty());
+  EXPECT_EQ(Sensor(scene).sensel_type(), SenselType::f32);
+  const FrameBuffer raw = reading_of(123.456, scene);
+  for (const float value : raw.readings<float>()) EXPECT_EQ(value, 123.456F);
+}
+
+TEST(Sensor, NoiseHasItsDeviationAndIsNewInEveryFrame) {
+  SensorModel model;
+  model.noise_counts = 0.7;
+  const Scene scene = scene_with(model);
+  const FrameBuffer first = reading_of(50, scene, 0);
+  const FrameBuffer second = reading_of(50, scene, 1);
+  const Moments noise = moments_of(first.readings<float>());
+  EXPECT_NEAR(noise.mean, 50, 5 * 0.7 / kSize);
+  EXPECT_NEAR(noise.deviation, 0.7, 5 * 0.7 / kSize);
+  EXPECT_FALSE(std::ranges::equal(first.readings<float>(), second.readings<float>()));
+  EXPECT_TRUE(Sensor(scene).calibration().empty());
+}
+
+TEST(Sensor, SensitivitiesHaveMeanOneAndTheirSpread) {
+  SensorModel model;
+  model.gain_spread = 0.2;
+  const Scene scene = scene_with(model);
+  const FrameBuffer raw = reading_of(100, scene);
+  const Moments sensitivity = moments_of(raw.readings<float>());
+  EXPECT_NEAR(sensitivity.mean, 100, 100 * 5 * 0.2 / kSize);
+  EXPECT_NEAR(sensitivity.deviation, 20, 100 * 8 * 0.2 / kSize);
+  const Sensor sensor(scene);
+  const std::vector<float>& gain = sensor.calibration().gain;
+  for (std::size_t i = 0; i < gain.size(); ++i) {
+    EXPECT_GT(gain[i], 0);
+    EXPECT_NEAR(raw.readings<float>()[i] * gain[i], 100, 1e-4);
+  }
+}
+
+TEST(Sensor, TaresHaveTheirMeanAndSpreadAndAreNotNegative) {
+  SensorModel model;
+  model.tare_counts = 12;
+  model.tare_spread_counts = 1.5;
+  const Moments tare = moments_of(reading_of(0, scene_with(model)).readings<float>());
+  EXPECT_NEAR(tare.mean, 12, 5 * 1.5 / kSize);
+  EXPECT_NEAR(tare.deviation, 1.5, 5 * 1.5 / kSize);
+  model.tare_counts = 0;
+  const Sensor sensor(scene_with(model));
+  EXPECT_GE(std::ranges::min(sensor.calibration().tare), 0);
+}
+
+TEST(Sensor, DeadSenselsHaveTheirShareAndReadZero) {
+  SensorModel model;
+  model.dead_share = 0.03;
+  model.noise_counts = 1;
+  model.tare_counts = 5;
+  const Scene scene = scene_with(model);
+  const Sensor sensor(scene);
+  const std::vector<std::uint8_t>& mask = sensor.calibration().mask;
+  const FrameBuffer raw = reading_of(80, scene);
+  for (std::size_t i = 0; i < mask.size(); ++i) {
+    EXPECT_EQ(mask[i] == 0, raw.readings<float>()[i] == 0);
+  }
+  const auto dead = static_cast<double>(std::ranges::count(mask, 0));
+  EXPECT_NEAR(dead / (kSize * kSize), 0.03, 5 * std::sqrt(0.03) / kSize);
+  model.dead_share = 1;
+  EXPECT_EQ(std::ranges::max(reading_of(80, scene_with(model)).readings<float>()), 0);
+}
+
+TEST(Sensor, TheDeadZoneSwallowsItsCounts) {
+  SensorModel model;
+  model.dead_zone_counts = 2.5;
+  EXPECT_EQ(reading_of(10, scene_with(model)).readings<float>()[0], 7.5F);
+  EXPECT_EQ(reading_of(2.5, scene_with(model)).readings<float>()[0], 0);
+  EXPECT_EQ(reading_of(1, scene_with(model)).readings<float>()[0], 0);
+}
+
+TEST(Sensor, APowerLawBendsAfterTheDeadZone) {
+  SensorModel model;
+  model.dead_zone_counts = 2;
+  Scene scene = scene_with(model);
+  scene.skin.power_law = {1.25, 64};
+  EXPECT_FLOAT_EQ(reading_of(66, scene).readings<float>()[0], 64);
+  const float read = reading_of(18, scene).readings<float>()[0];
+  EXPECT_NEAR(64 * std::pow(read / 64, 1.25), 16, 1e-4);
+  EXPECT_EQ(reading_of(1, scene).readings<float>()[0], 0);
+}
+
+TEST(Sensor, AConverterRoundsAndClips) {
+  SensorModel model;
+  model.adc_bits = 8;
+  const Scene scene = scene_with(model);
+  const auto read = [&](double v) { return int(reading_of(v, scene).readings<std::uint8_t>()[0]); };
+  EXPECT_EQ(read(0), 0);
+  EXPECT_EQ(read(0.49), 0);
+  EXPECT_EQ(read(0.51), 1);
+  EXPECT_EQ(read(99.5), 100);
+  EXPECT_EQ(read(254.6), 255);
+  EXPECT_EQ(read(1e9), 255);
+}
+
+TEST(Sensor, MoreThanEightBitsAreSixteen) {
+  SensorModel model;
+  model.adc_bits = 12;
+  const Scene scene = scene_with(model);
+  EXPECT_EQ(Sensor(scene).sensel_type(), SenselType::u16);
+  EXPECT_EQ(reading_of(1e9, scene).readings<std::uint16_t>()[kSize], 4095);
+  EXPECT_EQ(reading_of(1234.4, scene).readings<std::uint16_t>()[kSize], 1234);
+  model.adc_bits = 1;
+  EXPECT_EQ(reading_of(7, scene_with(model)).readings<std::uint8_t>()[0], 1);
+}
+
+TEST(Sensor, WithoutAConverterOnlyAFullScaleClips) {
+  SensorModel model;
+  model.noise_counts = 1;
+  Scene scene = scene_with(model);
+  EXPECT_LT(std::ranges::min(reading_of(0, scene).readings<float>()), 0);
+  scene.skin.full_scale_counts = 10;
+  EXPECT_EQ(std::ranges::max(reading_of(50, scene).readings<float>()), 10);
+}
+
+/// calibration.h: V = (raw − t)·gain + z where (raw − t)·gain is above the threshold.
+TEST(Sensor, TheCalibrationUndoesTheSensor) {
+  SensorModel model;
+  model.dead_zone_counts = 1.5;
+  model.gain_spread = 0.25;
+  model.tare_counts = 4;
+  model.tare_spread_counts = 1;
+  const Scene scene = scene_with(model);
+  const Sensor sensor(scene);
+  const Calibration& calibration = sensor.calibration();
+  const FrameBuffer raw = reading_of(77, scene);
+  for (std::size_t i = 0; i < scene.skin.sensels(); ++i) {
+    const float v = (raw.readings<float>()[i] - calibration.tare[i]) * calibration.gain[i] +
+                    calibration.dead_zone[i];
+    EXPECT_NEAR(v, 77, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

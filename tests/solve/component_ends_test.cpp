@@ -1,0 +1,129 @@
+// The ends of what the components of a force may be.
+
+#include "pillarfield/component_ends.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include "pillarfield/status.h"
+#include "solve/host_solve.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr auto kEnds = [](std::size_t component) {
+  return std::pair{2 * component, 2 * component + 1};
+};
+
+/// A pillar whose four sensels read this, 1, 2, 3 and 4 of the paper, solved.
+ForceField solved(const std::array<float, 4>& readings, SolverPlan& plan) {
+  plan.skin = {};
+  plan.skin.rows = 2;
+  plan.skin.cols = 2;
+  plan.skin.counts_per_newton = 100;
+  plan.skin.threshold_counts = 2;
+  plan.sensel_type = SenselType::f32;
+  plan.noise_counts = 0.5;
+  plan.uncertainty = true;
+  FrameBuffer raw(SenselType::f32, 2, 2);
+  const std::array<float, 4> rows = {readings[1], readings[0], readings[2], readings[3]};
+  std::memcpy(raw.bytes().data(), rows.data(), sizeof rows);
+  return solve_on_host(plan, raw.view());
+}
+
+void expect_about(const std::array<float, kComponentEnds>& ends, std::size_t component,
+                  double value, double deviation) {
+  const auto [low, high] = kEnds(component);
+  EXPECT_NEAR(ends[low], value - 1.96 * deviation, 1e-6);
+  EXPECT_NEAR(ends[high], value + 1.96 * deviation, 1e-6);
+}
+
+TEST(ComponentEnds, OfADeterminedForceAreItsDeviations) {
+  SolverPlan plan;
+  const ForceField field = solved({50, 40, 30, 40}, plan);
+  for (const auto& point : {std::optional<double>(), std::optional(plan.segment_point)}) {
+    const auto ends = component_ends(field.view(), 0, point);
+    expect_about(ends, 0, field.shear_x[0], field.uncertainty[Uncertainty::shear_x][0]);
+    expect_about(ends, 1, field.shear_y[0], field.uncertainty[Uncertainty::shear_y][0]);
+    expect_about(ends, 2, field.normal[0], field.uncertainty[Uncertainty::normal][0]);
+  }
+}
+
+/// Region 3, the upper, left, lower or right two usable: every parity sum from none to the smaller
+/// reading and the threshold explains the readings.
+TEST(ComponentEnds, OfADirectForceHoldItsSegment) {
+  for (const std::array<float, 4>& readings :
+       {std::array<float, 4>{60, 45, 0, 0}, {0, 60, 45, 0}, {0, 0, 45, 60}, {45, 0, 0, 60}}) {
+    for (const double point : {0.5, 0.875, 1.0}) {
+      SolverPlan plan;
+      plan.segment_point = point;
+      const ForceField field = solved(readings, plan);
+      ASSERT_EQ(region_of(field.status[0]), Region::three);
+      const auto ends = component_ends(field.view(), 0, point);
+      const bool vertical = readings[0] * readings[1] > 0 || readings[2] * readings[3] > 0;
+      const double high = field.normal[0] / point;
+      const double noise_n = 0.5 / 100;
+      EXPECT_EQ(ends[4], 0);
+      EXPECT_GT(ends[5], high);
+      EXPECT_LT(ends[5], high + 1.96 * noise_n);
+      const double moving = vertical ? field.shear_y[0] : field.shear_x[0];
+      const double sign = std::copysign(1.0, moving);
+      const double most = sign * (std::abs(moving) + std::numbers::sqrt2 * field.normal[0]);
+      const double least =
+          sign * (std::abs(moving) - std::numbers::sqrt2 * (high - field.normal[0]));
+      const auto [low_end, high_end] = kEnds(vertical ? 1 : 0);
+      EXPECT_LT(ends[low_end], std::min(least, most));
+      EXPECT_GT(ends[high_end], std::max(least, most));
+      EXPECT_GT(ends[low_end], std::min(least, most) - 4 * noise_n);
+      EXPECT_LT(ends[high_end], std::max(least, most) + 4 * noise_n);
+      // The other component is measured.
+      const std::size_t fixed = vertical ? 0 : 1;
+      const auto kind = vertical ? Uncertainty::shear_x : Uncertainty::shear_y;
+      expect_about(ends, fixed, vertical ? field.shear_x[0] : field.shear_y[0],
+                   field.uncertainty[kind][0]);
+    }
+  }
+}
+
+/// However the direct solve chose the force, its segment is the same.
+TEST(ComponentEnds, OfADirectForceDoNotDependOnItsPoint) {
+  std::array<float, kComponentEnds> first{};
+  for (const double point : {0.25, 0.5, 0.875, 1.0}) {
+    SolverPlan plan;
+    plan.segment_point = point;
+    const ForceField field = solved({60, 45, 0, 0}, plan);
+    const auto ends = component_ends(field.view(), 0, point);
+    if (point == 0.25) first = ends;
+    for (std::size_t i = 0; i < kComponentEnds; ++i) {
+      EXPECT_NEAR(ends[i], first[i], 0.02) << i << " at " << point;
+    }
+  }
+}
+
+TEST(ComponentEnds, OfAnotherEstimatorAreDeviationsButNoPull) {
+  SolverPlan plan;
+  ForceField field = solved({60, 45, 0, 0}, plan);
+  field.uncertainty[Uncertainty::normal][0] = 2 * field.normal[0];
+  const auto ends = component_ends(field.view(), 0, std::nullopt);
+  EXPECT_EQ(ends[4], 0);
+  EXPECT_NEAR(ends[5], field.normal[0] * (1 + 2 * 1.96), 1e-5);
+  expect_about(ends, 1, field.shear_y[0], field.uncertainty[Uncertainty::shear_y][0]);
+}
+
+TEST(ComponentEnds, HaveNames) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < kComponentEnds; ++i) {
+    names.insert(name_of(static_cast<ComponentEnd>(i)));
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"normal_high", "normal_low", "shear_x_high",
+                                          "shear_x_low", "shear_y_high", "shear_y_low"}));
+}
+
+}  // namespace
+}  // namespace pillarfield

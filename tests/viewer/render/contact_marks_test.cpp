@@ -1,0 +1,126 @@
+// Where the marks of contacts are in a picture, and what they say.
+
+#include "viewer/render/contact_marks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/viewer/source/touched_field.h"
+#include "viewer/render/skin_outline.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr std::uint32_t kRows = 20;
+constexpr std::uint32_t kCols = 40;
+constexpr Viewport kPlot{30, 20, 400, 200};
+
+SourceInfo source() {
+  SourceInfo info;
+  info.skin.rows = 2 * kRows;
+  info.skin.cols = 2 * kCols;
+  info.skin.sensel_pitch_mm = 0.5;  // a pillar is a millimetre
+  return info;
+}
+
+/// Ten pixels a millimetre, and the middle of the skin in that of the plot: pixel (230, 120).
+Look top_look() {
+  Look look;
+  look.view = TopView{{0, 0}, 10};
+  return look;
+}
+
+ShownContacts contacts_of(std::initializer_list<Touch> touches) {
+  return ContactWatch(1).contacts_of(touched_field(0, kRows, kCols, touches));
+}
+
+void expect_point(const Vec2& point, double x, double y) {
+  EXPECT_NEAR(point.x, x, 1e-9);
+  EXPECT_NEAR(point.y, y, 1e-9);
+}
+
+TEST(ContactMarks, AreWhereTheContactIs) {
+  // Rows 4 to 7, columns 22 to 27: x from 2 to 8 mm, y from 2 to 6 mm.
+  const ShownContacts contacts = contacts_of({{{4, 8, 22, 28}, 0.5F, 0.25F, 0}});
+  const auto marks = contact_marks(contacts, source(), top_look(), kPlot);
+  ASSERT_EQ(marks.size(), 1U);
+  const ContactMark& mark = marks.front();
+  ASSERT_EQ(mark.outline.size(), 4U);
+  expect_point(mark.outline[0], 250, 60);
+  expect_point(mark.outline[1], 310, 60);
+  expect_point(mark.outline[2], 310, 100);
+  expect_point(mark.outline[3], 250, 100);
+  expect_point(mark.centre, 280, 80);
+  ASSERT_TRUE(mark.tip);
+  expect_point(*mark.tip, 280 + 0.5 * kContactArrowPixels, 80);
+  EXPECT_EQ(mark.words, "1  12.0 N");
+}
+
+TEST(ContactMarks, ArrowsPointUpWhereShearDoesAndGrowWithTheScaleAndNotForEver) {
+  Look look = top_look();
+  const auto tip_of = [&](float shear_y) {
+    const auto marks =
+        contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}), source(), look, kPlot);
+    return marks.front().tip;
+  };
+  expect_point(tip_of(1).value(), 280, 80 - kContactArrowPixels);
+  expect_point(tip_of(100).value(), 280, 80 - 3 * kContactArrowPixels);
+  EXPECT_FALSE(tip_of(0.02F));
+  look.scale = 2;
+  expect_point(tip_of(-1).value(), 280, 80 + 2 * kContactArrowPixels);
+}
+
+TEST(ContactMarks, HeaviestFirstAndNoneOutOfSight) {
+  const ShownContacts contacts =
+      contacts_of({{{1, 3, 1, 3}, 1}, {{8, 10, 8, 10}, 3}, {{15, 17, 35, 37}, 2}});
+  const auto marks = contact_marks(contacts, source(), top_look(), kPlot);
+  ASSERT_EQ(marks.size(), 3U);
+  EXPECT_EQ(marks[0].words, "2  12.0 N");
+  EXPECT_EQ(marks[1].words, "3  8.00 N");
+  EXPECT_EQ(marks[2].words, "1  4.00 N");
+  Look near = top_look();
+  near.view = TopView{{-10, 1}, 100};
+  EXPECT_EQ(contact_marks(contacts, source(), near, kPlot).size(), 1U);
+}
+
+TEST(ContactMarks, OnACylinderFollowTheSurface) {
+  Look look = top_look();
+  look.surface = {SurfaceKind::cylinder, 10};
+  look.view = fit_orbit({kCols, kRows}, look.surface, kPlot);
+  const ShownContacts contacts = contacts_of({{{4, 8, 18, 24}, 1, 0.5F, 0}});
+  const auto marks = contact_marks(contacts, source(), look, kPlot);
+  ASSERT_EQ(marks.size(), 1U);
+  EXPECT_EQ(marks[0].outline.size(), 4U * 32U);
+  const auto middle = project(look.view, look.surface, {kCols, kRows}, kPlot,
+                              frame_at(look.surface, {1, 4}).position);
+  ASSERT_TRUE(middle);
+  expect_point(marks[0].centre, middle->x, middle->y);
+  EXPECT_TRUE(marks[0].tip);
+}
+
+TEST(ContactMarks, AFewHundredAreDrawnAndTheRestIsTold) {
+  const ShownContacts few = contacts_of({{{4, 8, 22, 28}}});
+  EXPECT_EQ(contacts_left_out(few), "");
+  ForceField forces(100, 100);
+  for (std::size_t row = 0; row < 100; row += 2) {
+    for (std::size_t col = 0; col < 100; col += 2) {
+      forces.status[100 * row + col] = status::kUsable;
+      forces.normal[100 * row + col] = static_cast<float>(row * 100 + col) / 10;
+    }
+  }
+  ShownField field;
+  field.forces = forces.view();
+  const ShownContacts many = ContactWatch(1).contacts_of(field);
+  SourceInfo wide = source();
+  wide.skin.rows = wide.skin.cols = 200;
+  Look look = top_look();
+  look.view = fit_top({100, 100}, kPlot);
+  const auto marks = contact_marks(many, wide, look, kPlot);
+  EXPECT_EQ(marks.size(), kMostContactsDrawn);
+  EXPECT_EQ(marks.front().words, "2500  990 N");
+  EXPECT_EQ(contacts_left_out(many), "256 of 2500 contacts are drawn, the heaviest");
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

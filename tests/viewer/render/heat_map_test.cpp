@@ -1,0 +1,149 @@
+// Values and states go into the heat map's pixels, and must come out of them again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/viewer/render/drawing.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr std::uint32_t kMapWidth = 640;
+constexpr std::uint32_t kMapHeight = 480;
+
+/// Every pillar another force, in all directions.
+MadeUpField varied_field() {
+  return {18, 24, [](std::uint32_t row, std::uint32_t col) {
+            const float angle = 0.37F * static_cast<float>(row * 24 + col);
+            const float size = 0.05F + 0.04F * static_cast<float>((7 * row + 5 * col) % 24);
+            return MadeUpPillar{size * std::cos(angle), size * std::sin(angle),
+                                0.02F * static_cast<float>((row + 2 * col) % 41), 15};
+          }};
+}
+
+class HeatMap : public testing::TestWithParam<Quantity> {};
+
+/// Entries of a table that have this colour: neighbours may be equal.
+std::set<std::size_t> entries_with(ColourMap map, const Colour& colour) {
+  std::set<std::size_t> entries;
+  const auto table = table_of(map);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i] == colour) entries.insert(i);
+  }
+  return entries;
+}
+
+TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
+  const Quantity quantity = GetParam();
+  const MadeUpField field = varied_field();
+  Drawing drawing;
+  Look look = bare_look(field, kMapWidth, kMapHeight);
+  look.quantity = quantity;
+  look.map = default_map(info_of(quantity).scale);
+  look.range = fitting_range(quantity, largest(quantity, field.shown()));
+  const Pixels pixels = drawing.draw(field, look, kMapWidth, kMapHeight);
+  std::set<std::size_t> seen;
+  for (std::uint32_t row = 0; row < 18; ++row) {
+    for (std::uint32_t col = 0; col < 24; ++col) {
+      const PixelPlace place = middle_of(field, look, kMapWidth, kMapHeight, row, col);
+      const auto entries = entries_with(look.map, colour_at(pixels, place.x, place.y));
+      const float value = value_of(quantity, field.shown(), row, col);
+      const std::size_t expected = entry_of(value, look.range, info_of(quantity).scale);
+      EXPECT_TRUE(entries.count(expected) == 1) << row << ", " << col << ": " << value;
+      seen.insert(entries.begin(), entries.end());
+    }
+  }
+  EXPECT_GT(seen.size(), 15U);  // Not one colour all over.
+  EXPECT_EQ(drawing.validation_messages(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Quantities, HeatMap,
+                         testing::Values(Quantity::normal, Quantity::shear, Quantity::shear_x,
+                                         Quantity::shear_y, Quantity::magnitude, Quantity::theta,
+                                         Quantity::phi, Quantity::uncertainty, Quantity::parity),
+                         [](const auto& test) { return info_of(test.param).name; });
+
+class States : public testing::TestWithParam<Quantity> {};
+
+TEST_P(States, HaveColoursOfTheirOwn) {
+  const Quantity quantity = GetParam();
+  const MadeUpField field(16, 16, [](std::uint32_t row, std::uint32_t col) {
+    return MadeUpPillar{0.1F, 0.2F, 0.5F, static_cast<std::uint8_t>(16 * row + col)};
+  });
+  Drawing drawing;
+  for (const Theme theme : {Theme::dark, Theme::light}) {
+    Look look = bare_look(field, kMapWidth, kMapHeight);
+    look.theme = theme;
+    look.quantity = quantity;
+    const Pixels pixels = drawing.draw(field, look, kMapWidth, kMapHeight);
+    for (std::uint32_t status = 0; status < 256; ++status) {
+      const PixelPlace place =
+          middle_of(field, look, kMapWidth, kMapHeight, status / 16, status % 16);
+      const auto special = special_of(quantity, static_cast<std::uint8_t>(status));
+      const Colour mapped =
+          table_of(look.map)[entry_of(value_of(quantity, field.shown(), status / 16, status % 16),
+                                      look.range, info_of(quantity).scale)];
+      EXPECT_EQ(colour_at(pixels, place.x, place.y), special ? colour_of(*special, theme) : mapped)
+          << "status " << status;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Quantities, States,
+                         testing::Values(Quantity::normal, Quantity::region, Quantity::status),
+                         [](const auto& test) { return info_of(test.param).name; });
+
+TEST(HeatMapFromAfar, AveragesThoseInContact) {
+  // Stripes of pillars in contact; a pixel covers several of them.
+  const MadeUpField field(480, 640, [](std::uint32_t, std::uint32_t col) {
+    return MadeUpPillar{0, 0, col % 2 == 0 ? 0.25F : 0.75F,
+                        static_cast<std::uint8_t>(col < 320 ? 15 : 0)};
+  });
+  Drawing drawing;
+  Look look = bare_look(field, 160, 120);
+  const Pixels pixels = drawing.draw(field, look, 160, 120);
+  // Samples are few, so that a mean may be off by one of them.
+  const Colour left = colour_at(pixels, 40, 60);
+  const auto table = table_of(look.map);
+  const auto close = std::find(table.begin() + 96, table.begin() + 160, left);
+  EXPECT_NE(close, table.begin() + 160);
+  EXPECT_EQ(colour_at(pixels, 120, 60), colour_of(Special::idle, look.theme));
+}
+
+TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
+  const MadeUpField field = varied_field();
+  Drawing in_place;
+  Drawing copied(false);
+  Look look = bare_look(field, kMapWidth, kMapHeight);
+  look.arrows = true;
+  look.legend = true;
+  const Pixels first = in_place.draw(field, look, kMapWidth, kMapHeight);
+  const Pixels second = copied.draw(field, look, kMapWidth, kMapHeight);
+  EXPECT_EQ(first.rgba, second.rgba);
+  EXPECT_EQ(copied.memory().fields_in_place(), 0U);
+  EXPECT_EQ(copied.memory().bytes_copied(), field.shown().pages.size());
+  if (!in_place.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
+  EXPECT_EQ(in_place.memory().fields_in_place(), 1U);
+  EXPECT_EQ(in_place.memory().bytes_copied(), 0U);
+}
+
+TEST(HeatMap, ReadInPlaceFollowsTheMemory) {
+  const MadeUpField field = varied_field();
+  Drawing drawing;
+  if (!drawing.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
+  const Look look = bare_look(field, kMapWidth, kMapHeight);
+  const Pixels before = drawing.draw(field, look, kMapWidth, kMapHeight);
+  // What a solver does: it writes where the device reads, and nobody copies.
+  auto* const normal = const_cast<float*>(field.shown().forces.normal.data());
+  std::fill(normal, normal + field.shown().forces.normal.size(), 1.0F);
+  const Pixels after = drawing.draw(field, look, kMapWidth, kMapHeight);
+  EXPECT_NE(before.rgba, after.rgba);
+  const PixelPlace place = middle_of(field, look, kMapWidth, kMapHeight, 3, 3);
+  EXPECT_EQ(colour_at(after, place.x, place.y), table_of(look.map).back());
+  EXPECT_EQ(drawing.memory().bytes_copied(), 0U);
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

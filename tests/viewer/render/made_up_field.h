@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "viewer/source/field_producer.h"
+
+namespace pillarfield::viewer {
+
+/// A pillar as somebody thought it up.
+struct MadeUpPillar {
+  float shear_x = 0, shear_y = 0, normal = 0;  ///< N
+  std::uint8_t status = 15;                    ///< all four sensels usable
+};
+
+/// A field on pages of its own, with angles, uncertainty and readings, from a function of row and
+/// column.
+class MadeUpField {
+ public:
+  using Pillar = std::function<MadeUpPillar(std::uint32_t row, std::uint32_t col)>;
+  MadeUpField(std::uint32_t rows, std::uint32_t cols, const Pillar& pillar);
+
+  [[nodiscard]] const ShownField& shown() const { return shown_; }
+  [[nodiscard]] const SourceInfo& source() const { return source_; }
+
+ private:
+  ShownField shown_;
+  SourceInfo source_;
+};
+
+}  // namespace pillarfield::viewer

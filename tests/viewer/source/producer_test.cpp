@@ -1,0 +1,431 @@
+// Fields from every kind of source, against what the source says and the C++ loop computes.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <thread>
+
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
+#include "solve/host_solve.h"
+#include "tests/io/sample_files.h"
+#include "tests/viewer/source/solved_scene.h"
+#include "tests/viewer/source/touched_field.h"
+#include "viewer/source/direction.h"
+#include "viewer/source/field_producer.h"
+#include "viewer/source/frame_rate.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+using io_test::error_of;
+using io_test::fill_frame;
+using io_test::has_all;
+using io_test::sample_forces;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+const std::filesystem::path kDemo = std::filesystem::path(PILLARFIELD_SCENES) / "demo.toml";
+
+/// Magnitude, theta and phi are those of the forces beside them.
+void expect_angles(const ForceFieldView& forces) {
+  ASSERT_EQ(forces.phi.size(), forces.normal.size());
+  for (std::size_t i = 0; i < forces.normal.size(); ++i) {
+    const Direction direction =
+        direction_of(forces.shear_x[i], forces.shear_y[i], forces.normal[i]);
+    ASSERT_FLOAT_EQ(forces.magnitude[i], direction.magnitude);
+    ASSERT_NEAR(forces.theta[i], direction.theta, 1e-6);
+    const double turn = std::remainder(forces.phi[i] - direction.phi, 2 * std::numbers::pi);
+    ASSERT_NEAR(turn, 0, 1e-6);
+  }
+}
+
+/// Whole pages, in which every plane lies.
+void expect_pages(const ShownField& field) {
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(field.pages.data()) % 4096, 0U);
+  EXPECT_EQ(field.pages.size() % 4096, 0U);
+  const ForceFieldView& forces = field.forces;
+  std::vector<std::span<const std::byte>> planes = {std::as_bytes(forces.status)};
+  for (const auto plane : {forces.shear_x, forces.shear_y, forces.normal, forces.magnitude,
+                           forces.theta, forces.phi}) {
+    planes.push_back(std::as_bytes(plane));
+  }
+  for (const auto plane : forces.uncertainty) planes.push_back(std::as_bytes(plane));
+  for (const auto plane : planes) {
+    if (plane.empty()) continue;
+    EXPECT_GE(plane.data(), field.pages.data());
+    EXPECT_LE(plane.data() + plane.size(), field.pages.data() + field.pages.size());
+  }
+}
+
+TEST(SceneProducer, SolvesTheFramesOfTheSceneInAnyOrder) {
+  const Simulator simulator(load_scene(kDemo));
+  const SolverPlan plan = plan_of(simulator);
+  FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
+  for (const Memory memory : {Memory::automatic, Memory::staged}) {
+    const auto producer = open_producer(kDemo, {.memory = memory, .most_frames = 4});
+    for (const std::uint64_t index : {3U, 0U, 2U, 2U}) {
+      const ShownField field = producer->produce(index);
+      simulator.render(index, frame, truth);
+      expect_same_forces(field.forces, solve_on_host(plan, frame.view()).view());
+      expect_angles(field.forces);
+      expect_pages(field);
+      EXPECT_EQ(field.index, index);
+      EXPECT_EQ(field.time_s, simulator.time_of(index));
+      const auto* const raw = static_cast<const std::byte*>(field.raw.data);
+      EXPECT_TRUE(std::ranges::equal(std::span(raw, frame.bytes().size()), frame.bytes()));
+      EXPECT_FALSE(field.forces.uncertainty[Uncertainty::theta_low].empty());
+    }
+  }
+}
+
+TEST(SceneProducer, TellsWhatTheSceneIs) {
+  const auto producer = open_producer(kDemo, {.memory = Memory::staged, .most_frames = 4});
+  const SourceInfo& info = producer->info();
+  EXPECT_EQ(info.name, "demo.toml");
+  EXPECT_EQ(info.kind, "scene");
+  EXPECT_EQ(info.frames, 4U);
+  EXPECT_EQ(info.rate_hz, 100);
+  EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
+  EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
+  ASSERT_EQ(info.remarks.size(), 1U);
+  EXPECT_TRUE(has_all(info.remarks[0], {"4 of 60 frames", "as asked"}));
+  EXPECT_FALSE(producer->refresh());
+  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
+                      {"demo.toml", "no frame 4", "4 frames"}));
+}
+
+TEST(SceneProducer, SimulatesNoMoreThanFits) {
+  const std::uint64_t frame_bytes = load_scene(kDemo).skin.sensels();
+  const auto producer = open_producer(kDemo, {.memory_bytes = 3 * frame_bytes + 1});
+  EXPECT_EQ(producer->info().frames, 3U);
+  ASSERT_EQ(producer->info().remarks.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().remarks[0], {"3 of 60 frames", "do not fit"}));
+  const auto too_little = [&] {
+    static_cast<void>(open_producer(kDemo, {.memory_bytes = frame_bytes - 1}));
+  };
+  EXPECT_TRUE(has_all(error_of(too_little), {"demo.toml", "memory"}));
+}
+
+TEST(SceneProducer, ProgressRisesAndMayStopTheSimulation) {
+  std::vector<double> shares;
+  const auto thread = std::this_thread::get_id();
+  const auto record = [&](double share) {
+    EXPECT_EQ(std::this_thread::get_id(), thread);
+    shares.push_back(share);
+  };
+  static_cast<void>(open_producer(kDemo, {.most_frames = 8}, record));
+  ASSERT_FALSE(shares.empty());
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GE(shares.front(), 0);
+  EXPECT_EQ(shares.back(), 1);
+  struct Stopped {};
+  EXPECT_THROW(static_cast<void>(open_producer(kDemo, {}, [](double) { throw Stopped(); })),
+               Stopped);
+}
+
+TEST(SceneProducer, WithoutNoiseThereIsNoUncertainty) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "quiet.toml";
+  const std::string common = "[skin]\nsize_mm = [20, 20]\n[time]\nframes = 2\nrate_hz = 50\n";
+  const std::string contact =
+      "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 5\nposition_mm = "
+      "[0, 0]\n"
+      "load_n = 5\n";
+  write_bytes(path, common + contact);
+  const auto producer = open_producer(path, {});
+  EXPECT_FALSE(producer->info().has_uncertainty);
+  EXPECT_TRUE(producer->info().remarks.empty());
+  const ShownField field = producer->produce(1);
+  EXPECT_TRUE(field.forces.uncertainty[Uncertainty::shear_x].empty());
+  EXPECT_EQ(field.time_s, 0.02);
+  expect_angles(field.forces);
+}
+
+TEST(SceneProducer, TheBaselineStaysAndThePaperTellsNoUncertainty) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "paper.toml";
+  write_bytes(path,
+              "[skin]\nsize_mm = [20, 20]\n[sensor]\nnoise_counts = 1\ntare_counts = 5\n"
+              "[solver]\nestimator = \"paper\"\nbaseline_time_s = 0.01\n[time]\nframes = 3\n"
+              "[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\ncontact_radius_mm = 5\n"
+              "position_mm = [0, 0]\nload_n = 5\n");
+  const auto producer = open_producer(path, {});
+  EXPECT_FALSE(producer->info().has_uncertainty);
+  ASSERT_EQ(producer->info().remarks.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().remarks[0], {"baseline is not followed"}));
+  EXPECT_TRUE(has_all(producer->info().solver, {"paper on "}));
+  const ForceField first = copy_of(producer->produce(2).forces);
+  static_cast<void>(producer->produce(1));
+  expect_same_forces(producer->produce(2).forces, first.view());
+}
+
+/// Whatever the source: fields stay, and there are so many of them.
+void expect_fields_stay(FieldProducer& producer) {
+  const std::uint64_t frames = producer.info().frames;
+  std::vector<ShownField> shown = {producer.produce(0)};
+  const ForceField first = copy_of(shown[0].forces);
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    const ShownField field = producer.produce(i % frames);
+    EXPECT_NE(field.pages.data(), shown[0].pages.data());
+    EXPECT_EQ(field.index, i % frames);
+  }
+  expect_same_forces(shown[0].forces, first.view());
+  while (shown.size() < FieldProducer::kMostShown) shown.push_back(producer.produce(1));
+  const std::string error = error_of([&] { static_cast<void>(producer.produce(0)); });
+  EXPECT_TRUE(has_all(error, {"6 fields are in use", "let one go"}));
+  expect_same_forces(shown[0].forces, first.view());
+  std::jthread([&] { shown.pop_back(); }).join();
+  shown.push_back(producer.produce(0));
+  expect_same_forces(shown.back().forces, first.view());
+  if (producer.info().has_readings) {
+    EXPECT_NE(shown.back().raw.data, nullptr);
+  } else {
+    EXPECT_EQ(shown.back().raw.data, nullptr);
+  }
+}
+
+constexpr std::uint64_t kFrames = 5;
+
+Skin small_skin() {
+  Skin skin;
+  skin.rows = 31;
+  skin.cols = 46;
+  skin.sensel_pitch_mm = 0.5;
+  return skin;
+}
+
+void write_recording(const std::filesystem::path& path, const Calibration& calibration,
+                     double interval_s) {
+  const Skin skin = small_skin();
+  RecordingWriter writer(path, skin, SenselType::u16, calibration, {});
+  FrameBuffer frame(SenselType::u16, skin.rows, skin.cols);
+  for (std::uint64_t index = 0; index < kFrames; ++index) {
+    fill_frame(index, frame);
+    writer.append(frame.view(), 7 + interval_s * static_cast<double>(index));
+  }
+  writer.finish();
+}
+
+void write_forces(const std::filesystem::path& path, bool uncertainty) {
+  ForceFileInfo info = {19, 23, 1.3, "direct", "a device", "press.h5", false, uncertainty};
+  const auto sink = create_force_sink(path, info);
+  for (std::uint64_t index = 0; index < kFrames; ++index) {
+    ForceField forces = sample_forces(index, info.rows, info.cols);
+    if (uncertainty) {
+      for (auto& plane : forces.uncertainty) {
+        plane = sample_forces(index + 100, info.rows, info.cols).normal;
+      }
+      forces.uncertainty[Uncertainty::magnitude_high].assign(forces.pillars(), 0.25F);
+    }
+    sink->append(forces.view(), 0.005 * static_cast<double>(index));
+  }
+  sink->finish();
+}
+
+TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "r.h5";
+  Calibration calibration;
+  calibration.noise.assign(small_skin().sensels(), 0.5F);
+  write_recording(path, calibration, 0.004);
+  const auto producer = open_producer(path, {});
+  const SourceInfo& info = producer->info();
+  EXPECT_EQ(info.kind, "recording");
+  EXPECT_EQ(info.frames, kFrames);
+  EXPECT_NEAR(info.rate_hz, 250, 1e-6);
+  EXPECT_TRUE(info.has_uncertainty);
+  EXPECT_EQ(info.calibration.noise, calibration.noise);
+  SolverPlan plan;
+  plan.skin = small_skin();
+  plan.sensel_type = SenselType::u16;
+  plan.calibration = calibration;
+  plan.uncertainty = true;
+  FrameBuffer frame(SenselType::u16, plan.skin.rows, plan.skin.cols);
+  std::vector<ShownField> shown;
+  for (const std::uint64_t index : {4U, 1U, 0U}) {
+    shown.push_back(producer->produce(index));
+    EXPECT_DOUBLE_EQ(shown.back().time_s, 7 + 0.004 * static_cast<double>(index));
+  }
+  for (const ShownField& field : shown) {
+    fill_frame(field.index, frame);
+    expect_same_forces(field.forces, solve_on_host(plan, frame.view()).view());
+    expect_angles(field.forces);
+    expect_pages(field);
+    const auto* const raw = static_cast<const std::byte*>(field.raw.data);
+    EXPECT_TRUE(std::ranges::equal(std::span(raw, frame.bytes().size()), frame.bytes()))
+        << "readings of another frame";
+  }
+  EXPECT_THROW(static_cast<void>(producer->produce(kFrames)), Error);
+}
+
+TEST(RecordingProducer, WithoutNoiseOrTimeItSaysSo) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "r.h5";
+  write_recording(path, {}, 0);
+  const auto producer = open_producer(path, {});
+  EXPECT_FALSE(producer->info().has_uncertainty);
+  EXPECT_EQ(producer->info().rate_hz, 100);
+}
+
+TEST(RecordingProducer, ReadsTekscanExports) {
+  const TemporaryDirectory directory;
+  const auto path = directory / "movie.asf";
+  write_bytes(path,
+              "DATA_TYPE MOVIE\nVERSION Some System 1.0\nROWS 2\nCOLS 4\nROW_SPACING 0.5 mm\n"
+              "COL_SPACING 0.5 mm\nNOISE_THRESHOLD 3\nSECONDS_PER_FRAME 0.5\nSTART_FRAME 1\n"
+              "END_FRAME 2\nUNITS raw\nASCII_DATA @@\n\nFrame 1\n1,2,3,4\n5,6,7,8\n\n"
+              "Frame 2\n9,8,7,6\n5,4,3,2\n@@\n");
+  const auto producer = open_producer(path, {});
+  EXPECT_EQ(producer->info().kind, "Tekscan ASCII");
+  EXPECT_EQ(producer->info().rate_hz, 2);
+  const ShownField field = producer->produce(1);
+  EXPECT_EQ(field.forces.cols, 2U);
+  EXPECT_EQ(static_cast<const std::uint8_t*>(field.raw.data)[0], 9);
+}
+
+TEST(ForceFileProducer, ShowsWhatTheFileHasAndAngles) {
+  for (const bool uncertainty : {false, true}) {
+    const TemporaryDirectory directory;
+    const auto path = directory / "f.h5";
+    write_forces(path, uncertainty);
+    const auto producer = open_producer(path, {.device = "a device that does not exist"});
+    const SourceInfo& info = producer->info();
+    EXPECT_EQ(info.kind, "force field");
+    EXPECT_EQ(info.solver, "direct on a device");
+    EXPECT_EQ(info.skin.pillar_rows(), 19U);
+    EXPECT_DOUBLE_EQ(info.skin.pillar_pitch_mm(), 1.3);
+    EXPECT_NEAR(info.rate_hz, 200, 1e-6);
+    EXPECT_EQ(info.has_uncertainty, uncertainty);
+    EXPECT_FALSE(info.has_readings);
+    for (const std::uint64_t index : {3U, 0U, 4U}) {
+      const ShownField field = producer->produce(index);
+      expect_same_forces(field.forces, sample_forces(index, 19, 23).view());
+      expect_angles(field.forces);
+      expect_pages(field);
+      EXPECT_DOUBLE_EQ(field.time_s, 0.005 * static_cast<double>(index));
+      if (!uncertainty) continue;
+      const ForceField other = sample_forces(index + 100, 19, 23);
+      EXPECT_TRUE(same_bytes<float>(field.forces.uncertainty[Uncertainty::shear_x], other.normal));
+      EXPECT_EQ(field.forces.uncertainty[Uncertainty::magnitude_high][7], 0.25F);
+    }
+  }
+}
+
+/// Two bodies that pass from frame to frame; in frame 2 the left one is away.
+ShownField passing(std::uint64_t index) {
+  const auto col = static_cast<std::uint32_t>(index);
+  const Touch left{{2, 6, 2 + col, 6 + col}};
+  const Touch right{{12, 16, 20 - col, 24 - col}, 2};
+  return index == 2 ? touched_field(index, 20, 30, {right})
+                    : touched_field(index, 20, 30, {left, right});
+}
+
+/// Written with the contacts of two pillars or more, or with none.
+void write_passing(const std::filesystem::path& path, bool with_contacts) {
+  ForceFileInfo info = {20, 30, 1.3, "direct", "a device", "press.h5", false, false};
+  const ContactOptions options{.minimum_pillars = 2};
+  if (with_contacts) info.contacts = options;
+  const auto sink = create_force_sink(path, info);
+  ContactTracker tracker(info.pillar_pitch_mm, options);
+  for (std::uint64_t index = 0; index < kFrames; ++index) {
+    const ShownField field = passing(index);
+    sink->append(field.forces, field.time_s);
+    if (with_contacts) sink->append_contacts(tracker.update(field.forces, field.time_s));
+  }
+  sink->finish();
+}
+
+std::vector<std::uint64_t> ids_of(const ShownContacts& contacts) {
+  std::vector<std::uint64_t> ids;
+  for (const auto& contact : contacts.found.contacts) ids.push_back(contact.id);
+  return ids;
+}
+
+TEST(ForceFileProducer, ContactsOfTheFileKeepTheirIdsInWhateverOrderTheyAreSeen) {
+  const TemporaryDirectory directory;
+  write_passing(directory / "c.h5", true);
+  const auto producer = open_producer(directory / "c.h5", {});
+  const auto at = [&](std::uint64_t index) {
+    return producer->contacts_of(producer->produce(index));
+  };
+  EXPECT_EQ(ids_of(at(4)), (std::vector<std::uint64_t>{3, 2}));
+  EXPECT_EQ(ids_of(at(0)), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(ids_of(at(2)), (std::vector<std::uint64_t>{2}));
+  const ShownContacts contacts = at(3);
+  ASSERT_EQ(contacts.extents.size(), 2U);
+  EXPECT_EQ(contacts.extents[1].row_begin, 12U);
+  EXPECT_EQ(contacts.extents[1].col_begin, 17U);
+  EXPECT_EQ(contacts.heaviest, (std::vector<std::size_t>{1, 0}));
+}
+
+TEST(ForceFileProducer, WithoutContactsTheyAreFollowedAsTheyAreSeen) {
+  const TemporaryDirectory directory;
+  write_passing(directory / "n.h5", false);
+  const auto producer = open_producer(directory / "n.h5", {});
+  const auto at = [&](std::uint64_t index) {
+    return ids_of(producer->contacts_of(producer->produce(index)));
+  };
+  EXPECT_EQ(at(2), (std::vector<std::uint64_t>{1}));
+  EXPECT_EQ(at(3), (std::vector<std::uint64_t>{2, 1}));
+  EXPECT_EQ(at(0), (std::vector<std::uint64_t>{1, 2}));
+}
+
+TEST(FieldProducer, FieldsStayWhateverTheSource) {
+  const TemporaryDirectory directory;
+  write_recording(directory / "r.h5", {}, 0.01);
+  write_forces(directory / "f.h5", true);
+  for (const Memory memory : {Memory::automatic, Memory::staged}) {
+    const ProducerOptions options = {.memory = memory, .most_frames = 3};
+    for (const auto& path : {kDemo, directory / "r.h5", directory / "f.h5"}) {
+      expect_fields_stay(*open_producer(path, options));
+    }
+  }
+}
+
+TEST(FieldProducer, FieldsOutliveTheirProducer) {
+  const TemporaryDirectory directory;
+  write_recording(directory / "r.h5", {}, 0.01);
+  write_forces(directory / "f.h5", false);
+  for (const auto& path : {kDemo, directory / "r.h5", directory / "f.h5"}) {
+    auto producer = open_producer(path, {.most_frames = 2});
+    const ShownField field = producer->produce(1);
+    const ForceField before = copy_of(field.forces);
+    producer.reset();
+    expect_same_forces(field.forces, before.view());
+  }
+}
+
+TEST(FieldProducer, RefusesWhatItCannotShow) {
+  const TemporaryDirectory directory;
+  EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.h5", {})), Error);
+  EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.toml", {})), Error);
+  write_bytes(directory / "text.h5", "no frames at all");
+  EXPECT_THROW(static_cast<void>(open_producer(directory / "text.h5", {})), Error);
+  const auto empty = directory / "empty.h5";
+  create_force_sink(empty, {2, 2, 1.3, "direct", "", "", false, false})->finish();
+  EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(open_producer(empty, {})); }),
+                      {"empty.h5", "no frames"}));
+  EXPECT_THROW(static_cast<void>(open_producer(kDemo, {.device = "no such device"})), Error);
+}
+
+TEST(FrameRate, IsOfTheMedianStep) {
+  const std::vector<double> times = {5, 5.01, 5.02, 9.0, 9.01, 9.02};
+  const auto time_of = [&](std::uint64_t index) { return times.at(index); };
+  EXPECT_NEAR(frame_rate(times.size(), time_of), 100, 1e-6);
+  EXPECT_EQ(frame_rate(1, time_of), 100);
+  EXPECT_EQ(frame_rate(5, [](std::uint64_t) { return 3.0; }), 100);
+  EXPECT_EQ(frame_rate(5, [](std::uint64_t index) { return -2.0 * double(index); }), 100);
+  EXPECT_EQ(frame_rate(5, [](std::uint64_t) { return std::nan(""); }), 100);
+  EXPECT_NEAR(frame_rate(5, [](std::uint64_t index) { return 0.5 * double(index); }), 2, 1e-9);
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

@@ -1,0 +1,243 @@
+#include "viewer/source/selection.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "pillarfield/error.h"
+#include "viewer/source/direction.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kPitch = 1.25;
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// A field of random forces and status bytes, and readings of u16 that tell where they stand.
+class Sample {
+ public:
+  Sample(std::uint32_t rows, std::uint32_t cols)
+      : forces_(rows, cols), raw_(SenselType::u16, 2 * rows + 1, 2 * cols + 1) {
+    std::mt19937 random(rows * 100 + cols);
+    std::uniform_real_distribution<float> force(-1, 1);
+    for (std::size_t i = 0; i < forces_.pillars(); ++i) {
+      forces_.shear_x[i] = force(random);
+      forces_.shear_y[i] = force(random);
+      forces_.normal[i] = 1 + force(random);
+      forces_.status[i] = static_cast<std::uint8_t>(random() % 256);
+      if (random() % 3 == 0) forces_.status[i] &= 0xF0;
+    }
+    std::uint16_t place = 0;
+    for (std::uint16_t& reading : raw_.readings<std::uint16_t>()) reading = place++;
+  }
+
+  [[nodiscard]] ShownField shown() const {
+    ShownField field;
+    field.forces = forces_.view();
+    field.raw = raw_.view();
+    return field;
+  }
+  ForceField& forces() { return forces_; }
+
+ private:
+  ForceField forces_;
+  FrameBuffer raw_;
+};
+
+/// The definitions, one after the other.
+RegionSums plain_sums(const ShownField& field, const PillarRect& rect) {
+  const ForceFieldView& f = field.forces;
+  RegionSums sums;
+  double weighted_x = 0;
+  double weighted_y = 0;
+  const auto x_of = [&](std::uint32_t col) { return kPitch * (col + 0.5) - kPitch * f.cols / 2; };
+  const auto y_of = [&](std::uint32_t row) { return kPitch * f.rows / 2 - kPitch * (row + 0.5); };
+  for (std::uint32_t r = rect.row_begin; r < rect.row_end; ++r) {
+    for (std::uint32_t c = rect.col_begin; c < rect.col_end; ++c) {
+      const std::size_t i = r * f.cols + c;
+      if ((f.status[i] & 15) == 0) continue;
+      sums.shear_x += f.shear_x[i];
+      sums.shear_y += f.shear_y[i];
+      sums.normal += f.normal[i];
+      weighted_x += f.normal[i] * x_of(c);
+      weighted_y += f.normal[i] * y_of(r);
+      sums.area_mm2 += kPitch * kPitch;
+      if (f.normal[i] > sums.peak_normal) {
+        sums.peak_normal = f.normal[i];
+        sums.peak = {r, c};
+      }
+    }
+  }
+  sums.centre_x_mm = weighted_x / sums.normal;
+  sums.centre_y_mm = weighted_y / sums.normal;
+  for (std::uint32_t r = rect.row_begin; r < rect.row_end; ++r) {
+    for (std::uint32_t c = rect.col_begin; c < rect.col_end; ++c) {
+      const std::size_t i = r * f.cols + c;
+      if ((f.status[i] & 15) == 0) continue;
+      sums.moment_z +=
+          (x_of(c) - sums.centre_x_mm) * f.shear_y[i] - (y_of(r) - sums.centre_y_mm) * f.shear_x[i];
+    }
+  }
+  return sums;
+}
+
+TEST(Selection, SumsAreThoseOfAPlainLoop) {
+  const Sample sample(13, 21);
+  for (const PillarRect rect : {PillarRect{0, 13, 0, 21}, {2, 9, 5, 6}, {12, 13, 0, 21}}) {
+    const RegionSums expected = plain_sums(sample.shown(), rect);
+    const RegionSums sums = sums_over(sample.shown(), rect, kPitch);
+    EXPECT_NEAR(sums.shear_x, expected.shear_x, 1e-12);
+    EXPECT_NEAR(sums.shear_y, expected.shear_y, 1e-12);
+    EXPECT_NEAR(sums.normal, expected.normal, 1e-12);
+    EXPECT_NEAR(sums.moment_z, expected.moment_z, 1e-10);
+    EXPECT_NEAR(sums.centre_x_mm, expected.centre_x_mm, 1e-12);
+    EXPECT_NEAR(sums.centre_y_mm, expected.centre_y_mm, 1e-12);
+    EXPECT_NEAR(sums.area_mm2, expected.area_mm2, 1e-10);
+    EXPECT_NEAR(sums.mean_normal, expected.normal * kPitch * kPitch / expected.area_mm2, 1e-12);
+    EXPECT_EQ(sums.peak_normal, expected.peak_normal);
+    EXPECT_EQ(sums.peak, expected.peak);
+  }
+}
+
+TEST(Selection, CountsEveryPillarOnce) {
+  const Sample sample(9, 14);
+  const ShownField field = sample.shown();
+  const RegionSums sums = sums_over(field, {0, 9, 0, 14}, kPitch);
+  std::uint64_t all = 0;
+  for (const std::uint64_t pillars : sums.by_region) all += pillars;
+  EXPECT_EQ(sums.pillars, 9U * 14U);
+  EXPECT_EQ(all, sums.pillars);
+  EXPECT_EQ(sums.in_contact + sums.by_region[static_cast<std::size_t>(Region::none)], all);
+  std::uint64_t ambiguous = 0;
+  std::uint64_t saturated = 0;
+  std::uint64_t inconsistent = 0;
+  for (const std::uint8_t state : field.forces.status) {
+    ambiguous += state / 16 % 2;
+    saturated += state / 32 % 2;
+    inconsistent += state / 64 % 2;
+  }
+  EXPECT_EQ(sums.ambiguous, ambiguous);
+  EXPECT_EQ(sums.saturated, saturated);
+  EXPECT_EQ(sums.inconsistent, inconsistent);
+}
+
+TEST(Selection, PartsAddUpToTheWhole) {
+  const Sample sample(16, 16);
+  const ShownField field = sample.shown();
+  const RegionSums whole = sums_over(field, {0, 16, 0, 16}, kPitch);
+  const RegionSums left = sums_over(field, {0, 16, 0, 7}, kPitch);
+  const RegionSums right = sums_over(field, {0, 16, 7, 16}, kPitch);
+  EXPECT_NEAR(whole.shear_x, left.shear_x + right.shear_x, 1e-12);
+  EXPECT_NEAR(whole.normal, left.normal + right.normal, 1e-12);
+  EXPECT_EQ(whole.in_contact, left.in_contact + right.in_contact);
+  EXPECT_EQ(whole.peak_normal, std::max(left.peak_normal, right.peak_normal));
+}
+
+TEST(Selection, ATurnToTheLeftIsPositive) {
+  Sample sample(3, 3);
+  ForceField& forces = sample.forces();
+  forces = ForceField(3, 3);
+  for (const std::size_t pillar : {3U, 5U}) {  // Left and right of the middle.
+    forces.status[pillar] = 15;
+    forces.normal[pillar] = 2;
+    forces.shear_y[pillar] = pillar == 5 ? 1 : -1;
+  }
+  const RegionSums sums = sums_over(sample.shown(), {0, 3, 0, 3}, kPitch);
+  EXPECT_DOUBLE_EQ(sums.moment_z, 2 * kPitch);
+  EXPECT_DOUBLE_EQ(sums.centre_x_mm, 0);
+  EXPECT_DOUBLE_EQ(sums.centre_y_mm, 0);
+  const RegionSums right = sums_over(sample.shown(), {0, 3, 2, 3}, kPitch);
+  EXPECT_DOUBLE_EQ(right.centre_x_mm, kPitch);
+  EXPECT_DOUBLE_EQ(right.moment_z, 0);
+}
+
+TEST(Selection, WithoutLoadThereIsNoCentre) {
+  Sample sample(4, 4);
+  sample.forces() = ForceField(4, 4);
+  const RegionSums sums = sums_over(sample.shown(), {0, 4, 0, 4}, kPitch);
+  EXPECT_TRUE(std::isnan(sums.centre_x_mm) && std::isnan(sums.centre_y_mm));
+  EXPECT_EQ(sums.mean_normal, 0);
+  EXPECT_EQ(sums.area_mm2, 0);
+  EXPECT_EQ(sums_over(sample.shown(), {2, 2, 0, 4}, kPitch).pillars, 0U) << "an empty rectangle";
+}
+
+TEST(Selection, WhatLiesOutsideIsLeftOut) {
+  const Sample sample(5, 6);
+  const RegionSums whole = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
+  const RegionSums more = sums_over(sample.shown(), {0, 500, 0, 600}, kPitch);
+  EXPECT_EQ(more.pillars, 30U);
+  EXPECT_EQ(more.normal, whole.normal);
+  EXPECT_EQ(sums_over(sample.shown(), {7, 9, 0, 6}, kPitch).pillars, 0U);
+}
+
+TEST(Selection, ForcesThatAreNoNumbersSpoilNothing) {
+  Sample sample(5, 6);
+  const std::uint64_t in_contact = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch).in_contact;
+  sample.forces().status[7] = 15;
+  sample.forces().normal[7] = kNan;
+  const RegionSums sums = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
+  EXPECT_TRUE(std::isfinite(sums.normal) && std::isfinite(sums.moment_z));
+  EXPECT_LE(sums.in_contact, in_contact);
+}
+
+TEST(Selection, ReadingsStandWhereTheSenselsAre) {
+  const Sample sample(4, 5);
+  const PillarValues values = values_at(sample.shown(), {2, 3});
+  const float stride = 11;  // An odd column more than the pillars need.
+  const float upper_left = 4 * stride + 6;
+  EXPECT_EQ(values.readings[0], upper_left + 1);
+  EXPECT_EQ(values.readings[1], upper_left);
+  EXPECT_EQ(values.readings[2], upper_left + stride);
+  EXPECT_EQ(values.readings[3], upper_left + stride + 1);
+}
+
+TEST(Selection, ReadingsOfEveryTypeAreRead) {
+  for (const SenselType type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    FrameBuffer frame(type, 2, 2);
+    if (type == SenselType::u8) frame.readings<std::uint8_t>()[1] = 200;
+    if (type == SenselType::u16) frame.readings<std::uint16_t>()[1] = 200;
+    if (type == SenselType::f32) frame.readings<float>()[1] = 200;
+    const ForceField forces(1, 1);
+    ShownField field;
+    field.forces = forces.view();
+    field.raw = frame.view();
+    EXPECT_EQ(values_at(field, {0, 0}).readings, (std::array<float, 4>{200, 0, 0, 0}));
+  }
+}
+
+TEST(Selection, UnknownReadingsAndUncertaintyAreSaidToBe) {
+  const Sample sample(3, 3);
+  ShownField field = sample.shown();
+  field.raw = {};
+  const PillarValues values = values_at(field, {1, 1});
+  for (const float reading : values.readings) EXPECT_TRUE(std::isnan(reading));
+  EXPECT_FALSE(values.uncertainty);
+  EXPECT_THROW(static_cast<void>(values_at(field, {3, 0})), Error);
+  EXPECT_THROW(static_cast<void>(values_at(field, {0, 3})), Error);
+}
+
+TEST(Selection, AnglesAndUncertaintyAreThoseOfThePlanesWhereThereAreSome) {
+  Sample sample(2, 3);
+  ShownField field = sample.shown();
+  const PillarValues computed = values_at(field, {1, 2});
+  const Direction direction = direction_of(computed.shear_x, computed.shear_y, computed.normal);
+  EXPECT_EQ(computed.theta, direction.theta);
+  EXPECT_EQ(computed.phi, direction.phi);
+  EXPECT_EQ(computed.magnitude, direction.magnitude);
+  const std::vector<float> plane = {0, 1, 2, 3, 4, 5};
+  field.forces.magnitude = plane;
+  field.forces.theta = plane;
+  field.forces.phi = plane;
+  for (auto& span : field.forces.uncertainty) span = plane;
+  const PillarValues values = values_at(field, {1, 2});
+  EXPECT_EQ(values.theta, 5);
+  EXPECT_EQ(values.phi, 5);
+  EXPECT_EQ(values.magnitude, 5);
+  ASSERT_TRUE(values.uncertainty);
+  EXPECT_EQ((*values.uncertainty)[kUncertaintyPlanes - 1], 5);
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

@@ -1,0 +1,288 @@
+#include "viewer/style/view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "random_view.h"
+#include "viewer/style/camera.h"
+#include "viewer/style/vectors.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr int kSituations = 3000;
+
+bool is_top(const View& view) { return std::holds_alternative<TopView>(view); }
+
+/// The surface as the view shows it.
+Surface shown_surface(const Situation& situation) {
+  return is_top(situation.view) ? Surface{} : situation.surface;
+}
+
+/// The cosine between a line of sight and the surface's normal at a point of the sheet.
+double facing(const Situation& situation, Vec2 point) {
+  const Surface surface = shown_surface(situation);
+  const SurfaceFrame frame = frame_at(surface, point);
+  const Camera camera = camera_of(situation.view, surface, situation.viewport);
+  const Vec3 sight = camera.perspective ? frame.position - camera.eye : camera.forward;
+  return dot(sight, frame.normal) / length(sight);
+}
+
+std::optional<Vec2> projected(const Situation& situation, Vec3 point) {
+  return project(situation.view, situation.surface, situation.skin, situation.viewport, point);
+}
+
+std::optional<Vec2> picked(const Situation& situation, Vec2 pixel) {
+  return pick(situation.view, situation.surface, situation.skin, situation.viewport, pixel);
+}
+
+struct Clip {
+  double x, y, z, w;
+};
+Clip times(const Matrix& matrix, Vec3 p) {
+  const auto row = [&](std::size_t i) {
+    return matrix.at(i) * p.x + matrix.at(4 + i) * p.y + matrix.at(8 + i) * p.z + matrix.at(12 + i);
+  };
+  return {row(0), row(1), row(2), row(3)};
+}
+
+Clip clipped(const Situation& situation, Vec3 point) {
+  return times(
+      clip_from_world(situation.view, situation.surface, situation.skin, situation.viewport),
+      point);
+}
+
+TEST(Views, PickFindsWhatProjectShows) {
+  std::mt19937 random(1);
+  int compared = 0;
+  for (int i = 0; i < kSituations; ++i) {
+    const Situation situation = random_situation(random);
+    const Surface surface = shown_surface(situation);
+    const Vec2 point = random_place_on(situation.skin, random);
+    const Vec3 place = frame_at(surface, point).position;
+    const auto pixel = projected(situation, place);
+    if (!pixel || std::abs(facing(situation, point)) < 0.02) continue;
+    const auto found = picked(situation, *pixel);
+    ASSERT_TRUE(found) << i;
+    const Vec3 found_place = frame_at(surface, *found).position;
+    if (length(found_place - place) > 1e-6) {
+      // Another part of the skin is in front of it.
+      const Camera camera = camera_of(situation.view, surface, situation.viewport);
+      EXPECT_LT(seen_by(camera, found_place).z, seen_by(camera, place).z) << i;
+      continue;
+    }
+    ++compared;
+    EXPECT_NEAR(found->x, point.x, 1e-6) << i;
+    EXPECT_NEAR(found->y, point.y, 1e-6) << i;
+  }
+  EXPECT_GT(compared, kSituations / 2);
+}
+
+TEST(Views, ProjectShowsWhatPickFound) {
+  std::mt19937 random(2);
+  int compared = 0;
+  for (int i = 0; i < kSituations; ++i) {
+    const Situation situation = random_situation(random);
+    const Viewport& viewport = situation.viewport;
+    const Vec2 pixel{viewport.x + random_between(random, 0, viewport.width),
+                     viewport.y + random_between(random, 0, viewport.height)};
+    const auto found = picked(situation, pixel);
+    if (!found) continue;
+    EXPECT_LE(std::abs(found->x), situation.skin.width_mm / 2);
+    EXPECT_LE(std::abs(found->y), situation.skin.height_mm / 2);
+    const auto back = projected(situation, frame_at(shown_surface(situation), *found).position);
+    ASSERT_TRUE(back) << i;
+    ++compared;
+    EXPECT_NEAR(back->x, pixel.x, 1e-6) << i;
+    EXPECT_NEAR(back->y, pixel.y, 1e-6) << i;
+  }
+  EXPECT_GT(compared, kSituations / 4);
+}
+
+TEST(Views, PickFindsNothingBesideTheSkin) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 500; ++i) {
+    Situation situation = random_situation(random);
+    situation.surface = {};
+    Vec2 outside = random_place_on(situation.skin, random);
+    outside.x = (i % 2 == 0 ? 0.501 : -0.501) * situation.skin.width_mm;
+    const auto pixel = projected(situation, {outside.x, outside.y, 0});
+    if (!pixel) continue;
+    EXPECT_FALSE(picked(situation, *pixel));
+  }
+}
+
+TEST(Views, PickFindsNothingInTheSky) {
+  const SkinSize skin{100, 100};
+  const Viewport viewport{0, 0, 800, 600};
+  OrbitView view;
+  view.elevation = 0.1;
+  EXPECT_TRUE(pick(view, {}, skin, viewport, {400, 300}));
+  EXPECT_FALSE(pick(view, {}, skin, viewport, {400, 5}));
+}
+
+TEST(Views, MatrixShowsPointsWhereProjectSays) {
+  std::mt19937 random(4);
+  for (int i = 0; i < kSituations; ++i) {
+    const Situation situation = random_situation(random);
+    const Viewport& viewport = situation.viewport;
+    const Surface surface = shown_surface(situation);
+    const SurfaceFrame frame = frame_at(surface, random_place_on(situation.skin, random));
+    const Vec3 point = frame.position + random_between(random, 0, kArrowRoomMm) * frame.normal;
+    const auto pixel = projected(situation, point);
+    const Clip clip = clipped(situation, point);
+    EXPECT_EQ(pixel.has_value(), clip.w > 0);
+    if (!pixel || clip.w < 5) continue;
+    const double x = viewport.x + (clip.x / clip.w + 1) / 2 * viewport.width;
+    const double y = viewport.y + (clip.y / clip.w + 1) / 2 * viewport.height;
+    // Single precision: a part in 10^7 of how far things are off the picture's middle or the eye.
+    const double scale = 1 + std::abs(pixel->x) + std::abs(pixel->y) + 1e4 / clip.w;
+    EXPECT_NEAR(x, pixel->x, 2e-4 * scale) << i;
+    EXPECT_NEAR(y, pixel->y, 2e-4 * scale) << i;
+  }
+}
+
+TEST(Views, DepthIsWithinVulkansRangeForAllArrowsAndGrowsWithTheWay) {
+  std::mt19937 random(5);
+  for (int i = 0; i < kSituations; ++i) {
+    const Situation situation = random_situation(random);
+    const Surface surface = shown_surface(situation);
+    const Camera camera = camera_of(situation.view, surface, situation.viewport);
+    const SurfaceFrame frame = frame_at(surface, random_place_on(situation.skin, random));
+    const Vec3 lean = random_between(random, -1, 1) * frame.tangent_x +
+                      random_between(random, -1, 1) * frame.tangent_y +
+                      random_between(random, 0.1, 1) * frame.normal;
+    const Vec3 arrow = random_between(random, 0, kArrowRoomMm) / length(lean) * lean;
+    double nearer = -1;
+    // From the arrow's end that is nearer to the eye to the other one.
+    const bool towards_eye = dot(arrow, camera.forward) < 0;
+    for (const double share : {0.0, 0.5, 1.0}) {
+      const Vec3 point = frame.position + (towards_eye ? 1 - share : share) * arrow;
+      const Clip clip = clipped(situation, point);
+      const bool cut = camera.perspective && seen_by(camera, point).z < camera.distance_mm / 99;
+      if (cut) break;
+      EXPECT_GE(clip.z / clip.w, -1e-5) << i;
+      EXPECT_LE(clip.z / clip.w, 1 + 1e-5) << i;
+      EXPECT_GE(clip.z / clip.w, nearer - 1e-5) << i;
+      nearer = clip.z / clip.w;
+    }
+  }
+}
+
+TEST(Views, DepthUsesItsRange) {
+  const SkinSize skin{100, 100};
+  const Viewport viewport{0, 0, 800, 600};
+  const Situation top{fit_top(skin, viewport), {}, skin, viewport};
+  EXPECT_NEAR(clipped(top, {0, 0, kArrowRoomMm}).z, 0, 1e-6);
+  EXPECT_NEAR(clipped(top, {0, 0, -kArrowRoomMm}).z, 1, 1e-6);
+  OrbitView straight_down;
+  straight_down.elevation = std::numbers::pi / 2;
+  straight_down.distance_mm = 400;
+  const Situation orbit{straight_down, {}, skin, viewport};
+  const Clip nearest = clipped(orbit, {0, 0, kArrowRoomMm});
+  const Clip farthest = clipped(orbit, {0, 0, -kArrowRoomMm});
+  EXPECT_NEAR(nearest.z / nearest.w, 0, 1e-6);
+  EXPECT_NEAR(farthest.z / farthest.w, 1, 1e-6);
+}
+
+TEST(TopView, HasXToTheRightAndYUp) {
+  const Viewport viewport{10, 20, 800, 600};
+  const Situation situation{TopView{{5, 7}, 4}, {}, {100, 100}, viewport};
+  const Vec2 middle = *projected(situation, {5, 7, 0});
+  EXPECT_DOUBLE_EQ(middle.x, 410);
+  EXPECT_DOUBLE_EQ(middle.y, 320);
+  const Vec2 other = *projected(situation, {6, 9, 33});
+  EXPECT_DOUBLE_EQ(other.x, 414);
+  EXPECT_DOUBLE_EQ(other.y, 312) << "y goes down in pixels; height changes nothing";
+  EXPECT_DOUBLE_EQ(pixels_per_mm(situation.view, viewport), 4);
+}
+
+TEST(TopView, IgnoresTheSurface) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 100; ++i) {
+    Situation bent = random_situation(random);
+    bent.view = TopView{{3, 4}, 2};
+    bent.surface = {SurfaceKind::cylinder, bent.skin.width_mm};
+    Situation flat = bent;
+    flat.surface = {};
+    EXPECT_EQ(clip_from_world(bent.view, bent.surface, bent.skin, bent.viewport),
+              clip_from_world(flat.view, flat.surface, flat.skin, flat.viewport));
+    const auto pixel = projected(flat, {1, 2, 0});
+    EXPECT_EQ(picked(bent, *pixel)->x, picked(flat, *pixel)->x);
+  }
+}
+
+TEST(OrbitView, LooksAtItsTargetFromWhereItSays) {
+  std::mt19937 random(7);
+  for (int i = 0; i < 300; ++i) {
+    Situation situation = random_situation(random);
+    auto* view = std::get_if<OrbitView>(&situation.view);
+    if (view == nullptr) continue;
+    const SurfaceFrame target = frame_at(situation.surface, view->target_mm);
+    const Vec2 pixel = *projected(situation, target.position);
+    EXPECT_NEAR(pixel.x, situation.viewport.x + situation.viewport.width / 2, 1e-9);
+    EXPECT_NEAR(pixel.y, situation.viewport.y + situation.viewport.height / 2, 1e-9);
+    const Vec3 to_eye =
+        camera_of(*view, situation.surface, situation.viewport).eye - target.position;
+    EXPECT_NEAR(length(to_eye), view->distance_mm, 1e-9);
+    EXPECT_NEAR(dot(to_eye, target.normal) / length(to_eye), std::sin(view->elevation), 1e-12);
+    EXPECT_NEAR(
+        std::remainder(std::atan2(dot(to_eye, target.tangent_x), -dot(to_eye, target.tangent_y)) -
+                           view->azimuth,
+                       2 * std::numbers::pi),
+        0, 1e-9);
+  }
+}
+
+TEST(OrbitView, FromBelowTheLowerEdgeHasXToTheRightAndHeightUp) {
+  const Viewport viewport{0, 0, 800, 600};
+  OrbitView view;
+  view.azimuth = 0;
+  const Situation situation{view, {}, {100, 100}, viewport};
+  EXPECT_GT(projected(situation, {10, 0, 0})->x, 400 + 10);
+  EXPECT_NEAR(projected(situation, {10, 0, 0})->y, 300, 1e-9);
+  EXPECT_LT(projected(situation, {0, 0, 10})->y, 300) << "arrows go up";
+  EXPECT_LT(projected(situation, {0, 10, 0})->y, 300) << "farther is higher";
+}
+
+TEST(OrbitView, SeesItsFieldOfViewFromTopToBottom) {
+  std::mt19937 random(8);
+  for (int i = 0; i < 100; ++i) {
+    const Viewport viewport{0, 50, random_between(random, 200, 2000), 600};
+    OrbitView view;
+    view.elevation = std::numbers::pi / 2;
+    view.azimuth = 0;
+    view.field_of_view = random_between(random, 0.2, 2);
+    const double top_mm = view.distance_mm * std::tan(view.field_of_view / 2);
+    const Situation situation{view, {}, {100, 100}, viewport};
+    EXPECT_NEAR(projected(situation, {0, top_mm, 0})->y, 50, 1e-9);
+    EXPECT_NEAR(projected(situation, {0, -top_mm, 0})->y, 650, 1e-9);
+  }
+}
+
+TEST(OrbitView, StraightFromAboveIsATopViewInPerspective) {
+  const Viewport viewport{0, 0, 800, 600};
+  OrbitView orbit;
+  orbit.azimuth = 0;
+  orbit.elevation = std::numbers::pi / 2;
+  const Situation above{orbit, {}, {100, 100}, viewport};
+  const double scale = pixels_per_mm(orbit, viewport);
+  const Vec2 pixel = *projected(above, {10, 20, 0});
+  EXPECT_NEAR(pixel.x, 400 + 10 * scale, 1e-9);
+  EXPECT_NEAR(pixel.y, 300 - 20 * scale, 1e-9);
+}
+
+TEST(OrbitView, ShowsNothingBehindTheEye) {
+  OrbitView view;
+  view.elevation = std::numbers::pi / 2;
+  view.distance_mm = 100;
+  const Situation situation{view, {}, {100, 100}, {0, 0, 800, 600}};
+  EXPECT_TRUE(projected(situation, {0, 0, 99}));
+  EXPECT_FALSE(projected(situation, {0, 0, 100.001}));
+  EXPECT_FALSE(projected(situation, {0, 0, 150}));
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

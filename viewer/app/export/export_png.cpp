@@ -1,0 +1,66 @@
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <png.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "pillarfield/error.h"
+#include "viewer/app/export/export.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+std::vector<std::uint8_t> without_alpha(const Pixels& pixels) {
+  const std::size_t count = pixels.rgba.size() / 4;
+  std::vector<std::uint8_t> rgb(3 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      rgb[3 * i + channel] = pixels.rgba[4 * i + channel];
+    }
+  }
+  return rgb;
+}
+
+[[noreturn]] void fail_to_write_png(const std::filesystem::path& path, const char* reason) {
+  throw Error(path.string(), fmt::format("cannot be written: {}", reason),
+              "check its directory and the space left on its disk");
+}
+
+/// A stream to the part, which closing it leaves open.
+std::FILE* stream_of(const OutputFile& file) {
+  const int duplicate = fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0);
+  return duplicate < 0 ? nullptr : fdopen(duplicate, "wb");
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, const Pixels& pixels, Replace replace) {
+  if (pixels.rgba.empty() || pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
+    throw Error(path.string(), "there is no picture to be written", "give it a size");
+  }
+  OutputFile file(path, OutputKind::png, replace);
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = pixels.width;
+  image.height = pixels.height;
+  image.format = PNG_FORMAT_RGB;
+  const std::vector<std::uint8_t> rgb = without_alpha(pixels);
+  std::FILE* const stream = stream_of(file);
+  if (stream == nullptr) fail_to_write_png(path, "there are too many open files");
+  const bool written = png_image_write_to_stdio(&image, stream, 0, rgb.data(), 0, nullptr) != 0;
+  const bool closed = std::fclose(stream) == 0;
+  if (!written) fail_to_write_png(path, image.message);
+  if (!closed) fail_to_write_png(path, "the disk is full");
+  file.commit();
+}
+
+std::filesystem::path numbered(const std::filesystem::path& path, std::uint64_t frame,
+                               std::uint64_t frames) {
+  const std::size_t digits = std::to_string(frames).size();
+  const std::string name =
+      fmt::format("{}_{:0{}}{}", path.stem().string(), frame, digits, path.extension().string());
+  return path.parent_path() / name;
+}
+
+}  // namespace pillarfield::viewer

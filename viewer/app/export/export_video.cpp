@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "pillarfield/error.h"
+#include "viewer/app/export/child_process.h"
+#include "viewer/app/export/export.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// What ffmpeg makes of a file's ending.
+struct Encoding {
+  std::string_view ending;
+  Words words;  ///< the muxer's name is among them, for the part's ending does not tell it
+};
+
+/// H.264 at a quality that keeps thin lines and small text; players want an index at the beginning.
+const std::array<Encoding, 4>& encodings() {
+  static const Words mp4{"-c:v", "libx264",   "-preset",    "medium", "-crf",
+                         "16",   "-movflags", "+faststart", "-f",     "mp4"};
+  static const Words mov{"-c:v", "libx264",   "-preset",    "medium", "-crf",
+                         "16",   "-movflags", "+faststart", "-f",     "mov"};
+  static const Words matroska{"-c:v", "libx264", "-preset", "medium",
+                              "-crf", "16",      "-f",      "matroska"};
+  static const Words vp9{"-c:v", "libvpx-vp9", "-crf", "24", "-b:v", "0", "-f", "webm"};
+  static const std::array<Encoding, 4> all{
+      {{".mp4", mp4}, {".mov", mov}, {".mkv", matroska}, {".webm", vp9}}};
+  return all;
+}
+
+const Words& encoding_of(const std::filesystem::path& path) {
+  const std::string ending = path.extension().string();
+  const auto* const found = std::ranges::find(encodings(), ending, &Encoding::ending);
+  if (found != encodings().end()) return found->words;
+  throw Error(path.string(), "no video has this ending", "use .mp4, .mkv, .mov or .webm");
+}
+
+Words command(const OutputFile& file, std::uint32_t width, std::uint32_t height, double rate_hz) {
+  Words words{"ffmpeg",
+              "-hide_banner",
+              "-loglevel",
+              "error",
+              "-nostdin",
+              "-y",
+              "-f",
+              "rawvideo",
+              "-pixel_format",
+              "rgb0",
+              "-video_size",
+              fmt::format("{}x{}", width, height),
+              "-framerate",
+              fmt::format("{}", rate_hz),
+              "-i",
+              "pipe:0",
+              "-an"};
+  // Colours are halved in both directions, which takes even sizes; players expect those of HDTV.
+  const Words colours{"-vf",
+                      "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p",
+                      "-colorspace",
+                      "bt709",
+                      "-color_primaries",
+                      "bt709",
+                      "-color_trc",
+                      "bt709"};
+  const Words& encoding = encoding_of(file.path());
+  words.insert(words.end(), colours.begin(), colours.end());
+  words.insert(words.end(), encoding.begin(), encoding.end());
+  words.push_back("file:" + file.part_path().string());
+  return words;
+}
+
+void check(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+           double rate_hz) {
+  static_cast<void>(encoding_of(path));
+  if (width == 0 || height == 0) {
+    throw Error(path.string(), "a video needs pictures with pixels", "give it a size");
+  }
+  if (!std::isfinite(rate_hz) || rate_hz <= 0) {
+    throw Error(path.string(), fmt::format("a video cannot have {} pictures a second", rate_hz),
+                "give it a rate above 0");
+  }
+}
+
+}  // namespace
+
+struct VideoWriter::State {
+  State(const std::filesystem::path& path, std::uint32_t picture_width,
+        std::uint32_t picture_height, double rate_hz, Replace replace)
+      : file(path, OutputKind::video, replace),
+        ffmpeg(command(file, picture_width, picture_height, rate_hz),
+               "install the Debian package ffmpeg, or write a sequence of PNG files"),
+        width(picture_width),
+        height(picture_height) {}
+
+  [[noreturn]] void fail() const {
+    throw Error(file.path().string(), "ffmpeg failed: " + ffmpeg.complaint(),
+                "mend that, or write a sequence of PNG files");
+  }
+
+  OutputFile file;  ///< outlives ffmpeg, which writes it by its name
+  ChildProcess ffmpeg;
+  std::uint32_t width;
+  std::uint32_t height;
+  std::uint64_t pictures = 0;
+  bool finished = false;
+};
+
+VideoWriter::VideoWriter(const std::filesystem::path& path, std::uint32_t width,
+                         std::uint32_t height, double rate_hz, Replace replace) {
+  check(path, width, height, rate_hz);
+  state_ = std::make_unique<State>(path, width, height, rate_hz, replace);
+}
+
+VideoWriter::~VideoWriter() = default;
+
+void VideoWriter::add(const Pixels& pixels) {
+  const std::filesystem::path& path = state_->file.path();
+  if (state_->finished) throw Error(path.string(), "is finished", "start another video");
+  if (pixels.width != state_->width || pixels.height != state_->height ||
+      pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
+    throw Error(path.string(),
+                fmt::format("a picture has {} x {} pixels, the video {} x {}", pixels.width,
+                            pixels.height, state_->width, state_->height),
+                "keep the size while a video is written");
+  }
+  ++state_->pictures;
+  if (state_->ffmpeg.feed(std::as_bytes(std::span(pixels.rgba)))) return;
+  state_->finished = true;
+  static_cast<void>(state_->ffmpeg.finish());  // Its last words.
+  state_->fail();
+}
+
+void VideoWriter::finish() {
+  if (state_->finished) return;
+  state_->finished = true;
+  if (!state_->ffmpeg.finish()) state_->fail();
+  if (state_->pictures == 0) {
+    throw Error(state_->file.path().string(), "a video needs pictures", "add one at least");
+  }
+  state_->file.commit();
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,71 @@
+#include "viewer/app/export/frame_writer.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace pillarfield::viewer {
+namespace {
+
+/// The first of NAME_DETAIL, NAME_DETAIL_2, ... whose file `looked_for` is not there.
+template <class LookedFor>
+std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
+                                 const char* ending, const LookedFor& looked_for) {
+  std::string stem = std::filesystem::path(source.name).stem().string();
+  if (!detail.empty()) stem += "_" + detail;
+  std::filesystem::path path = stem + ending;
+  for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
+       ++number) {
+    path = fmt::format("{}_{}{}", stem, number, ending);
+  }
+  return path;
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(Session& session, Kind kind, std::filesystem::path path,
+                         std::uint32_t width, std::uint32_t height)
+    : session_(&session), path_(std::move(path)), frames_(session.player->state().frames) {
+  if (kind == Kind::video) {
+    const double rate = session.player->info().rate_hz;
+    video_ = std::make_unique<VideoWriter>(path_, width, height, rate, Replace::nothing);
+  }
+  session.writing = true;
+  session.player->pause();
+  session.player->seek(0);
+}
+
+FrameWriter::~FrameWriter() { session_->writing = false; }
+
+bool FrameWriter::wants_picture() const {
+  return session_->field && session_->field->index == next_;
+}
+
+bool FrameWriter::add(const Pixels& pixels) {
+  if (video_ != nullptr) {
+    video_->add(pixels);
+  } else {
+    write_png(numbered(path_, next_ + 1, frames_), pixels, Replace::nothing);
+  }
+  ++next_;
+  if (next_ < frames_) {
+    session_->notice = fmt::format("writing {} of {} (Esc stops)", next_, frames_);
+    session_->player->seek(next_);
+    return false;
+  }
+  if (video_ != nullptr) video_->finish();
+  session_->notice = fmt::format("wrote {} frames: {}", frames_, path_.string());
+  return true;
+}
+
+std::filesystem::path free_path(const SourceInfo& source, const std::string& detail,
+                                const char* ending) {
+  return first_free(source, detail, ending, [](const auto& path) { return path; });
+}
+
+std::filesystem::path free_sequence_path(const SourceInfo& source, const std::string& detail) {
+  return first_free(source, detail, ".png",
+                    [&](const auto& path) { return numbered(path, 1, source.frames); });
+}
+
+}  // namespace pillarfield::viewer

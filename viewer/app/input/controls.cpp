@@ -1,0 +1,129 @@
+#include "viewer/app/input/controls.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "viewer/app/input/changes.h"
+#include "viewer/app/window/screen.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kShake = 4;  ///< pixels at scale 1 that a click may move
+constexpr double kDoubleClickSeconds = 0.35;
+constexpr double kZoomOfStep = 1.2;
+
+double distance(Vec2 a, Vec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+double shake_of(const Command& command) { return kShake * command.session.look.scale; }
+
+/// Views are told of pixels in the picture, not in the window.
+Viewport plot_of(const Command& command) {
+  return layout_of(command.place.area.width, command.place.area.height, command.session.look).plot;
+}
+
+Vec2 in_picture(const Command& command, Vec2 pixel) {
+  return {pixel.x - command.place.area.x, pixel.y - command.place.area.y};
+}
+
+/// The view moved: it is kept on the skin, and no longer follows the window's size.
+void settle(const Command& command) {
+  keep_on_skin(command.session.look.view, command.place.skin());
+  command.session.view_is_fitted = false;
+}
+
+void mark_between(const Command& command, Vec2 begin_mm, Vec2 pixel) {
+  const Look& look = command.session.look;
+  const auto* const view = std::get_if<TopView>(&look.view);
+  if (view == nullptr) return;
+  const Vec2 end_mm = sheet_point_beyond(command.place, look, *view, pixel);
+  const auto rect = pillars_between(command.place, begin_mm, end_mm);
+  if (rect) {
+    mark_region(command.session, *rect);
+  } else {
+    command.session.region.reset();
+  }
+}
+
+}  // namespace
+
+void Controls::take(const InputEvent& event, const Command& command) {
+  if (const auto* key = std::get_if<KeyEvent>(&event)) {
+    if (key->pressed && !key->unusable) dispatch({key->key, key->modifiers}, command);
+  } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
+    move(motion->pixel, command);
+  } else if (std::holds_alternative<LeaveEvent>(event)) {
+    if (!drag_) cursor_.reset();
+  } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
+    button->pressed ? press(*button, command) : release(*button, command);
+  } else if (const auto* wheel = std::get_if<WheelEvent>(&event)) {
+    turn_wheel(*wheel, command);
+  }
+  hover(command);
+}
+
+void Controls::hover(const Command& command) const {
+  Session& session = command.session;
+  session.hovered = cursor_ ? pillar_at(command.place, session.look, *cursor_) : std::nullopt;
+}
+
+void Controls::press(const ButtonEvent& event, const Command& command) {
+  if (drag_ || !contains(command.place.area, event.pixel)) return;
+  const Look& look = command.session.look;
+  const bool pans = event.button != MouseButton::left || event.modifiers.shift;
+  const Purpose purpose = pans ? Purpose::pan : shows_orbit(look) ? Purpose::orbit : Purpose::mark;
+  drag_ = Drag{event.button, purpose, event.pixel, event.pixel, false};
+  if (const auto* view = std::get_if<TopView>(&look.view)) {
+    drag_->begin_mm = sheet_point_beyond(command.place, look, *view, event.pixel);
+  }
+}
+
+void Controls::move(Vec2 pixel, const Command& command) {
+  cursor_.reset();
+  if (contains(command.place.area, pixel)) cursor_ = pixel;
+  if (!drag_) return;
+  if (!drag_->moved && distance(drag_->begin, pixel) <= shake_of(command)) return;
+  drag_->moved = true;
+  const Vec2 way{pixel.x - drag_->last.x, pixel.y - drag_->last.y};
+  drag_->last = pixel;
+  View& view = command.session.look.view;
+  if (drag_->purpose == Purpose::mark) {
+    mark_between(command, drag_->begin_mm, pixel);
+  } else if (drag_->purpose == Purpose::orbit) {
+    orbit(view, way);
+    settle(command);
+  } else {
+    pan(view, plot_of(command), way);
+    settle(command);
+  }
+}
+
+void Controls::release(const ButtonEvent& event, const Command& command) {
+  if (!drag_ || drag_->button != event.button) return;
+  move(event.pixel, command);
+  const Drag done = *drag_;
+  drag_.reset();
+  if (!done.moved && event.button == MouseButton::left) click(event, command);
+}
+
+void Controls::click(const ButtonEvent& event, const Command& command) {
+  const bool again = last_click_ && event.time_s - last_click_->time_s < kDoubleClickSeconds &&
+                     distance(last_click_->pixel, event.pixel) <= shake_of(command);
+  // The second click undoes what the first did to the pin.
+  if (const auto pillar = pillar_at(command.place, command.session.look, event.pixel)) {
+    toggle_pin(command.session, *pillar);
+  }
+  last_click_ = Click{event.time_s, event.pixel};
+  if (!again) return;
+  reset_view(command.session, command.place);
+  last_click_.reset();
+}
+
+void Controls::turn_wheel(const WheelEvent& event, const Command& command) {
+  if (!contains(command.place.area, event.pixel)) return;
+  zoom(command.session.look.view, plot_of(command), in_picture(command, event.pixel),
+       std::pow(kZoomOfStep, event.steps));
+  settle(command);
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,97 @@
+#include "viewer/app/input/marks.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <vector>
+
+#include "viewer/app/input/pins.h"
+#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/window/style.h"
+#include "viewer/render/imgui_point.h"
+#include "viewer/render/skin_outline.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// Draws on top of everything that the picture shows, with an edge that any colour lets see.
+class Marker {
+ public:
+  Marker(const Session& session, const FieldPlace& place)
+      : look_(session.look),
+        place_(place),
+        list_(*ImGui::GetBackgroundDrawList()),
+        unit_(static_cast<float>(session.look.scale)) {}
+
+  void outline(const PillarRect& rect, ImU32 colour) const {
+    std::vector<ImVec2> points;
+    for (const Vec2& point : outline_of(rect, *place_.source, look_, place_.plot(look_))) {
+      points.push_back(to_imgui(point));
+    }
+    const auto count = static_cast<int>(points.size());
+    list_.AddPolyline(points.data(), count, IM_COL32(0, 0, 0, 200), ImDrawFlags_Closed, 3 * unit_);
+    list_.AddPolyline(points.data(), count, colour, ImDrawFlags_Closed, 1.4f * unit_);
+  }
+
+  void pin(const Pin& pin, bool inspected) const {
+    const auto middle = middle_of(pin.pillar);
+    if (!middle) return;
+    const float radius = 9 * unit_;
+    const float reach = radius + 5 * unit_;
+    const ImVec2 tip = to_imgui(*middle);
+    const ImVec2 head(std::round(tip.x + reach), std::round(tip.y - reach));
+    const ImU32 fill = packed(pin_colour(pin.number, Theme::dark));
+    const ImU32 edge = IM_COL32(10, 13, 18, 255);
+    list_.AddLine(tip, head, edge, 3 * unit_);
+    list_.AddLine(tip, head, fill, 1.4f * unit_);
+    list_.AddCircleFilled(tip, 2.5f * unit_, edge);
+    list_.AddCircleFilled(tip, 1.5f * unit_, fill);
+    const ImU32 rim = inspected ? IM_COL32(255, 255, 255, 255) : edge;
+    list_.AddCircleFilled(head, radius + 2.5f * unit_, edge);
+    list_.AddCircleFilled(head, radius + 1.5f * unit_, rim);
+    list_.AddCircleFilled(head, radius, fill);
+    const std::string words = fmt::format("{}", pin.number);
+    const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+    list_.AddText(ImVec2(std::round(head.x - size.x / 2), std::round(head.y - size.y / 2)), edge,
+                  words.c_str());
+  }
+
+  void clip() const {
+    const Viewport plot = place_.plot(look_);
+    list_.PushClipRect(to_imgui({plot.x, plot.y}),
+                       to_imgui({plot.x + plot.width, plot.y + plot.height}));
+  }
+  void unclip() const { list_.PopClipRect(); }
+
+ private:
+  [[nodiscard]] std::optional<Vec2> middle_of(const PillarIndex& pillar) const {
+    const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
+    const double half = 0.5 * place_.source->skin.pillar_pitch_mm();
+    return pixel_of(place_, look_, {corner.x + half, corner.y - half});
+  }
+
+  const Look& look_;
+  const FieldPlace& place_;
+  ImDrawList& list_;
+  float unit_;
+};
+
+PillarRect only(const PillarIndex& pillar) {
+  return {pillar.row, pillar.row + 1, pillar.col, pillar.col + 1};
+}
+
+}  // namespace
+
+void draw_marks(const Session& session, const FieldPlace& place) {
+  const Marker marker(session, place);
+  marker.clip();
+  if (session.region) marker.outline(session.region->rect, palette_of(Theme::dark).accent);
+  if (session.hovered) marker.outline(only(*session.hovered), IM_COL32(255, 255, 255, 230));
+  for (std::size_t i = 0; i < session.pins.size(); ++i) {
+    marker.pin(session.pins[i], i + 1 == session.pins.size());
+  }
+  marker.unclip();
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,54 @@
+#include "viewer/app/input/pins.h"
+
+#include <algorithm>
+#include <array>
+
+namespace pillarfield::viewer {
+namespace {
+
+using PinColours = std::array<Colour, Session::kMostPins>;
+
+// After Okabe and Ito; lighter on dark ground, darker on light ground.
+constexpr PinColours kOnDark{{{86, 180, 233},
+                              {240, 167, 50},
+                              {38, 198, 150},
+                              {222, 140, 185},
+                              {240, 228, 88},
+                              {236, 112, 60}}};
+constexpr PinColours kOnLight{
+    {{0, 106, 170}, {196, 122, 0}, {0, 134, 98}, {174, 84, 134}, {110, 100, 0}, {196, 70, 0}}};
+
+bool is_taken(const Session& session, int number) {
+  return std::ranges::any_of(session.pins,
+                             [number](const Pin& pin) { return pin.number == number; });
+}
+
+}  // namespace
+
+void number_pins(Session& session) {
+  for (Pin& pin : session.pins) {
+    if (pin.number != 0) continue;
+    int number = 1;
+    while (is_taken(session, number)) ++number;
+    pin.number = number;
+  }
+}
+
+void inspect_pin(Session& session, std::size_t index) {
+  if (index >= session.pins.size()) return;
+  const auto pin = session.pins.begin() + static_cast<std::ptrdiff_t>(index);
+  std::rotate(pin, pin + 1, session.pins.end());
+}
+
+void remove_pin(Session& session, std::size_t index) {
+  if (index >= session.pins.size()) return;
+  session.pins.erase(session.pins.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+Colour pin_colour(int number, Theme theme) {
+  const PinColours& colours = theme == Theme::dark ? kOnDark : kOnLight;
+  const auto index = static_cast<std::size_t>(std::max(number, 1) - 1);
+  return colours[index % colours.size()];
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,196 @@
+#include "viewer/app/input/shortcuts.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+#include "viewer/app/input/changes.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+using Group = ShortcutGroup;
+
+constexpr Modifiers kShift{true, false};
+constexpr Modifiers kControl{false, true};
+constexpr std::int64_t kLongStep = 10;
+
+constexpr std::array<Chord, 3> plain(int key, int other = 0, int third = 0) {
+  return {Chord{key, {}}, Chord{other, {}}, Chord{third, {}}};
+}
+constexpr std::array<Chord, 3> with(Modifiers modifiers, int key) {
+  return {Chord{key, modifiers}, Chord{}, Chord{}};
+}
+
+template <Quantity quantity>
+void show(const Command& command) {
+  show_quantity(command.session, quantity);
+}
+
+template <bool Look::*layer>
+void toggle(const Command& command) {
+  command.session.look.*layer = !(command.session.look.*layer);
+}
+
+template <std::int64_t frames>
+void step(const Command& command) {
+  command.session.player->step(frames);
+}
+
+template <bool Requests::*request>
+void ask(const Command& command) {
+  command.requests.*request = true;
+}
+
+void toggle_play(const Command& command) {
+  Player& player = *command.session.player;
+  if (player.state().playing) {
+    player.pause();
+  } else {
+    player.play();
+  }
+}
+
+void go_to_begin(const Command& command) { command.session.player->seek(0); }
+
+void go_to_end(const Command& command) {
+  command.session.player->seek(command.session.player->state().frames - 1);
+}
+
+void toggle_loop(const Command& command) {
+  command.session.player->set_loop(!command.session.player->state().loops);
+}
+
+void toggle_follow(const Command& command) {
+  command.session.player->set_follow(!command.session.player->state().follows);
+}
+
+void toggle_theme(const Command& command) {
+  Theme& theme = command.session.look.theme;
+  theme = theme == Theme::dark ? Theme::light : Theme::dark;
+}
+
+void toggle_view(const Command& command) {
+  show_orbit(command.session, command.place, !shows_orbit(command.session.look));
+}
+
+void toggle_contacts(const Command& command) {
+  show_contacts(command.session, !command.session.look.contacts);
+}
+
+/// What is open or under way ends first.
+void escape(const Command& command) {
+  if (command.session.show_help) {
+    command.session.show_help = false;
+  } else if (command.session.writing) {
+    command.requests.stop = true;
+  } else {
+    clear_marks(command.session);
+  }
+}
+
+constexpr std::array kShortcuts{
+    Shortcut{Group::play, plain(GLFW_KEY_SPACE), "Space", "play or pause", toggle_play},
+    Shortcut{Group::play, plain(GLFW_KEY_RIGHT), "→", "one frame on", step<1>},
+    Shortcut{Group::play, plain(GLFW_KEY_LEFT), "←", "one frame back", step<-1>},
+    Shortcut{Group::play, with(kShift, GLFW_KEY_RIGHT), "Shift+→", "ten frames on",
+             step<kLongStep>},
+    Shortcut{Group::play, with(kShift, GLFW_KEY_LEFT), "Shift+←", "ten frames back",
+             step<-kLongStep>},
+    Shortcut{Group::play, plain(GLFW_KEY_HOME), "Home", "first frame", go_to_begin},
+    Shortcut{Group::play, plain(GLFW_KEY_END), "End", "last frame", go_to_end},
+    Shortcut{Group::play,
+             {Chord{GLFW_KEY_EQUAL, {}}, Chord{GLFW_KEY_EQUAL, kShift}, Chord{GLFW_KEY_KP_ADD, {}}},
+             "+",
+             "faster",
+             [](const Command& command) { change_speed(command.session, 1); }},
+    Shortcut{Group::play, plain(GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT), "−", "slower",
+             [](const Command& command) { change_speed(command.session, -1); }},
+    Shortcut{Group::play, plain(GLFW_KEY_L), "L", "loop", toggle_loop},
+    Shortcut{Group::play, plain(GLFW_KEY_F), "F", "follow the newest frame", toggle_follow},
+
+    Shortcut{Group::show, plain(GLFW_KEY_1, GLFW_KEY_KP_1, GLFW_KEY_N), "1, N", "normal force",
+             show<Quantity::normal>},
+    Shortcut{Group::show, plain(GLFW_KEY_2, GLFW_KEY_KP_2, GLFW_KEY_S), "2, S", "shear",
+             show<Quantity::shear>},
+    Shortcut{Group::show, plain(GLFW_KEY_3, GLFW_KEY_KP_3), "3", "shear x",
+             show<Quantity::shear_x>},
+    Shortcut{Group::show, plain(GLFW_KEY_4, GLFW_KEY_KP_4), "4", "shear y",
+             show<Quantity::shear_y>},
+    Shortcut{Group::show, plain(GLFW_KEY_5, GLFW_KEY_KP_5, GLFW_KEY_M), "5, M", "magnitude",
+             show<Quantity::magnitude>},
+    Shortcut{Group::show, plain(GLFW_KEY_6, GLFW_KEY_KP_6), "6", "θ, inclination",
+             show<Quantity::theta>},
+    Shortcut{Group::show, plain(GLFW_KEY_7, GLFW_KEY_KP_7), "7", "φ, direction",
+             show<Quantity::phi>},
+    Shortcut{Group::show, plain(GLFW_KEY_8, GLFW_KEY_KP_8), "8", "region", show<Quantity::region>},
+    Shortcut{Group::show, plain(GLFW_KEY_9, GLFW_KEY_KP_9), "9", "status", show<Quantity::status>},
+    Shortcut{Group::show, plain(GLFW_KEY_0, GLFW_KEY_KP_0), "0", "uncertainty",
+             show<Quantity::uncertainty>},
+    Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
+
+    Shortcut{Group::look, plain(GLFW_KEY_A), "A", "arrows", toggle<&Look::arrows>},
+    Shortcut{Group::look, plain(GLFW_KEY_U), "U", "fans of the ambiguous", toggle<&Look::fans>},
+    Shortcut{Group::look, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars", toggle<&Look::hatch>},
+    Shortcut{Group::look, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
+    Shortcut{Group::look, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
+    Shortcut{Group::look, plain(GLFW_KEY_R), "R", "the whole skin",
+             [](const Command& command) { reset_view(command.session, command.place); }},
+    Shortcut{Group::look, plain(GLFW_KEY_G), "G", "fit the range to this frame",
+             [](const Command& command) { fit_range(command.session); }},
+    Shortcut{Group::look, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
+    Shortcut{
+        Group::look, plain(GLFW_KEY_TAB), "Tab", "panels",
+        [](const Command& command) { command.session.show_panels = !command.session.show_panels; }},
+
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins, region", escape},
+
+    Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
+             ask<&Requests::picture>},
+    Shortcut{Group::write, with(kControl, GLFW_KEY_P), "Ctrl+P", "write all frames (PNG)",
+             ask<&Requests::sequence>},
+    Shortcut{Group::write, with(kControl, GLFW_KEY_M), "Ctrl+M", "write all frames (video)",
+             ask<&Requests::video>},
+    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write what is in sight (CSV)",
+             ask<&Requests::table>},
+    Shortcut{
+        Group::write,
+        {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
+        "?, H, F1",
+        "this help",
+        [](const Command& command) { command.session.show_help = !command.session.show_help; }},
+    Shortcut{Group::write, plain(GLFW_KEY_Q), "Q", "quit", ask<&Requests::quit>},
+};
+
+constexpr std::array kMouseHelp{
+    MouseHelp{"hover", "values under the cursor"},
+    MouseHelp{"click", "pin a pillar, or take its pin away"},
+    MouseHelp{"drag", "mark a region; in 3-D turn the view"},
+    MouseHelp{"right drag, Shift+drag", "move the view"},
+    MouseHelp{"wheel", "zoom about the cursor"},
+    MouseHelp{"double click", "the whole skin"},
+};
+
+}  // namespace
+
+const char* title_of(ShortcutGroup group) {
+  constexpr std::array kTitles{"Play", "Show", "Look", "Marks", "Write"};
+  return kTitles.at(static_cast<std::size_t>(group));
+}
+
+std::span<const Shortcut> shortcuts() { return kShortcuts; }
+
+std::span<const MouseHelp> mouse_help() { return kMouseHelp; }
+
+bool dispatch(const Chord& chord, const Command& command) {
+  const auto* const found =
+      std::find_if(kShortcuts.begin(), kShortcuts.end(), [&](const Shortcut& shortcut) {
+        return std::find(shortcut.chords.begin(), shortcut.chords.end(), chord) !=
+               shortcut.chords.end();
+      });
+  if (chord.key == 0 || found == kShortcuts.end()) return false;
+  found->act(command);
+  return true;
+}
+
+}  // namespace pillarfield::viewer

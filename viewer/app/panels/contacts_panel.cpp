@@ -1,0 +1,112 @@
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "viewer/app/input/changes.h"
+#include "viewer/app/panels/contact_words.h"
+#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/render/contact_marks.h"
+#include "viewer/source/shown_contacts.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr int kTableFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
+                            ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit |
+                            ImGuiTableFlags_BordersInnerV;
+constexpr std::size_t kMostRows = 9;  ///< seen at a time
+
+/// Columns stand where they are, whatever the numbers.
+void set_columns() {
+  for (const ContactColumn& column : contact_columns()) {
+    const double width = std::max(width_of(column.head), width_of(column.widest));
+    ImGui::TableSetupColumn(column.head, ImGuiTableColumnFlags_WidthFixed,
+                            static_cast<float>(std::ceil(width)));
+  }
+}
+
+/// Stands still while contacts are scrolled.
+void write_head() {
+  ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
+  for (const ContactColumn& column : contact_columns()) {
+    ImGui::TableNextColumn();
+    ImGui::TableHeader(column.head);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", column.help);
+  }
+}
+
+void write_right(const std::string& words) {
+  const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(words.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(room, 0.0f));
+  ImGui::TextUnformatted(words.c_str());
+}
+
+/// True where it was clicked.
+bool write_row(const std::string& name, const ContactQuantities& contact) {
+  bool clicked = false;
+  const auto words = contact_words(name, contact);
+  ImGui::TableNextRow();
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    ImGui::TableNextColumn();
+    if (i == 0) {
+      clicked = ImGui::Selectable(words[i].c_str(), false, ImGuiSelectableFlags_SpanAllColumns);
+    } else {
+      write_right(words[i]);
+    }
+  }
+  return clicked;
+}
+
+/// The place in the frame's contacts of the one that was clicked.
+std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
+  std::optional<std::size_t> clicked;
+  ImGuiListClipper clipper;
+  clipper.Begin(static_cast<int>(contacts.heaviest.size()));
+  while (clipper.Step()) {
+    for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
+      const std::size_t place = contacts.heaviest[static_cast<std::size_t>(row)];
+      const TrackedContact& contact = contacts.found.contacts[place];
+      if (write_row(std::to_string(contact.id), contact.quantities)) clicked = place;
+    }
+  }
+  return clicked;
+}
+
+std::optional<std::size_t> contact_table(const PanelInk& ink, const ShownContacts& contacts) {
+  const std::size_t rows = std::min(contacts.heaviest.size(), kMostRows) + 2;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float row = static_cast<float>(ink.line) + 2 * style.CellPadding.y;
+  const float height = row * static_cast<float>(rows) + style.ScrollbarSize + 2;
+  if (!ImGui::BeginTable("contacts", static_cast<int>(kContactColumns), kTableFlags,
+                         ImVec2(0, height))) {
+    return std::nullopt;
+  }
+  ImGui::TableSetupScrollFreeze(1, 2);
+  set_columns();
+  write_head();
+  write_row("all", contacts.found.patch);
+  const auto clicked = contact_rows(contacts);
+  ImGui::EndTable();
+  return clicked;
+}
+
+}  // namespace
+
+void contacts_panel(Session& session, const FieldPlace& place) {
+  const PanelInk ink = panel_ink(session.look.scale);
+  if (!session.look.contacts || !session.field || session.field->contacts == nullptr) {
+    faint_words(ink, "Contacts are not looked for (K).");
+    return;
+  }
+  const ShownContacts& contacts = *session.field->contacts;
+  if (const auto clicked = contact_table(ink, contacts)) {
+    mark_contact(session, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
+                 contacts.extents[*clicked]);
+  }
+  if (const std::string remark = contacts_left_out(contacts); !remark.empty()) {
+    faint_words(ink, remark.c_str());
+  }
+}
+
+}  // namespace pillarfield::viewer

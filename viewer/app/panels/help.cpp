@@ -1,0 +1,84 @@
+#include "viewer/app/panels/help.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <string>
+
+#include "viewer/app/input/shortcuts.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr float kKeyColumn = 5.8f;  ///< width of the keys, font sizes
+constexpr float kBlock = 19.5f;     ///< width of a block of keys and words
+
+void line(const char* keys, const char* what) {
+  ImGui::TextUnformatted(keys);
+  ImGui::SameLine(kKeyColumn * ImGui::GetFontSize());
+  ImGui::TextDisabled("%s", what);
+}
+
+void title(const char* words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_CheckMark));
+  ImGui::TextUnformatted(words);
+  ImGui::PopStyleColor();
+}
+
+void group(ShortcutGroup shown) {
+  title(title_of(shown));
+  for (const Shortcut& shortcut : shortcuts()) {
+    if (shortcut.group == shown) line(shortcut.keys, shortcut.what);
+  }
+  ImGui::Spacing();
+  ImGui::Spacing();
+}
+
+void mouse() {
+  title("Mouse in the field");
+  for (const MouseHelp& help : mouse_help()) {
+    ImGui::TextUnformatted(help.hand);
+    const float indent = ImGui::GetFontSize();
+    ImGui::Indent(indent);
+    ImGui::TextDisabled("%s", help.what);
+    ImGui::Unindent(indent);
+  }
+}
+
+}  // namespace
+
+void help_overlay(const Viewport& area) {
+  constexpr int kFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings;
+  const ImVec2 middle(static_cast<float>(area.x + area.width / 2),
+                      static_cast<float>(area.y + area.height / 2));
+  ImGui::SetNextWindowPos(middle, ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+  ImGui::SetNextWindowSizeConstraints(
+      ImVec2(0, 0), ImVec2(static_cast<float>(area.width), static_cast<float>(area.height)));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetColorU32(ImGuiCol_PopupBg));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4);
+  const float em = ImGui::GetFontSize();
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(1.6f * em, 1.3f * em));
+  if (ImGui::Begin("help", nullptr, kFlags | ImGuiWindowFlags_HorizontalScrollbar)) {
+    ImGui::BeginGroup();
+    group(ShortcutGroup::play);
+    group(ShortcutGroup::look);
+    ImGui::EndGroup();
+    ImGui::SameLine(kBlock * em);
+    ImGui::BeginGroup();
+    group(ShortcutGroup::show);
+    group(ShortcutGroup::write);
+    group(ShortcutGroup::mark);
+    ImGui::EndGroup();
+    ImGui::SameLine(2 * kBlock * em);
+    ImGui::BeginGroup();
+    mouse();
+    ImGui::EndGroup();
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(3);
+  ImGui::PopStyleColor();
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,150 @@
+#include "viewer/app/panels/plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "viewer/app/panels/panel_ink.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+double share_in(const Span& span, double value) {
+  return (value - span.from) / (span.to - span.from);
+}
+
+/// What is seen of a column of pixels.
+struct ColumnOfPixels {
+  std::size_t first, lowest, highest, last;
+};
+
+void append(std::vector<Vec2>& points, std::span<const Vec2> curve, const ColumnOfPixels& column) {
+  const std::size_t earlier = std::min(column.lowest, column.highest);
+  const std::size_t later = std::max(column.lowest, column.highest);
+  std::size_t before = curve.size();
+  for (const std::size_t index : {column.first, earlier, later, column.last}) {
+    if (index != before) points.push_back(curve[index]);
+    before = index;
+  }
+}
+
+}  // namespace
+
+Vec2 PlotArea::at(Vec2 value) const {
+  return {box.x + box.width * share_in(x, value.x),
+          box.y + box.height * (1 - share_in(y, value.y))};
+}
+
+Vec2 PlotArea::value_at(Vec2 pixel) const {
+  return {x.from + (x.to - x.from) * (pixel.x - box.x) / box.width,
+          y.to - (y.to - y.from) * (pixel.y - box.y) / box.height};
+}
+
+Span round_span(std::span<const double> values) {
+  double low = 0;
+  double high = 0;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (low == high) return {0, 1};
+  const double step = nice_ceiling((high - low) / 5);
+  return {step * std::floor(low / step), step * std::ceil(high / step)};
+}
+
+std::vector<Vec2> thinned(std::span<const Vec2> curve, const PlotArea& area) {
+  std::vector<Vec2> pixels;
+  for (const Vec2& value : curve) {
+    if (std::isfinite(value.x) && std::isfinite(value.y)) pixels.push_back(area.at(value));
+  }
+  std::vector<Vec2> points;
+  for (std::size_t i = 0; i < pixels.size();) {
+    const double left = std::floor(pixels[i].x);
+    ColumnOfPixels column{i, i, i, i};
+    for (; i < pixels.size() && pixels[i].x < left + 1; ++i) {
+      if (pixels[i].y > pixels[column.lowest].y) column.lowest = i;
+      if (pixels[i].y < pixels[column.highest].y) column.highest = i;
+      column.last = i;
+    }
+    append(points, pixels, column);
+  }
+  return points;
+}
+
+std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width) {
+  std::vector<int> widths(counts.size(), 0);
+  const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  if (total == 0) return widths;
+  int left = width;
+  std::size_t widest = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    const double exact = width * (static_cast<double>(counts[i]) / static_cast<double>(total));
+    widths[i] = std::max(static_cast<int>(exact), counts[i] > 0 ? 1 : 0);
+    left -= widths[i];
+    if (counts[i] > counts[widest]) widest = i;
+  }
+  // What rounding left over or took too much is the widest one's, where nobody sees it.
+  widths[widest] = std::max(widths[widest] + left, 0);
+  return widths;
+}
+
+PlotTicks ticks_of(const PlotArea& area, const PanelInk& ink) {
+  const int most_x = std::max(static_cast<int>(area.box.width / (64 * ink.unit)), 2);
+  const int most_y = std::max(static_cast<int>(area.box.height / (1.2 * ink.line)), 3);
+  return {ticks(area.x.from, area.x.to, most_x), ticks(area.y.from, area.y.to, most_y)};
+}
+
+Viewport inside_axes(const Viewport& outer, double label_width, const PanelInk& ink) {
+  const double left = std::ceil(label_width + 6 * ink.unit);
+  const double top = std::ceil(0.5 * ink.line);
+  const double bottom = std::ceil(ink.line + 4 * ink.unit);
+  // The last label of the x axis is half outside.
+  const double right = std::ceil(12 * ink.unit);
+  return {outer.x + left, outer.y + top, std::max(outer.width - left - right, 1.0),
+          std::max(outer.height - top - bottom, 1.0)};
+}
+
+void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
+               const PanelInk& ink) {
+  const Viewport& box = area.box;
+  const double hair = std::max(std::round(ink.unit), 1.0);
+  draw_block(list, box, ink.raised);
+  for (const Tick& tick : ticks.y) {
+    const Vec2 place = area.at({area.x.from, tick.value});
+    draw_block(list, {box.x, place.y - 0.5 * hair, box.width, hair},
+               tick.value == 0 ? mixed(ink.grid, ink.text, 0.25) : ink.grid);
+    draw_text(list, {box.x - 6 * ink.unit, place.y - 0.5 * ink.line}, ink.faint, tick.label,
+              Align::right);
+  }
+  for (const Tick& tick : ticks.x) {
+    const Vec2 place = area.at({tick.value, area.y.from});
+    draw_block(list, {place.x - 0.5 * hair, box.y, hair, box.height}, ink.grid);
+    draw_text(list, {place.x, box.y + box.height + 3 * ink.unit}, ink.faint, tick.label,
+              Align::middle);
+  }
+}
+
+void draw_curve(ImDrawList& list, const PlotArea& area, std::span<const Vec2> curve,
+                std::uint32_t colour, double width) {
+  std::vector<ImVec2> points;
+  for (const Vec2& pixel : thinned(curve, area)) points.push_back(point(pixel));
+  const Viewport& box = area.box;
+  list.PushClipRect(point({box.x, box.y - width}),
+                    point({box.x + box.width, box.y + box.height + width}), true);
+  list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
+                   static_cast<float>(width));
+  list.PopClipRect();
+}
+
+void draw_head(ImDrawList& list, const PlotArea& area, double x, const PanelInk& ink) {
+  const double hair = std::max(std::round(ink.unit), 1.0);
+  const Vec2 top = area.at({x, area.y.to});
+  draw_block(list, {top.x - 0.5 * hair, area.box.y, hair, area.box.height}, ink.text);
+  const double side = 4 * ink.unit;
+  list.AddTriangleFilled(point({top.x - side, area.box.y - side}),
+                         point({top.x + side, area.box.y - side}),
+                         point({top.x, area.box.y + 0.5 * side}), ink.text);
+}
+
+}  // namespace pillarfield::viewer

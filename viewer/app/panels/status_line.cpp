@@ -1,0 +1,42 @@
+#include "viewer/app/panels/status_line.h"
+
+#include <array>
+#include <cmath>
+
+#include "viewer/app/panels/value_words.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+Colour status_colour(std::uint8_t status, Theme theme) {
+  if ((status & status::kSaturated) != 0) return colour_of(Special::saturated, theme);
+  if ((status & status::kInconsistent) != 0) return colour_of(Special::inconsistent, theme);
+  if ((status & status::kFromNeighbours) != 0) return colour_of(Special::from_neighbours, theme);
+  return region_colour(region_of(status), theme);
+}
+
+}  // namespace
+
+Colour region_colour(Region region, Theme theme) {
+  constexpr std::array<Special, kRegions> kSpecial{Special::idle,     Special::region_1,
+                                                   Special::region_2, Special::region_3,
+                                                   Special::region_4, Special::opposite};
+  return colour_of(kSpecial[static_cast<std::size_t>(region)], theme);
+}
+
+void swatch(const PanelInk& ink, ImU32 colour) {
+  const double side = std::round(0.66 * ink.line);
+  const Viewport room = take_room(side, ink.line);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const Viewport box{room.x, room.y + std::round(0.5 * (ink.line - side)) + 1, side, side};
+  draw_block(list, box, colour);
+  list.AddRect(point({box.x, box.y}), point({box.x + side, box.y + side}), ink.grid);
+  ImGui::SameLine(0, static_cast<float>(7 * ink.unit));
+}
+
+void status_line(const PanelInk& ink, std::uint8_t status, Theme theme) {
+  swatch(ink, packed(status_colour(status, theme)));
+  ImGui::TextUnformatted(status_words(status).c_str());
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,89 @@
+#include "viewer/app/panels/status_row.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+namespace pillarfield::viewer {
+namespace {
+
+/// Writes columns from the left: a faint label, then its value right-aligned in a place of its own.
+class Row {
+ public:
+  void add(const char* label, const std::string& value, const char* widest) {
+    const float room = ImGui::CalcTextSize(widest).x;
+    full_ |= x_ + ImGui::CalcTextSize(label).x + gap() * 0.4f + room > right();
+    if (full_) return;
+    write(label, ImGuiCol_TextDisabled);
+    x_ += gap() * 0.4f + room - ImGui::CalcTextSize(value.c_str()).x;
+    write(value.c_str(), ImGuiCol_Text);
+    x_ += gap();
+  }
+
+  /// At the beginning of what is left of the row, whether there is room or not.
+  void begin(const std::string& words, ImGuiCol colour) { write(words.c_str(), colour); }
+
+  /// At the end of the row; false where there is no room for it.
+  bool finish(const std::string& words, ImGuiCol colour) {
+    const float width = ImGui::CalcTextSize(words.c_str()).x;
+    if (right() - width < x_) return false;
+    x_ = right() - width;
+    write(words.c_str(), colour);
+    return true;
+  }
+
+ private:
+  static float right() { return ImGui::GetWindowWidth() - ImGui::GetStyle().WindowPadding.x; }
+  static float gap() { return 1.4f * ImGui::GetFontSize(); }
+
+  void write(const char* words, ImGuiCol colour) {
+    ImGui::SetCursorPosX(x_);
+    ImGui::SetCursorPosY(0.5f * (ImGui::GetWindowHeight() - ImGui::GetFontSize()));
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(colour));
+    ImGui::TextUnformatted(words);
+    ImGui::PopStyleColor();
+    x_ += ImGui::CalcTextSize(words).x;
+  }
+
+  bool full_ = false;  ///< there was no room for a column
+  float x_ = ImGui::GetStyle().WindowPadding.x;
+};
+
+void add_measures(Row& row, const Session& session) {
+  const PlayerStatistics solved = session.player->statistics();
+  const DrawStatistics& drawn = session.draw;
+  row.add("solve", fmt::format("{:.0f} Hz", solved.produced_hz), "0000 Hz");
+  row.add("", fmt::format("{:.1f} ms", solved.produce_ms_median), "000.0 ms");
+  row.add("show", fmt::format("{:.0f} Hz", drawn.frames_hz), "000 Hz");
+  row.add("draw", fmt::format("{:.1f} ms", drawn.draw_ms_median), "000.0 ms");
+  row.add("latency", fmt::format("{:.1f} ms", drawn.latency_ms_median), "000.0 ms");
+  row.add("not shown", fmt::format("{}", solved.not_shown), "00000");
+  row.add("memory", drawn.in_place ? "in place" : "copied", "in place");
+}
+
+bool fits_beside_measures(const std::string& words) {
+  const float measures = ImGui::CalcTextSize("0").x * 100;
+  return ImGui::GetWindowWidth() > measures + ImGui::CalcTextSize(words.c_str()).x;
+}
+
+}  // namespace
+
+void status_row(const Session& session, const std::string& gpu) {
+  Row row;
+  const std::string& notice = session.notice;
+  if (notice.empty() || fits_beside_measures(notice)) add_measures(row, session);
+  if (!notice.empty()) {
+    if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
+    return;
+  }
+  const std::string& solver = session.player->info().solver;
+  if (!row.finish(fmt::format("{}  ·  {}", solver, gpu), ImGuiCol_TextDisabled)) {
+    row.finish(gpu, ImGuiCol_TextDisabled);
+  }
+  if (ImGui::IsWindowHovered()) {
+    ImGui::SetTooltip("solved: %s\ndrawn: %s", solver.c_str(), gpu.c_str());
+  }
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "viewer/app/input/pins.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/plot.h"
+#include "viewer/app/panels/status_line.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+struct Curve {
+  std::vector<Vec2> points;  ///< s, N
+  ImU32 colour;
+};
+
+struct Chart {
+  const char* title;
+  std::vector<Curve> curves;
+};
+
+using Component = double (*)(const History::Point&);
+double normal_of(const History::Point& point) { return static_cast<double>(point.normal); }
+double shear_of(const History::Point& point) {
+  return std::hypot(static_cast<double>(point.shear_x), static_cast<double>(point.shear_y));
+}
+
+std::vector<Vec2> curve_of(const History& history, Component component) {
+  std::vector<Vec2> points;
+  points.reserve(history.points().size());
+  for (const History::Point& each : history.points()) {
+    points.push_back({each.time_s, component(each)});
+  }
+  return points;
+}
+
+Chart chart_of_pins(const char* title, const Session& session, Component component) {
+  Chart chart{title, {}};
+  for (const Pin& pin : session.pins) {
+    chart.curves.push_back(
+        {curve_of(pin.history, component), packed(pin_colour(pin.number, session.look.theme))});
+  }
+  return chart;
+}
+
+/// The region bears much more than a pillar, so it has scales of its own.
+std::vector<Chart> charts_of(const Session& session, const PanelInk& ink) {
+  std::vector<Chart> charts;
+  if (!session.pins.empty()) {
+    charts.push_back(chart_of_pins("Normal of the pins, N", session, normal_of));
+    charts.push_back(chart_of_pins("|Shear| of the pins, N", session, shear_of));
+  }
+  if (session.region) {
+    const History& history = session.region->history;
+    charts.push_back({"Normal of the region, N", {{curve_of(history, normal_of), ink.text}}});
+    charts.push_back({"|Shear| of the region, N", {{curve_of(history, shear_of), ink.text}}});
+  }
+  return charts;
+}
+
+/// All curves share it, so that the play head stands at the same place in each.
+Span time_span(const std::vector<Chart>& charts, double now_s) {
+  Span span{now_s, now_s};
+  for (const Chart& chart : charts) {
+    for (const Curve& curve : chart.curves) {
+      if (curve.points.empty()) continue;
+      span.from = std::min(span.from, curve.points.front().x);
+      span.to = std::max(span.to, curve.points.back().x);
+    }
+  }
+  constexpr double kLeast = 0.1;
+  if (span.to - span.from < kLeast) span.to = span.from + kLeast;
+  return span;
+}
+
+Span force_span(const Chart& chart) {
+  std::vector<double> values;
+  for (const Curve& curve : chart.curves) {
+    for (const Vec2& each : curve.points) values.push_back(each.y);
+  }
+  return round_span(values);
+}
+
+constexpr double kChartHeight = 116;
+
+/// The widest label at the y axis of any chart: their axes stand below each other.
+double label_width(const std::vector<Chart>& charts, const PanelInk& ink) {
+  double widest = 0;
+  for (const Chart& chart : charts) {
+    const PlotArea area{{0, 0, 1, kChartHeight * ink.unit - 3 * ink.line}, {}, force_span(chart)};
+    for (const Tick& tick : ticks_of(area, ink).y) widest = std::max(widest, width_of(tick.label));
+  }
+  return widest;
+}
+
+/// What all charts of a panel have in common.
+struct ChartFrame {
+  Span time;
+  double now_s = 0;
+  double label_width = 0;
+};
+
+void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
+                const PanelInk& ink) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const double title = ink.line + 2 * ink.unit;
+  const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
+  const PlotArea area{inside_axes(below, frame.label_width, ink), frame.time, force_span(chart)};
+  draw_text(list, {outer.x, outer.y}, ink.text, chart.title);
+  PlotTicks ticks = ticks_of(area, ink);
+  if (!ticks.x.empty()) ticks.x.back().label += " s";
+  draw_axes(list, area, ticks, ink);
+  for (const Curve& curve : chart.curves) {
+    draw_curve(list, area, curve.points, curve.colour, 1.6 * ink.unit);
+  }
+  draw_head(list, area, frame.now_s, ink);
+}
+
+void draw_legend(const Session& session, const PanelInk& ink) {
+  std::vector<const Pin*> pins;
+  for (const Pin& pin : session.pins) pins.push_back(&pin);
+  std::ranges::sort(pins, {}, [](const Pin* pin) { return pin->number; });
+  const double right = static_cast<double>(ImGui::GetWindowContentRegionMax().x);
+  for (std::size_t i = 0; i < pins.size(); ++i) {
+    const std::string words =
+        fmt::format("{}  ({}, {})", pins[i]->number, pins[i]->pillar.row, pins[i]->pillar.col);
+    if (i > 0) {
+      ImGui::SameLine(0, static_cast<float>(16 * ink.unit));
+      const double end =
+          static_cast<double>(ImGui::GetCursorPosX()) + width_of(words) + 2 * ink.line;
+      if (end > right) ImGui::NewLine();
+    }
+    swatch(ink, packed(pin_colour(pins[i]->number, session.look.theme)));
+    ImGui::TextUnformatted(words.c_str());
+  }
+}
+
+/// Charts in rows, as many beside each other as the width takes.
+void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame, const PanelInk& ink) {
+  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double gap = 14 * ink.unit;
+  const auto fitting = static_cast<std::size_t>(std::max(room / (300 * ink.unit), 1.0));
+  const std::size_t beside =
+      std::min(fitting >= 4 ? 4 : std::min<std::size_t>(fitting, 2), charts.size());
+  const double width = (room - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
+    draw_chart(charts[i], take_room(width, kChartHeight * ink.unit), frame, ink);
+  }
+}
+
+}  // namespace
+
+void time_panel(Session& session) {
+  const PanelInk ink = panel_ink(session.look.scale);
+  number_pins(session);
+  const std::vector<Chart> charts = charts_of(session, ink);
+  if (charts.empty() || !session.field) {
+    faint_words(ink, "Pinned pillars and the marked region show their forces over time here.");
+    return;
+  }
+  const double now_s = session.field->time_s;
+  draw_legend(session, ink);
+  draw_charts(charts, {time_span(charts, now_s), now_s, label_width(charts, ink)}, ink);
+}
+
+}  // namespace pillarfield::viewer

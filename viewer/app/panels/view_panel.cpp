@@ -1,0 +1,202 @@
+#include "viewer/app/panels/view_panel.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+
+#include "viewer/app/input/changes.h"
+#include "viewer/app/panels/widgets.h"
+#include "viewer/render/scene.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+std::string words_of(Quantity quantity) {
+  const QuantityInfo& info = info_of(quantity);
+  if (*info.unit == '\0') return info.title;
+  return fmt::format("{}, {}", info.title, info.unit);
+}
+
+void choose_quantity(Session& session) {
+  labelled("Quantity");
+  if (!ImGui::BeginCombo("##quantity", words_of(session.look.quantity).c_str(),
+                         ImGuiComboFlags_HeightLargest)) {
+    return;
+  }
+  for (int i = 0; i < kQuantities; ++i) {
+    const auto quantity = static_cast<Quantity>(i);
+    const bool possible = is_available(quantity, session.player->info());
+    if (ImGui::Selectable(words_of(quantity).c_str(), quantity == session.look.quantity,
+                          possible ? 0 : ImGuiSelectableFlags_Disabled)) {
+      show_quantity(session, quantity);
+    }
+  }
+  ImGui::EndCombo();
+}
+
+bool is_fixed(Quantity quantity) {
+  const Scale scale = info_of(quantity).scale;
+  return scale == Scale::classes || scale == Scale::cyclic;
+}
+
+/// Low and high end as they are displayed, side by side.
+void edit_range(Session& session) {
+  Look& look = session.look;
+  const auto factor = static_cast<float>(info_of(look.quantity).factor);
+  std::array<float, 2> ends{look.range.low * factor, look.range.high * factor};
+  const float width = ends[1] - ends[0];
+  labelled("Range");
+  if (ImGui::DragFloat2("##range", ends.data(), 0.005f * width, 0, 0, "%.4g")) {
+    // Of two ends about zero, the one that was not touched follows.
+    const bool low_moved = ends[0] != look.range.low * factor;
+    const bool symmetric = info_of(look.quantity).scale == Scale::diverging;
+    const float high = symmetric && low_moved ? -ends[0] : ends[1];
+    session.fit_each_field = false;
+    set_range(session, {ends[0] / factor, high / factor});
+  }
+}
+
+void choose_range(Session& session) {
+  if (is_fixed(session.look.quantity)) return;
+  edit_range(session);
+  labelled("");
+  const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  if (ImGui::Button("Fit", ImVec2(half, 0))) fit_range(session);
+  ImGui::SameLine();
+  ImGui::Checkbox("each frame", &session.fit_each_field);
+}
+
+/// A colour map as a strip, at the place of the item drawn last.
+void draw_map(ColourMap map, float left, float right, float top, float bottom) {
+  const auto table = table_of(map);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  constexpr std::size_t kStrips = 64;
+  for (std::size_t i = 0; i < kStrips; ++i) {
+    const auto edge = [&](std::size_t strip) {
+      return left + (right - left) * static_cast<float>(strip) / static_cast<float>(kStrips);
+    };
+    const Colour& colour = table[i * kColours / kStrips];
+    list.AddRectFilled(ImVec2(edge(i), top), ImVec2(edge(i + 1), bottom),
+                       IM_COL32(colour.red, colour.green, colour.blue, 255));
+  }
+}
+
+void draw_map_in_item(ColourMap map, float room_right) {
+  const ImVec2 low = ImGui::GetItemRectMin();
+  const ImVec2 high = ImGui::GetItemRectMax();
+  const float middle = low.x + 0.45f * (high.x - low.x);
+  const float inset = 0.28f * (high.y - low.y);
+  draw_map(map, middle, high.x - room_right, low.y + inset, high.y - inset);
+}
+
+bool suits(ColourMap map, Scale scale) {
+  if (scale == Scale::sequential) return map == ColourMap::cividis || map == ColourMap::viridis;
+  return map == default_map(scale);
+}
+
+void choose_map(Look& look) {
+  const Scale scale = info_of(look.quantity).scale;
+  if (scale == Scale::classes) return;
+  labelled("Colours");
+  const bool open = ImGui::BeginCombo("##map", name_of(look.map));
+  if (!open) {
+    draw_map_in_item(look.map, ImGui::GetFrameHeight() + ImGui::GetStyle().FramePadding.x);
+    return;
+  }
+  for (int i = 0; i < kColourMaps; ++i) {
+    const auto map = static_cast<ColourMap>(i);
+    if (!suits(map, scale)) continue;
+    if (ImGui::Selectable(name_of(map), map == look.map)) look.map = map;
+    draw_map_in_item(map, ImGui::GetStyle().FramePadding.x);
+  }
+  ImGui::EndCombo();
+}
+
+void choose_layers(Session& session) {
+  Look& look = session.look;
+  labelled("Layers");
+  ImGui::Checkbox("arrows", &look.arrows);
+  ImGui::SameLine();
+  ImGui::Checkbox("fans", &look.fans);
+  ImGui::SameLine();
+  ImGui::Checkbox("hatch", &look.hatch);
+  labelled("");
+  bool contacts = look.contacts;
+  if (ImGui::Checkbox("contacts", &contacts)) show_contacts(session, contacts);
+}
+
+void choose_view(const Command& command) {
+  constexpr std::array<const char*, 2> kViews{"Top", "3-D"};
+  labelled("View");
+  int chosen = shows_orbit(command.session.look) ? 1 : 0;
+  if (segments("view", kViews, chosen)) show_orbit(command.session, command.place, chosen == 1);
+}
+
+void choose_surface(const Command& command) {
+  constexpr std::array<const char*, 2> kSurfaces{"Plane", "Cylinder"};
+  Surface surface = command.session.look.surface;
+  int chosen = surface.kind == SurfaceKind::cylinder ? 1 : 0;
+  labelled("Surface");
+  const double width = command.place.skin().width_mm;
+  if (segments("surface", kSurfaces, chosen)) {
+    surface.kind = chosen == 1 ? SurfaceKind::cylinder : SurfaceKind::plane;
+    if (surface.radius_mm <= 0) surface.radius_mm = 0.5 * width;
+    set_surface(command.session, command.place, surface);
+  }
+  if (surface.kind != SurfaceKind::cylinder) return;
+  labelled("Radius");
+  auto radius = static_cast<float>(surface.radius_mm);
+  // A sheet that meets itself behind the cylinder is the narrowest there can be.
+  const auto least = static_cast<float>(0.17 * width);
+  const auto most = static_cast<float>(20 * width);
+  if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most, "%.1f mm",
+                       ImGuiSliderFlags_AlwaysClamp)) {
+    surface.radius_mm = static_cast<double>(radius);
+    set_surface(command.session, command.place, surface);
+  }
+}
+
+void choose_theme(Look& look) {
+  constexpr std::array<const char*, 2> kThemes{"Dark", "Light"};
+  labelled("Theme");
+  int chosen = look.theme == Theme::dark ? 0 : 1;
+  if (segments("theme", kThemes, chosen)) look.theme = chosen == 0 ? Theme::dark : Theme::light;
+}
+
+}  // namespace
+
+void view_panel(const Command& command) {
+  Session& session = command.session;
+  choose_quantity(session);
+  choose_range(session);
+  choose_map(session.look);
+  choose_layers(session);
+  choose_view(command);
+  if (shows_orbit(session.look)) choose_surface(command);
+  choose_theme(session.look);
+}
+
+void write_panel(const Command& command) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float width = (ImGui::GetContentRegionAvail().x - 3 * style.ItemSpacing.x) / 4;
+  const auto button = [&](const char* words, const char* help, bool& request) {
+    if (ImGui::Button(words, ImVec2(width, 0))) request = true;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
+  };
+  if (command.session.writing) {
+    if (ImGui::Button("Stop writing", ImVec2(-1, 0))) command.requests.stop = true;
+    return;
+  }
+  Requests& requests = command.requests;
+  button("Picture", "Write this picture as PNG (P)", requests.picture);
+  ImGui::SameLine();
+  button("Frames", "Write a PNG of every frame (Ctrl+P)", requests.sequence);
+  ImGui::SameLine();
+  button("Video", "Write a video of all frames, by ffmpeg (Ctrl+M)", requests.video);
+  ImGui::SameLine();
+  button("Table", "Write the pillars in sight as CSV (C)", requests.table);
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,94 @@
+#include "viewer/app/window/front.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "viewer/app/input/marks.h"
+#include "viewer/app/input/transport.h"
+#include "viewer/app/panels/help.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/status_row.h"
+#include "viewer/app/panels/view_panel.h"
+#include "viewer/app/panels/widgets.h"
+#include "viewer/app/window/style.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+ImVec2 corner_of_box(const Viewport& box) {
+  return {static_cast<float>(box.x), static_cast<float>(box.y)};
+}
+
+/// A part of the window: no chrome, always in its place. end() ends it.
+bool begin(const char* name, const Viewport& box, int more_flags = 0) {
+  constexpr int kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                         ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavFocus |
+                         ImGuiWindowFlags_NoBringToFrontOnFocus;
+  ImGui::SetNextWindowPos(corner_of_box(box));
+  ImGui::SetNextWindowSize(ImVec2(static_cast<float>(box.width), static_cast<float>(box.height)));
+  return ImGui::Begin(name, nullptr, kFlags | more_flags);
+}
+
+constexpr int kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
+
+void column(const Command& command) {
+  Session& session = command.session;
+  if (section("View")) view_panel(command);
+  if (section("Under the cursor")) hover_panel(session);
+  if (section("Pillar")) pillar_panel(session);
+  if (section("Region")) region_panel(session);
+  if (section("Contacts")) contacts_panel(session, command.place);
+  if (section("Over time")) time_panel(session);
+  if (section("Write")) write_panel(command);
+}
+
+/// Thin lines where parts meet.
+void draw_seams(const Screen& screen, Theme theme) {
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const unsigned colour = palette_of(theme).line;
+  const auto line = [&](double x0, double y0, double x1, double y1) {
+    list.AddRectFilled(ImVec2(static_cast<float>(x0), static_cast<float>(y0)),
+                       ImVec2(static_cast<float>(x1), static_cast<float>(y1)), colour);
+  };
+  const Viewport& transport = screen.transport;
+  const Viewport& status = screen.status;
+  line(transport.x, transport.y, transport.x + transport.width, transport.y + 1);
+  line(status.x, status.y, status.x + status.width, status.y + 1);
+  if (screen.column.width > 0) {
+    line(screen.column.x, 0, screen.column.x + 1, screen.column.height);
+  }
+}
+
+}  // namespace
+
+void draw_front(const Command& command, const Screen& screen, const std::string& gpu) {
+  Session& session = command.session;
+  const float padding = ImGui::GetStyle().WindowPadding.x;
+  draw_marks(session, command.place);
+
+  if (screen.column.width > 0) {
+    if (begin("column", screen.column)) column(command);
+    ImGui::End();
+  }
+
+  const float side = 2 * ImGui::GetFontSize();
+  const auto above = 0.5f * (static_cast<float>(screen.transport.height) - side);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(padding, std::max(above, 0.0f)));
+  if (begin("transport", screen.transport, kStill)) transport(command);
+  ImGui::End();
+  ImGui::PopStyleVar();
+
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, palette_of(session.look.theme).background);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  if (begin("status", screen.status, kStill)) status_row(session, gpu);
+  ImGui::End();
+  ImGui::PopStyleVar();
+  ImGui::PopStyleColor();
+
+  draw_seams(screen, session.look.theme);
+  if (session.show_help) help_overlay(screen.field);
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,149 @@
+#include "viewer/app/window/presenter.h"
+
+#include <algorithm>
+#include <array>
+
+namespace pillarfield::viewer {
+namespace {
+
+using ImageLayout = vk::ImageLayout;
+using Stage = vk::PipelineStageFlagBits;
+using Access = vk::AccessFlagBits;
+
+constexpr vk::ImageSubresourceLayers kColour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
+constexpr vk::ImageSubresourceRange kWholeColour{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
+
+/// Draws over what was copied into the image, and leaves it ready to be shown.
+vk::raii::RenderPass make_front_pass(const gpu::Device& device, vk::Format format) {
+  const vk::AttachmentDescription attachment(
+      {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad,
+      vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
+      vk::AttachmentStoreOp::eDontCare, ImageLayout::eTransferDstOptimal,
+      ImageLayout::ePresentSrcKHR);
+  const vk::AttachmentReference colour(0, ImageLayout::eColorAttachmentOptimal);
+  const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, nullptr, colour);
+  const std::array dependencies{
+      vk::SubpassDependency(VK_SUBPASS_EXTERNAL, 0, Stage::eTransfer, Stage::eColorAttachmentOutput,
+                            Access::eTransferWrite,
+                            Access::eColorAttachmentRead | Access::eColorAttachmentWrite),
+      vk::SubpassDependency(0, VK_SUBPASS_EXTERNAL, Stage::eColorAttachmentOutput,
+                            Stage::eBottomOfPipe, Access::eColorAttachmentWrite, {})};
+  return {device.handle(), vk::RenderPassCreateInfo({}, attachment, subpass, dependencies)};
+}
+
+vk::Offset3D corner_of(vk::Extent2D size) {
+  return {static_cast<int>(size.width), static_cast<int>(size.height), 1};
+}
+
+}  // namespace
+
+Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
+                     vk::SurfaceKHR surface, double scale)
+    : instance_(&instance),
+      device_(&device),
+      chain_(device, surface),
+      render_pass_(make_front_pass(device, chain_.format())),
+      painter_(instance, device, {1, 1}, scale),
+      front_(std::make_unique<Interface>(instance, device, *render_pass_, scale)),
+      pool_(device.handle(),
+            {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
+      buffers_(device.handle(),
+               vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1)),
+      ready_(device.handle(), vk::SemaphoreCreateInfo()),
+      done_(device.handle(), vk::FenceCreateInfo()) {}
+
+bool Presenter::resize(vk::Extent2D window, vk::Extent2D picture, double scale) {
+  // What is being shown still uses the semaphores of the old images.
+  finish();
+  framebuffers_.clear();
+  if (!chain_.resize(window)) return false;
+  make_framebuffers();
+  if (picture != painter_.image().size()) has_picture_ = false;
+  painter_.resize(picture, scale);
+  if (scale != front_->scale()) {
+    front_ = std::make_unique<Interface>(*instance_, *device_, *render_pass_, scale);
+  }
+  return true;
+}
+
+void Presenter::make_framebuffers() {
+  const vk::Extent2D size = chain_.size();
+  for (std::uint32_t i = 0; i < chain_.count(); ++i) {
+    const vk::ImageView view = chain_.view(i);
+    framebuffers_.emplace_back(
+        device_->handle(),
+        vk::FramebufferCreateInfo({}, *render_pass_, view, size.width, size.height, 1));
+  }
+}
+
+bool Presenter::draw(const Picture* picture) {
+  const auto index = chain_.acquire(*ready_);
+  if (!index) return false;
+  record(*index, picture);
+  submit(*index);
+  chain_.present(*index);
+  static_cast<void>(device_->handle().waitForFences(*done_, VK_TRUE, UINT64_MAX));
+  device_->handle().resetFences(*done_);
+  return true;
+}
+
+void Presenter::record(std::uint32_t index, const Picture* picture) {
+  const vk::raii::CommandBuffer& commands = buffers_.front();
+  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  if (picture != nullptr) {
+    painter_.record(commands, picture->field, picture->source, picture->look);
+    has_picture_ = true;
+  }
+  copy_picture(chain_.image(index));
+  draw_front(index);
+  commands.end();
+}
+
+/// What the image held is of no interest: the picture and the panels cover all of it, and before
+/// there is a picture it is blank.
+void Presenter::copy_picture(vk::Image image) const {
+  const vk::raii::CommandBuffer& commands = buffers_.front();
+  const vk::ImageMemoryBarrier to_target({}, Access::eTransferWrite, ImageLayout::eUndefined,
+                                         ImageLayout::eTransferDstOptimal, VK_QUEUE_FAMILY_IGNORED,
+                                         VK_QUEUE_FAMILY_IGNORED, image, kWholeColour);
+  commands.pipelineBarrier(Stage::eTransfer, Stage::eTransfer, {}, nullptr, nullptr, to_target);
+  if (!has_picture_) {
+    commands.clearColorImage(image, ImageLayout::eTransferDstOptimal,
+                             vk::ClearColorValue(std::array{0.055f, 0.067f, 0.086f, 1.0f}),
+                             kWholeColour);
+    return;
+  }
+  const gpu::Image& picture = painter_.image();
+  const vk::Extent2D size{std::min(picture.size().width, chain_.size().width),
+                          std::min(picture.size().height, chain_.size().height)};
+  if (chain_.format() == Target::kFormat) {
+    commands.copyImage(picture.handle(), ImageLayout::eTransferSrcOptimal, image,
+                       ImageLayout::eTransferDstOptimal,
+                       vk::ImageCopy(kColour, {}, kColour, {}, vk::Extent3D(size, 1)));
+  } else {
+    const std::array<vk::Offset3D, 2> box{vk::Offset3D{}, corner_of(size)};
+    commands.blitImage(picture.handle(), ImageLayout::eTransferSrcOptimal, image,
+                       ImageLayout::eTransferDstOptimal, vk::ImageBlit(kColour, box, kColour, box),
+                       vk::Filter::eNearest);
+  }
+}
+
+void Presenter::draw_front(std::uint32_t index) const {
+  const vk::raii::CommandBuffer& commands = buffers_.front();
+  commands.beginRenderPass(
+      vk::RenderPassBeginInfo(*render_pass_, *framebuffers_.at(index), {{0, 0}, chain_.size()}),
+      vk::SubpassContents::eInline);
+  front_->draw(commands);
+  commands.endRenderPass();
+}
+
+void Presenter::submit(std::uint32_t index) {
+  // The image is touched by the copy first.
+  const vk::PipelineStageFlags waits = Stage::eTransfer;
+  const vk::Semaphore ready = *ready_;
+  const vk::Semaphore drawn = chain_.drawn(index);
+  const vk::CommandBuffer commands = *buffers_.front();
+  device_->queue().submit(vk::SubmitInfo(ready, waits, commands, drawn), *done_);
+}
+
+}  // namespace pillarfield::viewer

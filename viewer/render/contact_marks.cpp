@@ -1,0 +1,183 @@
+#include "viewer/render/contact_marks.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "viewer/render/imgui_point.h"
+#include "viewer/render/scene.h"
+#include "viewer/render/skin_outline.h"
+#include "viewer/style/ticks.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kLeastRatio = 0.03;  ///< of shear to normal force that has an arrow
+constexpr double kMostRatio = 3;
+
+constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< lets the lines be seen on any colour
+constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
+constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< unlike the arrows of cells
+constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< of texts
+
+/// A box about points, pixels.
+Viewport box_about(const std::vector<Vec2>& points) {
+  const auto [left, right] = std::ranges::minmax(points, {}, &Vec2::x);
+  const auto [top, bottom] = std::ranges::minmax(points, {}, &Vec2::y);
+  return {left.x, top.y, right.x - left.x, bottom.y - top.y};
+}
+
+bool overlap(const Viewport& a, const Viewport& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// A point `right` and `up` of another on the skin along its tangents there, mm.
+std::optional<Vec2> seen(const SourceInfo& source, const Look& look, const Viewport& plot,
+                         const PatchPlace& place, double right, double up) {
+  const bool from_above = std::holds_alternative<TopView>(look.view);
+  const SurfaceFrame frame =
+      frame_at(from_above ? Surface{} : look.surface, {place.x_mm, place.y_mm});
+  const Vec3& x = frame.tangent_x;
+  const Vec3& y = frame.tangent_y;
+  return project(
+      look.view, look.surface, skin_size(source), plot,
+      {frame.position.x + right * x.x + up * y.x, frame.position.y + right * x.y + up * y.y,
+       frame.position.z + right * x.z + up * y.z});
+}
+
+std::optional<Vec2> tip_of(const ContactQuantities& contact, const SourceInfo& source,
+                           const Look& look, const Viewport& plot) {
+  const double shear = std::hypot(contact.shear_x_n, contact.shear_y_n);
+  if (!(contact.normal_n > 0) || shear < kLeastRatio * contact.normal_n) return std::nullopt;
+  const double pixels =
+      kContactArrowPixels * look.scale * std::min(shear / contact.normal_n, kMostRatio);
+  const double mm_per_newton = pixels / pixels_per_mm(look.view, plot) / shear;
+  return seen(source, look, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
+              mm_per_newton * contact.shear_y_n);
+}
+
+/// Draws with lines of one picture.
+class Brush {
+ public:
+  Brush(ImDrawList& list, double scale) : list_(list), unit_(static_cast<float>(scale)) {}
+
+  void outline(const ContactMark& mark) const {
+    std::vector<ImVec2> points;
+    for (const Vec2& point : mark.outline) points.push_back(to_imgui(point));
+    const auto count = static_cast<int>(points.size());
+    list_.AddPolyline(points.data(), count, kEdge, ImDrawFlags_Closed, 2.6f * unit_);
+    list_.AddPolyline(points.data(), count, kLine, ImDrawFlags_Closed, 1.2f * unit_);
+  }
+
+  void force(const ContactMark& mark) const {
+    const ImVec2 centre = to_imgui(mark.centre);
+    if (mark.tip) {
+      arrow(mark.centre, *mark.tip, 3, IM_COL32(0, 0, 0, 255));
+      arrow(mark.centre, *mark.tip, 0, kForce);
+    }
+    list_.AddCircleFilled(centre, 4.6f * unit_, kEdge);
+    list_.AddCircleFilled(centre, 3.4f * unit_, kForce);
+    list_.AddCircleFilled(centre, 1.6f * unit_, kEdge);
+  }
+
+  void words(const Viewport& box, const std::string& words) const {
+    list_.AddRectFilled(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
+                        kGround, 3 * unit_);
+    list_.AddText(to_imgui({box.x + margin(), box.y}), kLine, words.c_str());
+  }
+
+  /// Of words whose lower left corner is at a place, brought into the plot.
+  [[nodiscard]] Viewport room_of(const std::string& words, Vec2 corner,
+                                 const Viewport& plot) const {
+    const ImVec2 size = ImGui::CalcTextSize(words.c_str());
+    const double width = std::ceil(static_cast<double>(size.x) + 2 * margin());
+    const double height = std::ceil(static_cast<double>(size.y));
+    const double right = std::max(plot.x, plot.x + plot.width - width);
+    const double bottom = std::max(plot.y, plot.y + plot.height - height);
+    return {std::round(std::clamp(corner.x, plot.x, right)),
+            std::round(std::clamp(corner.y - height, plot.y, bottom)), width, height};
+  }
+
+ private:
+  [[nodiscard]] double margin() const { return std::round(4.0 * static_cast<double>(unit_)); }
+
+  /// `more` pixels larger all around.
+  void arrow(Vec2 from, Vec2 to, double more, ImU32 colour) const {
+    const double length = std::hypot(to.x - from.x, to.y - from.y);
+    if (length < 1) return;
+    const auto unit = static_cast<double>(unit_);
+    const Vec2 way{(to.x - from.x) / length, (to.y - from.y) / length};
+    const double head = std::min(11 * unit, length) + more * unit;
+    const double half = 0.45 * head + 0.3 * more * unit;
+    const Vec2 tip{to.x + more * unit * way.x, to.y + more * unit * way.y};
+    const Vec2 neck{tip.x - head * way.x, tip.y - head * way.y};
+    list_.AddLine(to_imgui(from), to_imgui(neck), colour, static_cast<float>(3 + more) * unit_);
+    list_.AddTriangleFilled(to_imgui(tip), to_imgui({neck.x - half * way.y, neck.y + half * way.x}),
+                            to_imgui({neck.x + half * way.y, neck.y - half * way.x}), colour);
+  }
+
+  ImDrawList& list_;
+  float unit_;
+};
+
+/// Beside the heaviest contacts first, where no other text stands.
+void write_words(const Brush& brush, const std::vector<ContactMark>& marks, const Viewport& plot,
+                 double scale) {
+  std::vector<Viewport> taken;
+  for (const ContactMark& mark : marks) {
+    const Viewport box = box_about(mark.outline);
+    const Viewport room = brush.room_of(mark.words, {box.x, box.y - 3 * scale}, plot);
+    if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(room, other); })) {
+      continue;
+    }
+    brush.words(room, mark.words);
+    taken.push_back(room);
+  }
+}
+
+}  // namespace
+
+std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const SourceInfo& source,
+                                       const Look& look, const Viewport& plot) {
+  std::vector<ContactMark> marks;
+  const std::size_t count = std::min(contacts.heaviest.size(), kMostContactsDrawn);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t place = contacts.heaviest[i];
+    const TrackedContact& contact = contacts.found.contacts[place];
+    const ContactQuantities& quantities = contact.quantities;
+    auto outline = outline_of(contacts.extents[place], source, look, plot);
+    if (outline.empty() || !overlap(box_about(outline), plot)) continue;
+    const auto centre = seen(source, look, plot, quantities.centre_of_pressure, 0, 0);
+    if (!centre) continue;
+    marks.push_back({std::move(outline), *centre, tip_of(quantities, source, look, plot),
+                     fmt::format("{}  {} N", contact.id, three_digits(quantities.normal_n))});
+  }
+  return marks;
+}
+
+std::string contacts_left_out(const ShownContacts& contacts) {
+  if (contacts.heaviest.size() <= kMostContactsDrawn) return {};
+  return fmt::format("{} of {} contacts are drawn, the heaviest", kMostContactsDrawn,
+                     contacts.heaviest.size());
+}
+
+void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,
+                        const Look& look, const Viewport& plot) {
+  const auto marks = contact_marks(contacts, source, look, plot);
+  const Brush brush(list, look.scale);
+  list.PushClipRect(to_imgui({plot.x, plot.y}),
+                    to_imgui({plot.x + plot.width, plot.y + plot.height}));
+  for (const ContactMark& mark : marks) brush.outline(mark);
+  for (const ContactMark& mark : marks) brush.force(mark);
+  write_words(brush, marks, plot, look.scale);
+  if (const std::string remark = contacts_left_out(contacts); !remark.empty()) {
+    const double gap = 4 * look.scale;
+    const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
+    brush.words(brush.room_of(remark, corner, plot), remark);
+  }
+  list.PopClipRect();
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <imgui.h>
+
+#include "viewer/style/vectors.h"
+
+namespace pillarfield::viewer {
+
+/// A point as Dear ImGui takes it, in pixels.
+inline ImVec2 to_imgui(Vec2 point) {
+  return {static_cast<float>(point.x), static_cast<float>(point.y)};
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "shaders/shared.h"
+#include "viewer/render/field_memory.h"
+#include "viewer/render/interface.h"
+#include "viewer/render/pipelines.h"
+#include "viewer/render/target.h"
+#include "viewer/source/field_producer.h"
+#include "viewer/style/look.h"
+
+namespace pillarfield::viewer {
+
+/// Draws pictures of fields: heat map, arrows, axes and legends, into an image of its own. A window
+/// copies that image, a file takes its pixels: the picture is the same.
+class Painter {
+ public:
+  Painter(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
+          double scale);
+
+  /// Records the drawing of a picture. `field` must stay alive until the commands are done, and
+  /// those recorded before must be done.
+  void record(const vk::raii::CommandBuffer& commands, const ShownField& field,
+              const SourceInfo& source, const Look& look);
+
+  /// Another size or scale; nothing recorded may be running.
+  void resize(vk::Extent2D size, double scale);
+
+  /// Where it was drawn; ready to be copied from once the commands are done.
+  [[nodiscard]] const gpu::Image& image() const { return target_.image(); }
+
+  [[nodiscard]] FieldMemory& memory() { return memory_; }
+
+ private:
+  void update(const shader::Scene& scene, const Look& look);
+
+  const gpu::Instance* instance_;
+  const gpu::Device* device_;
+  vk::raii::RenderPass render_pass_;
+  Target target_;
+  Pipelines pipelines_;
+  FieldMemory memory_;
+  std::unique_ptr<Interface> overlay_;
+  gpu::Buffer scene_;
+  gpu::Buffer colours_;
+  gpu::Buffer cells_;
+};
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,147 @@
+#include "viewer/render/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pillarfield::viewer {
+namespace {
+
+using shader::uint;
+
+constexpr float kSmallestForceShare = 0.01f;  ///< of the full force: below it no arrow
+
+/// Pixels along a pillar beyond which the heat map's shader takes no mean, with some air: there it
+/// is 1 / 1.5.
+constexpr double kPixelsOfOne = 0.7;
+
+uint pack(const Colour& colour, unsigned alpha = 255) {
+  return static_cast<uint>(colour.red) | static_cast<uint>(colour.green) << 8u |
+         static_cast<uint>(colour.blue) << 16u | alpha << 24u;
+}
+
+/// Where a plane begins in the field's memory, in words.
+template <class Value>
+uint plane_of(const ShownField& field, std::span<const Value> plane) {
+  if (plane.empty()) return shader::kNoPlane;
+  const auto* const first = reinterpret_cast<const std::byte*>(plane.data());
+  return static_cast<uint>((first - field.pages.data()) / 4);
+}
+
+shader::uvec4 cells_in_sight(const SourceInfo& source, const Look& look, const Viewport& plot,
+                             uint block) {
+  const uint rows = source.skin.pillar_rows();
+  const uint cols = source.skin.pillar_cols();
+  uint row_begin = 0;
+  uint row_end = rows;
+  uint col_begin = 0;
+  uint col_end = cols;
+  if (const auto* top = std::get_if<TopView>(&look.view)) {
+    const double pitch = source.skin.pillar_pitch_mm();
+    // One cell more at each side: an arrow may be longer than its cell.
+    const auto clamped = [&](double value, uint most) {
+      return static_cast<uint>(std::clamp(value, 0.0, static_cast<double>(most)));
+    };
+    const double half_width = 0.5 * plot.width / top->pixels_per_mm;
+    const double half_height = 0.5 * plot.height / top->pixels_per_mm;
+    const double air = 2.0 * block;
+    col_begin = clamped((top->centre_mm.x - half_width) / pitch + 0.5 * cols - air, cols);
+    col_end = clamped((top->centre_mm.x + half_width) / pitch + 0.5 * cols + air + 1, cols);
+    row_begin = clamped((-top->centre_mm.y - half_height) / pitch + 0.5 * rows - air, rows);
+    row_end = clamped((-top->centre_mm.y + half_height) / pitch + 0.5 * rows + air + 1, rows);
+  }
+  // Cells stay where they are on the skin while the view moves.
+  row_begin = row_begin / block * block;
+  col_begin = col_begin / block * block;
+  const auto cells = [&](uint begin, uint end) {
+    return end <= begin ? 0u : (end - begin + block - 1) / block;
+  };
+  return {row_begin, col_begin, cells(row_begin, row_end), cells(col_begin, col_end)};
+}
+
+}  // namespace
+
+SkinSize skin_size(const SourceInfo& source) {
+  const double pitch = source.skin.pillar_pitch_mm();
+  return {source.skin.pillar_cols() * pitch, source.skin.pillar_rows() * pitch};
+}
+
+std::uint32_t arrow_block_of(const Look& look, const Viewport& plot, double pitch_mm) {
+  return arrow_block(pitch_mm * pixels_per_mm(look.view, plot), look.arrow_cell * look.scale);
+}
+
+double full_arrow_n(const Look& look) {
+  return std::holds_alternative<TopView>(look.view) ? look.full_shear_n : look.full_force_n;
+}
+
+double arrow_mm_per_newton(const Look& look, double pitch_mm, std::uint32_t block) {
+  return 1.5 * pitch_mm / (full_arrow_n(look) * block);
+}
+
+shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const Look& look,
+                       const Viewport& plot) {
+  const bool from_above = std::holds_alternative<TopView>(look.view);
+  const SkinSize size = skin_size(source);
+  const double pitch = source.skin.pillar_pitch_mm();
+  const Surface surface = from_above ? Surface{} : look.surface;
+  const std::uint32_t block = arrow_block_of(look, plot, pitch);
+  const std::uint32_t mesh = surface.kind == SurfaceKind::plane ? 1 : 96;
+  const auto plane = [&](Uncertainty kind) {
+    return plane_of(field, field.forces.uncertainty[kind]);
+  };
+  const auto narrow = [](double value) { return static_cast<float>(value); };
+
+  shader::Scene scene;
+  scene.clip_from_world = clip_from_world(look.view, surface, size, plot);
+  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch),
+                 narrow(surface.radius_mm)};
+  scene.grid = {field.forces.rows, field.forces.cols, mesh, 1};
+  scene.force = {plane_of(field, field.forces.shear_x), plane_of(field, field.forces.shear_y),
+                 plane_of(field, field.forces.normal), plane_of(field, field.forces.status)};
+  scene.angles = {plane_of(field, field.forces.magnitude), plane_of(field, field.forces.theta),
+                  plane_of(field, field.forces.phi), 0};
+  scene.deviation = {plane(Uncertainty::shear_x), plane(Uncertainty::shear_y),
+                     plane(Uncertainty::normal), 0};
+  scene.span = {plane(Uncertainty::magnitude_low), plane(Uncertainty::magnitude_high),
+                plane(Uncertainty::phi_low), plane(Uncertainty::phi_high)};
+  scene.incline = {plane(Uncertainty::theta_low), plane(Uncertainty::theta_high), 0, 0};
+  scene.readings = {0, static_cast<uint>(field.raw.row_stride), field.raw.data != nullptr ? 1u : 0u,
+                    static_cast<uint>(surface.kind)};
+  const double hatch = std::max(std::round(5 * look.scale), 4.0);
+  scene.shown = {look.hatch ? 1u : 0u, static_cast<uint>(hatch), 0, 0};
+  scene.range = {look.range.low, look.range.high - look.range.low,
+                 kSmallestForceShare * narrow(full_arrow_n(look)), 0};
+  scene.viewport = {narrow(plot.x), narrow(plot.y), narrow(plot.width), narrow(plot.height)};
+  scene.cells = cells_in_sight(source, look, plot, block);
+  scene.block = {block, from_above ? 1u : 0u, 0, 0};
+  scene.arrow = {narrow(arrow_mm_per_newton(look, pitch, block)), narrow(6 * look.scale),
+                 narrow(1.3 * look.scale), from_above ? 0.5f : 1.0f};
+  const Colour white{255, 255, 255};
+  const Colour black{12, 14, 18};
+  scene.ink = {pack(white), pack(black), pack(white, 110), 0};
+  return scene;
+}
+
+HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source, const Look& look,
+                      const Viewport& plot) {
+  const Scale scale = info_of(look.quantity).scale;
+  // Directions and classes have no mean, and seen from above all pixels cover as many pillars.
+  const double pixels = source.skin.pillar_pitch_mm() * pixels_per_mm(look.view, plot);
+  const bool near = std::holds_alternative<TopView>(look.view) && pixels > kPixelsOfOne;
+  const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
+  return {static_cast<uint>(look.quantity), static_cast<uint>(scale),
+          look.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,
+          has_mean && !near ? VK_TRUE : VK_FALSE};
+}
+
+shader::Colours colours_of(const Look& look) {
+  shader::Colours colours;
+  const auto table = table_of(look.map);
+  for (std::size_t i = 0; i < table.size(); ++i) colours.entries.at(i).x = pack(table[i]);
+  for (std::size_t i = 0; i < kSpecials; ++i) {
+    colours.entries.at(shader::kFirstSpecial + i).x =
+        pack(colour_of(static_cast<Special>(i), look.theme));
+  }
+  return colours;
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,140 @@
+#include "viewer/source/field_producer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/scene.h"
+#include "pillarfield/simulator.h"
+#include "viewer/source/force_file_producer.h"
+#include "viewer/source/frame_rate.h"
+#include "viewer/source/frame_supply.h"
+#include "viewer/source/solved_producer.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+Processor processor_for(const SolverPlan& plan, const ProducerOptions& options) {
+  return {open_device(options.device),
+          plan,
+          {.memory = options.memory,
+           .frames_in_flight = FieldProducer::kMostShown,
+           .on_compiling = options.on_compiling}};
+}
+
+/// What plan and processor tell of themselves.
+void describe(SourceInfo& info, const SolverPlan& plan, const Processor& processor) {
+  info.skin = plan.skin;
+  info.calibration = plan.calibration;
+  info.has_readings = true;
+  info.has_angles = plan.angles;
+  info.has_uncertainty = plan.uncertainty;
+  info.contacts.friction = plan.friction;
+  info.contacts.noise_n = reading_noise_n(plan);
+  info.contacts.hidden_n = hidden_normal_n(plan.skin);
+  info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
+                            processor.shares_memory() ? "zero copy" : "staged");
+}
+
+/// How many frames of a scene are simulated; says so where not all are.
+std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptions& options,
+                                 SourceInfo& info) {
+  constexpr std::uint64_t kMiB = 1U << 20U;
+  const Scene& scene = simulator.scene();
+  const std::uint64_t frame_bytes = scene.skin.sensels() * size_of(simulator.sensel_type());
+  const std::uint64_t fitting = options.memory_bytes / frame_bytes;
+  if (fitting == 0) {
+    throw Error(info.name,
+                fmt::format("a frame takes {} bytes, and {} are allowed", frame_bytes,
+                            options.memory_bytes),
+                "allow more memory");
+  }
+  std::uint64_t wanted = scene.frames;
+  if (options.most_frames > 0) wanted = std::min(wanted, options.most_frames);
+  if (fitting < wanted) {
+    info.remarks.push_back(
+        fmt::format("The first {} of {} frames are shown: more do not fit into "
+                    "{} MiB.",
+                    fitting, scene.frames, options.memory_bytes / kMiB));
+  } else if (wanted < scene.frames) {
+    info.remarks.push_back(
+        fmt::format("The first {} of {} frames are shown, as asked.", wanted, scene.frames));
+  }
+  return std::min(wanted, fitting);
+}
+
+std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
+                                          const ProducerOptions& options,
+                                          const std::function<void(double)>& progress) {
+  const Simulator simulator(load_scene(path));
+  const Scene& scene = simulator.scene();
+  SourceInfo info;
+  info.name = path.filename().string();
+  info.kind = "scene";
+  info.rate_hz = scene.rate_hz;
+  const std::uint64_t frames = frames_to_simulate(simulator, options, info);
+  if (scene.baseline_time_s) {
+    info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
+  }
+  if (remembers(scene.estimator, scene.friction)) {
+    info.remarks.emplace_back(
+        "Frames that are played know of the one before, one that is jumped to is solved by "
+        "itself.");
+  }
+  SolverPlan plan;
+  plan.skin = scene.skin;
+  plan.sensel_type = simulator.sensel_type();
+  plan.calibration = simulator.calibration();
+  set_solver(plan, scene);
+  plan = shown_plan(std::move(plan));
+  // Before the simulation: what a device has against it shall not come after minutes.
+  Processor processor = processor_for(plan, options);
+  describe(info, plan, processor);
+  return std::make_unique<SolvedProducer>(
+      std::move(info), simulate_frames(simulator, frames, progress), plan, std::move(processor));
+}
+
+std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
+                                              const ProducerOptions& options) {
+  std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});
+  if (source->frames() == 0) {
+    throw Error(path.string(), "it has no frames", "give a recording with one at least");
+  }
+  SourceInfo info;
+  info.name = path.filename().string();
+  info.kind = source->format();
+  info.remarks = source->remarks();
+  SolverPlan plan;
+  plan.skin = source->skin();
+  plan.sensel_type = source->sensel_type();
+  plan.calibration = source->calibration();
+  plan = shown_plan(std::move(plan));
+  info.rate_hz =
+      frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
+  Processor processor = processor_for(plan, options);
+  describe(info, plan, processor);
+  return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
+                                          plan, std::move(processor));
+}
+
+}  // namespace
+
+ShownContacts FieldProducer::contacts_of(const ShownField& field) {
+  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm(), info().contacts);
+  return watch_->contacts_of(field);
+}
+
+std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
+                                             const ProducerOptions& options,
+                                             const std::function<void(double)>& progress) {
+  if (path.extension() == ".toml") return open_scene(path, options, progress);
+  if (!options.read.trust) probe_file(path);
+  if (is_force_file(path, {.trust = true})) return std::make_unique<ForceFileProducer>(path);
+  return open_recording(path, options);
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,124 @@
+#include "viewer/source/force_file_producer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/solver_plan.h"
+#include "viewer/source/direction.h"
+#include "viewer/source/frame_rate.h"
+#include "viewer/source/too_many_shown.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// open_producer() has probed the file, unless it is trusted.
+constexpr ReadOptions kProbed = {.trust = true};
+
+std::string solver_of(const ForceFileInfo& info) {
+  if (info.estimator.empty()) return "not known";
+  return info.device.empty() ? info.estimator
+                             : fmt::format("{} on {}", info.estimator, info.device);
+}
+
+SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& reader) {
+  const ForceFileInfo& file = reader.info();
+  if (reader.frames() == 0) {
+    throw Error(path.string(), "it has no frames", "give a file with one at least");
+  }
+  SourceInfo info;
+  info.name = path.filename().string();
+  info.kind = "force field";
+  info.skin.rows = 2 * file.rows;
+  info.skin.cols = 2 * file.cols;
+  info.skin.sensel_pitch_mm = file.pillar_pitch_mm / 2;
+  info.frames = reader.frames();
+  info.has_angles = true;
+  info.has_uncertainty = file.uncertainty;
+  info.solver = solver_of(file);
+  info.remarks = reader.remarks();
+  return info;
+}
+
+/// As component_ends() takes it.
+std::optional<double> direct_point_of(const ForceFileInfo& file) {
+  return file.estimator == name_of(Estimator::direct) ? file.segment_point : std::nullopt;
+}
+
+void fill(PlaneBlock& block, const ForceField& forces) {
+  std::ranges::copy(forces.shear_x, block.plane(PlaneBlock::kShearX).begin());
+  std::ranges::copy(forces.shear_y, block.plane(PlaneBlock::kShearY).begin());
+  std::ranges::copy(forces.normal, block.plane(PlaneBlock::kNormal).begin());
+  std::ranges::copy(forces.status, block.status().begin());
+  std::size_t which = PlaneBlock::kUncertainty;
+  for (const auto& plane : forces.uncertainty) {
+    std::ranges::copy(plane, block.plane(which++).begin());
+  }
+  const std::span<float> magnitude = block.plane(PlaneBlock::kMagnitude);
+  const std::span<float> theta = block.plane(PlaneBlock::kTheta);
+  const std::span<float> phi = block.plane(PlaneBlock::kPhi);
+  for (std::size_t i = 0; i < forces.pillars(); ++i) {
+    const Direction direction =
+        direction_of(forces.shear_x[i], forces.shear_y[i], forces.normal[i]);
+    magnitude[i] = direction.magnitude;
+    theta[i] = direction.theta;
+    phi[i] = direction.phi;
+  }
+}
+
+}  // namespace
+
+ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
+    : file_(path),
+      reader_(std::in_place, path, kProbed),
+      info_(info_of(path, *reader_)),
+      blocks_(kMostShown, [this] {
+        return std::make_unique<PlaneBlock>(info_.skin.pillar_rows(), info_.skin.pillar_cols(),
+                                            info_.has_uncertainty);
+      }) {
+  info_.rate_hz = frame_rate(info_.frames,
+                             [this](std::uint64_t index) { return reader_->read(index, forces_); });
+}
+
+ShownField ForceFileProducer::produce(std::uint64_t index) {
+  if (!reader_) open(file_.path());
+  const std::shared_ptr<PlaneBlock> block = blocks_.lend();
+  if (block == nullptr) throw_too_many_shown();
+  const double time_s = reader_->read(index, forces_);
+  fill(*block, forces_);
+  return {.forces = block->view(),
+          .raw = {},
+          .time_s = time_s,
+          .index = index,
+          .direct_point = direct_point_of(reader_->info()),
+          .pages = block->pages(),
+          .keep_alive = block};
+}
+
+ShownContacts ForceFileProducer::contacts_of(const ShownField& field) {
+  if (!reader_->info().contacts) return FieldProducer::contacts_of(field);
+  map_.find(field.forces.status, field.forces.rows, field.forces.cols);
+  return with_extents(reader_->read_contacts(field.index), map_);
+}
+
+void ForceFileProducer::open(const std::filesystem::path& path) {
+  ForceFileReader reader(path, kProbed);
+  const ForceFileInfo& found = reader.info();
+  if (found.rows != info_.skin.pillar_rows() || found.cols != info_.skin.pillar_cols() ||
+      found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {
+    throw Error(path.string(), "it became another file of forces", "open it anew");
+  }
+  reader_ = std::move(reader);
+}
+
+bool ForceFileProducer::refresh() {
+  if (!file_.may_have_changed()) return false;
+  reader_.reset();  // HDF5 shows a file that it has open as it was.
+  if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
+  const std::uint64_t before = std::exchange(info_.frames, reader_->frames());
+  return info_.frames != before;
+}
+
+}  // namespace pillarfield::viewer

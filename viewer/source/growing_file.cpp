@@ -1,0 +1,60 @@
+#include "viewer/source/growing_file.h"
+
+#include <chrono>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// The times of files go in steps of some milliseconds.
+constexpr std::chrono::milliseconds kSettled(20);
+
+}  // namespace
+
+GrowingFile::GrowingFile(std::filesystem::path path) : path_(std::move(path)), seen_(look()) {}
+
+GrowingFile::Look GrowingFile::look() const {
+  std::error_code failed;  // A file that is away for a moment is no reason to end.
+  Look found;
+  found.bytes = std::filesystem::file_size(path_, failed);
+  if (!failed) found.written = std::filesystem::last_write_time(path_, failed);
+  if (failed) return {};
+  found.is_settled = std::filesystem::file_time_type::clock::now() > found.written + kSettled;
+  return found;
+}
+
+const std::filesystem::path& GrowingFile::path() {
+  std::error_code failed;
+  if (path_.extension() == ".part" && !std::filesystem::exists(path_, failed)) {
+    path_.replace_extension();
+  }
+  return path_;
+}
+
+bool GrowingFile::reopen(const std::function<void(const std::filesystem::path&)>& open) {
+  for (int attempt = 0; attempt < 5; ++attempt) {
+    if (attempt > 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    try {
+      open(path());
+      return true;
+    } catch (const Error&) {                              // Perhaps the next time.
+    } catch (const std::filesystem::filesystem_error&) {  // It got its final name just now.
+    }
+  }
+  seen_ = {};
+  return false;
+}
+
+bool GrowingFile::may_have_changed() {
+  static_cast<void>(path());
+  const Look found = look();
+  if (found.bytes == 0) return false;
+  const Look before = std::exchange(seen_, found);
+  return !before.is_settled || before.bytes != found.bytes || before.written != found.written;
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,221 @@
+#include "viewer/source/player.h"
+
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "viewer/source/recent_times.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+using Time = Playback::Time;
+
+/// How often a source that is followed is looked at.
+constexpr Time kRefreshEvery = std::chrono::milliseconds(100);
+
+Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+}  // namespace
+
+struct Player::State {
+  explicit State(std::unique_ptr<FieldProducer> from)
+      : producer(std::move(from)),
+        info(producer->info()),
+        playback(info.frames, info.rate_hz),
+        thread([this] { run(); }) {}
+  ~State() {
+    command([this](Time) { stopping = true; });
+    thread.join();
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  /// Changes what the thread does next, and wakes it.
+  template <class Change>
+  void command(Change change) {
+    {
+      const std::scoped_lock lock(mutex);
+      change(now());
+    }
+    changed.notify_one();
+  }
+
+  // What follows runs in the thread. `lock` holds `mutex` before and after.
+  void run();
+  void produce_until_stopped();
+  void wait(std::unique_lock<std::mutex>& lock);
+  void refresh(std::unique_lock<std::mutex>& lock);
+  void produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock);
+  void wake_display();
+
+  const std::unique_ptr<FieldProducer> producer;  ///< of the thread alone, once that runs
+  const SourceInfo info;
+
+  std::mutex mutex;  ///< of all that follows, up to `failed`
+  std::condition_variable changed;
+  Playback playback;
+  PlayerStatistics counts;
+  RecentTimes times;
+  Time refreshed{0};
+  std::unique_ptr<ShownField> waiting;
+  bool wants_contacts = false;
+  bool stopping = false;
+  std::exception_ptr failed;
+
+  std::mutex waking;  ///< of `wake`; held while it runs, never together with `mutex`
+  std::function<void()> wake;
+
+  std::thread thread;  ///< last: it uses the others from its first moment
+};
+
+void Player::State::run() {
+  try {
+    produce_until_stopped();
+    return;
+  } catch (...) {
+    const std::scoped_lock lock(mutex);
+    failed = std::current_exception();
+  }
+  wake_display();
+}
+
+void Player::State::produce_until_stopped() {
+  std::unique_lock lock(mutex);
+  while (!stopping) {
+    if (playback.follows() && now() >= refreshed + kRefreshEvery) refresh(lock);
+    if (stopping) return;
+    if (const auto frame = playback.next(now())) {
+      produce(*frame, lock);
+    } else {
+      wait(lock);
+    }
+  }
+}
+
+void Player::State::wait(std::unique_lock<std::mutex>& lock) {
+  std::optional<Time> until = playback.next_due();
+  if (!until && playback.follows()) until = refreshed + kRefreshEvery;
+  if (until) {
+    changed.wait_until(lock, std::chrono::steady_clock::time_point(*until));
+  } else {
+    changed.wait(lock);
+  }
+}
+
+void Player::State::refresh(std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  const bool has_grown = producer->refresh();
+  lock.lock();
+  refreshed = now();
+  if (has_grown) playback.set_frames(producer->info().frames, refreshed);
+}
+
+void Player::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
+  const bool with_contacts = wants_contacts;
+  lock.unlock();
+  const Time start = now();
+  auto field = std::make_unique<ShownField>(producer->produce(frame));
+  if (with_contacts) {
+    field->contacts = std::make_shared<const ShownContacts>(producer->contacts_of(*field));
+  }
+  const Time end = now();
+  lock.lock();
+  times.add(start, end);
+  ++counts.produced;
+  std::swap(waiting, field);
+  if (field != nullptr) ++counts.not_shown;
+  lock.unlock();
+  field.reset();
+  wake_display();
+  lock.lock();
+}
+
+void Player::State::wake_display() {
+  const std::scoped_lock lock(waking);
+  if (wake) wake();
+}
+
+Player::Player(std::unique_ptr<FieldProducer> producer)
+    : state_(std::make_unique<State>(std::move(producer))) {}
+
+Player::~Player() = default;
+
+const SourceInfo& Player::info() const { return state_->info; }
+
+void Player::play() {
+  state_->command([this](Time now) { state_->playback.play(now); });
+}
+void Player::pause() {
+  state_->command([this](Time) { state_->playback.pause(); });
+}
+void Player::seek(std::uint64_t frame) {
+  state_->command([&](Time now) { state_->playback.seek(frame, now); });
+}
+void Player::step(std::int64_t frames) {
+  state_->command([&](Time now) { state_->playback.step(frames, now); });
+}
+void Player::set_speed(double speed) {
+  state_->command([&](Time now) { state_->playback.set_speed(speed, now); });
+}
+void Player::set_rate(double rate_hz) {
+  state_->command([&](Time now) { state_->playback.set_rate(rate_hz, now); });
+}
+void Player::set_loop(bool loop) {
+  state_->command([&](Time) { state_->playback.set_loop(loop); });
+}
+void Player::set_follow(bool follow) {
+  state_->command([&](Time now) { state_->playback.set_follow(follow, now); });
+}
+void Player::set_contacts(bool wanted) {
+  state_->command([&](Time now) {
+    if (wanted == state_->wants_contacts) return;
+    state_->wants_contacts = wanted;
+    if (wanted) state_->playback.again(now);
+  });
+}
+
+PlayerState Player::state() const {
+  const std::scoped_lock lock(state_->mutex);
+  const Playback& playback = state_->playback;
+  return {.frame = playback.frame(),
+          .frames = playback.frames(),
+          .playing = playback.playing(),
+          .loops = playback.loops(),
+          .follows = playback.follows(),
+          .speed = playback.speed(),
+          .rate_hz = playback.rate_hz()};
+}
+
+PlayerStatistics Player::statistics() const {
+  const std::scoped_lock lock(state_->mutex);
+  const Time time = now();
+  state_->times.forget_before(time);
+  PlayerStatistics statistics = state_->counts;
+  statistics.waiting = state_->waiting != nullptr ? 1 : 0;
+  statistics.produced_hz = state_->times.rate_hz();
+  statistics.produce_ms_median = state_->times.median_ms();
+  statistics.produce_ms_worst = state_->times.worst_ms();
+  statistics.behind_ms =
+      std::chrono::duration<double, std::milli>(state_->playback.behind(time)).count();
+  return statistics;
+}
+
+std::optional<ShownField> Player::take() {
+  const std::scoped_lock lock(state_->mutex);
+  if (state_->waiting != nullptr) {
+    ++state_->counts.taken;
+    return std::move(*std::exchange(state_->waiting, nullptr));
+  }
+  if (state_->failed) std::rethrow_exception(std::exchange(state_->failed, nullptr));
+  return std::nullopt;
+}
+
+void Player::on_new_field(std::function<void()> wake) {
+  const std::scoped_lock lock(state_->waking);
+  state_->wake = std::move(wake);
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,69 @@
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "viewer/source/field_producer.h"
+#include "viewer/source/frame_supply.h"
+#include "viewer/source/growing_file.h"
+#include "viewer/source/lending_pool.h"
+#include "viewer/source/too_many_shown.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+class RecordedFrames final : public FrameSupply {
+ public:
+  RecordedFrames(const std::filesystem::path& path, std::unique_ptr<FrameSource> source)
+      : file_(path),
+        source_(std::move(source)),
+        skin_(source_->skin()),
+        sensel_type_(source_->sensel_type()),
+        frames_(source_->frames()),
+        buffers_(FieldProducer::kMostShown, [this] {
+          return std::make_unique<FrameBuffer>(sensel_type_, skin_.rows, skin_.cols);
+        }) {}
+
+  [[nodiscard]] std::uint64_t frames() const override { return frames_; }
+
+  [[nodiscard]] SuppliedFrame frame(std::uint64_t index) override {
+    if (source_ == nullptr) open(file_.path());
+    const std::shared_ptr<FrameBuffer> buffer = buffers_.lend();
+    if (buffer == nullptr) throw_too_many_shown();
+    const double time_s = source_->read(index, *buffer);
+    return {buffer, time_s};
+  }
+
+  bool refresh() override {
+    if (!file_.may_have_changed()) return false;
+    source_.reset();  // HDF5 shows a file that it has open as it was.
+    if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
+    const std::uint64_t before = std::exchange(frames_, source_->frames());
+    return frames_ != before;
+  }
+
+ private:
+  void open(const std::filesystem::path& path) {
+    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // it was probed
+    const Skin& skin = source->skin();
+    if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
+        source->sensel_type() != sensel_type_ || source->frames() == 0) {
+      throw Error(path.string(), "it became another recording", "open it anew");
+    }
+    source_ = std::move(source);
+  }
+
+  GrowingFile file_;
+  std::unique_ptr<FrameSource> source_;  ///< null where it could not be opened again
+  Skin skin_;
+  SenselType sensel_type_;
+  std::uint64_t frames_;
+  LendingPool<FrameBuffer> buffers_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSupply> recorded_frames(const std::filesystem::path& path,
+                                             std::unique_ptr<FrameSource> source) {
+  return std::make_unique<RecordedFrames>(path, std::move(source));
+}
+
+}  // namespace pillarfield::viewer

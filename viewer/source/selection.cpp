@@ -1,0 +1,148 @@
+#include "viewer/source/selection.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pillarfield/error.h"
+#include "viewer/source/direction.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
+  const std::size_t at = row * raw.row_stride + col;
+  switch (raw.type) {
+    case SenselType::u8:
+      return static_cast<const std::uint8_t*>(raw.data)[at];
+    case SenselType::u16:
+      return static_cast<const std::uint16_t*>(raw.data)[at];
+    case SenselType::f32:
+      break;
+  }
+  return static_cast<const float*>(raw.data)[at];
+}
+
+/// Sensels 1 to 4 lie upper right, upper left, lower left and lower right.
+std::array<float, 4> readings_of(const FrameView& raw, PillarIndex pillar) {
+  constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
+  if (raw.data == nullptr) return {kUnknown, kUnknown, kUnknown, kUnknown};
+  const std::size_t row = std::size_t{2} * pillar.row;
+  const std::size_t col = std::size_t{2} * pillar.col;
+  return {reading_at(raw, row, col + 1), reading_at(raw, row, col), reading_at(raw, row + 1, col),
+          reading_at(raw, row + 1, col + 1)};
+}
+
+void set_direction(PillarValues& values, const ForceFieldView& forces, std::size_t at) {
+  Direction direction;
+  if (forces.phi.empty()) {
+    direction = direction_of(values.shear_x, values.shear_y, values.normal);
+  } else {
+    direction = {forces.magnitude[at], forces.theta[at], forces.phi[at]};
+  }
+  values.magnitude = direction.magnitude;
+  values.theta = direction.theta;
+  values.phi = direction.phi;
+}
+
+void set_uncertainty(PillarValues& values, const ShownField& field, std::size_t at) {
+  const ForceFieldView& forces = field.forces;
+  if (forces.uncertainty[Uncertainty::shear_x].empty()) return;
+  std::ranges::transform(forces.uncertainty, values.uncertainty.emplace().begin(),
+                         [at](std::span<const float> plane) { return plane[at]; });
+  values.component_ends = component_ends(forces, at, field.direct_point);
+}
+
+bool is_finite(const ForceFieldView& forces, std::size_t at) {
+  return std::isfinite(forces.shear_x[at]) && std::isfinite(forces.shear_y[at]) &&
+         std::isfinite(forces.normal[at]);
+}
+
+/// Adds pillars up; moments are about the middle of the skin until finish().
+class Adding {
+ public:
+  Adding(const ForceFieldView& forces, double pitch_mm) : forces_(forces), pitch_mm_(pitch_mm) {}
+
+  void add(PillarIndex pillar) {
+    const std::size_t at = std::size_t{pillar.row} * forces_.cols + pillar.col;
+    const std::uint8_t state = forces_.status[at];
+    ++sums_.pillars;
+    ++sums_.by_region.at(static_cast<std::size_t>(region_of(state)));
+    sums_.ambiguous += (state & status::kAmbiguous) != 0 ? 1 : 0;
+    sums_.saturated += (state & status::kSaturated) != 0 ? 1 : 0;
+    sums_.inconsistent += (state & status::kInconsistent) != 0 ? 1 : 0;
+    if ((state & status::kUsable) != 0 && is_finite(forces_, at)) add_force(pillar, at);
+  }
+
+  [[nodiscard]] RegionSums finish() {
+    const auto touched = static_cast<double>(sums_.in_contact);
+    sums_.area_mm2 = touched * pitch_mm_ * pitch_mm_;
+    sums_.mean_normal = sums_.in_contact == 0 ? 0 : sums_.normal / touched;
+    const bool loaded = sums_.normal > 0;
+    const double unknown = std::numeric_limits<double>::quiet_NaN();
+    sums_.centre_x_mm = loaded ? first_x_ / sums_.normal : unknown;
+    sums_.centre_y_mm = loaded ? first_y_ / sums_.normal : unknown;
+    sums_.moment_z =
+        turn_ - (sums_.centre_x_mm * sums_.shear_y - sums_.centre_y_mm * sums_.shear_x);
+    return sums_;
+  }
+
+ private:
+  void add_force(PillarIndex pillar, std::size_t at) {
+    const double x = (pillar.col + 0.5 - 0.5 * forces_.cols) * pitch_mm_;
+    const double y = (0.5 * forces_.rows - pillar.row - 0.5) * pitch_mm_;
+    const double normal = forces_.normal[at];
+    if (sums_.in_contact == 0 || normal > sums_.peak_normal) {
+      sums_.peak_normal = normal;
+      sums_.peak = pillar;
+    }
+    ++sums_.in_contact;
+    sums_.shear_x += forces_.shear_x[at];
+    sums_.shear_y += forces_.shear_y[at];
+    sums_.normal += normal;
+    first_x_ += normal * x;
+    first_y_ += normal * y;
+    turn_ += x * forces_.shear_y[at] - y * forces_.shear_x[at];
+  }
+
+  const ForceFieldView& forces_;
+  double pitch_mm_;
+  RegionSums sums_;
+  double first_x_ = 0;  ///< first moments of the normal force, N mm
+  double first_y_ = 0;
+  double turn_ = 0;  ///< moment of the shear, N mm
+};
+
+}  // namespace
+
+PillarValues values_at(const ShownField& field, PillarIndex pillar) {
+  const ForceFieldView& forces = field.forces;
+  if (pillar.row >= forces.rows || pillar.col >= forces.cols) {
+    throw Error("values_at", fmt::format("there is no pillar ({}, {})", pillar.row, pillar.col),
+                fmt::format("the field has {} x {}", forces.rows, forces.cols));
+  }
+  const std::size_t at = std::size_t{pillar.row} * forces.cols + pillar.col;
+  PillarValues values;
+  values.readings = readings_of(field.raw, pillar);
+  values.shear_x = forces.shear_x[at];
+  values.shear_y = forces.shear_y[at];
+  values.normal = forces.normal[at];
+  values.status = forces.status[at];
+  set_direction(values, forces, at);
+  set_uncertainty(values, field, at);
+  return values;
+}
+
+RegionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
+  Adding adding(field.forces, pillar_pitch_mm);
+  const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
+  const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);
+  for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {
+    for (std::uint32_t col = rect.col_begin; col < col_end; ++col) adding.add({row, col});
+  }
+  return adding.finish();
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,77 @@
+#include "viewer/source/solved_producer.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "viewer/source/too_many_shown.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// What a field lies in, and what it came from.
+struct Held {
+  Processor::Kept result;
+  std::shared_ptr<const FrameBuffer> readings;  ///< goes first: a free slot has a free frame
+};
+
+}  // namespace
+
+bool remembers(Estimator estimator, const FrictionKnowledge& friction) {
+  return estimator == Estimator::contact && friction.memory;
+}
+
+SolverPlan shown_plan(SolverPlan plan) {
+  const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
+  plan.angles = true;
+  plan.uncertainty = knows_noise && plan.estimator != Estimator::paper;
+  plan.baseline_rate.reset();  // It would depend on which frames were looked at before.
+  return plan;
+}
+
+SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> supply,
+                               const SolverPlan& plan, Processor processor)
+    : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
+  info_.frames = supply_->frames();
+  if (plan.estimator == Estimator::direct) direct_point_ = plan.segment_point;
+  if (!remembers(plan.estimator, plan.friction)) return;
+  silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+}
+
+void SolvedProducer::forget_the_frame_before() {
+  // What was known of a pillar or a contact is of use in the next frame alone, and an idle one has
+  // neither.
+  processor_.submit(silence_->view());
+  static_cast<void>(processor_.receive());
+}
+
+ShownField SolvedProducer::produce(std::uint64_t index) {
+  if (index >= info_.frames) {
+    throw Error(info_.name, fmt::format("has no frame {}", index),
+                fmt::format("it has {} frames, counted from 0", info_.frames));
+  }
+  if (processor_.kept() == kMostShown) throw_too_many_shown();
+  SuppliedFrame frame = supply_->frame(index);
+  if (silence_ && index != next_) forget_the_frame_before();
+  const FrameView raw = frame.readings->view();
+  processor_.submit(raw);
+  const ForceFieldView forces = processor_.receive();
+  next_ = index + 1;
+  const auto held = std::make_shared<Held>(Held{processor_.keep(), std::move(frame.readings)});
+  return {.forces = forces,
+          .raw = raw,
+          .time_s = frame.time_s,
+          .index = index,
+          .direct_point = direct_point_,
+          .pages = held->result.pages(),
+          .keep_alive = held};
+}
+
+bool SolvedProducer::refresh() {
+  if (!supply_->refresh()) return false;
+  info_.frames = supply_->frames();
+  return true;
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,206 @@
+#include "viewer/style/quantity.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "pillarfield/status.h"
+#include "viewer/style/ticks.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr auto kHalfTurn = std::numbers::pi_v<float>;
+
+constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
+    {"normal", "Normal force", "N", 1, Scale::sequential},
+    {"shear", "Shear", "N", 1, Scale::sequential},
+    {"shear_x", "Shear x", "N", 1, Scale::diverging},
+    {"shear_y", "Shear y", "N", 1, Scale::diverging},
+    {"magnitude", "Magnitude", "N", 1, Scale::sequential},
+    {"theta", "Inclination θ", "°", kDegrees, Scale::sequential},
+    {"phi", "Direction φ", "°", kDegrees, Scale::cyclic},
+    {"region", "Region", "", 1, Scale::classes},
+    {"status", "Status", "", 1, Scale::classes},
+    {"uncertainty", "Uncertainty", "N", 1, Scale::sequential},
+    {"parity", "Parity residual", "counts", 1, Scale::diverging},
+}};
+
+float root_of_squares(float x, float y) { return std::sqrt(x * x + y * y); }
+
+float value_in(std::span<const float> plane, std::size_t pillar) {
+  return plane.empty() ? kNothing : plane[pillar];
+}
+
+float uncertainty_of(const ForceFieldView& forces, std::size_t pillar) {
+  const auto at = [&](Uncertainty plane) { return value_in(forces.uncertainty[plane], pillar); };
+  const float x = at(Uncertainty::shear_x);
+  const float y = at(Uncertainty::shear_y);
+  const float n = at(Uncertainty::normal);
+  const float deviation = std::sqrt((x * x + y * y) + n * n);
+  if ((forces.status[pillar] & status::kAmbiguous) == 0) return deviation;
+  const float half = 0.5F * (at(Uncertainty::magnitude_high) - at(Uncertainty::magnitude_low));
+  return half > deviation ? half : deviation;
+}
+
+template <class Reading>
+float parity_of_readings(const FrameView& raw, std::uint32_t row, std::uint32_t col) {
+  const auto* upper =
+      static_cast<const Reading*>(raw.data) + 2 * (row * raw.row_stride + std::size_t{col});
+  const auto* lower = upper + raw.row_stride;
+  const auto v2 = static_cast<float>(upper[0]);
+  const auto v1 = static_cast<float>(upper[1]);
+  const auto v3 = static_cast<float>(lower[0]);
+  const auto v4 = static_cast<float>(lower[1]);
+  return (v1 + v3) - (v2 + v4);
+}
+
+float parity_of(const FrameView& raw, std::uint32_t row, std::uint32_t col) {
+  if (raw.data == nullptr) return kNothing;
+  switch (raw.type) {
+    case SenselType::u8:
+      return parity_of_readings<std::uint8_t>(raw, row, col);
+    case SenselType::u16:
+      return parity_of_readings<std::uint16_t>(raw, row, col);
+    case SenselType::f32:
+      break;
+  }
+  return parity_of_readings<float>(raw, row, col);
+}
+
+bool is_faulty(std::uint8_t status) {
+  return (status & (status::kSaturated | status::kInconsistent)) != 0;
+}
+
+float region_value(std::uint8_t status) {
+  const Region region = region_of(status);
+  return region == Region::none ? kNothing : static_cast<float>(region);
+}
+
+float status_value(std::uint8_t status) {
+  const bool idle = !is_pressed(status) && !is_faulty(status);
+  return idle ? kNothing : static_cast<float>(status_class(status));
+}
+
+/// The value of a pillar that is pressed; region and status do not ask for that.
+float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t row,
+                    std::uint32_t col) {
+  const ForceFieldView& forces = field.forces;
+  const std::size_t pillar = std::size_t{row} * forces.cols + col;
+  switch (quantity) {
+    case Quantity::normal:
+      return forces.normal[pillar];
+    case Quantity::shear:
+      return root_of_squares(forces.shear_x[pillar], forces.shear_y[pillar]);
+    case Quantity::shear_x:
+      return forces.shear_x[pillar];
+    case Quantity::shear_y:
+      return forces.shear_y[pillar];
+    case Quantity::magnitude:
+      return value_in(forces.magnitude, pillar);
+    case Quantity::theta:
+      return value_in(forces.theta, pillar);
+    case Quantity::phi:
+      return value_in(forces.phi, pillar);
+    case Quantity::region:
+      return region_value(forces.status[pillar]);
+    case Quantity::status:
+      return status_value(forces.status[pillar]);
+    case Quantity::uncertainty:
+      return uncertainty_of(forces, pillar);
+    case Quantity::parity:
+      break;
+  }
+  return parity_of(field.raw, row, col);
+}
+
+/// A single-precision number not below `value`; as round as round_ceiling() makes it.
+float nice_float(float value) {
+  constexpr double kMost = 1e38;
+  // A value that was stored as 0.1 is a little more in single precision, and fits 0.1 all the same.
+  const double exact = std::clamp(double{value}, 1e-37, kMost);
+  const auto nice = static_cast<float>(round_ceiling(exact * (1 - 0x1p-23)));
+  return nice >= value ? nice : static_cast<float>(std::min(round_ceiling(exact), kMost));
+}
+
+}  // namespace
+
+const QuantityInfo& info_of(Quantity quantity) {
+  return kInfos.at(static_cast<std::size_t>(quantity));
+}
+
+std::optional<Quantity> quantity_named(std::string_view name) {
+  for (std::size_t i = 0; i < kInfos.size(); ++i) {
+    if (name == kInfos.at(i).name) return static_cast<Quantity>(i);
+  }
+  return std::nullopt;
+}
+
+StatusClass status_class(std::uint8_t status) {
+  if ((status & status::kInconsistent) != 0) return StatusClass::inconsistent;
+  if ((status & status::kSaturated) != 0) return StatusClass::saturated;
+  if ((status & status::kFromNeighbours) != 0) return StatusClass::from_neighbours;
+  return (status & status::kAmbiguous) != 0 ? StatusClass::ambiguous : StatusClass::sound;
+}
+
+bool is_pressed(std::uint8_t status) {
+  return (status & (status::kUsable | status::kSaturated)) != 0;
+}
+
+bool is_available(Quantity quantity, const SourceInfo& source) {
+  switch (quantity) {
+    case Quantity::magnitude:
+    case Quantity::theta:
+    case Quantity::phi:
+      return source.has_angles;
+    case Quantity::uncertainty:
+      return source.has_uncertainty;
+    case Quantity::parity:
+      return source.has_readings;
+    case Quantity::normal:
+    case Quantity::shear:
+    case Quantity::shear_x:
+    case Quantity::shear_y:
+    case Quantity::region:
+    case Quantity::status:
+      break;
+  }
+  return true;
+}
+
+float largest(Quantity quantity, const ShownField& field) {
+  float largest = 0;
+  for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
+    const std::size_t first = std::size_t{row} * field.forces.cols;
+    for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
+      const std::uint8_t status = field.forces.status[first + col];
+      if (!is_pressed(status) || is_faulty(status)) continue;
+      const float size = std::abs(pressed_value(quantity, field, row, col));
+      if (std::isfinite(size) && size > largest) largest = size;
+    }
+  }
+  return largest;
+}
+
+Range fitting_range(Quantity quantity, float largest_value) {
+  if (quantity == Quantity::theta) return {0, kHalfTurn / 2};
+  if (quantity == Quantity::phi) return {-kHalfTurn, kHalfTurn};
+  if (quantity == Quantity::region) return {0, kRegions};
+  if (quantity == Quantity::status) return {0, kStatusClasses};
+  const bool fits = std::isfinite(largest_value) && largest_value > 0;
+  const float high = fits ? nice_float(largest_value) : 1;
+  return {info_of(quantity).scale == Scale::diverging ? -high : 0, high};
+}
+
+float value_of(Quantity quantity, const ShownField& field, std::uint32_t row, std::uint32_t col) {
+  const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
+  const bool told_by_status = quantity == Quantity::region || quantity == Quantity::status;
+  if (!told_by_status && !is_pressed(status)) return kNothing;
+  return pressed_value(quantity, field, row, col);
+}
+
+}  // namespace pillarfield::viewer
