@@ -35,7 +35,6 @@ namespace {
 using field_study::ClosedForm;
 using field_study::Evaluation;
 using field_study::History;
-using field_study::Motion;
 using field_study::Recording;
 using field_study::Score;
 using Json = nlohmann::ordered_json;
