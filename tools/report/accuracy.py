@@ -12,8 +12,6 @@ import page
 import pictures
 from page import percent, root_mean_square, text
 
-REGIONS = range(4)
-SITES = ("Region 1", "Region 2", "Region 3")
 
 
 # --- Error against the Cramér–Rao bound ---
@@ -59,15 +57,12 @@ def bound_values(bound):
     forces = [force for cell in bound["table"] for force in cell["forces"]]
     of_region_1 = [force["paper"] for force in forces if force["usable"] == 4]
     return {
-        "force_counts": f"{bound['force_counts']:g}",
-        "draws": bound["draws"],
-        "far_deviations": f"{bound['far_deviations']:g}",
-        "ratio_rows": page.rows(ratio_rows(bound["table"])),
-        "direct_most": f"{max(force['direct'] for force in forces):.3f}",
+        "ratio_rows": ratio_rows(bound["table"]),
+        "direct_most": max(force["direct"] for force in forces),
         # The standard error of an RMS error, and so of a ratio.
-        "ratio_error": f"{0.7 / math.sqrt(bound['draws']):.3f}",
-        "paper_least": f"{min(of_region_1):.2f}",
-        "paper_most": f"{max(of_region_1):.2f}",
+        "ratio_error": 0.7 / math.sqrt(bound["draws"]),
+        "paper_least": min(of_region_1),
+        "paper_most": max(of_region_1),
         "cost_of_misreading": percent(bound["cost_of_misreading"], 0),
     }
 
@@ -76,7 +71,7 @@ def bound_values(bound):
 
 def coverage_rows(scenes):
     for scene in scenes:
-        for region, covered in zip(REGIONS, scene["all"]):
+        for region, covered in enumerate(scene["all"]):
             held = [f"{percent(covered[key])} %" if region < 2 else "–"
                     for key in ("shear_x", "shear_y", "normal")]
             yield [scene["name"] if region == 0 else "", region + 1, covered["pillars"], *held,
@@ -96,14 +91,6 @@ def luck_rows(scenes):
                 share = covered["pillars"] / scene["all"][region]["pillars"]
                 cells += [f"{percent(share)} %", f"{percent(held)} %"]
             yield [scene["name"] if region == 0 else "", region + 1, *cells]
-
-
-def region_three_values(region):
-    values = {"largest_ratio": region["largest_ratio"], "ratio_step": region["ratio_step"]}
-    for angle in ("theta", "phi"):
-        values[f"{angle}_half_width"] = f"{region[angle]['half_width_rad']:.4f}"
-        values[f"{angle}_ratio"] = f"{region[angle]['ratio']:.2f}"
-    return values
 
 
 # --- Small forces ---
@@ -155,21 +142,11 @@ def error_rows(points):
         yield [f"{point['load']:g}", *cells]
 
 
-def small_forces_values(small):
-    points = small["points"]
+def small_forces_values(points):
     gain = next(point["before"]["determined"] / point["after"]["determined"]
                 for point in points if point["load"] == 10)
-    return {
-        "directions": small["directions"],
-        "study_dead_zone": f"{small['dead_zone_counts']:g}",
-        "study_noise": f"{small['noise_counts']:g}",
-        "study_threshold": f"{small['threshold_counts']:g}",
-        "share_rows": page.rows(share_rows(points)),
-        "error_rows": page.rows(error_rows(points)),
-        "dead_zone_gain": f"{gain:.0f}",
-        "paper_floor": f"{points[-1]['paper']['force']:.3f}",
-        "direct_floor": f"{points[-1]['after']['force']:.3f}",
-    }
+    return {"share_rows": share_rows(points), "error_rows": error_rows(points),
+            "dead_zone_gain": gain, "largest_force": points[-1]}
 
 
 # --- The testbed ---
@@ -238,47 +215,33 @@ def nearest_threshold(program):
     return min(runs, key=lambda run: difference(run["table_2"]))
 
 
+def band(figure, site):
+    """Half of what uncertain angles make of an applied force, percent."""
+    point = next(point for point in figure if point["site"] == site)
+    return percent((point["uncertain_high_n"] - point["uncertain_low_n"]) / point["applied_n"] / 2)
+
+
 def testbed_values(program, scan, folder):
-    ours = testbed(program, "--figures", str(folder))
-    sensor = ours["sensor"]
-    table = ours["table_2"]
-    theta = table[1]
-    other = nearest_threshold(program)
-    values = {
-        "positioner": ours["positioner_rad"],
-        "play": ours["play_rad"],
-        "probe_resolution": ours["probe_resolution_n"],
-        "counts_per_newton": f"{sensor['counts_per_newton']:g}",
-        "dead_zone": f"{sensor['dead_zone_counts']:g}",
-        "dead_zone_n": f"{sensor['dead_zone_counts'] / sensor['counts_per_newton']:.1f}",
-        "noise": f"{sensor['noise_counts']:g}",
-        "threshold": f"{sensor['threshold_counts']:g}",
-        "runs": ours["runs"],
-        "run_rows": page.rows(run_rows(table)),
-        "expected_rows": page.rows(expected_rows(table)),
-        "scan_rows": page.rows(scan_rows(scan)),
-        "paper_theta_deviation": f"{theta['paper']['expected']['deviation']:.3f}",
-        "paper_theta_error": f"{theta['paper']['expected']['mean_error']:.3f}",
-        "paper_theta_mean": f"{theta['paper']['expected']['mean']:.3f}",
-        "direct_theta_deviation": f"{theta['direct']['run']['deviation']:.3f}",
-        "direct_theta_expected": f"{theta['direct']['expected']['deviation']:.3f}",
-        "dead_zone_difference": f"{difference(table):.3f}",
-        "threshold_difference": f"{difference(other['table_2']):.3f}",
-        "threshold_counts": f"{other['sensor']['threshold_counts']:g}",
-        "threshold_n":
-            f"{other['sensor']['threshold_counts'] / other['sensor']['counts_per_newton']:.1f}",
-        "wrong_regions": ours["wrong_regions"],
-        "forces": ours["forces"],
-        "unflagged": ours["unflagged"],
+    ours, other = testbed(program, "--figures", str(folder)), nearest_threshold(program)
+    table, sensor = ours["table_2"], ours["sensor"]
+    phi, theta = (row["paper"]["expected"] for row in other["table_2"][:2])
+    threshold = other["sensor"]["threshold_counts"]
+    return {
+        "testbed": ours,
+        "sensor": sensor,
+        "dead_zone_n": sensor["dead_zone_counts"] / sensor["counts_per_newton"],
+        "run_rows": run_rows(table),
+        "expected_rows": expected_rows(table),
+        "scan_rows": scan_rows(scan),
+        "theta": table[1],
+        "dead_zone_difference": difference(table),
+        "threshold_difference": difference(other["table_2"]),
+        "threshold_counts": threshold,
+        "threshold_n": threshold / other["sensor"]["counts_per_newton"],
+        "threshold_phi": phi,
+        "threshold_theta": theta,
+        "bands": [band(ours["figure_8"], f"Region {number}") for number in (1, 2, 3)],
     }
-    for row in other["table_2"][:2]:
-        for key in ("mean", "deviation"):
-            values[f"threshold_{row['angle']}_{key}"] = f"{row['paper']['expected'][key]:.3f}"
-    for number, site in enumerate(SITES, 1):
-        point = next(point for point in ours["figure_8"] if point["site"] == site)
-        band = (point["uncertain_high_n"] - point["uncertain_low_n"]) / point["applied_n"] / 2
-        values[f"band_{number}"] = percent(band)
-    return values
 
 
 # --- Errata, and hard cases ---
@@ -300,46 +263,31 @@ def erratum_rows(equations):
         yield cells
 
 
-def errata_values(errata):
-    right = errata["right_as_printed"]
-    readings = errata["table_two_region_three"]
-    return {
-        "erratum_rows": page.rows(erratum_rows(errata["equations"])),
-        "right_in_2_2": worst_text(right[0]),
-        "right_in_2_4": worst_text(right[1]),
-        **{f"v{n}": f"{reading:.3f}" for n, reading in enumerate(readings, 1)},
-    }
-
-
 def condition_text(condition):
     return "∞" if condition is not None and condition > 1e6 else text(condition, otherwise="0/0")
 
 
-def hard_case_values(cases):
-    return {
-        "hard_case_rows": page.rows(
-            [case["what"], *map(condition_text, case["conditions"]),
-             *(f"{error:.2f}" for error in case["direct"] + case["paper"])] for case in cases),
-        **{f"{estimator}_worst": f"{max(max(case[estimator]) for case in cases):.2f}"
-           for estimator in ("direct", "paper")},
-    }
+def hard_case_rows(cases):
+    for case in cases:
+        yield [case["what"], *map(condition_text, case["conditions"]),
+               *(f"{error:.2f}" for error in case["direct"] + case["paper"])]
 
 
 def main(docs, measured, program):
     folder = Path(docs, "pictures", "accuracy")
     found = page.load(measured)
+    small, errata, cases = found["small_forces"]["points"], found["errata"], found["hard_cases"]
     draw_bound(found["bound"]["curves"], folder)
-    draw_small_forces(found["small_forces"]["points"], folder)
-    page.write(docs, "accuracy", {
-        **bound_values(found["bound"]),
-        "coverage_rows": page.rows(coverage_rows(found["coverage"])),
-        "luck_rows": page.rows(luck_rows(found["coverage"])),
-        **region_three_values(found["region_three"]),
-        **small_forces_values(found["small_forces"]),
+    draw_small_forces(small, folder)
+    page.write(
+        docs, "accuracy", **found, **bound_values(found["bound"]), **small_forces_values(small),
         **testbed_values(program, found["dead_zone_scan"], folder),
-        **errata_values(found["errata"]),
-        **hard_case_values(found["hard_cases"]),
-    })
+        coverage_rows=coverage_rows(found["coverage"]), luck_rows=luck_rows(found["coverage"]),
+        erratum_rows=erratum_rows(errata["equations"]),
+        right_as_printed=[worst_text(right) for right in errata["right_as_printed"]],
+        hard_case_rows=hard_case_rows(cases),
+        direct_worst=max(max(case["direct"]) for case in cases),
+        paper_worst=max(max(case["paper"]) for case in cases))
 
 
 if __name__ == "__main__":

@@ -26,6 +26,9 @@ NAMES = {
     "noise": "noise alone",
     "bounded": "median 1, spread 0.5, bound 1.5 times the true friction",
 }
+PRIORS = {f"prior_{median:g}_{spread:g}": f"median {median:g}, spread {spread:.1f}"
+          for spread in (0.5, 1.0) for median in (0.5, 1, 2, 3)}
+NAMES |= PRIORS
 
 
 class Score:
@@ -194,8 +197,8 @@ def worse_rows(histories):
 # --- Error, priors ---
 
 def friction_rows(histories, methods):
-    return [[name, *(text(rms(of_friction(histories, friction), method)) for friction in FRICTIONS)]
-            for method, name in methods.items()]
+    return [[NAMES[method], *(text(rms(of_friction(histories, friction), method))
+                              for friction in FRICTIONS)] for method in methods]
 
 
 def draw_errors(histories, folder):
@@ -225,13 +228,6 @@ def body_rows(histories):
                    *(text(rms(recordings, method))
                      for method in ("direct", "paper", "contact", "given")),
                    text(over_paper(recordings, "contact"))]
-
-
-def prior_rows(histories):
-    priors = {f"prior_{median:g}_{spread:g}": f"median {median:g}, spread {spread:.1f}"
-              for spread in (0.5, 1.0) for median in (0.5, 1, 2, 3)}
-    return friction_rows(
-        histories, priors | {method: NAMES[method] for method in ("bounded", "given", "paper")})
 
 
 # --- Friction learnt ---
@@ -295,7 +291,7 @@ def closed_form_rows(closed_forms):
 def twin_rows(twins):
     for row in twins["rows"]:
         errors = [row["distance"], row["distance"] / 2, *row["contact"], *row["paper"]]
-        yield [f"{row['normal_share']:g}", f"{row['friction']:.2f}", f"{row['direction_deg']:.1f}°",
+        yield [*page.cells(row, "normal_share:g friction:.2f"), f"{row['direction_deg']:.1f}°",
                *(f"{error:.1f}" for error in errors)]
 
 
@@ -333,50 +329,30 @@ def draw_history(history, folder):
 def main(docs, measured):
     folder = Path(docs, "pictures", "field")
     found = page.load(measured)
-    histories, closed_forms = found["histories"], found["closed_forms"]
-    cost, twins = found["cost"], found["twins"]
+    histories, closed_forms = found.pop("histories"), found.pop("closed_forms")
     draw_errors(histories, folder)
     draw_history(found["shown_history"], folder)
     sticking, _, sticking_off = narrow_contacts(histories, 0.05,
                                                 lambda contact: contact["slipping"] == 0)
-    values = {
-        "goal_rows": page.rows(goals(histories, closed_forms)),
-        "worse_rows": page.rows(worse_rows(histories)),
-        "error_rows": page.rows(friction_rows(histories, {
-            method: NAMES[method]
-            for method in ("direct", "direct_0.75", "direct_0.5", "paper", "contact", "unrelated",
-                           "given", "noise")})),
-        "pillars": " | ".join(str(Score(of_friction(histories, friction), "noise").ambiguous)
-                              for friction in FRICTIONS),
-        "body_rows": page.rows(body_rows(histories)),
-        "prior_rows": page.rows(prior_rows(histories)),
-        "learnt_rows": page.rows(learnt_rows(histories)),
-        "sticking": sticking,
-        "sticking_off": sticking_off,
-        "coverage_rows": page.rows(coverage_rows(histories)),
-        "contact_share": percent(cost["contact_share"]),
-        "ambiguous_share": percent(cost["ambiguous_share"], 2),
-        "device": cost["device"],
-        "rounds": cost["rounds"],
-        "closed_forms": len(closed_forms),
-        "closed_form_rows": page.rows(closed_form_rows(closed_forms)),
-        "twin_rows": page.rows(twin_rows(twins)),
-        "enough": ENOUGH_PILLARS,
-        "histories": len(histories),
-        "recording_rows": page.rows(recording_rows(histories)),
-        "history_name": found["shown_history"]["name"],
-        **{f"twin_{key}": f"{twins[key]:g}"
-           for key in ("diameter", "peak_counts", "friction", "direction_deg", "readings",
-                       "different_readings")},
-    }
-    for way in ("contact", "tracked"):
-        for key in ("time", "processor"):
-            values[f"{way}_{key}"] = f"{cost[way][key]:.2f}"
-    for key, method in (("direct", "direct"), ("lower", "direct_0.75")):
-        for friction in (1.6, 3.0):
-            values[f"{key}_{friction * 10:.0f}"] = text(rms(of_friction(histories, friction),
-                                                            method))
-    page.write(docs, "field", values)
+    by_friction = {friction: of_friction(histories, friction) for friction in FRICTIONS}
+    page.write(
+        docs, "field", **found, enough=ENOUGH_PILLARS,
+        goal_rows=goals(histories, closed_forms),
+        direct={str(friction): rms(some, "direct") for friction, some in by_friction.items()},
+        lower={str(friction): rms(some, "direct_0.75") for friction, some in by_friction.items()},
+        worse_rows=worse_rows(histories),
+        error_rows=friction_rows(histories, ("direct", "direct_0.75", "direct_0.5", "paper",
+                                             "contact", "unrelated", "given", "noise")),
+        pillars=" | ".join(str(Score(some, "noise").ambiguous) for some in by_friction.values()),
+        body_rows=body_rows(histories),
+        prior_rows=friction_rows(histories, (*PRIORS, "bounded", "given", "paper")),
+        learnt_rows=learnt_rows(histories), sticking=sticking, sticking_off=sticking_off,
+        coverage_rows=coverage_rows(histories),
+        contact_share=percent(found["cost"]["contact_share"]),
+        ambiguous_share=percent(found["cost"]["ambiguous_share"], 2),
+        closed_forms=len(closed_forms), closed_form_rows=closed_form_rows(closed_forms),
+        twin_rows=twin_rows(found["twins"]),
+        histories=len(histories), recording_rows=recording_rows(histories))
 
 
 if __name__ == "__main__":

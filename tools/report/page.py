@@ -4,7 +4,6 @@ import json
 import math
 import sys
 from pathlib import Path
-from string import Template
 
 
 class Failure(Exception):
@@ -21,7 +20,13 @@ def load(path):
 
 def rows(table):
     """Rows of cells as rows of a Markdown table."""
-    return "\n".join(f"| {' | '.join(str(cell) for cell in row)} |" for row in table)
+    return "\n".join(f"| {' | '.join(map(str, row))} |" for row in table)
+
+
+def cells(values, formats):
+    """The values that "key:format key:format" names, as texts."""
+    return [format(values[key], pattern)
+            for key, pattern in (word.split(":") for word in formats.split())]
 
 
 def percent(share, digits=1):
@@ -39,10 +44,12 @@ def text(value, pattern=".2f", otherwise="–"):
     return otherwise if value is None else format(value, pattern)
 
 
-def write(docs, name, values):
-    """Fills the template NAME.md beside this script, and writes it into the folder of documents."""
+def write(docs, name, **values):
+    """Fills the template NAME.md beside this script, whose fields are those of str.format, and
+    writes it into the folder of documents. Values whose name ends in _rows are rows of a table."""
     template = Path(__file__).with_name(f"{name}.md").read_text(encoding="utf-8")
-    Path(docs, f"{name}.md").write_text(Template(template).substitute(values), encoding="utf-8")
+    values = {key: rows(value) if key.endswith("_rows") else value for key, value in values.items()}
+    Path(docs, f"{name}.md").write_text(template.format_map(values), encoding="utf-8")
 
 
 def run(main):

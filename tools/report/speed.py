@@ -51,6 +51,11 @@ class Bench:
             return None
         return self.value(name, counter)
 
+    def cells(self, name, formats):
+        """As page.cells."""
+        return [format(self.value(name, key), pattern)
+                for key, pattern in (word.split(":") for word in formats.split())]
+
     def group(self, name):
         return [row for row in self.rows if row.startswith(f"{name}/")]
 
@@ -160,11 +165,14 @@ def front_text(front, error, unit):
 
 def variant_rows(ways, front):
     for way in ways:
-        bold = "**" if way in front else ""
-        yield [f"{bold}{way['name']}{bold}", f"{way['ns_per_pillar']:.3g}",
-               f"{way['of_ceiling']:.3f}", f"{bold}{way['over_bare_copy']:.3g}{bold}",
-               f"{way['error_counts']:.3f}", f"{bold}{way['error_over_bound']:.3f}{bold}",
-               f"{way['error_counts_all_regions']:.2f}", f"{percent(way['ambiguous'])} %"]
+        cells = [way["name"], *page.cells(
+            way, "ns_per_pillar:.3g of_ceiling:.3f over_bare_copy:.3g error_counts:.3f "
+                 "error_over_bound:.3f error_counts_all_regions:.2f"),
+            f"{percent(way['ambiguous'])} %"]
+        if way in front:
+            for bold in (0, 3, 5):
+                cells[bold] = f"**{cells[bold]}**"
+        yield cells
 
 
 COLOURS = {"direct, float": pictures.BLUE, "direct, double": pictures.SKY_BLUE,
@@ -315,9 +323,8 @@ def draw_latency(bench, live, folder):
 
 
 def latency_rows(bench):
-    for row in bench.group("latency"):
-        yield [f"{bench.value(row, 'pillars'):.0f}", f"{bench.value(row, 'median_us'):.1f}",
-               f"{bench.value(row, 'p99_us'):.1f}", text(bench.value(row, "of_empty_launch"))]
+    return [bench.cells(row, "pillars:.0f median_us:.1f p99_us:.1f of_empty_launch:.2f")
+            for row in bench.group("latency")]
 
 
 # --- Opponents, stages, lanes ---
@@ -337,9 +344,8 @@ def opponent_rows(bench):
         if why := bench.left_out(row):
             yield [what, f"unmeasured: {why.removeprefix('skipped: ')}", *"––––"]
             continue
-        yield [what, bench.row(row)["label"], f"{bench.value(row, 'ns_per_pillar'):.3g}",
-               f"{bench.value(row, 'our_ns_per_pillar'):.3g}", f"{bench.value(row, 'speedup'):.3g}",
-               f"{bench.value(row, 'of_ceiling'):.3f}"]
+        yield [what, bench.row(row)["label"], *bench.cells(
+            row, "ns_per_pillar:.3g our_ns_per_pillar:.3g speedup:.3g of_ceiling:.3f")]
 
 
 def stage_rows(bench):
@@ -352,8 +358,7 @@ def stage_rows(bench):
 
 def lane_rows(bench):
     for row in bench.group("lanes"):
-        yield [row.removeprefix("lanes/"), f"{bench.value(row, 'ns_per_pillar'):.3g}",
-               f"{bench.value(row, 'of_ceiling'):.3f}"]
+        yield [row.removeprefix("lanes/"), *bench.cells(row, "ns_per_pillar:.3g of_ceiling:.3f")]
     if "(GPU)" not in bench.context["device"]:
         yield ["GPU, 1 lane: unmeasured, there was none", "–", "–"]
 
@@ -377,39 +382,16 @@ def processor_name():
     for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
         if line.startswith("model name"):
             return line.split(":", 1)[1].strip()
-    return "not told"
+    return "unknown"
 
 
-def machine_values(bench):
-    context = bench.context
-    return {
-        **{key: context[key] for key in ("date", "num_cpus", "device", "platform", "driver", "lanes",
-                                         "compiler", "build")},
-        "commit": context.get("commit", "not told"),
-        "processor": processor_name(),
-        "caches": caches_text(context["caches"]),
-        "system": f"{platform.freedesktop_os_release()['PRETTY_NAME']}, kernel {platform.release()}",
-        "load_before": ", ".join(f"{load:.2f}" for load in context["load_avg"]),
-        "load_after": ", ".join(f"{load:.2f}" for load in os.getloadavg()),
-    }
+def loads_text(loads):
+    return ", ".join(f"{load:.2f}" for load in loads)
 
 
-def live_values(live):
-    latencies = {key: text(live[f"latency_{key}_ms"], ".3f", "never")
-                 for key in ("p50", "p99", "p99_9", "longest")}
-    return {
-        "source": live["source"],
-        "live_pillars": live["pillar_rows"] * live["pillar_cols"],
-        "rate_hz": f"{live['rate_hz']:g}",
-        "seconds": f"{live['seconds']:.1f}",
-        "deadline_ms": f"{live['deadline_ms']:g}",
-        "scheduled": live["scheduled"],
-        "missed": live["missed"],
-        "dropped": live["dropped"],
-        **latencies,
-        "cpu_cores": text(live["cpu_cores"]),
-        "contact_share": percent(live["contact_share"]),
-    }
+def latencies(live):
+    return {key: text(live[f"latency_{key}_ms"], ".3f", "never")
+            for key in ("p50", "p99", "p99_9", "longest")}
 
 
 def main(docs, bench_json, live_json):
@@ -422,23 +404,21 @@ def main(docs, bench_json, live_json):
     draw_variants(ways, front, folder)
     draw_sizes(found, bare, every, folder)
     draw_latency(bench, live, folder)
-    page.write(docs, "performance", {
-        "goal_rows": page.rows(goal_rows(bench, live)),
-        "error_pillars": f"{ways[0]['error_pillars']:.0f}",
-        "variants": len(ways),
-        "front": front_text(front, "error_over_bound", "times the bound"),
-        "front_by_counts": front_text(front_by(ways, "error_counts"), "error_counts", "counts"),
-        "variant_rows": page.rows(variant_rows(ways, front)),
-        "size_rows": page.rows(size_rows(found)),
-        "contact_rows": page.rows(contact_rows(bare, every)),
-        "latency_rows": page.rows(latency_rows(bench)),
-        "spread_times": bench.row(SPREAD)["label"],
-        "opponent_rows": page.rows(opponent_rows(bench)),
-        "stage_rows": page.rows(stage_rows(bench)),
-        "lane_rows": page.rows(lane_rows(bench)),
-        **machine_values(bench),
-        **live_values(live),
-    })
+    page.write(
+        docs, "performance", goal_rows=goal_rows(bench, live),
+        error_pillars=ways[0]["error_pillars"], variants=len(ways),
+        front=front_text(front, "error_over_bound", "times the bound"),
+        front_by_counts=front_text(front_by(ways, "error_counts"), "error_counts", "counts"),
+        variant_rows=variant_rows(ways, front), size_rows=size_rows(found),
+        contact_rows=contact_rows(bare, every), latency_rows=latency_rows(bench),
+        spread_times=bench.row(SPREAD)["label"], live=live, latencies=latencies(live),
+        live_pillars=live["pillar_rows"] * live["pillar_cols"],
+        contact_share=percent(live["contact_share"]), opponent_rows=opponent_rows(bench),
+        stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
+        context={"commit": "unknown"} | bench.context, processor=processor_name(),
+        caches=caches_text(bench.context["caches"]),
+        system=f"{platform.freedesktop_os_release()['PRETTY_NAME']}, kernel {platform.release()}",
+        load_before=loads_text(bench.context["load_avg"]), load_after=loads_text(os.getloadavg()))
 
 
 if __name__ == "__main__":
