@@ -15,7 +15,7 @@ def load(path):
     try:
         return json.loads(Path(path).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise Failure(f"{path}: cannot be read: {error}; measure again with ./dev report") from error
+        raise Failure(f"{path}: {error}; measure again with ./dev report") from error
 
 
 def rows(table):
@@ -54,6 +54,9 @@ def write(docs, name, **values):
 
 def run(main):
     """Runs a script's main function on the words of its command line."""
+    if len(sys.argv) - 1 != main.__code__.co_argcount:
+        print(sys.modules["__main__"].__doc__, file=sys.stderr)
+        sys.exit(2)
     try:
         main(*sys.argv[1:])
     except Failure as failure:

@@ -49,6 +49,7 @@ def plain_ticks(axis, ticks=None, labels=None, digits=(1, 2, 5)):
 
 
 def save(figure, folder, name):
+    """Writes NAME.svg and NAME.png; a palette makes the latter a quarter as large."""
     from PIL import Image
     folder.mkdir(parents=True, exist_ok=True)
     figure.savefig(folder / f"{name}.svg", metadata={"Date": None})
