@@ -34,7 +34,6 @@ struct LiveOptions {
   int frames_in_flight = 2;
   double spin_us = 0;
   std::uint64_t memory_limit_mib = 1024;
-  bool half = false;
   bool realtime = false;
   bool strict = false;
   PlanOptions plan;
@@ -78,7 +77,6 @@ SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
   PlanOptions asked = options.plan;
   if (is_scene(options.source) && asked.scene.empty()) asked.scene = options.source;
   plan = plan_of(asked, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
-  plan.half_output = options.half;
   check(plan, options.source);  // Before frames are loaded, which may take a while.
   return plan;
 }
@@ -87,19 +85,14 @@ SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
 class Replay {
  public:
   Replay(const LiveFrames& live, Processor& processor, const LiveOptions& options)
-      : live_(live),
-        processor_(processor),
-        capacity_(options.frames_in_flight),
-        half_(options.half) {}
+      : live_(live), processor_(processor), capacity_(options.frames_in_flight) {}
 
   [[nodiscard]] int capacity() const { return capacity_; }
   [[nodiscard]] int in_flight() const { return processor_.in_flight(); }
   void submit(std::uint64_t frame) {
     processor_.submit(live_.loaded[frame % live_.loaded.size()].view());
   }
-  void receive() {
-    status_ = half_ ? processor_.receive_half().status : processor_.receive().status;
-  }
+  void receive() { status_ = processor_.receive().status; }
 
   /// Solves a frame in every slot: the first result of a slot takes its memory page by page.
   void warm_up() {
@@ -116,7 +109,6 @@ class Replay {
   const LiveFrames& live_;
   Processor& processor_;
   int capacity_;
-  bool half_;
   std::span<const std::uint8_t> status_;
 };
 
@@ -222,9 +214,6 @@ void add_run_options(CLI::App& command, LiveOptions& options) {
       .add_option("--memory-limit", options.memory_limit_mib,
                   "Frames are loaded beforehand, into so many MiB at most [1024]")
       ->check(whole_number_range(1, 1U << 20U));
-  command.add_flag(
-      "--half", options.half,
-      "Forces of half precision, which take fewer bytes to memory; not with --estimator contact");
   command.add_flag("--realtime", options.realtime,
                    "Ask for real-time scheduling and locked memory; says so where refused");
   command.add_flag("--strict", options.strict,

@@ -29,11 +29,6 @@ Measured sparse_over_dense(const SpeedRun& run) {
   return ratio(of_ceiling(run, "contact/100/bare"), of_ceiling(run, "contact/1/bare"));
 }
 
-Measured half_over_float(const SpeedRun& run) {
-  return ratio(run.bench.find("variant/direct/float/u8/half/none", "over_bare_copy"),
-               run.bench.find("variant/direct/float/u8/float32/none", "over_bare_copy"));
-}
-
 /// The slowest of the large skins over the fastest.
 Measured unevenness(const SpeedRun& run) {
   double least = 0;
@@ -80,8 +75,6 @@ constexpr std::array kRules = {
     Rule{"10⁵ to 10⁷ pillars: most over least time per pillar", kAtMost, 1.25, unevenness},
     Rule{"One frame of 79 × 79 pillars: time over that of an empty launch", kAtMost, 1.5,
          [](const SpeedRun& run) { return run.bench.find("latency/6241", "of_empty_launch"); }},
-    Rule{"Results of half precision: time over that of float32 ones", kAtMost, 0.75,
-         half_over_float},
     Rule{"A square metre at 1 kHz, live: frames missed or dropped", kAtMost, 0, late_frames},
 };
 

@@ -27,7 +27,7 @@ constexpr double kResolution = 0.003;
 
 constexpr const char* kIntroduction = R"(## Error against time
 
-Every way to solve: by estimator, arithmetic, type of sensel, how results are stored, and stages. The frames that are timed are those of a
+Every way to solve: by estimator, arithmetic, type of sensel, and stages. The frames that are timed are those of a
 sensor with normal noise of {noise} counts and a threshold of {threshold} counts, whose every pillar is pressed with a known force of 15 to 150 counts from
 any direction. `u8` sensels round to whole counts, `u16` ones count sixteen times finer and round to that, `f32` ones do not round. With `calibration` and `all`
 each sensel has a tare, a gain (± 10 %), a dead zone, or is dead (3 in 1000), and the solve knows them.
@@ -94,7 +94,7 @@ void rank(std::vector<Outcome>& outcomes) {
   }
 }
 
-/// "direct, float, u8, float32, none".
+/// "direct, float, u8, none".
 std::string words_of(const SolveVariant& variant) {
   std::string words;
   for (const char letter : name_of(variant)) {
@@ -104,7 +104,7 @@ std::string words_of(const SolveVariant& variant) {
 }
 
 std::string table_of(const std::vector<Outcome>& outcomes) {
-  Table table("lrrrrrrr", {"Estimator, arithmetic, sensels, results, stages", "ns per pillar",
+  Table table("lrrrrrrr", {"Estimator, arithmetic, sensels, stages", "ns per pillar",
                            "share of its own ceiling", "time over the bare copy", "error, counts",
                            "error over the bound", "all regions, counts", "ambiguous"});
   for (const Outcome& outcome : outcomes) {
@@ -146,8 +146,7 @@ std::string front_text(const std::vector<Outcome>& outcomes) {
 }
 
 /// A strip of the chart for each type of sensel; colours for estimator and arithmetic, shapes for
-/// stages, hollow ones where results are in half precision. Columns of the data: time, error,
-/// colour, shape, whether on the front.
+/// stages. Columns of the data: time, error, colour, shape, whether on the front.
 constexpr const char* kScript = R"(
 set logscale x
 set xrange [least_time : most_time]
@@ -197,7 +196,6 @@ plot NaN with points pointtype 7 linetype 6 title 'direct, float', \
      NaN with points pointtype 11 linecolor '#444444' title 'uncertainty', \
      NaN with points pointtype 5 linecolor '#444444' title 'calibration', \
      NaN with points pointtype 13 linecolor '#444444' title 'all', \
-     NaN with points pointtype 6 linecolor '#444444' title 'half results', \
      NaN with points pointtype 6 linewidth 1.5 linecolor '#000000' pointsize 2 \
         title 'Pareto front'
 unset multiplot
@@ -213,9 +211,8 @@ int colour_of(const SolveVariant& variant) {
 int shape_of(const SolveVariant& variant) {
   constexpr std::array<std::pair<std::string_view, int>, 5> kShapes = {
       {{"none", 7}, {"angles", 9}, {"uncertainty", 11}, {"calibration", 5}, {"all", 13}}};
-  const int filled =
-      std::ranges::find(kShapes, variant.stage, &std::pair<std::string_view, int>::first)->second;
-  return variant.results == bench::Results::half ? filled - 1 : filled;
+  return std::ranges::find(kShapes, variant.stage, &std::pair<std::string_view, int>::first)
+      ->second;
 }
 
 void draw(const std::filesystem::path& stem, const std::vector<Outcome>& outcomes) {

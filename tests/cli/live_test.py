@@ -134,19 +134,6 @@ class Run(LiveTest):
         result = run("live", self.scene, "--frames-close", expect=2)
         self.assertIn("--frames-close", result.stderr)
 
-    def test_the_contact_estimator_has_no_half_precision(self):
-        for estimator in ("contact", "field"):
-            self.assert_fails("live", self.scene, "--estimator", estimator, "--half",
-                              says=["ball.toml", "half precision", "--half", "direct"])
-
-    def test_half_precision_is_another_way_to_store(self):
-        arguments = (self.scene, "--rate", 50, "--seconds", 0.1)
-        single = self.live(*arguments)
-        half = self.live(*arguments, "--half")
-        expected = ["store_half" if stage == "store" else stage for stage in single["stages"]]
-        self.assertEqual(half["stages"], expected)
-        self.assertGreater(half["contact_share"], 0.3)
-
     def test_everything_of_solve_is_the_same(self):
         recording = self.folder / "ball.h5"
         run("simulate", self.scene, "-o", recording)

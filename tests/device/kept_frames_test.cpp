@@ -105,23 +105,6 @@ TEST_P(KeptFrames, PagesAreWholeAndHoldEveryPlane) {
   expect_within(pages, forces.status);
 }
 
-TEST_P(KeptFrames, HalfResultsAreKeptToo) {
-  SolverPlan plan = bare_plan(32, 32, SenselType::u8);
-  plan.half_output = true;
-  Processor ring = processor(plan, 2);
-  const std::vector<RandomFrame> frames = frames_of(plan, 6);
-  ring.submit(frames[0].view());
-  const HalfFieldView forces = ring.receive_half();
-  const Processor::Kept kept = ring.keep();
-  const auto before = copy_of(std::as_bytes(forces.normal));
-  expect_within(kept.pages(), forces.normal);
-  for (const RandomFrame& frame : frames) {
-    ring.submit(frame.view());
-    static_cast<void>(ring.receive_half());
-  }
-  EXPECT_EQ(copy_of(std::as_bytes(forces.normal)), before);
-}
-
 TEST_P(KeptFrames, GivingBackFreesTheSlot) {
   const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
   Processor ring = processor(plan, 2);

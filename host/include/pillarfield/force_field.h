@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "pillarfield/half.h"
-
 namespace pillarfield {
 
 /// What is told of the uncertainty of a force (docs/derivations/uncertainty.md). The first three
@@ -52,23 +50,19 @@ class UncertaintyPlanes {
 ///
 /// Forces are in newtons: shear_x (+ right) and shear_y (+ up) are the tangential force that acts
 /// on the skin, normal is positive when the skin is pressed. Status bytes: see status.h.
-/// Planes that were not asked for are empty. `Value` is float or Half.
-template <class Value>
-struct FieldView {
+/// Planes that were not asked for are empty.
+struct ForceFieldView {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
-  std::span<const Value> shear_x;
-  std::span<const Value> shear_y;
-  std::span<const Value> normal;
+  std::span<const float> shear_x;
+  std::span<const float> shear_y;
+  std::span<const float> normal;
   std::span<const std::uint8_t> status;
-  std::span<const Value> magnitude;  ///< N, only where angles were asked for
-  std::span<const Value> theta;      ///< rad from the outward normal, [0, pi]; as magnitude
-  std::span<const Value> phi;        ///< rad in the plane, (-pi, pi]; as magnitude
-  UncertaintyPlanes<std::span<const Value>> uncertainty;  ///< only where asked for
+  std::span<const float> magnitude;  ///< N, only where angles were asked for
+  std::span<const float> theta;      ///< rad from the outward normal, [0, pi]; as magnitude
+  std::span<const float> phi;        ///< rad in the plane, (-pi, pi]; as magnitude
+  UncertaintyPlanes<std::span<const float>> uncertainty;  ///< only where asked for
 };
-
-using ForceFieldView = FieldView<float>;
-using HalfFieldView = FieldView<Half>;  ///< of SolverPlan::half_output
 
 /// The same with memory of its own; used for truths and copies. Magnitude and angles are absent,
 /// and the uncertainty mostly is.
@@ -87,8 +81,5 @@ struct ForceField {
   [[nodiscard]] std::size_t pillars() const { return std::size_t{rows} * cols; }
   [[nodiscard]] ForceFieldView view() const;
 };
-
-/// A copy in single precision, exact, without magnitude and angles.
-[[nodiscard]] ForceField to_single(const HalfFieldView& half);
 
 }  // namespace pillarfield

@@ -151,11 +151,8 @@ class Processor {
 
   /// Waits for the oldest frame in flight. Its spans stay valid until as many frames were submitted
   /// after it as there are slots that are not kept, or for as long as it is kept. Throws Error when
-  /// none is in flight, or the plan has half_output.
+  /// none is in flight.
   [[nodiscard]] ForceFieldView receive();
-
-  /// The same of a plan with half_output, and of no other.
-  [[nodiscard]] HalfFieldView receive_half();
 
   /// Keeps the frame last received. Throws Error where none was received, it is kept already, or a
   /// frame that was submitted since took its slot.
@@ -176,9 +173,6 @@ class Processor {
   [[nodiscard]] const Device& device() const;
 
  private:
-  template <class Value>
-  FieldView<Value> receive_oldest();
-
   struct State;
   std::unique_ptr<State> state_;
 };

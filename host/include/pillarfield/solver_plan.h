@@ -55,11 +55,6 @@ struct SolverPlan {
   int baseline_interval = 1;
   bool angles = false;       ///< also magnitude, theta and phi
   bool uncertainty = false;  ///< also the planes of Uncertainty; needs the noise, not for `paper`
-  /// The planes of a result, status apart, are of half precision (half.h) and come from
-  /// Processor::receive_half(): fewer bytes to move, 11 instead of 17 a pillar where 8-bit readings
-  /// become forces. Forces of up to 65504 N, angles within 0.001 rad. Not for `contact`, which
-  /// goes over planes of single precision once more.
-  bool half_output = false;
 };
 
 /// Throws Error, its place being `where`, when a member of `plan` is out of its range or two do not
