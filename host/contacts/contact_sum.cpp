@@ -1,6 +1,7 @@
 #include "contacts/contact_sum.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -24,26 +25,41 @@ constexpr std::uint32_t kLanes = 4;
 /// are usable.
 constexpr int kUndetermined = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
 
-/// Reads the pillars of a plane from `from` on; lanes from `pillars` on are zero.
-template <class Vector, class Value>
-PF_INLINE void read(const Value* from, std::uint32_t pillars, Vector& values) {
-  if (pillars >= kLanes) {
-    std::memcpy(&values, from, sizeof values);
-    return;
-  }
-  values = Vector{};
-  for (std::uint32_t lane = 0; lane < pillars; ++lane) values[lane] = from[lane];
+/// Reads forces; NaN, infinity and lanes that are not `present` are zero.
+PF_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
+  std::memcpy(&values, from, sizeof values);
+  const Ints finite = values - values == 0;
+  values = __builtin_bit_cast(Floats, __builtin_bit_cast(Ints, values) & finite & present);
+  forces = Doubles{values[0], values[1], values[2], values[3]};
 }
 
-/// Reads forces, NaN and infinity as zero.
-PF_INLINE void read_forces(const float* from, std::uint32_t pillars, Floats& values,
-                           Doubles& forces) {
-  constexpr std::int32_t kInfinity = 0x7f800000;
-  read(from, pillars, values);
-  const Ints bits = __builtin_bit_cast(Ints, values);
-  values = __builtin_bit_cast(Floats, bits & ((bits & INT32_MAX) < kInfinity));
-  forces = __builtin_convertvector(values, Doubles);
+PF_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& status) {
+  Bytes bytes;
+  std::memcpy(&bytes, from, sizeof bytes);
+  status = Ints{bytes[0], bytes[1], bytes[2], bytes[3]} & present;
 }
+
+/// Where four pillars lie in each plane.
+struct Place {
+  const float* shear_x;
+  const float* shear_y;
+  const float* normal;
+  const std::uint8_t* status;
+};
+
+/// The last pillars of a field that has fewer than four from there on.
+struct LastPillars {
+  std::array<float, 3 * kLanes> forces{};
+  std::array<std::uint8_t, kLanes> status{};
+
+  Place copy(const ForceFieldView& field, std::size_t at) {
+    std::ranges::copy(field.shear_x.subspan(at), forces.begin());
+    std::ranges::copy(field.shear_y.subspan(at), forces.begin() + kLanes);
+    std::ranges::copy(field.normal.subspan(at), forces.begin() + 2 * kLanes);
+    std::ranges::copy(field.status.subspan(at), status.begin());
+    return {forces.data(), forces.data() + kLanes, forces.data() + 2 * kLanes, status.data()};
+  }
+};
 
 PF_INLINE void keep(const Doubles& values, const Longs& mask, Doubles& kept) {
   kept = __builtin_bit_cast(Doubles, __builtin_bit_cast(Longs, values) & mask);
@@ -78,7 +94,7 @@ struct Lanes {
     Doubles told;
     Doubles slips;
     keep(n, n > 0, presses);
-    keep(presses, __builtin_convertvector(known, Longs), told);
+    keep(presses, Longs{known[0], known[1], known[2], known[3]}, told);
     keep(told, x * x + y * y >= least * least, slips);
     pressing += presses;
     determined += told;
@@ -127,34 +143,42 @@ PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, dou
                         std::optional<double> least_ratio, Lanes& lanes) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
   Floats peaks = {kNone, kNone, kNone, kNone};
+  LastPillars last;
+  Doubles sum_x{};
+  Doubles sum_y{};
+  Doubles sum_n{};
   Doubles x = static_cast<double>(place_x(forces, run.first)) + Doubles{0, 2, 4, 6};
   for (std::uint32_t col = run.first; col < run.end; col += kLanes, x += 2 * kLanes) {
     const std::size_t at = std::size_t{run.row} * forces.cols + col;
-    const std::uint32_t pillars = run.end - col;
+    const Ints present = Ints{0, 1, 2, 3} < static_cast<std::int32_t>(run.end - col);
+    Place from = {forces.shear_x.data() + at, forces.shear_y.data() + at, forces.normal.data() + at,
+                  forces.status.data() + at};
+    if (at + kLanes > forces.status.size()) from = last.copy(forces, at);
     Floats values;
-    Bytes bytes;
     Doubles shear_x;
     Doubles shear_y;
     Doubles normal;
-    read_forces(forces.shear_x.data() + at, pillars, values, shear_x);
-    read_forces(forces.shear_y.data() + at, pillars, values, shear_y);
-    read_forces(forces.normal.data() + at, pillars, values, normal);
-    read(forces.status.data() + at, pillars, bytes);
-    const Ints present = Ints{0, 1, 2, 3} < static_cast<std::int32_t>(pillars);
+    Ints status;
+    read(from.shear_x, present, values, shear_x);
+    read(from.shear_y, present, values, shear_y);
+    read(from.normal, present, values, normal);
+    read(from.status, present, status);
     peaks = present & (values > peaks) ? values : peaks;
-    lanes.shear_x += shear_x;
-    lanes.shear_y += shear_y;
-    lanes.normal += normal;
+    sum_x += shear_x;
+    sum_y += shear_y;
+    sum_n += normal;
     lanes.normal_x += normal * x;
-    lanes.normal_y += normal * y;
     lanes.shear_y_x += shear_y * x;
-    lanes.shear_x_y += shear_x * y;
-    const Ints status = __builtin_convertvector(bytes, Ints);
     // A lane that is true is -1.
     lanes.ambiguous -= (status & (status::kAmbiguous | status::kFromNeighbours)) != 0;
     lanes.resolved -= (status & status::kFromNeighbours) != 0;
     if (least_ratio) lanes.add_slip(shear_x, shear_y, normal, status, *least_ratio);
   }
+  lanes.shear_x += sum_x;
+  lanes.shear_y += sum_y;
+  lanes.normal += sum_n;
+  lanes.normal_y += sum_n * y;
+  lanes.shear_x_y += sum_x * y;
   return std::max(std::max(peaks[0], peaks[1]), std::max(peaks[2], peaks[3]));
 }
 
