@@ -180,7 +180,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
     }
   };
   // A lane of its own is 32 bits wide anyway.
-  const bool whole = paths.whole_numbers && lanes > 1 && is_whole(plan);
+  const bool whole = lanes > 1 && is_whole(plan);
   define(definitions(plan, whole));
   if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));

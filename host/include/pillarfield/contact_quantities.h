@@ -27,9 +27,8 @@ enum class SlipState : std::uint8_t {
 /// What a contact exerts on the skin, and where (docs/contacts_found.md). Forces are sums over its
 /// pillars, with the signs of ForceFieldView.
 ///
-/// Sums are exact: forces are rounded to 2^-24 N and added as integers, so they are the same bits
-/// whatever the order of pillars, and within 30 nN a pillar of the true sum. A pillar's NaN counts
-/// as zero, a force beyond 8192 N (256 N on a patch of 2^29 pillars) as that.
+/// Sums are in double precision, in an order that the contact alone decides: the same bits with any
+/// number of threads. A pillar's NaN or infinity counts as zero.
 struct ContactQuantities {
   std::uint64_t pillars = 0;
   std::uint64_t ambiguous = 0;  ///< of these, pillars that readings alone leave open

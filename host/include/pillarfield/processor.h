@@ -76,9 +76,6 @@ struct SpeedPaths {
   /// Blocks of pillars whose sensels are all silent, and were so when their slot was last written,
   /// are not solved again.
   bool skip_silent = true;
-  /// The direct solve of 8-bit readings without calibration, angles and uncertainty goes in 16-bit
-  /// integers.
-  bool whole_numbers = true;
   Stores stores = Stores::automatic;
 };
 
