@@ -33,10 +33,6 @@ void expect_solved(const ForceFieldView& forces, const SolverPlan& plan, const R
   EXPECT_TRUE(same_bytes<std::uint8_t>(forces.status, expected.status));
 }
 
-std::vector<std::byte> copy_of(std::span<const std::byte> bytes) {
-  return {bytes.begin(), bytes.end()};
-}
-
 template <class Value>
 void expect_within(std::span<const std::byte> pages, std::span<const Value> plane) {
   const std::span<const std::byte> bytes = std::as_bytes(plane);
