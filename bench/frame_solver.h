@@ -16,8 +16,7 @@ class FrameSolver {
   /// Solves so many frames, going on where it stopped.
   void run(int frames);
 
-  /// Solves one frame; the result stays until run() or the next solve(). From half precision it has
-  /// no magnitude and angles.
+  /// Solves one frame; the result stays until run() or the next solve().
   ForceFieldView solve(const FrameView& frame);
 
  private:
@@ -25,9 +24,7 @@ class FrameSolver {
 
   const Frames* frames_;
   int most_in_flight_;
-  bool half_output_;
   Processor processor_;
-  ForceField from_half_;  ///< the last result of solve(), where results are in half precision
   std::size_t submitted_ = 0;
 };
 

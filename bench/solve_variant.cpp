@@ -12,7 +12,6 @@ constexpr std::string_view kStages[] = {"none", "angles", "uncertainty", "calibr
 constexpr SenselType kTypes[] = {SenselType::u8, SenselType::u16, SenselType::f32};
 constexpr Estimator kEstimators[] = {Estimator::direct, Estimator::paper};
 constexpr Arithmetic kArithmetics[] = {Arithmetic::device_float, Arithmetic::host_double};
-constexpr Results kResults[] = {Results::float32, Results::half};
 
 const char* name_of(Arithmetic arithmetic) {
   return arithmetic == Arithmetic::device_float ? "float" : "double";
@@ -30,22 +29,8 @@ const char* short_name_of(SenselType type) {
   return "f32";
 }
 
-const char* name_of(Results results) {
-  switch (results) {
-    case Results::half:
-      return "half";
-    case Results::float32:
-      break;
-  }
-  return "float32";
-}
-
 bool exists(const SolveVariant& variant) {
   const bool wants_uncertainty = variant.stage == "uncertainty" || variant.stage == "all";
-  if (variant.results == Results::half &&
-      (variant.estimator == Estimator::paper || variant.arithmetic == Arithmetic::host_double)) {
-    return false;
-  }
   return !(variant.estimator == Estimator::paper && wants_uncertainty);
 }
 
@@ -56,9 +41,8 @@ void add_calibration(SolverPlan& plan) {
 }  // namespace
 
 std::string name_of(const SolveVariant& variant) {
-  return fmt::format("{}/{}/{}/{}/{}", pillarfield::name_of(variant.estimator),
-                     name_of(variant.arithmetic), short_name_of(variant.type),
-                     name_of(variant.results), variant.stage);
+  return fmt::format("{}/{}/{}/{}", pillarfield::name_of(variant.estimator),
+                     name_of(variant.arithmetic), short_name_of(variant.type), variant.stage);
 }
 
 std::vector<SolveVariant> solve_variants() {
@@ -67,10 +51,8 @@ std::vector<SolveVariant> solve_variants() {
     for (const std::string_view stage : kStages) {
       for (const Estimator estimator : kEstimators) {
         for (const Arithmetic arithmetic : kArithmetics) {
-          for (const Results results : kResults) {
-            const SolveVariant variant = {estimator, arithmetic, type, results, stage};
-            if (exists(variant)) all.push_back(variant);
-          }
+          const SolveVariant variant = {estimator, arithmetic, type, stage};
+          if (exists(variant)) all.push_back(variant);
         }
       }
     }
@@ -83,7 +65,6 @@ double count_scale(SenselType type) { return type == SenselType::u16 ? 16 : 1; }
 SolverPlan plan_of(const SolveVariant& variant, std::uint32_t pillars_a_side) {
   SolverPlan plan = bare_plan(pillars_a_side, variant.type);
   plan.estimator = variant.estimator;
-  plan.half_output = variant.results == Results::half;
   if (variant.stage == "calibration") {
     add_calibration(plan);
   } else {

@@ -15,21 +15,17 @@ enum class Arithmetic : std::uint8_t {
   host_double,  ///< a C++ loop over kernels/pillar, on all threads; its results are stored as float
 };
 
-/// How results other than the status are stored.
-enum class Results : std::uint8_t { float32, half };
-
 /// One way to solve the frames of a sensor with noise.
 struct SolveVariant {
   Estimator estimator = Estimator::direct;
   Arithmetic arithmetic = Arithmetic::device_float;
   SenselType type = SenselType::u8;
-  Results results = Results::float32;
   /// "none", "calibration" (tare, gain, dead zone, mask), "angles", "uncertainty", or "all", as
   /// add_stage has it.
   std::string_view stage = "none";
 };
 
-/// "direct/float/u8/float32/none".
+/// "direct/float/u8/none".
 [[nodiscard]] std::string name_of(const SolveVariant& variant);
 
 /// All that there are. Neighbours share their frames where they can.

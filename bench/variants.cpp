@@ -52,8 +52,6 @@ void add_uncertainty(SolverPlan& plan) {
   plan.uncertainty = true;
 }
 
-void add_half(SolverPlan& plan) { plan.half_output = true; }
-
 void add_baseline(SolverPlan& plan) { plan.baseline_rate = 0.01; }
 
 void add_power_law(SolverPlan& plan) { plan.skin.power_law = PowerLaw{0.8, 100}; }
@@ -80,7 +78,6 @@ constexpr std::array kStages = {
     Stage{"parity", add_parity},
     Stage{"angles", add_angles},
     Stage{"uncertainty", add_uncertainty},
-    Stage{"half", add_half},
     Stage{"baseline", add_baseline},
     Stage{"power_law", add_power_law},
     Stage{"all", add_all},
@@ -115,7 +112,7 @@ std::size_t Streams::bytes_per_pillar() const {
   const std::size_t frame = 4 * size_of(sensel_type);
   const std::size_t calibration =
       16 * static_cast<std::size_t>(calibration_planes) + (mask ? 4 : 0) + (tare_follows ? 16 : 0);
-  return frame + calibration + result_size * static_cast<std::size_t>(result_planes) + 1;
+  return frame + calibration + sizeof(float) * static_cast<std::size_t>(result_planes) + 1;
 }
 
 Streams streams_of(const SolverPlan& plan) {
@@ -130,7 +127,6 @@ Streams streams_of(const SolverPlan& plan) {
   streams.mask = !calibration.mask.empty();
   streams.tare_follows = plan.baseline_rate.has_value();
   if (plan.angles) streams.result_planes += 3;
-  if (plan.half_output) streams.result_size = sizeof(Half);
   if (plan.uncertainty) streams.result_planes += static_cast<int>(kUncertaintyPlanes);
   return streams;
 }

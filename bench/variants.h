@@ -28,11 +28,10 @@ void add_stage(SolverPlan& plan, std::string_view name);
 /// four values a pillar.
 struct Streams {
   SenselType sensel_type = SenselType::u8;
-  int calibration_planes = 0;   ///< float32, read
-  bool mask = false;            ///< uint8, read
-  bool tare_follows = false;    ///< one of the calibration planes is written too
-  int result_planes = 3;        ///< written; and the status byte
-  std::size_t result_size = 4;  ///< bytes of a value of such a plane: 4, or 2 of half precision
+  int calibration_planes = 0;  ///< float32, read
+  bool mask = false;           ///< uint8, read
+  bool tare_follows = false;   ///< one of the calibration planes is written too
+  int result_planes = 3;       ///< float32, written; and the status byte
 
   [[nodiscard]] std::size_t bytes_per_pillar() const;
 };

@@ -27,7 +27,7 @@
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
  * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, a Fraction
  * is the number n of 1 - 1 / 2^n, and of
- * maths only pillar_model.h, sensel.h, direct_solve.h and half.h are of use.
+ * maths only pillar_model.h, sensel.h, direct_solve.h are of use.
  *
  * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
  * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.

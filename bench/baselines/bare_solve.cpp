@@ -10,7 +10,7 @@ BareSolve bare_solve(const SolverPlan& plan) {
   if (plan.sensel_type != SenselType::u8 || plan.estimator != Estimator::direct ||
       !plan.calibration.empty() || plan.skin.full_scale_counts || plan.skin.power_law ||
       plan.parity_tolerance_counts || plan.baseline_rate || plan.angles || plan.uncertainty ||
-      plan.half_output || plan.segment_point != kSegmentPoint) {
+      plan.segment_point != kSegmentPoint) {
     throw Error("opponent", "the plan is not the bare direct solve of uint8 frames",
                 "take a plan without stages");
   }

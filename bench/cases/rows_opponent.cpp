@@ -15,7 +15,6 @@
 #include "bench/baselines/plain_loop.h"
 #include "bench/baselines/vectorised.h"
 #include "bench/cases/rows.h"
-#include "bench/timing/plain_names.h"
 #include "bench/timing/solve_race.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
@@ -90,10 +89,7 @@ Measurement race_plain_loop(const Session& session, int threads) {
 }
 
 Measurement race_vectorised(const Session& session) {
-  const Vectorised by_hand = vectorised();
-  if (by_hand.instructions == nullptr) {
-    throw Error("", fmt::format("{}this processor has no AVX2", kSkipped));
-  }
+  const Vectorised by_hand = vectorised().front();
   Match match(session);
   require_whole_threshold(bare_solve(match.plan()));
   LoopSolver cached(match.plan(), by_hand.cached, all_threads());

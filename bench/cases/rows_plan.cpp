@@ -33,9 +33,6 @@ void add_plan_rows(const Session& session) {
   add_plan_row(session, "output/angles", plan_with("angles"));
   add_plan_row(session, "output/uncertainty", plan_with("uncertainty"));
   add_plan_row(session, "output/all", both);
-  add_stage(both, "half");
-  add_plan_row(session, "output/half", plan_with("half"));
-  add_plan_row(session, "output/all_half", both);
 
   for (const Estimator estimator : {Estimator::direct, Estimator::paper}) {
     SolverPlan plan = plan_with("none");

@@ -71,7 +71,7 @@ CopyKernel::Slot CopyKernel::make_slot(const cl::Program& program) const {
   const std::uint64_t pitch = plane_pitch(skin_.pillars());
   const auto planes = static_cast<std::size_t>(streams_.result_planes);
   Slot slot{cl::CommandQueue(context_, device_), cl::Kernel(program, "copy_streams"),
-            make_planes(planes * pitch * streams_.result_size), make_planes(pitch)};
+            make_planes(planes * pitch * sizeof(float)), make_planes(pitch)};
   cl_uint argument = kRawArgument + 1;
   slot.kernel.setArg(argument++, cl_ulong{skin_.cols});
   slot.kernel.setArg(argument++, cl_uint{skin_.pillar_cols()});
@@ -105,12 +105,12 @@ void CopyKernel::run(int frames) {
 std::vector<std::byte> CopyKernel::results() const {
   const Slot& slot = slots_[(started_ + slots_.size() - 1) % slots_.size()];
   const auto planes = static_cast<std::size_t>(streams_.result_planes);
-  const std::size_t plane_bytes = skin_.pillars() * streams_.result_size;
+  const std::size_t plane_bytes = skin_.pillars() * sizeof(float);
   std::vector<std::byte> bytes(planes * plane_bytes + skin_.pillars());
   for (std::size_t plane = 0; plane < planes; ++plane) {
     slot.queue.enqueueReadBuffer(slot.results.buffer, CL_TRUE,
-                                 plane * plane_pitch(skin_.pillars()) * streams_.result_size,
-                                 plane_bytes, bytes.data() + plane * plane_bytes);
+                                 plane * plane_pitch(skin_.pillars()) * sizeof(float), plane_bytes,
+                                 bytes.data() + plane * plane_bytes);
   }
   slot.queue.enqueueReadBuffer(slot.status.buffer, CL_TRUE, 0, skin_.pillars(),
                                bytes.data() + planes * plane_bytes);

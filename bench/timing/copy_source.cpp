@@ -69,33 +69,22 @@ constexpr const char* kWriting = R"(
 #endif
 #endif
 
-#if RESULT_SIZE == 2
-typedef ushort Result;
-typedef ushort16 Results;
-#define result_of_one(word) (ushort)(word ^ word >> 16)
-#define result_of_many(words) convert_ushort16(words ^ words >> 16)
-#else
-typedef float Result;
-typedef float16 Results;
-#define result_of_one(word) as_float(word)
-#define result_of_many(words) as_float16(words)
-#endif
-/* A vector that begins at any value; drivers take vstore16 of short values apart. */
-typedef Results ResultsAnywhere __attribute__((aligned(RESULT_SIZE)));
+/* A vector that begins at any value; drivers take vstore16 apart. */
+typedef float16 ResultsAnywhere __attribute__((aligned(4)));
 
-void write_one(uint word, global Result* results, ulong pitch, global uchar* status) {
-  for (int plane = 0; plane < RESULT_PLANES; ++plane) results[plane * pitch] = result_of_one(word);
+void write_one(uint word, global float* results, ulong pitch, global uchar* status) {
+  for (int plane = 0; plane < RESULT_PLANES; ++plane) results[plane * pitch] = as_float(word);
   *status = (uchar)(word ^ word >> 8 ^ word >> 16 ^ word >> 24);
 }
 
-void write_many(uint16 words, global Result* results, ulong pitch, global uchar* status) {
+void write_many(uint16 words, global float* results, ulong pitch, global uchar* status) {
   const uint8 half_words = words.lo ^ words.hi;
   const uchar16 bytes = as_uchar16(half_words.lo ^ half_words.hi);
   for (int plane = 0; plane < RESULT_PLANES; ++plane) {
 #ifdef STREAM
-    STREAM(result_of_many(words), Results, results + plane * pitch);
+    STREAM(as_float16(words), float16, results + plane * pitch);
 #else
-    *(global ResultsAnywhere*)(results + plane * pitch) = result_of_many(words);
+    *(global ResultsAnywhere*)(results + plane * pitch) = as_float16(words);
 #endif
   }
   vstore16(bytes, 0, status);
@@ -119,7 +108,7 @@ constexpr const char* kEntryPoints = R"(
 kernel void copy_streams(global const SENSEL* restrict raw, ulong row_stride, uint pillar_cols,
                          global const float* calibration, ulong calibration_pitch,
                          global const uchar* restrict mask, ulong stride,
-                         global Result* restrict results, ulong pitch,
+                         global float* restrict results, ulong pitch,
                          global uchar* restrict status, global float* tare) {
   const size_t row = get_global_id(1);
 #if LANES == 1
@@ -172,10 +161,9 @@ std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind)
   return define("SENSEL", sensel_macro(streams.sensel_type)) + define("MASK", int{streams.mask}) +
          define("CALIBRATION_PLANES", streams.calibration_planes) +
          define("RESULT_PLANES", streams.result_planes) +
-         define("RESULT_SIZE", streams.result_size) + define("FOLLOW", int{streams.tare_follows}) +
-         define("LANES", lanes > 1 ? 16 : 1) + define("STREAMING", int{kind.streaming}) +
-         define("PREFETCHING", int{kind.prefetching}) + kAskingAhead + kReading + kWriting +
-         kEntryPoints;
+         define("FOLLOW", int{streams.tare_follows}) + define("LANES", lanes > 1 ? 16 : 1) +
+         define("STREAMING", int{kind.streaming}) + define("PREFETCHING", int{kind.prefetching}) +
+         kAskingAhead + kReading + kWriting + kEntryPoints;
 }
 
 }  // namespace pillarfield::bench

@@ -346,8 +346,6 @@ void add_pace(CLI::App& parent, Work& work) {
                64);
   device.number("--spin", options->spin_us, "US", "Spend the last part of each wait spinning [0]",
                 0, 1e6);
-  device.flag("--half", options->half,
-              "Store forces in half precision; not with --estimator contact");
   device.flag("--realtime", options->realtime,
               "Ask for real-time scheduling and locked memory; warns where refused");
   add_general(command, *options, "Print the report as JSON", kQuietReport);

@@ -58,7 +58,6 @@ struct PaceOptions : PrintOptions {
   int frames_in_flight = 2;
   double spin_us = 0;
   std::uint64_t memory_limit_mib = 1024;
-  bool half = false;
   bool realtime = false;
   bool strict = false;
   PlanOptions plan;

@@ -52,7 +52,6 @@ SolverPlan plan_of(const PaceOptions& options, const LiveFrames& live) {
   PlanOptions asked = options.plan;
   if (is_scene(options.source) && asked.scene.empty()) asked.scene = options.source;
   plan = plan_of(asked, std::move(plan), options.source, [&] { return 1 / options.rate_hz; });
-  plan.half_output = options.half;
   check(plan, options.source);  // Before frames are loaded, which may take a while.
   return plan;
 }
@@ -61,19 +60,14 @@ SolverPlan plan_of(const PaceOptions& options, const LiveFrames& live) {
 class Replay {
  public:
   Replay(const LiveFrames& live, Processor& processor, const PaceOptions& options)
-      : live_(live),
-        processor_(processor),
-        capacity_(options.frames_in_flight),
-        half_(options.half) {}
+      : live_(live), processor_(processor), capacity_(options.frames_in_flight) {}
 
   [[nodiscard]] int capacity() const { return capacity_; }
   [[nodiscard]] int in_flight() const { return processor_.in_flight(); }
   void submit(std::uint64_t frame) {
     processor_.submit(live_.loaded[frame % live_.loaded.size()].view());
   }
-  void receive() {
-    status_ = half_ ? processor_.receive_half().status : processor_.receive().status;
-  }
+  void receive() { status_ = processor_.receive().status; }
 
   /// Solves a frame in every slot: the first result of a slot takes its memory page by page.
   void warm_up() {
@@ -90,7 +84,6 @@ class Replay {
   const LiveFrames& live_;
   Processor& processor_;
   int capacity_;
-  bool half_;
   std::span<const std::uint8_t> status_;
 };
 

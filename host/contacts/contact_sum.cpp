@@ -1,68 +1,239 @@
 #include "contacts/contact_sum.h"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
+#include "base/wide.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
 namespace {
 
-constexpr int kSumBits = 62;
-constexpr int kMostForceBits = 37;
+/// Four pillars side by side, a lane each. GNU vectors, because compilers make poor ones of loops
+/// over them. They are passed by reference: how they are returned depends on the processor.
+using Bytes [[gnu::vector_size(4)]] = std::uint8_t;
+using Floats [[gnu::vector_size(16)]] = float;
+using Ints [[gnu::vector_size(16)]] = std::int32_t;
+using Doubles [[gnu::vector_size(32)]] = double;
+using Longs [[gnu::vector_size(32)]] = std::int64_t;
+constexpr std::uint32_t kLanes = 4;
+
+/// Status bits of a force that its pillar's own readings do not determine, although enough sensels
+/// are usable.
+constexpr int kUndetermined = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
+
+/// Reads forces; NaN, infinity and lanes that are not `present` are zero.
+PF_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
+  std::memcpy(&values, from, sizeof values);
+  const Ints finite = values - values == 0;
+  values = __builtin_bit_cast(Floats, __builtin_bit_cast(Ints, values) & finite & present);
+  forces = Doubles{values[0], values[1], values[2], values[3]};
+}
+
+PF_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& status) {
+  Bytes bytes;
+  std::memcpy(&bytes, from, sizeof bytes);
+  status = Ints{bytes[0], bytes[1], bytes[2], bytes[3]} & present;
+}
+
+/// Where four pillars lie in each plane.
+struct Place {
+  const float* shear_x;
+  const float* shear_y;
+  const float* normal;
+  const std::uint8_t* status;
+};
+
+/// The last pillars of a field that has fewer than four from there on.
+struct LastPillars {
+  std::array<float, 3 * kLanes> forces{};
+  std::array<std::uint8_t, kLanes> status{};
+
+  Place copy(const ForceFieldView& field, std::size_t at) {
+    std::ranges::copy(field.shear_x.subspan(at), forces.begin());
+    std::ranges::copy(field.shear_y.subspan(at), forces.begin() + kLanes);
+    std::ranges::copy(field.normal.subspan(at), forces.begin() + 2 * kLanes);
+    std::ranges::copy(field.status.subspan(at), status.begin());
+    return {forces.data(), forces.data() + kLanes, forces.data() + 2 * kLanes, status.data()};
+  }
+};
+
+PF_INLINE void keep(const Doubles& values, const Longs& mask, Doubles& kept) {
+  kept = __builtin_bit_cast(Doubles, __builtin_bit_cast(Longs, values) & mask);
+}
+
+template <class Vector>
+auto total_of(const Vector& lanes) {
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
+/// Sums, a lane for every fourth pillar of a run.
+struct Lanes {
+  Doubles shear_x{};
+  Doubles shear_y{};
+  Doubles normal{};
+  Doubles normal_x{};
+  Doubles normal_y{};
+  Doubles shear_y_x{};
+  Doubles shear_x_y{};
+  Doubles pressing{};
+  Doubles determined{};
+  Doubles slipping{};
+  Ints ambiguous{};
+  Ints resolved{};
+
+  PF_INLINE void add_slip(const Doubles& x, const Doubles& y, const Doubles& n, const Ints& status,
+                          double least_ratio) {
+    const Ints inactive = ~status & status::kUsable;
+    const Ints known = ((inactive & (inactive - 1)) | (status & kUndetermined)) == 0;
+    const Doubles least = least_ratio * n;
+    Doubles presses;
+    Doubles told;
+    Doubles slips;
+    keep(n, n > 0, presses);
+    keep(presses, Longs{known[0], known[1], known[2], known[3]}, told);
+    keep(told, x * x + y * y >= least * least, slips);
+    pressing += presses;
+    determined += told;
+    slipping += slips;
+  }
+
+  void add_to(ContactSum& sum) const {
+    sum.shear_x = total_of(shear_x);
+    sum.shear_y = total_of(shear_y);
+    sum.normal = total_of(normal);
+    sum.normal_x = total_of(normal_x);
+    sum.normal_y = total_of(normal_y);
+    sum.shear_y_x = total_of(shear_y_x);
+    sum.shear_x_y = total_of(shear_x_y);
+    sum.pressing = total_of(pressing);
+    sum.determined = total_of(determined);
+    sum.slipping = total_of(slipping);
+    sum.ambiguous = total_of(ambiguous);
+    sum.resolved = total_of(resolved);
+  }
+};
+
+/// Prefetches what the run four ahead needs of a plane, at the first run all up to there: rows are
+/// too far apart for a processor to guess.
+template <class Value>
+PF_INLINE void prefetch(std::span<const Value> plane, const ForceFieldView& forces,
+                        std::span<const ContactRun> runs, std::size_t run) {
+  constexpr std::size_t kAhead = 4;
+  constexpr std::uint32_t kLine = 64 / sizeof(Value);
+  const std::size_t end = std::min(run + kAhead + 1, runs.size());
+  for (std::size_t at = run == 0 ? 0 : run + kAhead; at < end; ++at) {
+    const ContactRun& ahead = runs[at];
+    const Value* const row = plane.data() + std::size_t{ahead.row} * forces.cols;
+    for (std::uint32_t col = ahead.first; col < ahead.end + kLine; col += kLine) {
+      __builtin_prefetch(row + std::min(col, ahead.end - 1));
+    }
+  }
+}
+
+std::int64_t place_x(const ForceFieldView& forces, std::uint32_t col) {
+  return 2 * std::int64_t{col} + 1 - forces.cols;
+}
+
+/// Adds the pillars of a run, whose y is given, and returns their largest normal force.
+PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, double y,
+                        std::optional<double> least_ratio, Lanes& lanes) {
+  constexpr float kNone = -std::numeric_limits<float>::infinity();
+  Floats peaks = {kNone, kNone, kNone, kNone};
+  LastPillars last;
+  Doubles sum_x{};
+  Doubles sum_y{};
+  Doubles sum_n{};
+  Doubles x = static_cast<double>(place_x(forces, run.first)) + Doubles{0, 2, 4, 6};
+  for (std::uint32_t col = run.first; col < run.end; col += kLanes, x += 2 * kLanes) {
+    const std::size_t at = std::size_t{run.row} * forces.cols + col;
+    const Ints present = Ints{0, 1, 2, 3} < static_cast<std::int32_t>(run.end - col);
+    Place from = {forces.shear_x.data() + at, forces.shear_y.data() + at, forces.normal.data() + at,
+                  forces.status.data() + at};
+    if (at + kLanes > forces.status.size()) from = last.copy(forces, at);
+    Floats values;
+    Doubles shear_x;
+    Doubles shear_y;
+    Doubles normal;
+    Ints status;
+    read(from.shear_x, present, values, shear_x);
+    read(from.shear_y, present, values, shear_y);
+    read(from.normal, present, values, normal);
+    read(from.status, present, status);
+    peaks = present & (values > peaks) ? values : peaks;
+    sum_x += shear_x;
+    sum_y += shear_y;
+    sum_n += normal;
+    lanes.normal_x += normal * x;
+    lanes.shear_y_x += shear_y * x;
+    // A lane that is true is -1.
+    lanes.ambiguous -= (status & (status::kAmbiguous | status::kFromNeighbours)) != 0;
+    lanes.resolved -= (status & status::kFromNeighbours) != 0;
+    if (least_ratio) lanes.add_slip(shear_x, shear_y, normal, status, *least_ratio);
+  }
+  lanes.shear_x += sum_x;
+  lanes.shear_y += sum_y;
+  lanes.normal += sum_n;
+  lanes.normal_y += sum_n * y;
+  lanes.shear_x_y += sum_x * y;
+  return std::max(std::max(peaks[0], peaks[1]), std::max(peaks[2], peaks[3]));
+}
 
 }  // namespace
 
-ForceQuanta::ForceQuanta(std::uint64_t pillars)
-    : largest_(std::ldexp(
-          1, std::min(kMostForceBits, kSumBits - static_cast<int>(std::bit_width(pillars))))) {}
-
-double MomentSum::value() const {
-  // However the sum is divided among the two, the same bits.
-  const std::int64_t high = high_ + (low_ >> kLowBits);
-  return std::ldexp(static_cast<double>(high), kLowBits) + static_cast<double>(low_ & kLowMask);
+PF_WIDE ContactSum sum_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
+                          std::optional<double> least_ratio) {
+  ContactSum sum;
+  Lanes lanes;
+  ContactRun with_peak;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    prefetch(forces.shear_x, forces, runs, i);
+    prefetch(forces.shear_y, forces, runs, i);
+    prefetch(forces.normal, forces, runs, i);
+    prefetch(forces.status, forces, runs, i);
+    const ContactRun& run = runs[i];
+    const std::int64_t y = std::int64_t{forces.rows} - 2 * std::int64_t{run.row} - 1;
+    const std::int64_t pillars = run.end - run.first;
+    const float largest = add_run(forces, run, static_cast<double>(y), least_ratio, lanes);
+    sum.pillars += pillars;
+    sum.x += pillars * (place_x(forces, run.first) + pillars - 1);
+    sum.y += pillars * y;
+    if (largest <= sum.peak) continue;
+    sum.peak = largest;
+    sum.peak_y = y;
+    with_peak = run;
+  }
+  lanes.add_to(sum);
+  for (std::uint32_t col = with_peak.end; col-- > with_peak.first;) {
+    const float normal = forces.normal[std::size_t{with_peak.row} * forces.cols + col];
+    if ((std::isfinite(normal) ? normal : 0) == sum.peak) sum.peak_x = place_x(forces, col);
+  }
+  return sum;
 }
 
-void ContactSum::add_peak(std::int64_t candidate, std::int64_t at_x, std::int64_t at_y) {
-  const bool first = at_y > peak_y || (at_y == peak_y && at_x < peak_x);
-  if (candidate < peak || (candidate == peak && !first)) return;
-  peak = candidate;
-  peak_x = at_x;
-  peak_y = at_y;
-}
-
-void ContactSum::add(const PillarForce& pillar) {
-  shear_x += pillar.shear_x;
-  shear_y += pillar.shear_y;
-  normal += pillar.normal;
-  normal_x.add(pillar.normal, pillar.x);
-  normal_y.add(pillar.normal, pillar.y);
-  shear_y_x.add(pillar.shear_y, pillar.x);
-  shear_x_y.add(pillar.shear_x, pillar.y);
-  x += pillar.x;
-  y += pillar.y;
-  ++pillars;
-  if ((pillar.status & (status::kAmbiguous | status::kFromNeighbours)) != 0) ++ambiguous;
-  if ((pillar.status & status::kFromNeighbours) != 0) ++resolved;
-  add_peak(pillar.normal, pillar.x, pillar.y);
-}
-
-void ContactSum::add(const ContactSum& other) {
-  if (other.pillars == 0) return;
-  shear_x += other.shear_x;
-  shear_y += other.shear_y;
-  normal += other.normal;
-  normal_x.add(other.normal_x);
-  normal_y.add(other.normal_y);
-  shear_y_x.add(other.shear_y_x);
-  shear_x_y.add(other.shear_x_y);
-  x += other.x;
-  y += other.y;
-  pillars += other.pillars;
-  ambiguous += other.ambiguous;
-  resolved += other.resolved;
-  add_peak(other.peak, other.peak_x, other.peak_y);
+void ContactSum::add(const ContactSum& next) {
+  shear_x += next.shear_x;
+  shear_y += next.shear_y;
+  normal += next.normal;
+  normal_x += next.normal_x;
+  normal_y += next.normal_y;
+  shear_y_x += next.shear_y_x;
+  shear_x_y += next.shear_x_y;
+  x += next.x;
+  y += next.y;
+  pillars += next.pillars;
+  ambiguous += next.ambiguous;
+  resolved += next.resolved;
+  pressing += next.pressing;
+  determined += next.determined;
+  slipping += next.slipping;
+  if (next.peak <= peak) return;
+  peak = next.peak;
+  peak_x = next.peak_x;
+  peak_y = next.peak_y;
 }
 
 }  // namespace pillarfield

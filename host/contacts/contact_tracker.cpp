@@ -93,8 +93,7 @@ struct ContactTracker::State {
   void require_size(const ForceFieldView& forces);
   const FrameContacts& follow(const ForceFieldView& forces, double time_s,
                               std::span<const ContactFriction> friction);
-  void measure(const ContactMeasure& measure, const ForceFieldView& forces,
-               std::span<const ContactFriction> friction);
+  void measure(const ForceFieldView& forces, std::span<const ContactFriction> friction);
   void identify(double time_s);
 
   double pitch_mm;
@@ -138,7 +137,7 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
 
 /// Lists the contacts that are large enough and what they exert, and the patch. Their friction is
 /// learnt where none is given.
-void ContactTracker::State::measure(const ContactMeasure& measure, const ForceFieldView& forces,
+void ContactTracker::State::measure(const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
   const bool learns = friction.empty() && map.contacts() > 0;
   if (learns) {
@@ -149,27 +148,26 @@ void ContactTracker::State::measure(const ContactMeasure& measure, const ForceFi
     if (learns) friction_estimator.learn(forces, map, contact, member);
     return known_friction(friction[contact]);
   };
-  const std::vector<ContactTotals>& totals = survey.measure(measure, map, friction_of);
+  const std::vector<ContactSum>& sums = survey.measure(forces, map, friction_of);
   indices.clear();
   frame.contacts.clear();
-  ContactTotals patch;
+  ContactSum patch;
   for (std::uint32_t number = 0; number < map.contacts(); ++number) {
-    const ContactTotals& each = totals[number];
-    patch.sum.add(each.sum);
-    patch.slip.add(each.slip);
+    const ContactSum& sum = sums[number];
+    patch.add(sum);
     indices.push_back(kNoContact);
-    if (static_cast<std::uint64_t>(each.sum.pillars) < options.minimum_pillars) continue;
+    if (static_cast<std::uint64_t>(sum.pillars) < options.minimum_pillars) continue;
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
     contact.number = number;
-    contact.quantities = measure.quantities(each.sum);
-    set_slip(contact.quantities, friction[number], each.slip);
+    contact.quantities = quantities_of(sum, pitch_mm);
+    set_slip(contact.quantities, friction[number], sum);
     frame.contacts.push_back(contact);
   }
-  frame.patch = measure.quantities(patch.sum);
+  frame.patch = quantities_of(patch, pitch_mm);
   if (!options.friction.given || frame.patch.pillars == 0) return;
   set_slip(frame.patch, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
-           patch.slip);
+           patch);
 }
 
 /// Gives each contact of the frame its id, and tells which of the frame before have ended.
@@ -221,7 +219,7 @@ void ContactTracker::State::identify(double time_s) {
 const FrameContacts& ContactTracker::State::follow(const ForceFieldView& forces, double time_s,
                                                    std::span<const ContactFriction> friction) {
   frame.time_s = time_s;
-  measure(ContactMeasure(forces, pitch_mm), forces, friction);
+  measure(forces, friction);
   identify(time_s);
   any_frame = true;
   last_time_s = time_s;

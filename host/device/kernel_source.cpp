@@ -125,7 +125,6 @@ std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
     add(true, "PF_UNCERTAINTY", hex_float(reading_noise(plan)), "uncertainty");
     add(!calibration.noise.empty(), "PF_NOISE", "", nullptr);
   }
-  add(plan.half_output, "PF_HALF", "", nullptr);
   add(plan.baseline_rate.has_value(), "PF_BASELINE", "", nullptr);
   return all;
 }
@@ -166,7 +165,7 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
   for (const Definition& definition : definitions(plan, false)) {
     if (definition.stage != nullptr) stages.emplace_back(definition.stage);
   }
-  stages.emplace_back(plan.half_output ? "store_half" : "store");
+  stages.emplace_back("store");
   if (plan.baseline_rate) stages.emplace_back("follow_baseline");
   if (plan.estimator == Estimator::contact) stages.emplace_back("estimate_contacts");
   return stages;
@@ -181,7 +180,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
     }
   };
   // A lane of its own is 32 bits wide anyway.
-  const bool whole = paths.whole_numbers && lanes > 1 && is_whole(plan);
+  const bool whole = lanes > 1 && is_whole(plan);
   define(definitions(plan, whole));
   if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));

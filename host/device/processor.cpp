@@ -48,10 +48,9 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   SpeedPaths paths = tuning.paths;
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
-  if (plan.half_output) return paths;  // Half a cache line at a time is slow to stream.
   std::size_t bytes = 0;
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-    if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plan, plane);
+    if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plane);
   }
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   const std::size_t all = bytes * static_cast<std::size_t>(options.frames_in_flight);
@@ -89,7 +88,6 @@ struct Processor::State {
       : device(opened),
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
-        half_output(wanted.half_output),
         shares_memory(decide_sharing(options.memory, opened)),
         calibration(opened.state().context, wanted, tuning.paths),
         turns(static_cast<std::size_t>(options.frames_in_flight)) {
@@ -124,7 +122,6 @@ struct Processor::State {
   Device device;
   Skin skin;
   SenselType sensel_type;
-  bool half_output;
   bool shares_memory;
   CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;               ///< as well
@@ -189,8 +186,7 @@ void Processor::submit(const FrameView& frame) {
   state_->turns.submit(*slot);
 }
 
-template <class Value>
-FieldView<Value> Processor::receive_oldest() {
+ForceFieldView Processor::receive() {
   if (state_->turns.in_flight() == 0) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
@@ -201,22 +197,7 @@ FieldView<Value> Processor::receive_oldest() {
   });
   state_->turns.receive();
   state_->received = true;
-  return slot.results<Value>();
-}
-
-ForceFieldView Processor::receive() {
-  if (state_->half_output) {
-    throw Error("Processor::receive", "the plan has half_output", "call receive_half()");
-  }
-  return receive_oldest<float>();
-}
-
-HalfFieldView Processor::receive_half() {
-  if (!state_->half_output) {
-    throw Error("Processor::receive_half", "the plan has no half_output",
-                "call receive(), or set half_output");
-  }
-  return receive_oldest<Half>();
+  return slot.results();
 }
 
 Processor::Kept Processor::keep() {

@@ -173,30 +173,26 @@ void Slot::launch_in_order() {
 
 void Slot::wait() { queue_.finish(); }
 
-template <class Value>
-FieldView<Value> Slot::results() const {
-  const auto plane = [&](std::size_t which) -> std::span<const Value> {
+ForceFieldView Slot::results() const {
+  const auto plane = [&](std::size_t which) -> std::span<const float> {
     const std::byte* const host = memory_->host(which);
     if (host == nullptr) return {};
-    return {reinterpret_cast<const Value*>(host), std::size_t{rows_} * cols_};
+    return {reinterpret_cast<const float*>(host), std::size_t{rows_} * cols_};
   };
   const auto* const status = reinterpret_cast<const std::uint8_t*>(memory_->host(kStatus));
-  FieldView<Value> forces = {rows_,
-                             cols_,
-                             plane(kShearX),
-                             plane(kShearY),
-                             plane(kNormal),
-                             {status, std::size_t{rows_} * cols_},
-                             plane(kMagnitude),
-                             plane(kTheta),
-                             plane(kPhi),
-                             {}};
+  ForceFieldView forces = {rows_,
+                           cols_,
+                           plane(kShearX),
+                           plane(kShearY),
+                           plane(kNormal),
+                           {status, std::size_t{rows_} * cols_},
+                           plane(kMagnitude),
+                           plane(kTheta),
+                           plane(kPhi),
+                           {}};
   std::size_t which = kUncertainty;
   for (auto& span : forces.uncertainty) span = plane(which++);
   return forces;
 }
-
-template FieldView<float> Slot::results() const;
-template FieldView<Half> Slot::results() const;
 
 }  // namespace pillarfield

@@ -63,9 +63,8 @@ class Slot {
   /// Estimates what the direct solve left ambiguous, after wait().
   void resolve(ContactStage& contacts) { contacts.resolve(*memory_); }
 
-  /// What it became, after wait(). `Value` is that of the plan's results: float or Half.
-  template <class Value>
-  [[nodiscard]] FieldView<Value> results() const;
+  /// What it became, after wait().
+  [[nodiscard]] ForceFieldView results() const;
 
   /// The block of whole pages that the results lie in.
   [[nodiscard]] std::span<const std::byte> pages() const { return memory_->pages(); }

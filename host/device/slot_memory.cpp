@@ -5,7 +5,7 @@ namespace pillarfield {
 ResultLayout::ResultLayout(const SolverPlan& plan) {
   for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
     if (!is_wanted(plan, plane)) continue;
-    planes.at(plane) = {bytes, plan.skin.pillars() * value_size(plan, plane)};
+    planes.at(plane) = {bytes, plan.skin.pillars() * value_size(plane)};
     bytes += (planes.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
   }
 }

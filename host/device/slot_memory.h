@@ -33,10 +33,7 @@ constexpr bool is_wanted(const SolverPlan& plan, std::size_t plane) {
 }
 
 /// Bytes of one value of a plane.
-constexpr std::size_t value_size(const SolverPlan& plan, std::size_t plane) {
-  if (plane == kStatus) return 1;
-  return plan.half_output ? sizeof(Half) : sizeof(float);
-}
+constexpr std::size_t value_size(std::size_t plane) { return plane == kStatus ? 1 : sizeof(float); }
 
 inline constexpr std::size_t kPageSize = 4096;
 

@@ -18,7 +18,6 @@ namespace pillarfield::single_precision {
 // and what is made of them
 #include "kernels/pillar/angles.h"
 #include "kernels/pillar/direct_solve.h"
-#include "kernels/pillar/half.h"
 // and the rest
 #include "kernels/pillar/paper_solve.h"
 #include "kernels/pillar/uncertainty.h"

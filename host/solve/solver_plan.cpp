@@ -94,10 +94,6 @@ void check(const SolverPlan& plan, std::string_view where) {
                 fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
   }
   check(plan.friction, where);
-  if (plan.estimator == Estimator::contact && plan.half_output) {
-    throw Error(where, "the contact estimator has no results of half precision",
-                "leave out half_output (--half), or take the direct estimator");
-  }
   if (!plan.uncertainty) return;
   if (plan.estimator == Estimator::paper) {
     throw Error(where, "the paper's estimator has no uncertainty",

@@ -178,56 +178,23 @@ PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES
 PF_DEFINE_STORE(pair, float)
 PF_DEFINE_STORE(readings, PF_SENSEL)
 
-/* A value of a result, and as many as there are lanes. */
-#ifdef PF_HALF
-typedef ushort Result;
-#else
-typedef float Result;
-#endif
-#if PF_LANES == 1
-typedef Result Results;
-#elif defined(PF_HALF)
-typedef PF_LANE_TYPE(ushort) Results;
-#else
-typedef Real Results;
-#endif
-
 /* Results that are more than the caches hold go past them (PF_STREAM); full blocks alone, which
  * then begin on a boundary of their size. */
 #if PF_LANES == 1
 #define PF_STORE_BLOCK(results, plane) *(plane) = (results)
-#elif defined(PF_HALF)
-#define PF_STORE_BLOCK(results, plane) PF_STORE_WHOLE(ushort, results, plane)
 #elif defined(PF_STREAM) && defined(POCL_DEVICE_ADDRESS_BITS)
 #define PF_STORE_BLOCK(results, plane) __builtin_nontemporal_store(results, (global Real*)(plane))
 #else
 #define PF_STORE_BLOCK(results, plane) PF_STORE_WHOLE(float, results, plane)
 #endif
 
-/* As the planes of a result have them. */
-PF_INLINE Results results_of(Real value) {
-#ifndef PF_HALF
-  return value;
-#elif PF_LANES == 1
-  return (ushort)bits_of_half(value);
-#elif defined(__F16C__)
-  /* An instruction of the processor that rounds as bits_of_half does, to which no function of
-   * OpenCL C leads that returns a value. */
-  typedef __fp16 Halves __attribute__((ext_vector_type(PF_LANES)));
-  return __builtin_astype(__builtin_convertvector(value, Halves), Results);
-#else
-  return PF_JOIN(convert_ushort, PF_LANES)(bits_of_half(value));
-#endif
-}
-
-PF_INLINE void store_plane(Real value, global Result* plane, Lanes lanes) {
-  const Results results = results_of(value);
+PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
   if (are_all(lanes)) {
-    PF_STORE_BLOCK(results, plane);
+    PF_STORE_BLOCK(value, plane);
   } else {
 #if PF_LANES > 1
-    Result values[PF_LANES];
-    PF_VSTORE(results, 0, values);
+    float values[PF_LANES];
+    PF_VSTORE(value, 0, values);
     for (uint i = lanes.first; i < lanes.end; ++i) plane[i] = values[i];
 #endif
   }

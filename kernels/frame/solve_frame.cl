@@ -22,7 +22,6 @@
  *   PF_ANGLES                       stage: magnitude, theta and phi are written too
  *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: uncertainty is written
  *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from its plane instead
- *   PF_HALF                         stage: results other than status are of half precision
  *   PF_BASELINE                     stage: follow_baseline.cl
  *   PF_STREAM                       results go past the caches: load_store.h
  *   PF_SKIP_SILENT                  silent blocks are left as they are: silence.h
@@ -58,22 +57,22 @@ typedef struct {
 } Input;
 
 typedef struct {
-  global Result* shear_x;
-  global Result* shear_y;
-  global Result* normal;
+  global float* shear_x;
+  global float* shear_y;
+  global float* normal;
   global uchar* status;
-  global Result* magnitude;
-  global Result* theta;
-  global Result* phi;
-  global Result* deviation_x;
-  global Result* deviation_y;
-  global Result* deviation_normal;
-  global Result* theta_low;
-  global Result* theta_high;
-  global Result* phi_low;
-  global Result* phi_high;
-  global Result* magnitude_low;
-  global Result* magnitude_high;
+  global float* magnitude;
+  global float* theta;
+  global float* phi;
+  global float* deviation_x;
+  global float* deviation_y;
+  global float* deviation_normal;
+  global float* theta_low;
+  global float* theta_high;
+  global float* phi_low;
+  global float* phi_high;
+  global float* magnitude_low;
+  global float* magnitude_high;
   global uchar* silent; /* of each block: its results are those of silence; or null */
 } Output;
 
@@ -301,15 +300,15 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, 
                         global const float* restrict gain, global const float* restrict dead_zone,
                         global const uchar* restrict mask, global const float* restrict noise,
                         global const PF_SENSEL* restrict wake, ulong plane_stride,
-                        global uchar* restrict silent, global Result* restrict shear_x,
-                        global Result* restrict shear_y, global Result* restrict normal,
-                        global uchar* restrict status, global Result* restrict magnitude,
-                        global Result* restrict theta, global Result* restrict phi,
-                        global Result* restrict deviation_x, global Result* restrict deviation_y,
-                        global Result* restrict deviation_normal, global Result* restrict theta_low,
-                        global Result* restrict theta_high, global Result* restrict phi_low,
-                        global Result* restrict phi_high, global Result* restrict magnitude_low,
-                        global Result* restrict magnitude_high) {
+                        global uchar* restrict silent, global float* restrict shear_x,
+                        global float* restrict shear_y, global float* restrict normal,
+                        global uchar* restrict status, global float* restrict magnitude,
+                        global float* restrict theta, global float* restrict phi,
+                        global float* restrict deviation_x, global float* restrict deviation_y,
+                        global float* restrict deviation_normal, global float* restrict theta_low,
+                        global float* restrict theta_high, global float* restrict phi_low,
+                        global float* restrict phi_high, global float* restrict magnitude_low,
+                        global float* restrict magnitude_high) {
   const Planes planes = {tare, gain, dead_zone, mask, noise, plane_stride};
   const Input input = {raw, row_stride, planes, wake};
   const Output output = {shear_x,        shear_y,    normal,      status,      magnitude,

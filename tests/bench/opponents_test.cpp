@@ -10,8 +10,6 @@
 #include "bench/baselines/loop_solver.h"
 #include "bench/baselines/plain_loop.h"
 #include "bench/baselines/vectorised.h"
-#include "bench/baselines/vectorised_avx2.h"
-#include "bench/baselines/vectorised_avx512.h"
 #include "bench/frames.h"
 #include "bench/variants.h"
 #include "pillarfield/error.h"
@@ -21,23 +19,17 @@ namespace pillarfield::bench {
 namespace {
 
 struct Opponent {
-  const char* name;
+  std::string name;
   SolveRows solve_rows;
 };
 
 /// All that this processor can run.
 std::vector<Opponent> opponents() {
   std::vector<Opponent> all = {{"plain", solve_rows_plainly}};
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx2") != 0) {
-    all.push_back({"avx2", solve_rows_avx2_cached});
-    all.push_back({"avx2_streaming", solve_rows_avx2_streaming});
+  for (const Vectorised& each : vectorised()) {
+    all.push_back({each.instructions, each.cached});
+    all.push_back({std::string(each.instructions) + "_streaming", each.streaming});
   }
-  if (__builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512vl") != 0) {
-    all.push_back({"avx512", solve_rows_avx512_cached});
-    all.push_back({"avx512_streaming", solve_rows_avx512_streaming});
-  }
-#endif
   return all;
 }
 
@@ -113,7 +105,7 @@ TEST_P(EveryOpponent, RunSolvesFrameAfterFrame) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Opponents, EveryOpponent, testing::ValuesIn(opponents()),
-                         [](const auto& opponent) { return std::string(opponent.param.name); });
+                         [](const auto& opponent) { return opponent.param.name; });
 
 TEST(Vectorised, TakesWholeThresholdsOnly) {
   EXPECT_NO_THROW(require_whole_threshold(bare_solve(small_plan(2, 2, 3))));

@@ -61,7 +61,7 @@ class Rows(unittest.TestCase):
         self.assertGreater(row["our_ns_per_pillar"], 0)
 
     def test_a_variant_says_its_error(self):
-        row = rows("^variant/direct/float/u8/float32/none$")[0]["variant/direct/float/u8/float32/none"]
+        row = rows("^variant/direct/float/u8/none$")[0]["variant/direct/float/u8/none"]
         self.assertAlmostEqual(row["error_over_bound"], 1, delta=0.005)
         self.assertGreater(row["error_pillars"], 200_000)
         self.assertGreater(row["error_counts_all_regions"], row["error_counts"])

@@ -28,9 +28,9 @@ TEST(SolveVariants, HaveNamesOfTheirOwnAndPlansThatHold) {
     EXPECT_NO_THROW(check(plan_of(variant, kSide), name_of(variant)));
   }
   EXPECT_EQ(names.size(), solve_variants().size());
-  EXPECT_TRUE(names.contains("direct/float/u8/float32/none"));
-  EXPECT_TRUE(names.contains("direct/double/f32/float32/all"));
-  EXPECT_FALSE(names.contains("paper/float/u8/float32/uncertainty"));
+  EXPECT_TRUE(names.contains("direct/float/u8/none"));
+  EXPECT_TRUE(names.contains("direct/double/f32/all"));
+  EXPECT_FALSE(names.contains("paper/float/u8/uncertainty"));
 }
 
 /// The standard deviation of what sensels read that nothing presses, counts of a uint8 sensel.

@@ -103,18 +103,6 @@ class Run(PaceTest):
         from_scene = self.pace(self.scene, "--rate", 50, "--seconds", 0.1)
         self.assertEqual(from_scene["stages"], report["stages"])
 
-    def test_the_contact_estimator_has_no_half_precision(self):
-        self.assert_fails("pace", self.scene, "--estimator", "contact", "--half",
-                          says=["ball.toml", "half precision", "--half", "direct"])
-
-    def test_half_precision_is_another_way_to_store(self):
-        arguments = (self.scene, "--rate", 50, "--seconds", 0.1)
-        single = self.pace(*arguments)
-        half = self.pace(*arguments, "--half")
-        expected = ["store_half" if stage == "store" else stage for stage in single["stages"]]
-        self.assertEqual(half["stages"], expected)
-        self.assertGreater(half["contact_share"], 0.3)
-
     def test_everything_of_solve_is_the_same(self):
         recording = self.folder / "ball.h5"
         run("simulate", self.scene, "-o", recording)

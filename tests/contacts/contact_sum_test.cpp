@@ -13,184 +13,179 @@
 namespace pillarfield {
 namespace {
 
-bool operator==(const ContactSum& a, const ContactSum& b) {
-  return a.shear_x == b.shear_x && a.shear_y == b.shear_y && a.normal == b.normal &&
-         a.normal_x.value() == b.normal_x.value() && a.normal_y.value() == b.normal_y.value() &&
-         a.shear_y_x.value() == b.shear_y_x.value() && a.shear_x_y.value() == b.shear_x_y.value() &&
-         a.x == b.x && a.y == b.y && a.pillars == b.pillars && a.ambiguous == b.ambiguous &&
-         a.resolved == b.resolved && a.peak == b.peak && a.peak_x == b.peak_x &&
-         a.peak_y == b.peak_y;
+constexpr double kRatio = 0.5;
+
+/// A field of forces up to about `largest_n` newtons, of all kinds of pillars.
+ForceField some_field(std::uint32_t rows, std::uint32_t cols, float largest_n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> share(-1, 1);
+  ForceField field(rows, cols);
+  for (std::size_t i = 0; i < field.normal.size(); ++i) {
+    field.shear_x[i] = largest_n * share(random);
+    field.shear_y[i] = largest_n * share(random);
+    field.normal[i] = largest_n * share(random);
+    field.status[i] = static_cast<std::uint8_t>(random());
+  }
+  return field;
 }
 
-struct Pillar {
-  float shear_x;
-  float shear_y;
-  float normal;
-  int x;
-  int y;
-  std::uint8_t status;
+/// A sum in long double, and that of the magnitudes of what is summed.
+struct Exact {
+  long double sum = 0;
+  long double magnitude = 0;
+
+  void add(long double value) {
+    sum += value;
+    magnitude += std::abs(value);
+  }
 };
 
-std::vector<Pillar> some_pillars(std::size_t count, float largest_n) {
-  std::mt19937_64 random(count);
-  std::uniform_real_distribution<float> force(-largest_n, largest_n);
-  std::uniform_int_distribution<int> place(-2000, 2000);
-  std::vector<Pillar> pillars(count);
-  for (Pillar& pillar : pillars) {
-    pillar = {force(random), force(random), std::abs(force(random)),
-              place(random), place(random), static_cast<std::uint8_t>(random() & 0xff)};
+/// Pillar after pillar.
+struct PlainSum {
+  Exact shear_x, shear_y, normal, normal_x, normal_y, shear_y_x, shear_x_y;
+  Exact pressing, determined, slipping;
+  std::int64_t x = 0, y = 0, pillars = 0, ambiguous = 0, resolved = 0;
+  float peak = -std::numeric_limits<float>::infinity();
+  std::int64_t peak_x = 0, peak_y = 0;
+
+  PlainSum(const ForceField& field, std::span<const ContactRun> runs) {
+    for (const ContactRun& run : runs) {
+      for (std::uint32_t col = run.first; col < run.end; ++col) add(field, run.row, col);
+    }
   }
-  return pillars;
+
+  void add(const ForceField& field, std::uint32_t row, std::uint32_t col) {
+    const std::size_t i = std::size_t{row} * field.cols + col;
+    const auto finite = [](float force) { return std::isfinite(force) ? force : 0; };
+    const float q_x = finite(field.shear_x[i]);
+    const float q_y = finite(field.shear_y[i]);
+    const float n = finite(field.normal[i]);
+    const std::int64_t at_x = 2 * std::int64_t{col} + 1 - field.cols;
+    const std::int64_t at_y = std::int64_t{field.rows} - 2 * std::int64_t{row} - 1;
+    const auto place_x = static_cast<long double>(at_x);
+    const auto place_y = static_cast<long double>(at_y);
+    shear_x.add(q_x);
+    shear_y.add(q_y);
+    normal.add(n);
+    normal_x.add(n * place_x);
+    normal_y.add(n * place_y);
+    shear_y_x.add(q_y * place_x);
+    shear_x_y.add(q_x * place_y);
+    x += at_x;
+    y += at_y;
+    ++pillars;
+    const std::uint8_t status = field.status[i];
+    if ((status & (status::kAmbiguous | status::kFromNeighbours)) != 0) ++ambiguous;
+    if ((status & status::kFromNeighbours) != 0) ++resolved;
+    if (n > peak) {
+      peak = n;
+      peak_x = at_x;
+      peak_y = at_y;
+    }
+    if (n <= 0) return;
+    pressing.add(n);
+    const Region region = region_of(status);
+    if ((region != Region::one && region != Region::two) || (status & 0xe0) != 0) return;
+    determined.add(n);
+    if (std::hypot(static_cast<long double>(q_x), static_cast<long double>(q_y)) >= kRatio * n) {
+      slipping.add(n);
+    }
+  }
+};
+
+/// Runs of all lengths and offsets.
+std::vector<ContactRun> some_runs(std::uint32_t rows, std::uint32_t cols) {
+  std::vector<ContactRun> runs;
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t first = row % 5; first < cols;) {
+      const std::uint32_t end = std::min(cols, first + 1 + (7 * row + 3 * first) % 61);
+      runs.push_back({row, first, end, 0});
+      first = end + 1;
+    }
+  }
+  runs.push_back({rows - 1, 0, cols, 0});
+  return runs;
 }
 
-PillarForce in_quanta(const ForceQuanta& quanta, const Pillar& pillar) {
-  return {quanta.of(pillar.shear_x),
-          quanta.of(pillar.shear_y),
-          quanta.of(pillar.normal),
-          pillar.x,
-          pillar.y,
-          pillar.status};
+/// Within the rounding of so many additions.
+void expect_near(double sum, const Exact& exact, std::int64_t pillars) {
+  constexpr auto kEpsilon = std::numeric_limits<double>::epsilon();
+  const auto bound = exact.magnitude * static_cast<long double>(pillars + 8) * kEpsilon;
+  EXPECT_LE(std::abs(sum - exact.sum), bound);
 }
 
-ContactSum sum_of(const std::vector<Pillar>& pillars) {
-  const ForceQuanta quanta(pillars.size());
-  ContactSum sum;
-  for (const Pillar& pillar : pillars) sum.add(in_quanta(quanta, pillar));
-  return sum;
+void expect_plain_sum(const ForceField& field, std::span<const ContactRun> runs) {
+  const PlainSum expected(field, runs);
+  const ContactSum sum = sum_of(field.view(), runs, kRatio);
+  const std::int64_t pillars = expected.pillars;
+  expect_near(sum.shear_x, expected.shear_x, pillars);
+  expect_near(sum.shear_y, expected.shear_y, pillars);
+  expect_near(sum.normal, expected.normal, pillars);
+  expect_near(sum.normal_x, expected.normal_x, pillars);
+  expect_near(sum.normal_y, expected.normal_y, pillars);
+  expect_near(sum.shear_y_x, expected.shear_y_x, pillars);
+  expect_near(sum.shear_x_y, expected.shear_x_y, pillars);
+  expect_near(sum.pressing, expected.pressing, pillars);
+  expect_near(sum.determined, expected.determined, pillars);
+  expect_near(sum.slipping, expected.slipping, pillars);
+  EXPECT_EQ(sum.x, expected.x);
+  EXPECT_EQ(sum.y, expected.y);
+  EXPECT_EQ(sum.pillars, pillars);
+  EXPECT_EQ(sum.ambiguous, expected.ambiguous);
+  EXPECT_EQ(sum.resolved, expected.resolved);
+  EXPECT_EQ(sum.peak, expected.peak);
+  EXPECT_EQ(sum.peak_x, expected.peak_x);
+  EXPECT_EQ(sum.peak_y, expected.peak_y);
 }
 
-TEST(ForceQuanta, RoundToTheNearestAndHoldTheRange) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const ForceQuanta quanta(25'000'000);
-  EXPECT_EQ(quanta.largest_n(), 8192);
-  EXPECT_EQ(quanta.of(1), 1 << 24);
-  EXPECT_EQ(quanta.of(-0.25F), -(1 << 22));
-  EXPECT_EQ(quanta.of(0x1p-25F * 1.01F), 1);
-  EXPECT_EQ(quanta.of(0x1p-25F * 0.99F), 0);
-  EXPECT_EQ(quanta.of(std::numeric_limits<float>::quiet_NaN()), 0);
-  EXPECT_EQ(quanta.of(kInfinity), std::int64_t{1} << 37);
-  EXPECT_EQ(quanta.of(-kInfinity), -(std::int64_t{1} << 37));
-  EXPECT_EQ(quanta.of(3e38F), std::int64_t{1} << 37);
-  EXPECT_EQ(ForceQuanta(1).largest_n(), 8192);
-  EXPECT_EQ(ForceQuanta(32767ULL * 32767).largest_n(), 256);
-}
-
-TEST(ContactSum, IsTheSameBitsInAnyOrderAndGrouping) {
-  for (const float largest_n : {0.5F, 9000.0F, 1e30F}) {
-    std::vector<Pillar> pillars = some_pillars(5000, largest_n);
-    const ContactSum expected = sum_of(pillars);
-    std::mt19937_64 random(1);
-    for (int turn = 0; turn < 10; ++turn) {
-      std::shuffle(pillars.begin(), pillars.end(), random);
-      EXPECT_TRUE(sum_of(pillars) == expected);
-      ContactSum joined;
-      const ForceQuanta quanta(pillars.size());
-      for (std::size_t begin = 0; begin < pillars.size();) {
-        const std::size_t end = std::min<std::size_t>(pillars.size(), begin + random() % 900);
-        ContactSum part;
-        for (; begin < end; ++begin) part.add(in_quanta(quanta, pillars[begin]));
-        joined.add(part);
-      }
-      EXPECT_TRUE(joined == expected);
+TEST(ContactSum, IsThatOfPillarsOneByOne) {
+  for (const float largest_n : {1e-6F, 0.3F, 63.9F, 9000.0F, 1e30F}) {
+    for (const std::uint32_t cols : {1U, 3U, 4U, 5U, 33U, 1500U}) {
+      const ForceField field = some_field(20, cols, largest_n, cols);
+      SCOPED_TRACE(testing::Message() << largest_n << " N, " << cols << " columns");
+      expect_plain_sum(field, some_runs(20, cols));
+      // Each run by itself: its peak too.
+      for (const ContactRun& run : some_runs(3, cols)) expect_plain_sum(field, {&run, 1});
     }
   }
 }
 
-TEST(ContactSum, OfAMirroredContactIsMirrored) {
-  std::vector<Pillar> pillars = some_pillars(3000, 2);
-  const ContactSum sum = sum_of(pillars);
-  for (Pillar& pillar : pillars) {
-    pillar.x = -pillar.x;
-    pillar.shear_x = -pillar.shear_x;
+TEST(ContactSum, TakesAnyForce) {
+  ForceField field = some_field(12, 90, 5, 1);
+  std::size_t place = 0;
+  for (const float force :
+       {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -64.0F,
+        64.0F, -0.0F, 1e-42F, -std::numeric_limits<float>::infinity(), 3e38F}) {
+    field.shear_x[place += 71] = force;
+    field.shear_y[place += 13] = force;
+    field.normal[place += 20] = force;
   }
-  const ContactSum mirrored = sum_of(pillars);
-  EXPECT_EQ(mirrored.shear_x, -sum.shear_x);
-  EXPECT_EQ(mirrored.shear_y, sum.shear_y);
-  EXPECT_EQ(mirrored.normal_x.value(), -sum.normal_x.value());
-  EXPECT_EQ(mirrored.normal_y.value(), sum.normal_y.value());
-  EXPECT_EQ(mirrored.shear_y_x.value(), -sum.shear_y_x.value());
-  EXPECT_EQ(mirrored.shear_x_y.value(), -sum.shear_x_y.value());
-  EXPECT_EQ(mirrored.x, -sum.x);
-  EXPECT_EQ(mirrored.peak_x, -sum.peak_x);
+  expect_plain_sum(field, some_runs(12, 90));
 }
 
-/// Each force is at most half a quantum from its own.
-TEST(ContactSum, IsWithinItsQuantumOfALongDoubleSum) {
-  const std::vector<Pillar> pillars = some_pillars(40000, 0.5F);
-  const ContactSum sum = sum_of(pillars);
-  long double shear_x = 0;
-  long double normal = 0;
-  long double normal_x = 0;
-  long double torque = 0;
-  long double places = 0;
-  for (const Pillar& pillar : pillars) {
-    shear_x += pillar.shear_x;
-    normal += pillar.normal;
-    normal_x += static_cast<long double>(pillar.normal) * pillar.x;
-    torque += static_cast<long double>(pillar.shear_y) * pillar.x -
-              static_cast<long double>(pillar.shear_x) * pillar.y;
-    places += std::abs(pillar.x) + std::abs(pillar.y);
-  }
-  constexpr long double kQuantum = ForceQuanta::kForceQuantum;
-  const auto count = static_cast<long double>(pillars.size());
-  const auto newtons = [&](auto quanta) { return static_cast<long double>(quanta) * kQuantum; };
-  EXPECT_LE(std::abs(newtons(sum.shear_x) - shear_x), count * kQuantum / 2);
-  EXPECT_LE(std::abs(newtons(sum.normal) - normal), count * kQuantum / 2);
-  EXPECT_LE(std::abs(newtons(sum.normal_x.value()) - normal_x), places * kQuantum / 2);
-  EXPECT_LE(std::abs(newtons(sum.shear_y_x.value() - sum.shear_x_y.value()) - torque),
-            places * kQuantum / 2);
+TEST(ContactSum, FindsThePeakWhereAllPull) {
+  ForceField field = some_field(9, 50, 1, 2);
+  for (float& force : field.normal) force = -std::abs(force) - 0.1F;
+  expect_plain_sum(field, some_runs(9, 50));
 }
 
-/// As if 2^25 - 1, and the most pillars that a skin can have, all bore the largest force at the
-/// farthest place.
-TEST(ContactSum, CannotOverflow) {
-  for (const std::int64_t pillars : {(std::int64_t{1} << 25) - 1, std::int64_t{32767} * 32767}) {
-    const ForceQuanta quanta(static_cast<std::uint64_t>(pillars));
-    for (const float sign : {1.0F, -1.0F}) {
-      const std::int64_t force = quanta.of(sign * 1e38F);
-      EXPECT_LT(std::abs(static_cast<long double>(force)) * static_cast<long double>(pillars),
-                9.2e18L);
-      constexpr std::int64_t kFarthest = 32766;
-      MomentSum doubled;
-      doubled.add(force, kFarthest);
-      // Adding a sum to itself stands for its pillars twice.
-      std::int64_t stands_for = 1;
-      for (; 2 * stands_for <= pillars; stands_for *= 2) doubled.add(MomentSum(doubled));
-      const long double expected =
-          static_cast<long double>(force) * kFarthest * static_cast<long double>(stands_for);
-      EXPECT_EQ(static_cast<long double>(doubled.value()), expected);
-      // The rest of the pillars fits too: each part is below half of what 63 bits hold.
-      const auto low = static_cast<long double>((1 << 15) - 1) * kFarthest;
-      const long double high = std::abs(std::floor(static_cast<long double>(force) / (1 << 15)));
-      EXPECT_LT(low * static_cast<long double>(pillars), 9.2e18L);
-      EXPECT_LT(high * kFarthest * static_cast<long double>(pillars), 9.2e18L);
-    }
-  }
+TEST(ContactSum, OfEqualPeaksTheFirstRowByRowCounts) {
+  ForceField field(3, 9);
+  for (const std::size_t i : {5U, 7U, 13U, 22U}) field.normal[i] = 7;
+  const std::vector<ContactRun> runs = {{0, 1, 9, 0}, {1, 0, 9, 0}, {2, 0, 9, 0}};
+  expect_plain_sum(field, runs);
+  ContactSum joined;
+  for (const ContactRun& run : runs) joined.add(sum_of(field.view(), {&run, 1}, {}));
+  EXPECT_EQ(joined.peak_x, 2);
+  EXPECT_EQ(joined.peak_y, 2);
 }
 
-TEST(ContactSum, CountsWhatIsAmbiguousAndResolved) {
-  ContactSum sum;
-  for (const int status : {0, 16, 128, 144, 15, 31}) {
-    PillarForce pillar;
-    pillar.status = static_cast<std::uint8_t>(status);
-    sum.add(pillar);
-  }
-  EXPECT_EQ(sum.pillars, 6);
-  EXPECT_EQ(sum.ambiguous, 4);
-  EXPECT_EQ(sum.resolved, 2);
-}
-
-TEST(ContactSum, FirstOfEqualPeaksRowByRowCounts) {
-  ContactSum sum;
-  for (const auto& [x, y] : {std::pair{3, -3}, {1, 1}, {-1, 1}, {-3, -3}}) {
-    PillarForce pillar;
-    pillar.normal = 7;
-    pillar.x = x;
-    pillar.y = y;
-    sum.add(pillar);
-  }
-  EXPECT_EQ(sum.peak_x, -1);
-  EXPECT_EQ(sum.peak_y, 1);
+TEST(ContactSum, WithoutARatioHasNoSlip) {
+  const ForceField field = some_field(5, 40, 1, 2);
+  const ContactSum sum = sum_of(field.view(), some_runs(5, 40), {});
+  EXPECT_GT(sum.pillars, 0);
+  EXPECT_EQ(sum.pressing, 0);
+  EXPECT_EQ(sum.determined, 0);
 }
 
 }  // namespace

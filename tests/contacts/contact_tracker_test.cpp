@@ -393,6 +393,23 @@ TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
   }
 }
 
+/// Forces of all magnitudes: their sums are rounded, so that their order shows.
+TEST(ContactTracker, SumsALargeContactAlikeWithAnyNumberOfThreads) {
+  ForceField field(150, 150);
+  std::fill(field.status.begin(), field.status.end(), status::kUsable);
+  for (std::size_t i = 0; i < field.pillars(); ++i) {
+    const int bits = static_cast<int>(i * 7919 % 6007);
+    field.normal[i] = std::ldexp(1 + static_cast<float>(bits) / 6007, -(bits % 61));
+    field.shear_x[i] = -0.3F * field.normal[i];
+  }
+  ContactTracker alone(kPillarPitchMm, {.threads = 1});
+  const ContactQuantities expected = alone.update(field.view(), 0).contacts.at(0).quantities;
+  for (const std::uint32_t threads : {2U, 5U}) {
+    ContactTracker shared(kPillarPitchMm, {.threads = threads});
+    expect_same_bits(shared.update(field.view(), 0).contacts.at(0).quantities, expected);
+  }
+}
+
 TEST(ContactTracker, RefusesWhatMakesNoSense) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const auto says = [](auto action, const std::string& words) {

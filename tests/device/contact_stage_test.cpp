@@ -257,9 +257,6 @@ TEST(ContactStage, RefusesKnowledgeOutOfRange) {
   EXPECT_THROW(Processor(test_device(), plan), Error);
   plan.friction = {.bound = 0.05};
   EXPECT_THROW(Processor(test_device(), plan), Error);
-  plan.friction = {};
-  plan.half_output = true;
-  EXPECT_THROW(Processor(test_device(), plan), Error);
 }
 
 }  // namespace

@@ -33,10 +33,6 @@ void expect_solved(const ForceFieldView& forces, const SolverPlan& plan, const R
   EXPECT_TRUE(same_bytes<std::uint8_t>(forces.status, expected.status));
 }
 
-std::vector<std::byte> copy_of(std::span<const std::byte> bytes) {
-  return {bytes.begin(), bytes.end()};
-}
-
 template <class Value>
 void expect_within(std::span<const std::byte> pages, std::span<const Value> plane) {
   const std::span<const std::byte> bytes = std::as_bytes(plane);
@@ -103,23 +99,6 @@ TEST_P(KeptFrames, PagesAreWholeAndHoldEveryPlane) {
   }
   for (const auto plane : forces.uncertainty) expect_within(pages, plane);
   expect_within(pages, forces.status);
-}
-
-TEST_P(KeptFrames, HalfResultsAreKeptToo) {
-  SolverPlan plan = bare_plan(32, 32, SenselType::u8);
-  plan.half_output = true;
-  Processor ring = processor(plan, 2);
-  const std::vector<RandomFrame> frames = frames_of(plan, 6);
-  ring.submit(frames[0].view());
-  const HalfFieldView forces = ring.receive_half();
-  const Processor::Kept kept = ring.keep();
-  const auto before = copy_of(std::as_bytes(forces.normal));
-  expect_within(kept.pages(), forces.normal);
-  for (const RandomFrame& frame : frames) {
-    ring.submit(frame.view());
-    static_cast<void>(ring.receive_half());
-  }
-  EXPECT_EQ(copy_of(std::as_bytes(forces.normal)), before);
 }
 
 TEST_P(KeptFrames, GivingBackFreesTheSlot) {

@@ -35,7 +35,7 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
   for (const char* stage :
        {"PF_LARGEST_READING", "PF_FULL_SCALE", "PF_TARE", "PF_GAIN", "PF_DEAD_ZONE", "PF_MASK",
         "PF_PARITY_TOLERANCE", "PF_ANGLES", "PF_PAPER", "PF_UNCERTAINTY", "PF_NOISE",
-        "PF_POWER_EXPONENT", "PF_HALF", "PF_BASELINE"}) {
+        "PF_POWER_EXPONENT", "PF_BASELINE"}) {
     EXPECT_EQ(macro(source, stage), "(none)") << stage;
   }
 }
@@ -51,13 +51,6 @@ TEST(KernelSource, EveryWishOfAPlanIsAStage) {
       "gain",        "power_law",     "classify",    "dead_zone",  "direct_solve",
       "parity_test", "angles",        "uncertainty", "store",      "follow_baseline"};
   EXPECT_EQ(kernel_stages(plan), expected);
-}
-
-TEST(KernelSource, ResultsOfHalfPrecisionAreAStage) {
-  SolverPlan plan = bare_plan(8, 8, SenselType::u8);
-  plan.half_output = true;
-  EXPECT_EQ(kernel_stages(plan).back(), "store_half");
-  EXPECT_EQ(macro(kernel_source(plan, 16), "PF_HALF"), "");
 }
 
 TEST(KernelSource, TheDoubtIsFiveDeviationsOfThreeReadings) {

@@ -99,10 +99,6 @@ GOALS = (
     ("10⁵ to 10⁷ pillars: most over least time per pillar", "≤", 1.25, unevenness),
     ("One frame of 79 × 79 pillars: time over that of an empty launch", "≤", 1.5,
      lambda bench, live: bench.find("latency/6241", "of_empty_launch")),
-    ("Results of half precision: time over that of float32 ones", "≤", 0.75,
-     lambda bench, live: ratio(
-         bench.find("variant/direct/float/u8/half/none", "over_bare_copy"),
-         bench.find("variant/direct/float/u8/float32/none", "over_bare_copy"))),
     ("A square metre at 1 kHz, live: frames missed or dropped", "≤", 0,
      lambda bench, live: live["missed"] + live["dropped"]),
 )
@@ -145,10 +141,10 @@ def variants(bench):
             "error_pillars", "error_counts_all_regions", "ambiguous")
     found = []
     for row in bench.group("variant"):
-        estimator, arithmetic, sensels, results, stages = row.split("/")[1:]
+        estimator, arithmetic, sensels, stages = row.split("/")[1:]
         found.append({
-            "name": ", ".join((estimator, arithmetic, sensels, results, stages)),
-            "solve": f"{estimator}, {arithmetic}", "sensels": sensels, "results": results,
+            "name": ", ".join((estimator, arithmetic, sensels, stages)),
+            "solve": f"{estimator}, {arithmetic}", "sensels": sensels,
             "stages": stages, **{key: bench.value(row, key) for key in keys}})
     return sorted(found, key=lambda way: way["over_bare_copy"])
 
@@ -181,7 +177,7 @@ MARKERS = {"none": "o", "angles": "^", "uncertainty": "v", "calibration": "s", "
 
 
 def draw_variants(ways, front, folder):
-    """A strip for each type of sensel; hollow where results are of half precision."""
+    """A strip for each type of sensel."""
     figure, axes = pictures.panels(960, 600, 3, 1, sharex=True, sharey=True)
     for axis, sensels in zip(axes, ("u8", "u16", "f32")):
         axis.axhline(1, color=pictures.GREY, linewidth=1, zorder=1)
@@ -190,8 +186,7 @@ def draw_variants(ways, front, folder):
                 continue
             place = way["over_bare_copy"], way["error_over_bound"]
             colour = COLOURS[way["solve"]]
-            axis.plot(*place, MARKERS[way["stages"]], color=colour, markersize=6,
-                      markerfacecolor="white" if way["results"] == "half" else colour)
+            axis.plot(*place, MARKERS[way["stages"]], color=colour, markersize=6)
             if way in front:
                 axis.plot(*place, "o", color=pictures.BLACK, markersize=13, markerfacecolor="none")
         axis.text(0.01, 0.8, sensels, transform=axis.transAxes)
@@ -208,8 +203,7 @@ def draw_variants(ways, front, folder):
     entries = [entry("o", colour, label) for label, colour in COLOURS.items()]
     entries += [entry(marker, pictures.GREY, "bare" if stages == "none" else stages)
                 for stages, marker in MARKERS.items()]
-    entries += [entry("o", pictures.GREY, "half results", markerfacecolor="white"),
-                entry("o", pictures.BLACK, "Pareto front", markersize=10, markerfacecolor="none")]
+    entries += [entry("o", pictures.BLACK, "Pareto front", markersize=10, markerfacecolor="none")]
     axes[0].legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=6)
     pictures.save(figure, folder, "error_and_time")
 

@@ -27,9 +27,8 @@ enum class SlipState : std::uint8_t {
 /// Force, torque, place, friction and slip of a contact (docs/contacts_found.md). Forces are sums
 /// over its pillars, with the signs of ForceFieldView.
 ///
-/// Sums do not depend on the order of pillars: forces are rounded to 2^-24 N and added as integers,
-/// an error of at most 30 nN a pillar. NaN counts as zero; larger forces are clamped to 8192 N (256
-/// N on a patch of 2^29 pillars).
+/// Sums are in double precision, in an order that the contact alone determines, so they do not
+/// depend on the number of threads. NaN and infinity count as zero.
 struct ContactQuantities {
   std::uint64_t pillars = 0;
   std::uint64_t ambiguous = 0;  ///< of these, ambiguous by their readings alone

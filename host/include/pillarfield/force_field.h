@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "pillarfield/half.h"
-
 namespace pillarfield {
 
 /// Planes that state the uncertainty of a force (docs/derivations/uncertainty.md). The first three
@@ -49,30 +47,26 @@ class UncertaintyPlanes {
 };
 
 /// A view of a field of three-axis force: planes [rows, cols], one value per pillar, row by row
-/// from the top left. `Value` is float or Half.
+/// from the top left.
 ///
 /// shear_x (+ right) and shear_y (+ up) are the tangential force on the skin; normal is positive
 /// under pressure. The status byte is described in status.h. Planes that the plan does not ask for
 /// are empty.
-template <class Value>
-struct FieldView {
-  std::uint32_t rows = 0;          ///< pillar rows
-  std::uint32_t cols = 0;          ///< pillar columns
-  std::span<const Value> shear_x;  ///< N
-  std::span<const Value> shear_y;  ///< N
-  std::span<const Value> normal;   ///< N
+struct ForceFieldView {
+  std::uint32_t rows = 0;  ///< pillar rows
+  std::uint32_t cols = 0;  ///< pillar columns
+  std::span<const float> shear_x;  ///< N
+  std::span<const float> shear_y;  ///< N
+  std::span<const float> normal;   ///< N
   std::span<const std::uint8_t> status;
-  std::span<const Value> magnitude;  ///< N; of SolverPlan::angles, as the two that follow
-  std::span<const Value> theta;      ///< rad from the outward normal, [0, pi]
-  std::span<const Value> phi;        ///< rad in the plane of the skin, (-pi, pi]
-  UncertaintyPlanes<std::span<const Value>> uncertainty;  ///< of SolverPlan::uncertainty
+  std::span<const float> magnitude;  ///< N; of SolverPlan::angles, as the two that follow
+  std::span<const float> theta;      ///< rad from the outward normal, [0, pi]
+  std::span<const float> phi;        ///< rad in the plane of the skin, (-pi, pi]
+  UncertaintyPlanes<std::span<const float>> uncertainty;  ///< of SolverPlan::uncertainty
 };
 
-using ForceFieldView = FieldView<float>;
-using HalfFieldView = FieldView<Half>;  ///< of SolverPlan::half_output
-
 /// A field of force that owns its memory, without magnitude and angles: the result of
-/// solve_on_host(), truths, copies. See FieldView for shapes, units and signs.
+/// solve_on_host(), truths, copies. See ForceFieldView for shapes, units and signs.
 struct ForceField {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
@@ -89,8 +83,5 @@ struct ForceField {
   [[nodiscard]] std::size_t pillars() const { return std::size_t{rows} * cols; }
   [[nodiscard]] ForceFieldView view() const;
 };
-
-/// An exact copy in single precision, without magnitude and angles.
-[[nodiscard]] ForceField to_single(const HalfFieldView& half);
 
 }  // namespace pillarfield

@@ -132,12 +132,8 @@ class Processor {
 
   /// Waits for the oldest frame in flight and returns its forces. The view stays valid until
   /// submit() reuses its slot, that is for as many further frames as there are slots that are not
-  /// kept, or for the life of a Kept. Throws Error if no frame is in flight, or the plan has
-  /// half_output.
+  /// kept, or for the life of a Kept. Throws Error if no frame is in flight.
   [[nodiscard]] ForceFieldView receive();
-
-  /// receive() for a plan with half_output. Throws Error for any other plan.
-  [[nodiscard]] HalfFieldView receive_half();
 
   /// Holds the result received last. Throws Error if there is none, it is held already, or a frame
   /// submitted since reuses its slot.
@@ -160,9 +156,6 @@ class Processor {
   [[nodiscard]] const Device& device() const;
 
  private:
-  template <class Value>
-  FieldView<Value> receive_oldest();
-
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -55,10 +55,6 @@ struct SolverPlan {
   bool angles = false;       ///< also compute magnitude, theta and phi
   bool uncertainty = false;  ///< also compute the planes of Uncertainty; needs the noise of the
                              ///< sensels, and an estimator other than `paper`
-  /// Store results in half precision (half.h), to be received by Processor::receive_half(): 11
-  /// instead of 17 bytes move per pillar with 8-bit readings. Forces up to 65504 N, angles within
-  /// 0.001 rad. Not with Estimator::contact.
-  bool half_output = false;
 };
 
 /// Throws Error, naming `where`, if a member is out of range or two members exclude each other.

@@ -22,9 +22,6 @@ enum class Stores : std::uint8_t {
 struct SpeedPaths {
   /// Skip blocks of idle pillars that were idle too when their slot was last written.
   bool skip_silent = true;
-  /// Solve in 16-bit integers where the plan permits it: the direct estimator on 8-bit readings
-  /// without calibration, angles and uncertainty.
-  bool whole_numbers = true;
   Stores stores = Stores::automatic;
 };
 
