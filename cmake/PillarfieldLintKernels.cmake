@@ -7,19 +7,6 @@ if(NOT PILLARFIELD_CLANG)
   return()
 endif()
 
-set(lint_includes "")
-set(lint_whole_includes "")
-set(lint_kernels "")
-foreach(path IN LISTS kernel_paths)
-  if(NOT path MATCHES "\\.cl$")
-    list(APPEND lint_includes -include ${path})
-    if(NOT path MATCHES "/(elementary|paper_solve|angles|uncertainty)\\.h$")
-      list(APPEND lint_whole_includes -include ${path})
-    endif()
-  else()
-    list(APPEND lint_kernels ${path})
-  endif()
-endforeach()
 set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
   -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
   -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_POWER_LARGEST=1.0f -DPF_BASELINE)
@@ -35,20 +22,18 @@ foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
     foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${lint_includes}
-        ${lint_kernels})
+        -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
     endforeach()
   endforeach()
 endforeach()
 foreach(lanes 2 4 8 16)
   foreach(stages "" "${lint_skipping};-DPF_FULL_SCALE=255;-DPF_PARITY_TOLERANCE=1")
     list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=uchar -DPF_LANES=${lanes}
-      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_DOUBT=1 -DPF_SEGMENT_POINT=3 ${stages} ${lint_whole_includes}
-      ${lint_kernels})
+      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_DOUBT=1 -DPF_SEGMENT_POINT=3 ${stages} ${all_kernels})
   endforeach()
 endforeach()
 set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")
 add_custom_command(OUTPUT ${lint_stamp} ${lint_commands}
   COMMAND ${CMAKE_COMMAND} -E touch ${lint_stamp}
-  DEPENDS ${kernel_paths} COMMENT "Linting the kernels" VERBATIM)
+  DEPENDS ${kernel_files} COMMENT "Linting the kernels" VERBATIM)
 add_custom_target(lint-kernels ALL DEPENDS ${lint_stamp})

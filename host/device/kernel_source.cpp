@@ -6,7 +6,7 @@
 #include <string>
 
 #include "device/block_lanes.h"
-#include "device/kernel_files.h"
+#include "device/kernel_program.h"
 #include "device/sensel_macro.h"
 #include "pillarfield/processor.h"
 #include "skin/force_scale.h"
@@ -147,18 +147,6 @@ std::vector<Definition> silence_definitions(const SolverPlan& plan) {
   return all;
 }
 
-/// Appends a file, which compilers then know by its own lines.
-void append(std::string& source, const KernelFile& file) {
-  source += fmt::format("#line 1 \"{}\"\n", file.name);
-  source += file.text;
-}
-
-/// Whether a program of whole numbers has a use for a file: the others are of fractions.
-bool serves_whole_numbers(std::string_view file) {
-  return file != "pillar/elementary.h" && file != "pillar/paper_solve.h" &&
-         file != "pillar/angles.h" && file != "pillar/uncertainty.h";
-}
-
 }  // namespace
 
 std::vector<std::string> kernel_stages(const SolverPlan& plan) {
@@ -185,9 +173,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   define(definitions(plan, whole));
   if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
   if (paths.skip_silent) define(silence_definitions(plan));
-  for (const KernelFile& file : kernel_files()) {
-    if (!whole || serves_whole_numbers(file.name)) append(source, file);
-  }
+  source += kernel_program();
   return source;
 }
 
