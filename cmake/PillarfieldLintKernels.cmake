@@ -9,6 +9,7 @@ endif()
 
 set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
   -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
+  -DPF_TARE_PLANE=0 -DPF_GAIN_PLANE=1 -DPF_DEAD_ZONE_PLANE=2 -DPF_NOISE_PLANE=3 -DPF_MASK_PLANE=4
   -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_POWER_LARGEST=1.0f -DPF_BASELINE)
 set(lint_skipping -DPF_SKIP_SILENT -DPF_WAKE=1 -DPF_WAKE_THRESHOLD=1.0f -DPF_WAKE_STEP=1.0f
   -DPF_WAKE_LOWEST=0.0f -DPF_WAKE_HIGHEST=1.0f -DPF_WAKE_NEVER=1.0f)
@@ -20,7 +21,7 @@ set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
+    foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE=5")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
         -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
     endforeach()

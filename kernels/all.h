@@ -14,9 +14,12 @@
 #include "pillar/uncertainty.h"
 #endif
 #include "pillar/half.h"
+#include "frame/layout.h"
+#include "frame/result_planes.h"
+#include "frame/stages.h"
 #ifndef __cplusplus
 #include "frame/load_store.h"
-#include "frame/stages.h"
+#include "frame/calibration_planes.h"
 #include "frame/silence.h"
 #include "frame/solve_frame.cl"
 #include "frame/follow_baseline.cl"

@@ -37,11 +37,4 @@ ForceField to_single(const HalfFieldView& half) {
   return field;
 }
 
-const char* name_of(Uncertainty plane) {
-  static constexpr std::array<const char*, kUncertaintyPlanes> kNames = {
-      "shear_x", "shear_y",  "normal",        "theta_low",     "theta_high",
-      "phi_low", "phi_high", "magnitude_low", "magnitude_high"};
-  return kNames[static_cast<std::size_t>(plane)];
-}
-
 }  // namespace pillarfield

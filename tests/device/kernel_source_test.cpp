@@ -15,8 +15,9 @@
 namespace pillarfield {
 namespace {
 
-/// The value of a macro in a program, or "(none)" where it is not defined.
-std::string macro(const std::string& source, const std::string& name) {
+/// The value of a macro in a program's first lines, or "(none)" where it is not defined.
+std::string macro(const std::string& program, const std::string& name) {
+  const std::string source = program.substr(0, program.find("#line"));
   const std::string definition = "\n#define " + name + " ";
   const std::size_t start = ("\n" + source).find(definition);
   if (start == std::string::npos) return "(none)";

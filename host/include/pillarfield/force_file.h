@@ -52,6 +52,12 @@ class ForceSink {
                                                            const ForceFileInfo& info,
                                                            Replace replace = Replace::results);
 
+/// Writes a .csv as create_force_sink() makes it, of one frame, which is the one with this index
+/// and time in its source.
+void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& info,
+                     const ForceFieldView& forces, std::uint64_t frame, double time_s,
+                     Replace replace = Replace::results);
+
 /// What create_force_sink() makes of this path, by its ending. Throws Error for another ending.
 [[nodiscard]] OutputKind kind_of_force_file(const std::filesystem::path& path);
 
