@@ -71,8 +71,7 @@ inline constexpr int kDoubtful =
 
 /// Whether a pillar is in region 1 or 2 and nothing is wrong with it.
 PF_INLINE bool is_known(std::uint8_t bits) {
-  const int lifted = ~bits & status::kUsable;
-  return ((lifted & (lifted - 1)) | (bits & kDoubtful)) == 0;
+  return is_determined(bits) && (bits & kDoubtful) == 0;
 }
 
 /// Places as in PillarForce.
