@@ -1,30 +1,30 @@
-# Writes a C++ file that holds the kernel files as bytes, in the order given.
-#   cmake -DFILES=a;b -DNAMES=a;b -DOUTPUT=out.cpp -P EmbedKernels.cmake
-set(arrays "")
-set(table "")
-set(index 0)
-foreach(file name IN ZIP_LISTS FILES NAMES)
-  file(READ "${file}" bytes HEX)
-  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
-  string(APPEND arrays "constexpr unsigned char kFile${index}[] = {${bytes}};\n")
-  string(APPEND table "    {\"${name}\", as_text(kFile${index}, sizeof kFile${index})},\n")
-  math(EXPR index "${index} + 1")
+# Writes a C++ file that holds the program of all.h as bytes: its directives, and in place of each
+# #include the file, which compilers then know by its own lines.
+#   cmake -DALL=kernels/all.h -DOUTPUT=out.cpp -P EmbedKernels.cmake
+cmake_path(GET ALL PARENT_PATH folder)
+file(STRINGS "${ALL}" directives REGEX "^#")
+set(program "")
+foreach(directive IN LISTS directives)
+  set(text "")
+  if(directive MATCHES "^#include \"(.*)\"")
+    set(directive "#line 1 \"${CMAKE_MATCH_1}\"")
+    file(READ "${folder}/${CMAKE_MATCH_1}" text HEX)
+  endif()
+  string(HEX "${directive}\n" line)
+  string(APPEND program "${line}${text}")
 endforeach()
-file(WRITE "${OUTPUT}" "#include \"device/kernel_files.h\"
+string(REGEX REPLACE "(..)" "0x\\1," program "${program}")
+file(WRITE "${OUTPUT}" "#include \"device/kernel_program.h\"
 
 namespace pillarfield {
 namespace {
 
-${arrays}
-std::string_view as_text(const unsigned char* bytes, std::size_t size) {
-  return {reinterpret_cast<const char*>(bytes), size};
-}
+constexpr unsigned char kProgram[] = {${program}};
 
 }  // namespace
 
-std::vector<KernelFile> kernel_files() {
-  return {
-${table}  };
+std::string_view kernel_program() {
+  return {reinterpret_cast<const char*>(kProgram), sizeof kProgram};
 }
 
 }  // namespace pillarfield

@@ -7,21 +7,9 @@ if(NOT PILLARFIELD_CLANG)
   return()
 endif()
 
-set(lint_includes "")
-set(lint_whole_includes "")
-set(lint_kernels "")
-foreach(path IN LISTS kernel_paths)
-  if(NOT path MATCHES "\\.cl$")
-    list(APPEND lint_includes -include ${path})
-    if(NOT path MATCHES "/(elementary|paper_solve|angles|uncertainty)\\.h$")
-      list(APPEND lint_whole_includes -include ${path})
-    endif()
-  else()
-    list(APPEND lint_kernels ${path})
-  endif()
-endforeach()
 set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DPF_GAIN -DPF_DEAD_ZONE
   -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
+  -DPF_TARE_PLANE=0 -DPF_GAIN_PLANE=1 -DPF_DEAD_ZONE_PLANE=2 -DPF_NOISE_PLANE=3 -DPF_MASK_PLANE=4
   -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_POWER_LARGEST=1.0f -DPF_BASELINE)
 set(lint_skipping -DPF_SKIP_SILENT -DPF_WAKE=1 -DPF_WAKE_THRESHOLD=1.0f -DPF_WAKE_STEP=1.0f
   -DPF_WAKE_LOWEST=0.0f -DPF_WAKE_HIGHEST=1.0f -DPF_WAKE_NEVER=1.0f)
@@ -33,22 +21,20 @@ set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" "-DPF_PAPER" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE")
+    foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE=5")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${lint_includes}
-        ${lint_kernels})
+        -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
     endforeach()
   endforeach()
 endforeach()
 foreach(lanes 2 4 8 16)
   foreach(stages "" "${lint_skipping};-DPF_FULL_SCALE=255;-DPF_PARITY_TOLERANCE=1")
     list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=uchar -DPF_LANES=${lanes}
-      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_DOUBT=1 -DPF_SEGMENT_POINT=3 ${stages} ${lint_whole_includes}
-      ${lint_kernels})
+      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_DOUBT=1 -DPF_SEGMENT_POINT=3 ${stages} ${all_kernels})
   endforeach()
 endforeach()
 set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")
 add_custom_command(OUTPUT ${lint_stamp} ${lint_commands}
   COMMAND ${CMAKE_COMMAND} -E touch ${lint_stamp}
-  DEPENDS ${kernel_paths} COMMENT "Linting the kernels" VERBATIM)
+  DEPENDS ${kernel_files} COMMENT "Linting the kernels" VERBATIM)
 add_custom_target(lint-kernels ALL DEPENDS ${lint_stamp})

@@ -20,6 +20,8 @@
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
  *   any_lane(m)   whether m is true in any lane
+ *   PF_CONSTANT(T, x)  the constant x of a program or plan in every lane of a T
+ *   PF_FUNCTION     before a function of lanes and of structures of them
  *   word_of(r)    the bits of r
  *   real_of_word(w)  what w are the bits of
  *
@@ -106,6 +108,16 @@ static inline bool any_bits(Bits bits) {
 
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
+/* PoCL, which a processor is solved on with lanes, leaves calls as they are, and structures of
+ * lanes then go through memory. Other drivers inline, or like Oclgrind do not know the attribute.
+ */
+#ifdef POCL_DEVICE_ADDRESS_BITS
+#define PF_FUNCTION static inline __attribute__((always_inline))
+#else
+#define PF_FUNCTION static inline
+#endif
+
+#define PF_CONSTANT(type, x) ((type)(x))
 #define PF_REAL(x) ((Real)(x##f))
 #define PF_COUNTS(x) ((Counts)(x))
 #define PF_BITS(x) ((Bits)(x))
@@ -113,6 +125,8 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 #else /* C++ */
 
+#define PF_FUNCTION static inline
+#define PF_CONSTANT(type, x) static_cast<type>(x)
 #undef PF_REAL
 #undef PF_COUNTS
 #undef PF_BITS
@@ -132,6 +146,7 @@ using Counts = Real;
 using Fraction = Real;
 using Mask = bool;
 using Bits = int;
+using ulong = std::uint64_t;
 #define PF_COUNTS(x) (static_cast<Counts>(x))
 #define PF_BITS(x) (x)
 static inline Counts halved(Counts counts) { return PF_REAL(0.5) * counts; }

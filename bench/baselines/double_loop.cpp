@@ -4,14 +4,16 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <span>
 #include <type_traits>
 #include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
+#include "skin/result_planes.h"
 #include "solve/pillar_maths.h"
+#include "solve/plan_constants.h"
 
 namespace pillarfield::bench {
 namespace {
@@ -20,8 +22,6 @@ namespace maths = double_precision;
 
 constexpr std::size_t kResults = 2;
 constexpr std::size_t kPieces = 32;  ///< of a frame
-constexpr std::size_t kForcePlanes = 3;
-constexpr std::size_t kAnglePlanes = 3;
 
 /// What a loop is compiled for, as a kernel is.
 struct Stages {
@@ -48,43 +48,38 @@ constexpr std::array kCompiled = {
 /// The plan's numbers, and where the planes of its calibration are.
 struct Constants {
   explicit Constants(const SolverPlan& plan)
-      : threshold(plan.skin.threshold_counts),
-        full_scale(plan.skin.full_scale_counts.value_or(0)),
-        doubt(region_doubt(plan)),
+      : stages(plan_constants<maths::Stages>(plan)),
         noise(reading_noise(plan)),
-        segment_point(plan.segment_point),
         tare(plan.calibration.tare.data()),
         gain(plan.calibration.gain.data()),
         dead_zone(plan.calibration.dead_zone.data()),
-        mask(plan.calibration.mask.data()) {
-    const ForceScale exact = force_scale(plan.skin.counts_per_newton);
-    scale = {exact.shear, exact.normal};
-  }
-  double threshold;
-  double full_scale;
-  double doubt;
+        mask(plan.calibration.mask.data()) {}
+  maths::Stages stages;
   double noise;
-  double segment_point;
-  maths::ForceScale scale{};
   const float* tare;
   const float* gain;
   const float* dead_zone;
   const std::uint8_t* mask;
 };
 
-template <class Reading, Stages stages>
-maths::Sensel sensel_at(const Constants& is, const Reading* readings, std::size_t at) {
-  maths::Sensel sensel = maths::raw_sensel(static_cast<double>(readings[at]));
-  if constexpr (std::is_same_v<Reading, float>) sensel = maths::reject_absurd(sensel, kMaxCounts);
-  if constexpr (stages.calibration) sensel = maths::apply_mask(sensel, is.mask[at]);
-  if constexpr (stages.saturation) sensel = maths::mark_saturated(sensel, is.full_scale);
-  if constexpr (stages.calibration) {
-    sensel = maths::subtract_tare(sensel, is.tare[at]);
-    sensel = maths::apply_gain(sensel, is.gain[at]);
-  }
-  sensel = maths::classify(sensel, is.threshold);
-  if constexpr (stages.calibration) sensel = maths::fill_dead_zone(sensel, is.dead_zone[at]);
-  return sensel;
+/// The plan's constants and the stages that the loop is compiled for.
+template <class Reading, Stages compiled>
+maths::Stages stages_of(const Constants& is) {
+  maths::Stages stages = is.stages;
+  stages.range = std::is_same_v<Reading, float>;
+  stages.mask = stages.tare = stages.gain = stages.dead_zone = compiled.calibration;
+  stages.saturation = compiled.saturation;
+  stages.paper = compiled.paper;
+  stages.angles = compiled.angles;
+  stages.uncertainty = compiled.uncertainty;
+  stages.power_law = stages.parity_test = false;
+  return stages;
+}
+
+template <Stages compiled>
+maths::Correction correction_at(const Constants& is, std::size_t at) {
+  if constexpr (!compiled.calibration) return {};
+  return {is.tare[at], is.gain[at], is.dead_zone[at], static_cast<double>(is.mask[at])};
 }
 
 /// Where a pillar's results go, plane by plane.
@@ -97,59 +92,43 @@ class Store {
     status_ = planes.back().readings<std::uint8_t>().data();
   }
 
-  template <class... Values>
-  void planes_from(std::size_t plane, std::size_t pillar, Values... values) const {
-    ((planes_[plane++][pillar] = static_cast<float>(values)), ...);
+  void plane(std::size_t which, std::size_t pillar, double value) const {
+    planes_[which][pillar] = static_cast<float>(value);
   }
   void status(std::size_t pillar, maths::Bits bits) const {
     status_[pillar] = static_cast<std::uint8_t>(bits);
   }
 
  private:
-  std::array<float*, kForcePlanes + kAnglePlanes + kUncertaintyPlanes> planes_{};
+  std::array<float*, kSolvedPlanes> planes_{};
   std::uint8_t* status_;
 };
 
-template <Stages stages>
-void solve_uncertainty(const Constants& is, const std::array<std::size_t, 4>& sensels,
-                       const maths::Pillar& pillar, const maths::Diagonals& diagonals,
-                       const maths::ParitySum& sum, const maths::Direction& direction,
-                       const Store& to, std::size_t index) {
-  constexpr std::size_t kFirst = kForcePlanes + (stages.angles ? kAnglePlanes : 0);
-  const auto noise = [&](std::size_t n) {
-    return stages.calibration ? is.noise * is.gain[sensels[n]] : is.noise;
-  };
-  const maths::Force deviations = maths::force_deviations(
-      pillar, diagonals, sum, {noise(0), noise(1), noise(2), noise(3)}, is.segment_point, is.scale);
-  const maths::DirectionInterval ends =
-      maths::direction_interval(pillar, diagonals, sum, direction, is.scale);
-  to.planes_from(kFirst, index, deviations.shear_x, deviations.shear_y, deviations.normal,
-                 ends.theta_low, ends.theta_high, ends.phi_low, ends.phi_high, ends.magnitude_low,
-                 ends.magnitude_high);
-}
-
-template <class Reading, Stages stages>
+template <class Reading, Stages compiled>
 void solve_pillar(const Constants& is, const Reading* readings,
                   const std::array<std::size_t, 4>& sensels, const Store& to, std::size_t index) {
+  const maths::Stages stages = stages_of<Reading, compiled>(is);
   const auto sensel = [&](std::size_t n) {
-    return sensel_at<Reading, stages>(is, readings, sensels[n]);
+    return maths::correct_sensel(static_cast<double>(readings[sensels[n]]),
+                                 correction_at<compiled>(is, sensels[n]), stages);
   };
-  const maths::Pillar pillar = {sensel(0), sensel(1), sensel(2), sensel(3)};
-  const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
-  const maths::ParitySum sum = maths::parity_sum(diagonals, is.segment_point);
-  const maths::Force force = stages.paper ? maths::paper_force(pillar, diagonals, sum, is.scale)
-                                          : maths::direct_force(diagonals, sum, is.scale);
-  to.planes_from(0, index, force.shear_x, force.shear_y, force.normal);
-  to.status(index, maths::direct_status(pillar, diagonals, sum, is.doubt));
-  if constexpr (stages.angles || stages.uncertainty) {
-    const maths::Direction direction = maths::direction_of(force);
-    if constexpr (stages.angles) {
-      to.planes_from(kForcePlanes, index, direction.magnitude, direction.theta, direction.phi);
-    }
-    if constexpr (stages.uncertainty) {
-      solve_uncertainty<stages>(is, sensels, pillar, diagonals, sum, direction, to, index);
-    }
+  const auto noise = [&](std::size_t n) {
+    return compiled.calibration ? is.noise * is.gain[sensels[n]] : is.noise;
+  };
+  const maths::Solution solution =
+      maths::solve_pillar({sensel(0), sensel(1), sensel(2), sensel(3)},
+                          {noise(0), noise(1), noise(2), noise(3)}, stages);
+  to.status(index, solution.status);
+  std::size_t plane = 0;
+#define PF_STORE(name, unit, value) to.plane(plane++, index, solution.value);
+  PF_FORCE_PLANES(PF_STORE)
+  if constexpr (compiled.angles) {
+    PF_ANGLE_PLANES(PF_STORE)
   }
+  if constexpr (compiled.uncertainty) {
+    PF_UNCERTAINTY_PLANES(PF_STORE)
+  }
+#undef PF_STORE
 }
 
 template <class Reading, Stages stages>
@@ -201,8 +180,9 @@ DoubleLoop::SolveRows loop_for(const SolverPlan& plan) {
 }
 
 DoubleLoop::Planes planes_for(const SolverPlan& plan) {
-  const std::size_t count =
-      kForcePlanes + (plan.angles ? kAnglePlanes : 0) + (plan.uncertainty ? kUncertaintyPlanes : 0);
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(
+      std::span(kResultPlanes).first<kSolvedPlanes>(),
+      [&](const auto& plane) { return has_planes(plan.angles, plan.uncertainty, plane.set); }));
   DoubleLoop::Planes planes;
   for (std::size_t i = 0; i <= count; ++i) {
     const SenselType type = i < count ? SenselType::f32 : SenselType::u8;
@@ -214,7 +194,7 @@ DoubleLoop::Planes planes_for(const SolverPlan& plan) {
 }  // namespace
 
 DoubleLoop::DoubleLoop(const SolverPlan& plan, int threads)
-    : plan_(&plan), solve_rows_(loop_for(plan)), team_(threads) {
+    : plan_(&plan), solve_rows_(loop_for(plan)), team_(static_cast<std::size_t>(threads)) {
   for (std::size_t i = 0; i < kResults; ++i) results_.push_back(planes_for(plan));
 }
 
@@ -225,11 +205,8 @@ void DoubleLoop::run(const Frames& frames, int count) {
 ForceFieldView DoubleLoop::solve(const FrameView& frame) {
   Planes& to = results_[solved_++ % kResults];
   const std::size_t rows = plan_->skin.pillar_rows();
-  std::atomic<std::size_t> next = 0;
-  team_.run([&](int /*member*/) {
-    for (std::size_t piece = next++; piece < kPieces; piece = next++) {
-      solve_rows_(*plan_, frame.data, rows * piece / kPieces, rows * (piece + 1) / kPieces, to);
-    }
+  team_.run(kPieces, [&](std::size_t piece, std::size_t /*member*/) {
+    solve_rows_(*plan_, frame.data, rows * piece / kPieces, rows * (piece + 1) / kPieces, to);
   });
   ForceFieldView view;
   view.rows = plan_->skin.pillar_rows();

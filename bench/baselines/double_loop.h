@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "bench/baselines/thread_team.h"
+#include "base/work_team.h"
 #include "bench/frames.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/solver_plan.h"
@@ -36,7 +36,7 @@ class DoubleLoop {
   SolveRows solve_rows_;
   std::vector<Planes> results_;
   std::size_t solved_ = 0;
-  ThreadTeam team_;
+  WorkTeam team_;
 };
 
 }  // namespace pillarfield::bench

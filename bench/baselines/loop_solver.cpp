@@ -1,6 +1,7 @@
 #include "bench/baselines/loop_solver.h"
 
 #include <atomic>
+#include <barrier>
 
 namespace pillarfield::bench {
 
@@ -27,14 +28,19 @@ ForceFieldView LoopSolver::Result::view(const Skin& skin) const {
 }
 
 LoopSolver::LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads)
-    : skin_(plan.skin), solve_(bare_solve(plan)), solve_rows_(solve_rows), team_(threads) {
+    : skin_(plan.skin),
+      solve_(bare_solve(plan)),
+      solve_rows_(solve_rows),
+      threads_(static_cast<std::size_t>(threads)),
+      team_(threads_) {
   for (std::size_t i = 0; i < kResults; ++i) results_.emplace_back(skin_);
 }
 
 template <class FrameOf>
 void LoopSolver::solve_frames(std::size_t count, FrameOf frame_of) {
   std::atomic<std::size_t> next = 0;
-  team_.run([&](int) {
+  std::barrier meeting(static_cast<std::ptrdiff_t>(threads_));
+  team_.run(threads_, [&](std::size_t, std::size_t) {
     // Members draw pieces of all frames in their order, and wait where a frame ends.
     std::size_t piece = next++;
     for (std::size_t i = 0; i < count; ++i) {
@@ -42,7 +48,7 @@ void LoopSolver::solve_frames(std::size_t count, FrameOf frame_of) {
       const ForcePlanes to = results_[frame % kResults].planes();
       for (; piece / kPieces == i; piece = next++)
         solve_piece(frame_of(frame), to, piece % kPieces);
-      team_.meet();
+      meeting.arrive_and_wait();
     }
   });
   solved_ += count;

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "base/work_team.h"
 #include "bench/baselines/bare_solve.h"
-#include "bench/baselines/thread_team.h"
 #include "bench/frames.h"
 #include "pillarfield/force_field.h"
 
@@ -45,7 +45,8 @@ class LoopSolver {
   SolveRows solve_rows_;
   std::vector<Result> results_;
   std::size_t solved_ = 0;
-  ThreadTeam team_;
+  std::size_t threads_;
+  WorkTeam team_;
 };
 
 }  // namespace pillarfield::bench

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <filesystem>
-#include <string>
+#include <optional>
 
+#include "base/child_program.h"
 #include "bench/frames.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/solver_plan.h"
@@ -28,13 +27,11 @@ class NumpyProcess {
   [[nodiscard]] const ForceField& first_result() const { return first_; }
 
  private:
-  void start(const char* python, const SolverPlan& plan);
-  [[nodiscard]] std::string read_line() const;
+  bool starts(const char* python, const SolverPlan& plan);
 
   std::filesystem::path folder_;
   ForceField first_;
-  pid_t child_ = -1;
-  int socket_ = -1;  ///< the child's standard input and output
+  std::optional<ChildProgram> child_;
 };
 
 }  // namespace pillarfield::bench

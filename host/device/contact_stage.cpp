@@ -14,24 +14,14 @@ std::size_t threads_for(const Device::State& device) {
   return std::max<std::size_t>(threads, 1);
 }
 
-float* floats_of(const SlotMemory& memory, std::size_t plane) {
-  return reinterpret_cast<float*>(memory.host(plane));
-}
-
 /// The host's side of a result's planes.
 FieldPlanes planes_of(const SlotMemory& memory, std::uint32_t rows, std::uint32_t cols) {
   FieldPlanes planes;
   planes.rows = rows;
   planes.cols = cols;
-  planes.shear_x = floats_of(memory, kShearX);
-  planes.shear_y = floats_of(memory, kShearY);
-  planes.normal = floats_of(memory, kNormal);
-  planes.status = reinterpret_cast<std::uint8_t*>(memory.host(kStatus));
-  planes.magnitude = floats_of(memory, kMagnitude);
-  planes.theta = floats_of(memory, kTheta);
-  planes.phi = floats_of(memory, kPhi);
-  for (std::size_t i = 0; i < kUncertaintyPlanes; ++i) {
-    planes.uncertainty[i] = floats_of(memory, kUncertainty + i);
+  planes.status = memory.status();
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    plane_of(planes, i) = reinterpret_cast<float*>(memory.plane(i));
   }
   return planes;
 }
@@ -44,7 +34,7 @@ ContactStage::ContactStage(const Device::State& device, const SolverPlan& plan)
       estimator_(plan, threads_for(device)) {}
 
 void ContactStage::resolve(const SlotMemory& memory) {
-  estimator_.resolve(planes_of(memory, rows_, cols_), memory.silence());
+  estimator_.resolve(planes_of(memory, rows_, cols_), memory.idle_blocks());
 }
 
 }  // namespace pillarfield

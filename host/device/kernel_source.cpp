@@ -2,25 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 
 #include "device/block_lanes.h"
-#include "device/kernel_files.h"
+#include "device/calibration_memory.h"
+#include "device/kernel_program.h"
 #include "device/sensel_macro.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
+#include "solve/stages.h"
 #include "solve/wake_levels.h"
 
 namespace pillarfield {
 namespace {
 
-/// One `#define` of the program's first lines and the stage that it switches on.
-struct Definition {
-  const char* macro;
-  std::string value;
-  const char* stage;  ///< nullptr: a constant that every program has
-};
+/// The macros of a program with their values.
+using Definitions = std::map<std::string, std::string, std::less<>>;
 
 /// A constant as the device gets it: rounded to single precision, then exact.
 std::string hex_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
@@ -80,113 +79,77 @@ class CountsMacro {
   bool whole_;
 };
 
-/// What a plan asks of the kernel, in the order of the stages; `whole` if in whole numbers.
-std::vector<Definition> definitions(const SolverPlan& plan, bool whole) {
+/// The stages and constants of a plan; `whole` if in whole numbers.
+Definitions definitions(const SolverPlan& plan, bool whole) {
   const Skin& skin = plan.skin;
-  const Calibration& calibration = plan.calibration;
   const ForceScale scale = force_scale(skin.counts_per_newton);
   const int units_per_count = whole ? kUnitsPerCount : 1;
   const CountsMacro counts(whole);
-  std::vector<Definition> all;
-  const auto add = [&](bool wanted, const char* macro, std::string value, const char* stage) {
-    if (wanted) all.push_back({macro, std::move(value), stage});
+  Definitions all;
+  for (const Stage& stage : stages_of(plan)) {
+    if (stage.macro != nullptr) all[stage.macro] = "";
+  }
+  const auto set = [&all](const char* stage, const std::string& value) {
+    if (const auto found = all.find(stage); found != all.end()) found->second = value;
   };
-  const bool floating = plan.sensel_type == SenselType::f32;
-  add(true, "PF_SENSEL", sensel_macro(plan.sensel_type), "load");
-  add(whole, "PF_WHOLE", fmt::format("{}", kUnitsPerCount), nullptr);
-  add(floating, "PF_LARGEST_READING", hex_float(kMaxCounts), "reject_absurd");
-  add(!calibration.mask.empty(), "PF_MASK", "", "mask");
-  if (skin.full_scale_counts) {
-    add(true, "PF_FULL_SCALE", counts.from(*skin.full_scale_counts), "saturation");
-  }
-  add(!calibration.tare.empty() || plan.baseline_rate, "PF_TARE", "", "tare");
-  add(!calibration.gain.empty(), "PF_GAIN", "", "gain");
+  set("PF_SENSEL", sensel_macro(plan.sensel_type));
+  set("PF_LARGEST_READING", hex_float(kMaxCounts));
+  set("PF_FULL_SCALE", counts.from(skin.full_scale_counts.value_or(0)));
+  set("PF_THRESHOLD", counts.above(skin.threshold_counts));
+  set("PF_PARITY_TOLERANCE", counts.above(plan.parity_tolerance_counts.value_or(0)));
+  set("PF_UNCERTAINTY", hex_float(reading_noise(plan)));
   if (skin.power_law) {
-    add(true, "PF_POWER_EXPONENT", hex_float(skin.power_law->exponent), "power_law");
-    add(true, "PF_POWER_REFERENCE", hex_float(skin.power_law->reference_counts), nullptr);
-    add(true, "PF_POWER_LARGEST", hex_float(kMaxCounts), nullptr);
+    all["PF_POWER_EXPONENT"] = hex_float(skin.power_law->exponent);
+    all["PF_POWER_REFERENCE"] = hex_float(skin.power_law->reference_counts);
+    all["PF_POWER_LARGEST"] = hex_float(kMaxCounts);
   }
-  add(true, "PF_THRESHOLD", counts.above(skin.threshold_counts), "classify");
-  add(!calibration.dead_zone.empty(), "PF_DEAD_ZONE", "", "dead_zone");
-  const bool paper = plan.estimator == Estimator::paper;
-  add(true, "PF_SHEAR_SCALE", hex_float(scale.shear / units_per_count),
-      paper ? "paper_solve" : "direct_solve");
-  add(true, "PF_NORMAL_SCALE", hex_float(scale.normal / units_per_count), nullptr);
-  add(paper, "PF_PAPER", "", nullptr);
-  add(true, "PF_SEGMENT_POINT",
-      whole ? fmt::format("{}", *whole_segment_point(plan)) : hex_float(plan.segment_point),
-      nullptr);
-  add(true, "PF_DOUBT", counts.from(region_doubt(plan)), nullptr);
-  if (plan.parity_tolerance_counts) {
-    add(true, "PF_PARITY_TOLERANCE", counts.above(*plan.parity_tolerance_counts), "parity_test");
-  }
-  add(plan.angles, "PF_ANGLES", "", "angles");
-  if (plan.uncertainty) {
-    add(true, "PF_UNCERTAINTY", hex_float(reading_noise(plan)), "uncertainty");
-    add(!calibration.noise.empty(), "PF_NOISE", "", nullptr);
-  }
-  add(plan.baseline_rate.has_value(), "PF_BASELINE", "", nullptr);
+  if (whole) all["PF_WHOLE"] = fmt::format("{}", kUnitsPerCount);
+  if (plan.uncertainty && !plan.calibration.noise.empty()) all["PF_NOISE"] = "";
+  all["PF_SHEAR_SCALE"] = hex_float(scale.shear / units_per_count);
+  all["PF_NORMAL_SCALE"] = hex_float(scale.normal / units_per_count);
+  all["PF_SEGMENT_POINT"] =
+      whole ? fmt::format("{}", *whole_segment_point(plan)) : hex_float(plan.segment_point);
+  all["PF_DOUBT"] = counts.from(region_doubt(plan));
   return all;
 }
 
-/// What skipping silent blocks needs to know.
-std::vector<Definition> silence_definitions(const SolverPlan& plan) {
+/// Adds what skipping idle blocks needs to know.
+void define_idle_range(const SolverPlan& plan, Definitions& all) {
   const WakeRange range = wake_range(plan);
-  std::vector<Definition> all = {{"PF_SKIP_SILENT", "", nullptr}};
-  if (has_wake_plane(plan)) {
-    all.push_back({"PF_WAKE_PLANE", "", nullptr});
-  } else {
-    all.push_back({"PF_WAKE", hex_float(wake_levels(plan).front()), nullptr});
-  }
-  all.push_back({"PF_WAKE_THRESHOLD", hex_float(range.threshold), nullptr});
-  all.push_back({"PF_WAKE_STEP", hex_float(range.step), nullptr});
-  all.push_back({"PF_WAKE_LOWEST", hex_float(range.lowest), nullptr});
-  all.push_back({"PF_WAKE_HIGHEST", hex_float(range.highest), nullptr});
-  all.push_back({"PF_WAKE_NEVER", hex_float(range.never), nullptr});
-  return all;
-}
-
-/// Appends a file, which compilers then know by its own lines.
-void append(std::string& source, const KernelFile& file) {
-  source += fmt::format("#line 1 \"{}\"\n", file.name);
-  source += file.text;
-}
-
-/// Whether a program of whole numbers has a use for a file: the others are of fractions.
-bool serves_whole_numbers(std::string_view file) {
-  return file != "pillar/elementary.h" && file != "pillar/paper_solve.h" &&
-         file != "pillar/angles.h" && file != "pillar/uncertainty.h";
+  all["PF_SKIP_SILENT"] = "";
+  if (!has_wake_plane(plan)) all["PF_WAKE"] = hex_float(wake_levels(plan).front());
+  all["PF_WAKE_THRESHOLD"] = hex_float(range.threshold);
+  all["PF_WAKE_STEP"] = hex_float(range.step);
+  all["PF_WAKE_LOWEST"] = hex_float(range.lowest);
+  all["PF_WAKE_HIGHEST"] = hex_float(range.highest);
+  all["PF_WAKE_NEVER"] = hex_float(range.never);
 }
 
 }  // namespace
 
 std::vector<std::string> kernel_stages(const SolverPlan& plan) {
-  std::vector<std::string> stages;
-  for (const Definition& definition : definitions(plan, false)) {
-    if (definition.stage != nullptr) stages.emplace_back(definition.stage);
-  }
-  stages.emplace_back("store");
-  if (plan.baseline_rate) stages.emplace_back("follow_baseline");
-  if (plan.estimator == Estimator::contact) stages.emplace_back("estimate_contacts");
-  return stages;
+  std::vector<std::string> names;
+  for (const Stage& stage : stages_of(plan)) names.emplace_back(stage.name);
+  return names;
 }
 
-std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& paths) {
+std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& wanted) {
+  SpeedPaths paths = wanted;
+  paths.skip_silent = paths.skip_silent && may_skip_idle(plan);
   const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
-  std::string source = fmt::format("#define PF_LANES {}\n", lanes);
-  const auto define = [&](const std::vector<Definition>& all) {
-    for (const Definition& definition : all) {
-      source += fmt::format("#define {} {}\n", definition.macro, definition.value);
-    }
-  };
   // A lane of its own is 32 bits wide anyway.
   const bool whole = lanes > 1 && is_whole(plan);
-  define(definitions(plan, whole));
-  if (paths.stores == Stores::streaming && lanes > 1) define({{"PF_STREAM", "", nullptr}});
-  if (paths.skip_silent) define(silence_definitions(plan));
-  for (const KernelFile& file : kernel_files()) {
-    if (!whole || serves_whole_numbers(file.name)) append(source, file);
+  Definitions all = definitions(plan, whole);
+  all["PF_LANES"] = fmt::format("{}", lanes);
+  if (paths.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
+  if (paths.skip_silent) define_idle_range(plan, all);
+  std::size_t place = 0;
+  for (const CalibrationPlane plane : calibration_planes(plan, paths)) {
+    all[macro_of(plane)] = fmt::format("{}", place++);
   }
+  std::string source;
+  for (const auto& [macro, value] : all) source += fmt::format("#define {} {}\n", macro, value);
+  source += kernel_program();
   return source;
 }
 

@@ -14,6 +14,7 @@
 #include "device/slot_turns.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
+#include "solve/stages.h"
 
 namespace pillarfield {
 namespace {
@@ -46,12 +47,10 @@ bool decide_sharing(Memory memory, const Device& device) {
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
+  paths.skip_silent = paths.skip_silent && may_skip_idle(plan);
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
-  std::size_t bytes = 0;
-  for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-    if (is_wanted(plan, plane)) bytes += plan.skin.pillars() * value_size(plane);
-  }
+  const std::size_t bytes = ResultLayout(plan, 0).bytes;
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   const std::size_t all = bytes * static_cast<std::size_t>(options.frames_in_flight);
   if (cache != 0 && all > cache) paths.stores = Stores::streaming;
@@ -89,14 +88,15 @@ struct Processor::State {
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
         shares_memory(decide_sharing(options.memory, opened)),
-        calibration(opened.state().context, wanted, tuning.paths),
+        paths(decide_paths(opened, wanted, options, tuning)),
+        calibration(opened.state().context, wanted, paths),
         turns(static_cast<std::size_t>(options.frames_in_flight)) {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
     const int lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
     settings.lanes = block_lanes(lanes, skin.pillar_cols());
-    settings.paths = decide_paths(device, wanted, options, tuning);
+    settings.paths = paths;
     settings.program =
         device.state().program(kernel_source(wanted, settings.lanes, settings.paths));
     settings.shares_memory = shares_memory;
@@ -123,8 +123,9 @@ struct Processor::State {
   Skin skin;
   SenselType sensel_type;
   bool shares_memory;
-  CalibrationBuffers calibration;  ///< outlives the slots: a kernel does not retain its arguments
-  Baseline baseline;               ///< as well
+  SpeedPaths paths;
+  CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
+  Baseline baseline;              ///< as well
   std::optional<ContactStage> contacts;      ///< where the estimator is that of contacts
   std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
   SlotTurns turns;
@@ -220,11 +221,11 @@ int Processor::kept() const { return static_cast<int>(state_->turns.kept()); }
 
 std::vector<float> Processor::tare() const {
   return with_opencl_errors(state_->device.info().name, [&] {
-    if (state_->calibration.tare() == nullptr) return std::vector<float>();
+    if (!state_->calibration.has_tare()) return std::vector<float>();
     std::vector<float> tare(state_->skin.sensels());
     const cl::CommandQueue queue(state_->device.state().context, state_->device.state().device);
     if (state_->baseline.left() != nullptr) state_->baseline.left.wait();
-    queue.enqueueReadBuffer(state_->calibration.tare, CL_TRUE, 0, tare.size() * sizeof(float),
+    queue.enqueueReadBuffer(state_->calibration.buffer(), CL_TRUE, 0, tare.size() * sizeof(float),
                             tare.data());
     return tare;
   });

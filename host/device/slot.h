@@ -1,29 +1,14 @@
 #pragma once
 
-#include <array>
 #include <memory>
-#include <vector>
 
+#include "device/calibration_memory.h"
 #include "device/contact_stage.h"
 #include "device/device_state.h"
-#include "device/large_pages.h"
 #include "device/slot_memory.h"
 #include "pillarfield/tuning.h"
 
 namespace pillarfield {
-
-/// The calibration planes of a plan on the device; null where the plan has none.
-struct CalibrationBuffers {
-  CalibrationBuffers(const cl::Context& context, const SolverPlan& plan, const SpeedPaths& paths);
-
-  std::vector<LargePages> memory;  ///< of the planes, where the device uses the host's
-  cl::Buffer tare;
-  cl::Buffer gain;
-  cl::Buffer dead_zone;
-  cl::Buffer mask;
-  cl::Buffer noise;
-  cl::Buffer wake;  ///< readings; follows the tare
-};
 
 /// How the tare follows the readings from frame to frame, where a plan asks for it. Each frame
 /// needs the tare that the one before left, so frames in flight wait for each other.
@@ -47,7 +32,7 @@ struct SlotSettings {
 class Slot {
  public:
   Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
-       const CalibrationBuffers& calibration, Baseline& baseline);
+       const CalibrationMemory& calibration, Baseline& baseline);
   ~Slot();
   Slot(Slot&&) noexcept = default;
   Slot& operator=(Slot&&) noexcept = default;
@@ -82,7 +67,7 @@ class Slot {
   cl::Kernel follow_;  ///< null where the baseline stays
   Baseline* baseline_;
   cl::Buffer frame_;  ///< keeps the frame in flight alive
-  cl_ulong row_stride_ = 0;
+  single_precision::Layout layout_{};
   std::unique_ptr<SlotMemory> memory_;
 };
 

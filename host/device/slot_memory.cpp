@@ -2,18 +2,24 @@
 
 namespace pillarfield {
 
-ResultLayout::ResultLayout(const SolverPlan& plan) {
-  for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-    if (!is_wanted(plan, plane)) continue;
-    planes.at(plane) = {bytes, plan.skin.pillars() * value_size(plane)};
-    bytes += (planes.at(plane).size + kPageSize - 1) / kPageSize * kPageSize;
+ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
+    : plane_bytes(page_aligned(plan.skin.pillars() * sizeof(float))) {
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    has[i] = has_planes(plan.angles, plan.uncertainty, kResultPlanes[i].set);
+    planes[i] = status;
+    if (has[i]) status += plane_bytes;
   }
+  bytes = status + page_aligned(plan.skin.pillars());
+  if (block_lanes == 0) return;
+  lanes = static_cast<std::uint32_t>(block_lanes);
+  mark_stride = plan.skin.pillar_cols() / lanes + 2;
+  marks = plan.skin.pillar_rows() * mark_stride;
 }
 
-MarkLayout::MarkLayout(const SolverPlan& plan, int lanes)
-    : stride(plan.skin.pillar_cols() / static_cast<std::size_t>(lanes) + 2),
-      pillars(static_cast<std::uint32_t>(lanes)) {
-  bytes = plan.skin.pillar_rows() * stride;
+SilentBlocks SlotMemory::idle_blocks() const {
+  if (!shares_marks_) return {};
+  const auto* const marks = reinterpret_cast<const std::uint8_t*>(pages_ + layout_.bytes);
+  return {{marks, layout_.marks}, layout_.mark_stride, layout_.lanes};
 }
 
 }  // namespace pillarfield

@@ -1,6 +1,5 @@
 #include <cstring>
 #include <memory>
-#include <vector>
 
 #include "device/slot_memory.h"
 
@@ -45,25 +44,21 @@ class PinnedMemory {
 class StagedMemory final : public SlotMemory {
  public:
   StagedMemory(const cl::Context& context, const cl::CommandQueue& queue, const SolverPlan& plan,
-               const MarkLayout& marks)
-      : frame_bytes_(plan.skin.sensels() * size_of(plan.sensel_type)),
+               const ResultLayout& layout)
+      : SlotMemory(layout),
+        frame_bytes_(plan.skin.sensels() * size_of(plan.sensel_type)),
         frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
         frame_on_host_(context, queue, frame_bytes_),
-        layout_(plan),
         // Drivers align what they map as they like: a page more, to begin on a boundary.
-        results_on_host_(context, queue, layout_.bytes + kPageSize),
-        pages_(results_on_host_.first_page()) {
-    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-      if (layout_.planes.at(plane).size == 0) continue;
-      planes_.at(plane) = cl::Buffer(context, CL_MEM_READ_WRITE, layout_.planes.at(plane).size);
-    }
-    if (marks.bytes == 0) return;
-    std::vector<std::uint8_t> none(marks.bytes);
-    marks_ =
-        cl::Buffer(context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, none.size(), none.data());
+        results_on_host_(context, queue, layout.bytes + kPageSize) {
+    pages_ = results_on_host_.first_page();
+    results_ = {context, CL_MEM_READ_WRITE, layout.bytes + layout.marks};
+    if (layout.marks == 0) return;
+    queue.enqueueFillBuffer(results_, cl_uchar{0}, layout.bytes, layout.marks);
+    queue.finish();
   }
 
-  DeviceFrame take(const cl::CommandQueue& queue, const FrameView& frame) override {
+  DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
     const std::size_t row_bytes = frame.cols * size_of(frame.type);
     const std::size_t stride_bytes = frame.row_stride * size_of(frame.type);
     const auto* const readings = static_cast<const std::byte*>(frame.data);
@@ -75,44 +70,22 @@ class StagedMemory final : public SlotMemory {
     return {frame_, frame.cols};
   }
 
-  void release(const cl::CommandQueue&) override {}
-
-  void fetch(const cl::CommandQueue& queue) override {
-    for (std::size_t plane = 0; plane < kAllPlanes; ++plane) {
-      const cl_buffer_region& region = layout_.planes.at(plane);
-      if (region.size == 0) continue;
-      queue.enqueueReadBuffer(planes_.at(plane), CL_FALSE, 0, region.size, pages_ + region.origin);
-    }
+  void download(const cl::CommandQueue& queue) override {
+    queue.enqueueReadBuffer(results_, CL_FALSE, 0, layout_.bytes, pages_);
   }
-
-  [[nodiscard]] const cl::Buffer& buffer(std::size_t plane) const override {
-    return planes_.at(plane);
-  }
-  [[nodiscard]] std::byte* host(std::size_t plane) const override {
-    const cl_buffer_region& region = layout_.planes.at(plane);
-    return region.size == 0 ? nullptr : pages_ + region.origin;
-  }
-  [[nodiscard]] std::span<const std::byte> pages() const override {
-    return {pages_, layout_.bytes};
-  }
-  [[nodiscard]] const cl::Buffer& marks() const override { return marks_; }
 
  private:
   std::size_t frame_bytes_;
   cl::Buffer frame_;
   PinnedMemory frame_on_host_;
-  ResultLayout layout_;
-  std::array<cl::Buffer, kAllPlanes> planes_;
-  cl::Buffer marks_;
   PinnedMemory results_on_host_;
-  std::byte* pages_;
 };
 
 }  // namespace
 
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
-                                          const SolverPlan& plan, const MarkLayout& marks) {
-  return std::make_unique<StagedMemory>(context, queue, plan, marks);
+                                          const SolverPlan& plan, const ResultLayout& layout) {
+  return std::make_unique<StagedMemory>(context, queue, plan, layout);
 }
 
 }  // namespace pillarfield

@@ -40,9 +40,8 @@ struct OpenForces {
 };
 
 /// The angles and the ends of components are not: they follow from the rest.
-bool is_read(const ForcePlane& plane) {
-  if (plane.is_end_of_component()) return false;
-  return plane.group == "uncertainty" || plane.index < component_planes().size();
+bool is_read(const ResultPlane& plane) {
+  return plane.set == PlaneSet::forces || plane.set == PlaneSet::uncertainty;
 }
 
 void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const char* kind_name,
@@ -59,9 +58,9 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   hdf5::require_format(file, force_format::kName, force_format::kVersion);
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
-  for (const ForcePlane& plane : all_planes(info)) {
+  for (const ResultPlane& plane : planes_of(info)) {
     if (!is_read(plane)) continue;
-    planes.emplace_back(file, "/" + plane.group + "/" + plane.name, 2);
+    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2);
     require_class(planes.back(), H5T_FLOAT, "floats", path);
   }
   status = {file, force_format::kStatus, 2};

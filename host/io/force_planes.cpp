@@ -1,29 +1,18 @@
 #include "io/force_planes.h"
 
-#include <array>
+#include <algorithm>
+#include <iterator>
 
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
-namespace {
 
-constexpr const char* kForce = "force";
-constexpr const char* kUncertainty = "uncertainty";
-
-}  // namespace
-
-std::string ForcePlane::field() const { return group == kForce ? name : group + "_" + name; }
-
-bool ForcePlane::is_end_of_component() const {
-  return group == kUncertainty && index >= kUncertaintyPlanes;
-}
-
-std::span<const float> solved_values(const ForcePlane& plane, const ForceFieldView& forces) {
-  if (plane.is_end_of_component()) return {};
-  if (plane.group == kUncertainty) return forces.uncertainty[static_cast<Uncertainty>(plane.index)];
-  const std::array planes = {forces.shear_x,   forces.shear_y, forces.normal,
-                             forces.magnitude, forces.theta,   forces.phi};
-  return planes.at(plane.index);
+std::vector<ResultPlane> planes_of(const ForceFileInfo& info) {
+  std::vector<ResultPlane> planes;
+  std::ranges::copy_if(kResultPlanes, std::back_inserter(planes), [&](const ResultPlane& plane) {
+    return has_planes(info.angles, info.uncertainty, plane.set);
+  });
+  return planes;
 }
 
 FramePlanes::FramePlanes(const ForceFileInfo& info) : uncertainty_(info.uncertainty) {
@@ -40,38 +29,9 @@ void FramePlanes::take(const ForceFieldView& forces) {
   }
 }
 
-std::span<const float> FramePlanes::of(const ForcePlane& plane) const {
-  if (plane.is_end_of_component()) return ends_.at(plane.index - kUncertaintyPlanes);
-  return solved_values(plane, forces_);
-}
-
-std::vector<ForcePlane> component_planes() {
-  return {{kForce, "shear_x", "n", 0}, {kForce, "shear_y", "n", 1}, {kForce, "normal", "n", 2}};
-}
-
-std::vector<ForcePlane> further_planes(const ForceFileInfo& info) {
-  std::vector<ForcePlane> planes;
-  if (info.angles) {
-    planes = {
-        {kForce, "magnitude", "n", 3}, {kForce, "theta", "rad", 4}, {kForce, "phi", "rad", 5}};
-  }
-  if (!info.uncertainty) return planes;
-  for (std::size_t index = 0; index < kUncertaintyPlanes; ++index) {
-    const std::string name = name_of(static_cast<Uncertainty>(index));
-    const bool angle = name.starts_with("theta") || name.starts_with("phi");
-    planes.push_back({kUncertainty, name, angle ? "rad" : "n", index});
-  }
-  for (std::size_t i = 0; i < kComponentEnds; ++i) {
-    planes.push_back(
-        {kUncertainty, name_of(static_cast<ComponentEnd>(i)), "n", kUncertaintyPlanes + i});
-  }
-  return planes;
-}
-
-std::vector<ForcePlane> all_planes(const ForceFileInfo& info) {
-  std::vector<ForcePlane> planes = component_planes();
-  for (ForcePlane& plane : further_planes(info)) planes.push_back(std::move(plane));
-  return planes;
+std::span<const float> FramePlanes::of(const ResultPlane& plane) const {
+  if (plane.index >= kSolvedPlanes) return ends_.at(plane.index - kSolvedPlanes);
+  return plane_of(forces_, plane.index);
 }
 
 }  // namespace pillarfield

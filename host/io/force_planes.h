@@ -3,26 +3,16 @@
 #include <array>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "pillarfield/component_ends.h"
 #include "pillarfield/force_file.h"
+#include "skin/result_planes.h"
 
 namespace pillarfield {
 
-/// A plane of floats of a force field as files name it.
-struct ForcePlane {
-  std::string group;  ///< "force" or "uncertainty"
-  std::string name;   ///< "shear_x", "theta_low", ...
-  std::string unit;   ///< "n" or "rad"
-  std::size_t index;  ///< in its group
-
-  /// "shear_x", "uncertainty_theta_low": where there are no groups.
-  [[nodiscard]] std::string field() const;
-  /// Whether it is one of ComponentEnd, which follow from the other planes.
-  [[nodiscard]] bool is_end_of_component() const;
-};
+/// The planes of a file, status apart: first shear_x, shear_y and normal, which every file has.
+[[nodiscard]] std::vector<ResultPlane> planes_of(const ForceFileInfo& info);
 
 /// The values of the planes of a frame.
 class FramePlanes {
@@ -32,7 +22,7 @@ class FramePlanes {
   /// Computes the ends of components where the file has them. `forces` must live as long as its
   /// planes are asked for.
   void take(const ForceFieldView& forces);
-  [[nodiscard]] std::span<const float> of(const ForcePlane& plane) const;
+  [[nodiscard]] std::span<const float> of(const ResultPlane& plane) const;
 
  private:
   bool uncertainty_;
@@ -40,18 +30,5 @@ class FramePlanes {
   ForceFieldView forces_;
   std::array<std::vector<float>, kComponentEnds> ends_;
 };
-
-/// Empty where a frame lacks it, and for the ends of components.
-[[nodiscard]] std::span<const float> solved_values(const ForcePlane& plane,
-                                                   const ForceFieldView& forces);
-
-/// shear_x, shear_y and normal, which every file has.
-[[nodiscard]] std::vector<ForcePlane> component_planes();
-
-/// The planes that a file has beside them and the status.
-[[nodiscard]] std::vector<ForcePlane> further_planes(const ForceFileInfo& info);
-
-/// All of them, the components first.
-[[nodiscard]] std::vector<ForcePlane> all_planes(const ForceFileInfo& info);
 
 }  // namespace pillarfield

@@ -35,8 +35,8 @@ void check(const ForceFieldView& forces, double time_s, const ForceFileInfo& inf
     throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
                 fmt::format("the file takes whole frames of {} x {}", info.rows, info.cols));
   }
-  for (const ForcePlane& plane : further_planes(info)) {
-    if (plane.is_end_of_component() || complete(solved_values(plane, forces))) continue;
+  for (const ResultPlane& plane : planes_of(info)) {
+    if (plane.index >= kSolvedPlanes || complete(plane_of(forces, plane.index))) continue;
     throw Error(where, fmt::format("a frame without {}", plane.field()),
                 "solve with all outputs that the file shall have");
   }

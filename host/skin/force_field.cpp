@@ -17,11 +17,4 @@ ForceFieldView ForceField::view() const {
   return view;
 }
 
-const char* name_of(Uncertainty plane) {
-  static constexpr std::array<const char*, kUncertaintyPlanes> kNames = {
-      "shear_x", "shear_y",  "normal",        "theta_low",     "theta_high",
-      "phi_low", "phi_high", "magnitude_low", "magnitude_high"};
-  return kNames[static_cast<std::size_t>(plane)];
-}
-
 }  // namespace pillarfield

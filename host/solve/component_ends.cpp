@@ -55,24 +55,6 @@ void set_segment(double point, const Component& moving, const Component& normal,
 
 }  // namespace
 
-const char* name_of(ComponentEnd end) {
-  switch (end) {
-    case ComponentEnd::shear_x_low:
-      return "shear_x_low";
-    case ComponentEnd::shear_x_high:
-      return "shear_x_high";
-    case ComponentEnd::shear_y_low:
-      return "shear_y_low";
-    case ComponentEnd::shear_y_high:
-      return "shear_y_high";
-    case ComponentEnd::normal_low:
-      return "normal_low";
-    case ComponentEnd::normal_high:
-      break;
-  }
-  return "normal_high";
-}
-
 std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, std::size_t pillar,
                                                  const std::optional<double>& direct_point) {
   const auto component = [&](std::span<const float> values, Uncertainty deviation) {

@@ -5,9 +5,6 @@
 #include <algorithm>
 
 #include "contacts/estimator/contact_estimator.h"
-#include "pillarfield/error.h"
-#include "pillarfield/tuning.h"
-#include "skin/force_scale.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
 
@@ -20,73 +17,30 @@ namespace maths = single_precision;
 class PillarSolver {
  public:
   PillarSolver(const SolverPlan& plan, const FrameView& frame, ForceField& field)
-      : plan_(plan),
-        sensel_(plan, frame),
-        field_(field),
-        doubt_(static_cast<float>(region_doubt(plan))),
-        segment_point_(static_cast<float>(plan.segment_point)) {
-    const ForceScale scale = force_scale(plan.skin.counts_per_newton);
-    scale_ = {static_cast<float>(scale.shear), static_cast<float>(scale.normal)};
+      : sensels_(plan, frame), field_(field) {
     if (!plan.uncertainty) return;
     for (auto& plane : field.uncertainty) plane.resize(field.pillars());
   }
 
   void solve(std::size_t row, std::size_t col) {
-    const maths::Pillar pillar = sensel_.pillar(row, col);
-    const maths::Diagonals diagonals = maths::pillar_diagonals(pillar);
-    const maths::ParitySum sum = maths::parity_sum(diagonals, segment_point_);
+    const bool uncertainty = sensels_.stages().uncertainty;
+    const maths::Noise noise = uncertainty ? sensels_.noise(row, col) : maths::Noise{};
+    const maths::Solution solution =
+        maths::solve_pillar(sensels_.pillar(row, col), noise, sensels_.stages());
     const std::size_t index = row * field_.cols + col;
-    const maths::Force force = plan_.estimator == Estimator::paper
-                                   ? maths::paper_force(pillar, diagonals, sum, scale_)
-                                   : maths::direct_force(diagonals, sum, scale_);
-    field_.shear_x[index] = force.shear_x;
-    field_.shear_y[index] = force.shear_y;
-    field_.normal[index] = force.normal;
-    field_.status[index] = static_cast<std::uint8_t>(status(pillar, diagonals, sum));
-    if (!plan_.uncertainty) return;
-    const std::size_t top = 2 * row;
-    const std::size_t left = 2 * col;
-    const maths::Noise noise = {sensel_.noise(top, left + 1), sensel_.noise(top, left),
-                                sensel_.noise(top + 1, left), sensel_.noise(top + 1, left + 1)};
-    store(maths::force_deviations(pillar, diagonals, sum, noise, segment_point_, scale_), index);
-    const maths::Direction direction = maths::direction_of(force);
-    store(maths::direction_interval(pillar, diagonals, sum, direction, scale_), index);
+    field_.status[index] = static_cast<std::uint8_t>(solution.status);
+#define PF_STORE(name, unit, value) field_.name[index] = solution.value;
+    PF_FORCE_PLANES(PF_STORE)
+#undef PF_STORE
+    if (!uncertainty) return;
+#define PF_STORE(name, unit, value) field_.uncertainty[Uncertainty::name][index] = solution.value;
+    PF_UNCERTAINTY_PLANES(PF_STORE)
+#undef PF_STORE
   }
 
  private:
-  [[nodiscard]] maths::Bits status(const maths::Pillar& pillar, const maths::Diagonals& diagonals,
-                                   const maths::ParitySum& sum) const {
-    maths::Bits bits = maths::direct_status(pillar, diagonals, sum, doubt_);
-    if (plan_.parity_tolerance_counts) {
-      const auto tolerance = static_cast<float>(*plan_.parity_tolerance_counts);
-      bits |= maths::fails_parity(pillar, sum, tolerance) ? PF_STATUS_INCONSISTENT : 0;
-    }
-    return bits;
-  }
-
-  void store(const maths::Force& deviations, std::size_t index) {
-    auto& planes = field_.uncertainty;
-    planes[Uncertainty::shear_x][index] = deviations.shear_x;
-    planes[Uncertainty::shear_y][index] = deviations.shear_y;
-    planes[Uncertainty::normal][index] = deviations.normal;
-  }
-
-  void store(const maths::DirectionInterval& interval, std::size_t index) {
-    auto& planes = field_.uncertainty;
-    planes[Uncertainty::theta_low][index] = interval.theta_low;
-    planes[Uncertainty::theta_high][index] = interval.theta_high;
-    planes[Uncertainty::phi_low][index] = interval.phi_low;
-    planes[Uncertainty::phi_high][index] = interval.phi_high;
-    planes[Uncertainty::magnitude_low][index] = interval.magnitude_low;
-    planes[Uncertainty::magnitude_high][index] = interval.magnitude_high;
-  }
-
-  const SolverPlan& plan_;
-  SenselReader sensel_;
+  SenselReader sensels_;
   ForceField& field_;
-  float doubt_;
-  float segment_point_;
-  maths::ForceScale scale_{};
 };
 
 /// Whether anything presses in the 3 x 3 pillars around one.

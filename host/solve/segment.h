@@ -13,20 +13,6 @@
 
 namespace pillarfield {
 
-/// Whether a pillar's force is one of a segment: two adjacent sensels usable, the others inactive.
-[[nodiscard]] inline bool is_ambiguous(std::uint8_t status) {
-  constexpr std::uint8_t kSpoilt = status::kSaturated | status::kInconsistent;
-  constexpr unsigned kAdjacent = 1U << 3 | 1U << 6 | 1U << 12 | 1U << 9;  // sets of usable sensels
-  return (status & status::kAmbiguous) != 0 && (status & kSpoilt) == 0 &&
-         (kAdjacent >> (status & status::kUsable) & 1U) != 0;
-}
-
-/// Whether a pillar's own readings determine its force.
-[[nodiscard]] inline bool is_determined(std::uint8_t status) {
-  constexpr unsigned kThree = 1U << 7 | 1U << 11 | 1U << 13 | 1U << 14 | 1U << 15;
-  return (kThree >> (status & status::kUsable) & 1U) != 0 && (status & status::kSaturated) == 0;
-}
-
 /// Whether the shear's y component is the one that changes along the segment: the usable sensels
 /// are the upper or the lower two.
 [[nodiscard]] inline bool moves_vertically(std::uint8_t status) {

@@ -5,6 +5,7 @@
 #include "pillarfield/frame.h"
 #include "pillarfield/solver_plan.h"
 #include "solve/pillar_maths.h"
+#include "solve/plan_constants.h"
 
 namespace pillarfield {
 
@@ -12,28 +13,33 @@ namespace pillarfield {
 /// frame, which fit each other, must outlive it.
 class SenselReader {
  public:
-  SenselReader(const SolverPlan& plan, const FrameView& frame) : plan_(plan), frame_(frame) {}
+  SenselReader(const SolverPlan& plan, const FrameView& frame)
+      : calibration_(plan.calibration),
+        frame_(frame),
+        stages_(plan_constants<single_precision::Stages>(plan)),
+        noise_(static_cast<float>(reading_noise(plan))) {}
 
-  /// After all stages.
-  [[nodiscard]] single_precision::Sensel operator()(std::size_t row, std::size_t col) const;
-
-  /// The four of the pillar in this row and column of pillars.
+  /// The four of the pillar in this row and column of pillars, after all stages.
   [[nodiscard]] single_precision::Pillar pillar(std::size_t row, std::size_t col) const;
 
-  /// Before any calibration.
+  /// Their noise as the corrections leave it, counts.
+  [[nodiscard]] single_precision::Noise noise(std::size_t row, std::size_t col) const;
+
+  /// A sensel before any calibration.
   [[nodiscard]] single_precision::Sensel judged(std::size_t row, std::size_t col) const;
 
-  /// Noise as the corrections leave it, counts.
-  [[nodiscard]] float noise(std::size_t row, std::size_t col) const;
+  [[nodiscard]] const single_precision::Stages& stages() const { return stages_; }
 
  private:
-  [[nodiscard]] single_precision::Sensel corrected(std::size_t row, std::size_t col) const;
-  [[nodiscard]] float exponent() const;
-  [[nodiscard]] float reference() const;
+  [[nodiscard]] single_precision::Correction correction(std::size_t row, std::size_t col) const;
+  [[nodiscard]] single_precision::Sensel sensel(std::size_t row, std::size_t col) const;
+  [[nodiscard]] float sensel_noise(std::size_t row, std::size_t col) const;
   [[nodiscard]] float raw(std::size_t row, std::size_t col) const;
 
-  const SolverPlan& plan_;
+  const Calibration& calibration_;
   const FrameView& frame_;
+  single_precision::Stages stages_;
+  float noise_;  ///< of a raw reading, counts
 };
 
 }  // namespace pillarfield

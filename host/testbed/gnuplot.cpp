@@ -1,19 +1,14 @@
 #include "testbed/gnuplot.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
+#include <sstream>
 #include <string_view>
 
+#include "base/child_program.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::gnuplot {
@@ -59,72 +54,12 @@ Format png_format(Size size) {
           "IEND"};
 }
 
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, Close>;
-
-/// A nameless file that holds `text`, at its beginning. Unlike a pipe it needs no second thread.
-File file_of(std::string_view text) {
-  File file(std::tmpfile());
-  if (!file || std::fwrite(text.data(), 1, text.size(), file.get()) != text.size() ||
-      std::fflush(file.get()) != 0) {
-    throw Error("temporary file", std::strerror(errno), "make room for temporary files");
-  }
-  std::rewind(file.get());
-  return file;
-}
-
-class FileActions {
- public:
-  FileActions() { posix_spawn_file_actions_init(&actions_); }
-  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
-  FileActions(const FileActions&) = delete;
-  FileActions& operator=(const FileActions&) = delete;
-
-  void connect(int from, int descriptor) {
-    posix_spawn_file_actions_adddup2(&actions_, from, descriptor);
-  }
-  [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-};
-
-pid_t start(std::FILE* input, int output, std::FILE* messages) {
-  FileActions actions;
-  actions.connect(fileno(input), STDIN_FILENO);
-  actions.connect(output, STDOUT_FILENO);
-  actions.connect(fileno(messages), STDERR_FILENO);
-  std::string program = "gnuplot";
-  std::string plain = "--default-settings";  // without the user's own
-  const std::array<char*, 3> arguments = {program.data(), plain.data(), nullptr};
-  pid_t process = 0;
-  const int failure =
-      posix_spawnp(&process, program.c_str(), actions.get(), nullptr, arguments.data(), environ);
-  if (failure == 0) return process;
-  if (failure == ENOENT) {
-    throw Error("gnuplot", "is not installed", "install it; its Debian package is gnuplot-nox");
-  }
-  throw Error("gnuplot", fmt::format("cannot be started: {}", std::strerror(failure)));
-}
-
-int wait_for(pid_t process) {
-  int status = 0;
-  while (waitpid(process, &status, 0) < 0) {
-    if (errno != EINTR) throw Error("gnuplot", std::strerror(errno));
-  }
-  return status;
-}
-
 /// What gnuplot complains of, one line, or nothing. A warning means that data were skipped; a
 /// failure is told by the last line, after those that show the place.
-std::string complaint_in(std::FILE* messages, bool failed) {
-  std::rewind(messages);
-  std::array<char, 512> buffer{};
+std::string complaint_in(const std::string& messages, bool failed) {
+  std::istringstream lines(messages);
   std::string last = "it does not say why";
-  while (std::fgets(buffer.data(), buffer.size(), messages) != nullptr) {
-    std::string line(buffer.data(), std::strcspn(buffer.data(), "\n"));
+  for (std::string line; std::getline(lines, line);) {
     line.erase(0, line.find_first_not_of(' '));
     if (line.find("warning:") != std::string::npos) return line;
     if (!line.empty()) last = line;
@@ -144,10 +79,11 @@ bool is_whole(const OutputFile& file, std::string_view end_mark) {
 }
 
 void run(const Format& format, const std::string& script, const OutputFile& output) {
-  const File input = file_of(format.terminal + kStyle + script);
-  const File messages = file_of("");
-  const int status = wait_for(start(input.get(), output.descriptor(), messages.get()));
-  const std::string complaint = complaint_in(messages.get(), status != 0);
+  ChildProgram gnuplot({"gnuplot", "--default-settings"},  // without the user's own
+                       "install it; its Debian package is gnuplot-nox", output.descriptor());
+  const bool fed = gnuplot.feed(format.terminal + kStyle + script);
+  const bool done = gnuplot.finish() && fed;
+  const std::string complaint = complaint_in(gnuplot.errors(), !done);
   if (!complaint.empty()) {
     throw Error(output.path().string(), "gnuplot failed: " + complaint,
                 "draw with gnuplot 5.4 or later");

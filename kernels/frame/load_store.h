@@ -1,15 +1,6 @@
 /* How values of PF_LANES pillars at once come from memory and go there. For the entry points;
  * PF_LANES and PF_SENSEL are of the program's first lines. */
 
-/* PoCL, which a processor is solved on with lanes, leaves calls as they are, and structures of
- * lanes then go through memory. Other drivers inline, or like Oclgrind do not know the attribute.
- */
-#ifdef POCL_DEVICE_ADDRESS_BITS
-#define PF_INLINE static inline __attribute__((always_inline))
-#else
-#define PF_INLINE static inline
-#endif
-
 /* The values of `PF_LANES` pillars in one row of sensels. */
 typedef struct {
   Real left;
@@ -47,29 +38,29 @@ PF_DEFINE_PACKED(float)
 /* load_<name>(row): the sensels under PF_LANES neighbouring pillars, as Real; readings as Counts.
  */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type, Pair, split)        \
-  PF_INLINE Pair load_##name(global const type* row) { \
-    Pair pair;                                         \
-    pair.left = (Real)row[0];                          \
-    pair.right = (Real)row[1];                         \
-    return pair;                                       \
+#define PF_DEFINE_LOAD(name, type, Pair, split)          \
+  PF_FUNCTION Pair load_##name(global const type* row) { \
+    Pair pair;                                           \
+    pair.left = (Real)row[0];                            \
+    pair.right = (Real)row[1];                           \
+    return pair;                                         \
   }
 #else
 
 #define PF_DEFINE_LOAD(name, type, Pair, split)                                  \
-  PF_INLINE Pair load_##name(global const type* row) {                           \
+  PF_FUNCTION Pair load_##name(global const type* row) {                         \
     return split(PF_LOAD_WHOLE(type, row), PF_LOAD_WHOLE(type, row + PF_LANES)); \
   }
 
 #define PF_TO_REAL PF_JOIN(convert_float, PF_LANES)
 
 /* Left and right sensels alternate in memory. */
-#define PF_DEFINE_SPLIT(type)                                                        \
-  PF_INLINE RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
-    RealPair pair;                                                                   \
-    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));               \
-    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                \
-    return pair;                                                                     \
+#define PF_DEFINE_SPLIT(type)                                                          \
+  PF_FUNCTION RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
+    RealPair pair;                                                                     \
+    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));                 \
+    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                  \
+    return pair;                                                                       \
   }
 PF_DEFINE_SPLIT(float)
 
@@ -86,7 +77,7 @@ PF_DEFINE_SPLIT(float)
 #define PF_HALF_LANES
 #endif
 #define PF_DEFINE_SPLIT_OF_INTEGERS(type, wide, bits)                                      \
-  PF_INLINE RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {       \
+  PF_FUNCTION RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {     \
     const PF_LANE_TYPE(uint) both = PF_JOIN(convert_uint, PF_LANES)((PF_LANE_TYPE(wide))(  \
         PF_JOIN(as_##wide, PF_HALF_LANES)(low), PF_JOIN(as_##wide, PF_HALF_LANES)(high))); \
     RealPair pair;                                                                         \
@@ -104,7 +95,7 @@ PF_DEFINE_SPLIT(ushort)
 
 #ifdef PF_WHOLE
 /* Both readings of a pillar are one integer, as above. */
-PF_INLINE CountsPair load_readings(global const uchar* row) {
+PF_FUNCTION CountsPair load_readings(global const uchar* row) {
   const PF_LANE_TYPE(ushort) both = PF_LOAD_WHOLE(ushort, row);
   const PF_LANE_TYPE(short) lower = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff);
   const PF_LANE_TYPE(short) upper = PF_JOIN(as_short, PF_LANES)(both >> 8);
@@ -143,19 +134,19 @@ typedef struct {
   uint end;
 } Lanes;
 
-PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES; }
+PF_FUNCTION bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES; }
 
 /* store_<name>(pair, row, lanes): writes what load_<name> reads; whole values where type has no
  * fractions. */
 #if PF_LANES == 1
-#define PF_DEFINE_STORE(name, type)                                           \
-  PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) { \
-    row[0] = (type)pair.left;                                                 \
-    row[1] = (type)pair.right;                                                \
+#define PF_DEFINE_STORE(name, type)                                             \
+  PF_FUNCTION void store_##name(RealPair pair, global type* row, Lanes lanes) { \
+    row[0] = (type)pair.left;                                                   \
+    row[1] = (type)pair.right;                                                  \
   }
 #else
 #define PF_DEFINE_STORE(name, type)                                                          \
-  PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) {                \
+  PF_FUNCTION void store_##name(RealPair pair, global type* row, Lanes lanes) {              \
     const PF_LANE_TYPE(type) left = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.left);   \
     const PF_LANE_TYPE(type) right = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.right); \
     PF_LANE_TYPE(type) low, high;                                                            \
@@ -188,7 +179,7 @@ PF_DEFINE_STORE(readings, PF_SENSEL)
 #define PF_STORE_BLOCK(results, plane) PF_STORE_WHOLE(float, results, plane)
 #endif
 
-PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
+PF_FUNCTION void store_plane(Real value, global float* plane, Lanes lanes) {
   if (are_all(lanes)) {
     PF_STORE_BLOCK(value, plane);
   } else {
@@ -200,7 +191,7 @@ PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
   }
 }
 
-PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
+PF_FUNCTION void store_status(Bits value, global uchar* plane, Lanes lanes) {
 #if PF_LANES == 1
   *plane = (uchar)value;
 #else
@@ -217,7 +208,7 @@ PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
 
 /* The status bytes of PF_LANES pillars from column `col` on, which may lie outside the row: what is
  * beyond its ends is zero. */
-PF_INLINE Bits load_status(global const uchar* row, int col, uint cols) {
+PF_FUNCTION Bits load_status(global const uchar* row, int col, uint cols) {
 #if PF_LANES == 1
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else

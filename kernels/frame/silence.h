@@ -4,17 +4,35 @@
  *
  * The levels are a plane of readings where sensels differ (PF_WAKE_PLANE), else PF_WAKE. A masked
  * sensel never wakes; a reading at the end of its type's range, NaN and absurd ones always do. */
+
+/* The levels of a frame's sensels, of use where PF_WAKE_PLANE tells their place. */
+PF_FUNCTION global const PF_SENSEL* wake_levels(Calibration calibration) {
+#ifdef PF_WAKE_PLANE
+  return PF_PLANE_OF(calibration, PF_SENSEL, PF_WAKE_PLANE);
+#else
+  return 0;
+#endif
+}
+
 #ifdef PF_SKIP_SILENT
 
 #ifdef PF_BASELINE
-/* The level of sensels with these tares and gains; `good` is zero where one is masked. */
-PF_INLINE Real level_of(Real tare, Real gain, Real good) {
+/* The level of sensels with these tares. */
+PF_FUNCTION Real level_of(Real tare, Correction at) {
+  Real gain = (Real)(1.0f);
+#ifdef PF_GAIN
+  gain = at.gain;
+#endif
   const Real lowest = (Real)(PF_WAKE_LOWEST);
   const Real highest = (Real)(PF_WAKE_HIGHEST);
   const Real level =
       wake_level(tare, gain, (Real)(PF_WAKE_THRESHOLD), (Real)(PF_WAKE_STEP), lowest);
   const Real bounded = level < lowest ? lowest : (level < highest ? level : highest);
-  return good == (Real)(0.0f) ? (Real)(PF_WAKE_NEVER) : bounded;
+#ifdef PF_MASK
+  return at.good == (Real)(0.0f) ? (Real)(PF_WAKE_NEVER) : bounded;
+#else
+  return bounded;
+#endif
 }
 #endif
 
@@ -26,8 +44,8 @@ PF_INLINE Real level_of(Real tare, Real gain, Real good) {
 #endif
 
 /* Whether no sensel under PF_LANES pillars is awake. `wake` is the level of the first one. */
-PF_INLINE bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
-                         global const PF_SENSEL* wake, size_t wake_stride) {
+PF_FUNCTION bool is_silent(global const PF_SENSEL* raw, size_t row_stride,
+                           global const PF_SENSEL* wake, size_t wake_stride) {
 #if PF_LANES == 1
 #define PF_READING(place, i) (place)[i]
 #else

@@ -1,5 +1,5 @@
 /* Solves a frame: readings in, forces and status bytes out. Only indexing, loading, calling and
- * storing; the mathematics is in pillar/.
+ * storing; the mathematics is in pillar/, the order of the stages in stages.h.
  *
  * The host writes what a plan asks for as the first lines of the program:
  *
@@ -11,7 +11,8 @@
  *   PF_THRESHOLD                    counts
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
- *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read
+ *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read,
+ *   PF_TARE_PLANE, ...              so many planes after the first
  *   PF_POWER_EXPONENT               stage: readings are straightened by a power law, with
  *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
@@ -30,50 +31,18 @@
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal); with PF_WHOLE those
  * in counts are whole numbers of its unit. */
 
-PF_INLINE Force estimate(Pillar pillar, Diagonals diagonals, ParitySum sum) {
-  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
-#ifdef PF_PAPER
-  return paper_force(pillar, diagonals, sum, scale);
-#else
-  return direct_force(diagonals, sum, scale);
-#endif
-}
-
-PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum) {
-  Bits status = direct_status(pillar, diagonals, sum, (Counts)(PF_DOUBT));
-#ifdef PF_PARITY_TOLERANCE
-  const Bits at_odds = bits_of(fails_parity(pillar, sum, (Counts)(PF_PARITY_TOLERANCE)));
-  status = status | (at_odds & PF_BITS(PF_STATUS_INCONSISTENT));
-#endif
-  return status;
-}
-
 /* Where a frame comes from, and the results go: the arguments of the entry point. */
 typedef struct {
   global const PF_SENSEL* raw;
   size_t row_stride;
-  Planes planes;
-  global const PF_SENSEL* wake; /* [rows, stride of the planes], or null */
+  Calibration calibration;
 } Input;
 
 typedef struct {
-  global float* shear_x;
-  global float* shear_y;
-  global float* normal;
+  global uchar* planes;
+  size_t plane_bytes;
   global uchar* status;
-  global float* magnitude;
-  global float* theta;
-  global float* phi;
-  global float* deviation_x;
-  global float* deviation_y;
-  global float* deviation_normal;
-  global float* theta_low;
-  global float* theta_high;
-  global float* phi_low;
-  global float* phi_high;
-  global float* magnitude_low;
-  global float* magnitude_high;
-  global uchar* silent; /* of each block: its results are those of silence; or null */
+  global uchar* idle; /* of each block: its results are those of silence; or nothing */
 } Output;
 
 /* Where the pillars of a block are: `raw` is the sensel at their upper left, `offset` its place in
@@ -86,66 +55,37 @@ typedef struct {
   Lanes lanes;
 } Block;
 
-/* What is solved of the pillars of a block. */
-typedef struct {
-  Force force;
-  Bits status;
-#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
-  Direction direction;
-#endif
+/* The noise of a block's sensels, of use with uncertainty alone. */
+PF_FUNCTION Noise noise_of(Block block, Input input) {
 #ifdef PF_UNCERTAINTY
-  Force deviations;
-  DirectionInterval interval;
-#endif
-} Solution;
-
-#ifdef PF_UNCERTAINTY
-PF_INLINE Noise noise_of(Block block, Input input) {
-  const Planes planes = input.planes;
-  const RealPair top = read_noise(block.raw, planes, block.offset);
-  const RealPair bottom =
-      read_noise(block.raw + input.row_stride, planes, block.offset + planes.stride);
+  const RealPair top = read_noise(block.raw, input.calibration, block.offset);
+  const RealPair bottom = read_noise(block.raw + input.row_stride, input.calibration,
+                                     block.offset + input.calibration.stride);
   const Noise noise = {top.right, top.left, bottom.left, bottom.right};
+#else
+  const Real none = (Real)(0.0f);
+  const Noise noise = {none, none, none, none};
+#endif
   return noise;
-}
-#endif
-
-/* From corrected sensels to the results. */
-PF_INLINE Solution solve_pillars(Pillar pillar, Block block, Input input) {
-  const Diagonals diagonals = pillar_diagonals(pillar);
-  const ParitySum sum = parity_sum(diagonals, (Fraction)(PF_SEGMENT_POINT));
-  Solution solution;
-  solution.force = estimate(pillar, diagonals, sum);
-  solution.status = status_of(pillar, diagonals, sum);
-#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
-  solution.direction = direction_of(solution.force);
-#endif
-#ifdef PF_UNCERTAINTY
-  const ForceScale scale = {(Real)(PF_SHEAR_SCALE), (Real)(PF_NORMAL_SCALE)};
-  solution.deviations = force_deviations(pillar, diagonals, sum, noise_of(block, input),
-                                         (Real)(PF_SEGMENT_POINT), scale);
-  solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale);
-#endif
-  return solution;
 }
 
 /* The sensel, of which is known in every lane that it is neither missing nor saturated. */
-PF_INLINE Sensel sound_sensel(Sensel sensel) {
+PF_FUNCTION Sensel sound_sensel(Sensel sensel) {
   const Mask none = (Mask)(0);
   sensel.missing = none;
   sensel.saturated = none;
   return sensel;
 }
 
-PF_INLINE Mask is_unsound(Sensel sensel) { return sensel.missing || sensel.saturated; }
+PF_FUNCTION Mask is_unsound(Sensel sensel) { return sensel.missing || sensel.saturated; }
 
 /* Most blocks have no missing and no saturated sensel. For them the compiler gets the same text
  * with those masks false, and leaves half of it out. */
-PF_INLINE Solution solve_block(Block block, Input input) {
-  const Planes planes = input.planes;
-  const SenselPair top = read_sensels(block.raw, planes, block.offset);
+PF_FUNCTION Solution solve_block(Block block, Input input) {
+  const Calibration calibration = input.calibration;
+  const SenselPair top = read_sensels(block.raw, calibration, block.offset);
   const SenselPair bottom =
-      read_sensels(block.raw + input.row_stride, planes, block.offset + planes.stride);
+      read_sensels(block.raw + input.row_stride, calibration, block.offset + calibration.stride);
   const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
 #if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_FULL_SCALE) || defined(PF_LARGEST_READING))
   const Mask unsound = is_unsound(pillar.s1) || is_unsound(pillar.s2) || is_unsound(pillar.s3) ||
@@ -153,38 +93,31 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   if (!any_lane(unsound)) {
     const Pillar sound = {sound_sensel(pillar.s1), sound_sensel(pillar.s2), sound_sensel(pillar.s3),
                           sound_sensel(pillar.s4)};
-    return solve_pillars(sound, block, input);
+    return solve_pillar(sound, noise_of(block, input), 0);
   }
 #endif
-  return solve_pillars(pillar, block, input);
+  return solve_pillar(pillar, noise_of(block, input), 0);
 }
 
 /* Writes the results of `lanes` from pillar `index` on. */
-PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
-  store_plane(solution.force.shear_x, output.shear_x + index, lanes);
-  store_plane(solution.force.shear_y, output.shear_y + index, lanes);
-  store_plane(solution.force.normal, output.normal + index, lanes);
-  store_status(solution.status, output.status + index, lanes);
+PF_FUNCTION void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
+  global uchar* plane = output.planes;
+#define PF_STORE(name, unit, value)                                    \
+  store_plane(solution.value, (global float*)(plane) + index, lanes); \
+  plane += output.plane_bytes;
+  PF_FORCE_PLANES(PF_STORE)
 #ifdef PF_ANGLES
-  store_plane(solution.direction.magnitude, output.magnitude + index, lanes);
-  store_plane(solution.direction.theta, output.theta + index, lanes);
-  store_plane(solution.direction.phi, output.phi + index, lanes);
+  PF_ANGLE_PLANES(PF_STORE)
 #endif
 #ifdef PF_UNCERTAINTY
-  store_plane(solution.deviations.shear_x, output.deviation_x + index, lanes);
-  store_plane(solution.deviations.shear_y, output.deviation_y + index, lanes);
-  store_plane(solution.deviations.normal, output.deviation_normal + index, lanes);
-  store_plane(solution.interval.theta_low, output.theta_low + index, lanes);
-  store_plane(solution.interval.theta_high, output.theta_high + index, lanes);
-  store_plane(solution.interval.phi_low, output.phi_low + index, lanes);
-  store_plane(solution.interval.phi_high, output.phi_high + index, lanes);
-  store_plane(solution.interval.magnitude_low, output.magnitude_low + index, lanes);
-  store_plane(solution.interval.magnitude_high, output.magnitude_high + index, lanes);
+  PF_UNCERTAINTY_PLANES(PF_STORE)
 #endif
+#undef PF_STORE
+  store_status(solution.status, output.status + index, lanes);
 }
 
 /* The same; asked once for all planes whether the block is whole, which nearly all are. */
-PF_INLINE void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
+PF_FUNCTION void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
   const Lanes whole = {0, PF_LANES};
   if (are_all(lanes)) {
     store_lanes(solution, output, index, whole);
@@ -202,19 +135,19 @@ typedef struct {
   global const PF_SENSEL* wake; /* and its level */
   size_t row_stride;
   size_t wake_stride;
-  global uchar* silent; /* the mark of the first block */
-  uint skew;            /* pillars by which the first block would begin before the row */
-  uint last_col;        /* where the last block begins */
+  global uchar* idle; /* the mark of the first block */
+  uint skew;          /* pillars by which the first block would begin before the row */
+  uint last_col;      /* where the last block begins */
   uint blocks;
 } Row;
 
-PF_INLINE uint col_of_block(Row row, uint at) {
+PF_FUNCTION uint col_of_block(Row row, uint at) {
   return min(max(at * PF_LANES, row.skew) - row.skew, row.last_col);
 }
 
 /* Prefetches the readings of the pillar row below, and their levels; `sensel` counts from the first
  * of the row. What is silent here is silent there, mostly. */
-PF_INLINE void prefetch_readings(Row row, size_t sensel, bool silent) {
+PF_FUNCTION void prefetch_readings(Row row, size_t sensel, bool silent) {
   if (silent) {
     PF_PREFETCH_FAR(row.raw + sensel + 2 * row.row_stride);
     PF_PREFETCH_FAR(row.raw + sensel + 3 * row.row_stride);
@@ -229,13 +162,13 @@ PF_INLINE void prefetch_readings(Row row, size_t sensel, bool silent) {
 }
 
 /* Whether a block's results are those of silence already; if not, notes what they are now to be. */
-PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
+PF_FUNCTION bool may_skip(Row row, uint at, size_t sensel) {
 #ifdef PF_SKIP_SILENT
-  const bool was_silent = row.silent[at];
+  const bool was_silent = row.idle[at];
   prefetch_readings(row, sensel, was_silent);
   const bool silent =
       is_silent(row.raw + sensel, row.row_stride, row.wake + sensel, row.wake_stride);
-  if (silent != was_silent) row.silent[at] = silent;
+  if (silent != was_silent) row.idle[at] = silent;
   return silent && was_silent;
 #else
   prefetch_readings(row, sensel, false);
@@ -244,7 +177,7 @@ PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
 }
 
 /* The first block from `at` on, of this work-item's, that is to be solved. */
-PF_INLINE uint next_awake(Row row, uint at) {
+PF_FUNCTION uint next_awake(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
   while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
   return at;
@@ -252,7 +185,7 @@ PF_INLINE uint next_awake(Row row, uint at) {
 
 /* The lanes of the block at `col` that no other block of its row writes. `place` is where it would
  * begin, `skew` before the row's first pillar. */
-PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
+PF_FUNCTION Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
   const uint first = max(place, skew) - skew;
   const uint end = min(place + PF_LANES - skew, cols);
   const Lanes lanes = {first - col, end - col};
@@ -260,15 +193,16 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
 }
 
 /* Solves the blocks of a pillar row that are this work-item's. */
-PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
+PF_FUNCTION void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
   const size_t first_index = (size_t)at_row * pillar_cols;
-  const size_t first_offset = 2 * at_row * input.planes.stride;
+  const Calibration calibration = input.calibration;
+  const size_t first_offset = 2 * at_row * calibration.stride;
   const uint skew = (uint)(first_index % PF_LANES);
   const Row row = {input.raw + 2 * at_row * input.row_stride,
-                   input.wake + first_offset,
+                   wake_levels(calibration) + first_offset,
                    input.row_stride,
-                   input.planes.stride,
-                   output.silent + (size_t)at_row * blocks_of_row(pillar_cols),
+                   calibration.stride,
+                   output.idle + (size_t)at_row * blocks_of_row(pillar_cols),
                    skew,
                    pillar_cols - PF_LANES,
                    (skew + pillar_cols + PF_LANES - 1) / PF_LANES};
@@ -277,7 +211,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_co
        at = next_awake(row, at + step)) {
     const uint col = col_of_block(row, at);
     const size_t offset = first_offset + 2 * col;
-    prefetch_planes(input.planes, offset + 2 * input.planes.stride);
+    prefetch_planes(calibration, offset + 2 * calibration.stride);
 #ifdef PF_STREAM
     const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
 #else
@@ -291,30 +225,19 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_co
 /* One work-item solves every get_global_size(0)-th block of PF_LANES pillars, in the rows of its
  * band among get_global_size(1).
  *
- * raw           readings, `row_stride` apart from one row of sensels to the next
- * tare .. wake  calibration planes [rows, plane_stride], or null
- * silent        [pillar_rows, blocks_of_row(pillar_cols)], zero at first, or null
- * shear_x ..    results [pillar_rows, pillar_cols]; those from magnitude on may be null */
-kernel void solve_frame(global const PF_SENSEL* restrict raw, ulong row_stride, uint pillar_rows,
-                        uint pillar_cols, global const float* restrict tare,
-                        global const float* restrict gain, global const float* restrict dead_zone,
-                        global const uchar* restrict mask, global const float* restrict noise,
-                        global const PF_SENSEL* restrict wake, ulong plane_stride,
-                        global uchar* restrict silent, global float* restrict shear_x,
-                        global float* restrict shear_y, global float* restrict normal,
-                        global uchar* restrict status, global float* restrict magnitude,
-                        global float* restrict theta, global float* restrict phi,
-                        global float* restrict deviation_x, global float* restrict deviation_y,
-                        global float* restrict deviation_normal, global float* restrict theta_low,
-                        global float* restrict theta_high, global float* restrict phi_low,
-                        global float* restrict phi_high, global float* restrict magnitude_low,
-                        global float* restrict magnitude_high) {
-  const Planes planes = {tare, gain, dead_zone, mask, noise, plane_stride};
-  const Input input = {raw, row_stride, planes, wake};
-  const Output output = {shear_x,        shear_y,    normal,      status,      magnitude,
-                         theta,          phi,        deviation_x, deviation_y, deviation_normal,
-                         theta_low,      theta_high, phi_low,     phi_high,    magnitude_low,
-                         magnitude_high, silent};
-  const Band band = band_of_rows(pillar_rows);
-  for (uint row = band.first; row < band.end; ++row) solve_row(input, output, row, pillar_cols);
+ * raw          readings, layout.row_stride apart from one row of sensels to the next
+ * calibration  its planes, or null
+ * results      planes of forces, angles and uncertainty, as the plan asks for them, then the status
+ *              and the marks of idle blocks [rows, blocks_of_row(cols)], zero at first */
+kernel void solve_frame(global const PF_SENSEL* restrict raw,
+                        global const uchar* restrict calibration, global uchar* restrict results,
+                        Layout layout) {
+  const Calibration planes = {calibration, layout.plane_bytes, layout.plane_stride};
+  const Input input = {raw, layout.row_stride, planes};
+  const Output output = {results, layout.result_bytes, results + layout.status,
+                         results + layout.idle};
+  const Band band = band_of_rows((uint)layout.rows);
+  for (uint row = band.first; row < band.end; ++row) {
+    solve_row(input, output, row, (uint)layout.cols);
+  }
 }

@@ -1,150 +1,192 @@
-/* A frame's sensels through the stages that the plan asks for; shared by the entry points. The
- * macros are listed in solve_frame.cl. */
+/* The stages of the solve, in their one order: for the device and, as C++, for the host, whose
+ * table of them is host/solve/stages.cpp.
+ *
+ * A stage has a macro, which a program defines where its plan names the stage; others leave no
+ * trace. C++ has all of them, and asks PF_NAMED at run time.
+ *
+ * Where a new stage goes:
+ * - One that corrects a sensel by itself: in correct_sensel, and in corrected_noise by how much
+ *   noise grows. Its numbers per sensel are a plane of calibration and a member of Correction.
+ * - One of a pillar by itself: in solve_pillar. Its results are lines of result_planes.h.
+ * - One that needs neighbours: an entry point of its own, for a work-item of solve_frame.cl sees
+ * the sensels of its block alone. Crosstalk between sensels goes before solve_frame.cl and makes
+ * the readings that it loads; what needs neighbouring pillars goes after, as follow_baseline.cl
+ * does.
+ * - One with a memory: what it remembers is a plane that a frame reads as it does the tare, and
+ *   that an entry point after solve_frame.cl brings up to date for the next one. Frames then wait
+ *   for each other on the device.
+ * Each says in the host's table which of these it is, and whether blocks may be skipped while they
+ * are idle: whether wake_levels() and level_of() follow from it too. */
+
+#ifdef __cplusplus
+#define PF_NAMED(stage) stages.stage
+#define PF_LARGEST_READING stages.largest
+#define PF_MASK
+#define PF_FULL_SCALE stages.full_scale
+#define PF_TARE
+#define PF_GAIN
+#define PF_POWER_EXPONENT stages.exponent
+#define PF_POWER_REFERENCE stages.reference
+#define PF_POWER_LARGEST stages.largest
+#define PF_THRESHOLD stages.threshold
+#define PF_DEAD_ZONE
+#define PF_SHEAR_SCALE stages.scale.shear
+#define PF_NORMAL_SCALE stages.scale.normal
+#define PF_SEGMENT_POINT stages.segment_point
+#define PF_PAPER
+#define PF_DOUBT stages.doubt
+#define PF_PARITY_TOLERANCE stages.parity_tolerance
+#define PF_ANGLES
+#define PF_UNCERTAINTY
+
+/* The stages that a plan names, and their constants. */
+typedef struct {
+  bool range;
+  bool mask;
+  bool saturation;
+  bool tare;
+  bool gain;
+  bool power_law;
+  bool dead_zone;
+  bool paper;
+  bool parity_test;
+  bool angles;
+  bool uncertainty;
+  Real largest; /* counts, as those that follow */
+  Real full_scale;
+  Real exponent;
+  Real reference;
+  Real threshold;
+  Real segment_point;
+  Real doubt;
+  Real parity_tolerance;
+  ForceScale scale;
+} Stages;
+#else
+#define PF_NAMED(stage) 1
+typedef int Stages; /* Its macros tell a program. */
+#endif
+
+/* What calibrates a sensel; the members of stages that are not named are not read. */
+typedef struct {
+  Counts tare;
+  Real gain;
+  Counts dead_zone;
+  Counts good; /* zero where the sensel is masked */
+} Correction;
 
 /* A raw reading, and what is wrong with it before any calibration. */
-PF_INLINE Sensel judge_reading(Counts raw, Counts good) {
+PF_FUNCTION Sensel validate_reading(Counts raw, Counts good, Stages stages) {
   Sensel sensel = raw_sensel(raw);
 #ifdef PF_LARGEST_READING
-  sensel = reject_absurd(sensel, (Real)(PF_LARGEST_READING));
+  if (PF_NAMED(range)) sensel = reject_absurd(sensel, PF_CONSTANT(Real, PF_LARGEST_READING));
 #endif
 #ifdef PF_MASK
-  sensel = apply_mask(sensel, good);
+  if (PF_NAMED(mask)) sensel = apply_mask(sensel, good);
 #endif
 #ifdef PF_FULL_SCALE
-  sensel = mark_saturated(sensel, (Counts)(PF_FULL_SCALE));
+  if (PF_NAMED(saturation)) sensel = mark_saturated(sensel, PF_CONSTANT(Counts, PF_FULL_SCALE));
 #endif
   return sensel;
 }
 
-/* A raw reading through the stages of the plan. */
-PF_INLINE Sensel prepare_sensel(Counts raw, Counts tare, Real gain, Counts dead_zone, Counts good) {
-  Sensel sensel = judge_reading(raw, good);
+/* A raw reading through the stages of a sensel. */
+PF_FUNCTION Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
+  Sensel sensel = validate_reading(raw, at.good, stages);
 #ifdef PF_TARE
-  sensel = subtract_tare(sensel, tare);
+  if (PF_NAMED(tare)) sensel = subtract_tare(sensel, at.tare);
 #endif
 #ifdef PF_GAIN
-  sensel = apply_gain(sensel, gain);
+  if (PF_NAMED(gain)) sensel = apply_gain(sensel, at.gain);
 #endif
 #ifdef PF_POWER_EXPONENT
-  sensel = apply_power_law(sensel, (Real)(PF_POWER_EXPONENT), (Real)(PF_POWER_REFERENCE),
-                           (Real)(PF_POWER_LARGEST));
+  if (PF_NAMED(power_law)) {
+    sensel =
+        apply_power_law(sensel, PF_CONSTANT(Real, PF_POWER_EXPONENT),
+                        PF_CONSTANT(Real, PF_POWER_REFERENCE), PF_CONSTANT(Real, PF_POWER_LARGEST));
+  }
 #endif
-  sensel = classify(sensel, (Counts)(PF_THRESHOLD));
+  sensel = classify(sensel, PF_CONSTANT(Counts, PF_THRESHOLD));
 #ifdef PF_DEAD_ZONE
-  sensel = fill_dead_zone(sensel, dead_zone);
+  if (PF_NAMED(dead_zone)) sensel = fill_dead_zone(sensel, at.dead_zone);
 #endif
   return sensel;
-}
-
-/* The calibration planes [rows, stride]; null where the plan has none. */
-typedef struct {
-  global const float* tare;
-  global const float* gain;
-  global const float* dead_zone;
-  global const uchar* mask;
-  global const float* noise;
-  size_t stride;
-} Planes;
-
-typedef struct {
-  Sensel left;
-  Sensel right;
-} SenselPair;
-
-/* The sensels of one row under PF_LANES pillars. `offset` is the first one's place in the planes.
- */
-PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Planes planes, size_t offset) {
-  const CountsPair readings = load_readings(raw);
-  CountsPair tares = {(Counts)(0), (Counts)(0)};
-  CountsPair dead_zones = tares;
-  CountsPair good = tares;
-  RealPair gains = {(Real)(0.0f), (Real)(0.0f)};
-#ifdef PF_TARE
-  tares = load_plane(planes.tare + offset);
-#endif
-#ifdef PF_GAIN
-  gains = load_plane(planes.gain + offset);
-#endif
-#ifdef PF_DEAD_ZONE
-  dead_zones = load_plane(planes.dead_zone + offset);
-#endif
-#ifdef PF_MASK
-  good = load_mask(planes.mask + offset);
-#endif
-  SenselPair pair;
-  pair.left = prepare_sensel(readings.left, tares.left, gains.left, dead_zones.left, good.left);
-  pair.right =
-      prepare_sensel(readings.right, tares.right, gains.right, dead_zones.right, good.right);
-  return pair;
 }
 
 #ifdef PF_UNCERTAINTY
-/* The noise of those sensels as the corrections leave it, counts. */
-PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Planes planes, size_t offset) {
-  RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
-#ifdef PF_NOISE
-  noise = load_plane(planes.noise + offset);
-#endif
+/* The noise of a sensel as its corrections leave it, counts. */
+PF_FUNCTION Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
 #ifdef PF_GAIN
-  const RealPair gains = load_plane(planes.gain + offset);
-  noise.left = noise.left * gains.left;
-  noise.right = noise.right * gains.right;
+  if (PF_NAMED(gain)) noise = noise * at.gain;
 #endif
 #ifdef PF_POWER_EXPONENT
-  RealPair readings = load_readings(raw);
+  if (PF_NAMED(power_law)) {
+    Real reading = raw;
 #ifdef PF_TARE
-  const RealPair tares = load_plane(planes.tare + offset);
-  readings.left = readings.left - tares.left;
-  readings.right = readings.right - tares.right;
+    if (PF_NAMED(tare)) reading = reading - at.tare;
 #endif
 #ifdef PF_GAIN
-  readings.left = readings.left * gains.left;
-  readings.right = readings.right * gains.right;
+    if (PF_NAMED(gain)) reading = reading * at.gain;
 #endif
-  const Real exponent = (Real)(PF_POWER_EXPONENT);
-  const Real reference = (Real)(PF_POWER_REFERENCE);
-  noise.left = noise.left * power_law_slope(readings.left, exponent, reference);
-  noise.right = noise.right * power_law_slope(readings.right, exponent, reference);
+    noise = noise * power_law_slope(reading, PF_CONSTANT(Real, PF_POWER_EXPONENT),
+                                    PF_CONSTANT(Real, PF_POWER_REFERENCE));
+  }
 #endif
   return noise;
 }
 #endif
 
-/* Prefetches what calibrates both rows of sensels under a block. Processors follow a row by
- * themselves, but lose it at the end of a page; a row ahead they are late for none. */
-PF_INLINE void prefetch_planes(Planes planes, size_t offset) {
-  for (uint row = 0; row < 2; ++row) {
-#ifdef PF_TARE
-    PF_PREFETCH(planes.tare + offset + row * planes.stride);
-#endif
-#ifdef PF_GAIN
-    PF_PREFETCH(planes.gain + offset + row * planes.stride);
-#endif
-#ifdef PF_DEAD_ZONE
-    PF_PREFETCH(planes.dead_zone + offset + row * planes.stride);
-#endif
-#ifdef PF_MASK
-    PF_PREFETCH(planes.mask + offset + row * planes.stride);
-#endif
-#ifdef PF_NOISE
-    PF_PREFETCH(planes.noise + offset + row * planes.stride);
-#endif
-  }
-}
-
-/* Pillar rows. */
+/* What is solved of a pillar. */
 typedef struct {
-  uint first;
-  uint end;
-} Band;
+  Force force;
+  Bits status;
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  Direction direction;
+#endif
+#ifdef PF_UNCERTAINTY
+  Force deviations;
+  DirectionInterval interval;
+#endif
+} Solution;
 
-/* The rows of this work-item: its band among get_global_size(1) of like height. */
-PF_INLINE Band band_of_rows(uint rows) {
-  const ulong bands = get_global_size(1);
-  const ulong band = get_global_id(1);
-  const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
-  return result;
+PF_FUNCTION Force estimate_force(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                 ForceScale scale, Stages stages) {
+#ifdef PF_PAPER
+  if (PF_NAMED(paper)) return paper_force(pillar, diagonals, sum, scale);
+#endif
+  return direct_force(diagonals, sum, scale);
 }
 
-/* Blocks of a row of pillars at most, wherever it begins. */
-PF_INLINE uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }
+PF_FUNCTION Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stages stages) {
+  Bits status = direct_status(pillar, diagonals, sum, PF_CONSTANT(Counts, PF_DOUBT));
+#ifdef PF_PARITY_TOLERANCE
+  if (PF_NAMED(parity_test)) {
+    const Mask at_odds = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
+    status = status | (bits_of(at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
+  }
+#endif
+  return status;
+}
+
+/* From corrected sensels to the results; `noise` is that of the sensels after correction. */
+PF_FUNCTION Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
+  const ForceScale scale = {PF_CONSTANT(Real, PF_SHEAR_SCALE), PF_CONSTANT(Real, PF_NORMAL_SCALE)};
+  const Diagonals diagonals = pillar_diagonals(pillar);
+  const ParitySum sum = parity_sum(diagonals, PF_CONSTANT(Fraction, PF_SEGMENT_POINT));
+  Solution solution;
+  solution.force = estimate_force(pillar, diagonals, sum, scale, stages);
+  solution.status = status_of(pillar, diagonals, sum, stages);
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  if (PF_NAMED(angles) || PF_NAMED(uncertainty)) {
+    solution.direction = direction_of(solution.force);
+  }
+#endif
+#ifdef PF_UNCERTAINTY
+  if (PF_NAMED(uncertainty)) {
+    solution.deviations =
+        force_deviations(pillar, diagonals, sum, noise, PF_CONSTANT(Real, PF_SEGMENT_POINT), scale);
+    solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale);
+  }
+#endif
+  return solution;
+}

@@ -15,6 +15,14 @@ typedef struct {
   Sensel s4;
 } Pillar;
 
+/* Standard deviations of the four readings, counts. */
+typedef struct {
+  Real n1;
+  Real n2;
+  Real n3;
+  Real n4;
+} Noise;
+
 /* Two opposite sensels. A sensel stands when V is taken to be its reading. */
 typedef struct {
   Counts p; /* readings, counts */

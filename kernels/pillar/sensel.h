@@ -1,5 +1,5 @@
 /* One sensel, from its raw reading to what the solve may believe of it. Each function is a stage;
- * an entry point calls those that its scene needs, in the order of this file
+ * frame/stages.h calls those that a plan names, in its order
  * (docs/derivations/direct_solve.md, section 1). */
 
 /* A reading in counts and what it tells of the model's V. After `classify` at most one mask is set;

@@ -2,14 +2,6 @@
  * the estimated force, and the ends of what an ambiguous pillar may be
  * (docs/derivations/uncertainty.md). For `direct_force`. */
 
-/* Standard deviations of the four readings, counts. */
-typedef struct {
-  Real n1;
-  Real n2;
-  Real n3;
-  Real n4;
-} Noise;
-
 /* Weights of the sums p + q of both diagonals in the estimated parity sum. */
 typedef struct {
   Real rising;

@@ -27,6 +27,20 @@ TEST(Status, RegionFollowsTheNumberAndPlaceOfUsableReadings) {
   }
 }
 
+TEST(Status, ForcesAreDeterminedOrOnASegmentOrNeither) {
+  for (int bits = 0; bits < 256; ++bits) {
+    const auto status = static_cast<std::uint8_t>(bits);
+    const Region region = region_of(status);
+    const bool saturated = (bits & status::kSaturated) != 0;
+    const bool spoilt = saturated || (bits & status::kInconsistent) != 0;
+    EXPECT_EQ(is_determined(status), (region == Region::one || region == Region::two) && !saturated)
+        << bits;
+    EXPECT_EQ(is_ambiguous(status),
+              region == Region::three && (bits & status::kAmbiguous) != 0 && !spoilt)
+        << bits;
+  }
+}
+
 TEST(Status, EveryRegionHasAName) {
   std::set<std::string> names;
   for (int i = 0; i < kRegions; ++i) names.insert(name_of(static_cast<Region>(i)));

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -17,13 +17,13 @@ struct FieldPlanes {
   float* magnitude = nullptr;  ///< null, as theta and phi, where angles are not asked for
   float* theta = nullptr;
   float* phi = nullptr;
-  std::array<float*, kUncertaintyPlanes> uncertainty{};  ///< null where it is not asked for
+  UncertaintyPlanes<float*> uncertainty{};  ///< null where it is not asked for
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
 
-  [[nodiscard]] bool has_uncertainty() const { return uncertainty[0] != nullptr; }
+  [[nodiscard]] bool has_uncertainty() const { return uncertainty[Uncertainty::normal] != nullptr; }
   [[nodiscard]] float& at(Uncertainty plane, std::size_t index) const {
-    return uncertainty[static_cast<std::size_t>(plane)][index];
+    return uncertainty[plane][index];
   }
   /// Forces and status.
   [[nodiscard]] ForceFieldView forces() const {
@@ -50,9 +50,7 @@ struct FieldPlanes {
   planes.shear_y = field.shear_y.data();
   planes.normal = field.normal.data();
   planes.status = field.status.data();
-  for (std::size_t i = 0; i < kUncertaintyPlanes; ++i) {
-    planes.uncertainty[i] = values_or_null(field.uncertainty[static_cast<Uncertainty>(i)]);
-  }
+  std::ranges::transform(field.uncertainty, planes.uncertainty.begin(), values_or_null);
   return planes;
 }
 

@@ -57,6 +57,12 @@ class ForceSink {
                                                            const ForceFileInfo& info,
                                                            Replace replace = Replace::results);
 
+/// Writes one frame as the .csv that create_force_sink() makes; `frame` and `time_s` are its index
+/// and time in its source.
+void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& info,
+                     const ForceFieldView& forces, std::uint64_t frame, double time_s,
+                     Replace replace = Replace::results);
+
 /// The format that create_force_sink() selects. Throws Error for an unknown ending.
 [[nodiscard]] OutputKind kind_of_force_file(const std::filesystem::path& path);
 

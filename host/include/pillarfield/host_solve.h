@@ -20,7 +20,7 @@ namespace pillarfield {
 /// `frame` has the plan's size and type, with any row stride; the result is [pillar rows, pillar
 /// cols] and owns its memory. The function keeps no state: with the estimator `contact` each frame
 /// stands alone (as with FrictionKnowledge::memory off), and the tare follows the readings only if
-/// the caller calls follow_baseline_on_host(). `plan.angles` and `plan.half_output` have no effect.
+/// the caller calls follow_baseline_on_host(). `plan.angles` has no effect.
 ///
 /// Throws Error if the plan is out of range or the frame does not fit it. Threads: any number at
 /// once.

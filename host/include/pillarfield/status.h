@@ -35,6 +35,20 @@ inline constexpr int kRegions = 6;
 /// The region of a status byte, from its usable bits.
 [[nodiscard]] Region region_of(std::uint8_t status);
 
+/// Whether the readings of a pillar determine its force: three sensels usable or four, and none
+/// saturated.
+[[nodiscard]] constexpr bool is_determined(std::uint8_t status) {
+  const int unusable = ~status & status::kUsable;
+  return ((unusable & (unusable - 1)) | (status & status::kSaturated)) == 0;
+}
+
+/// Whether they leave its force on a segment (docs/derivations/segment.md), resolved or not: two
+/// adjacent sensels usable, the others inactive. `status::kAmbiguous` is set in other pillars too.
+[[nodiscard]] inline bool is_ambiguous(std::uint8_t status) {
+  return (status & status::kAmbiguous) != 0 && region_of(status) == Region::three &&
+         (status & (status::kSaturated | status::kInconsistent)) == 0;
+}
+
 /// "none", "1", "2", "3", "4" or "opposite".
 [[nodiscard]] const char* name_of(Region region);
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,7 +45,7 @@ class Hdf5Sink final : public ForceSink {
   std::filesystem::path path_;
   OutputFile part_;
   hdf5::File file_;
-  std::vector<hdf5::GrowingDataset> planes_;  // those of all_planes(), in that order
+  std::vector<hdf5::GrowingDataset> planes_;  // those of planes_of(), in that order
   hdf5::GrowingDataset status_;
   hdf5::GrowingDataset time_;
   ContactTables contacts_;
@@ -93,8 +95,8 @@ void Hdf5Sink::create_datasets() {
   const hdf5::Handle uncertainty =
       info_.uncertainty ? hdf5::create_group(file_, force_format::kUncertainty) : hdf5::Handle();
   const hdf5::FrameShape shape = {info_.rows, info_.cols};
-  for (const ForcePlane& plane : all_planes(info_)) {
-    const std::string name = "/" + plane.group + "/" + plane.name;
+  for (const ResultPlane& plane : planes_of(info_)) {
+    const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
     planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, shape);
   }
   status_ = {file_, force_format::kStatus, H5T_STD_U8LE, shape};
@@ -110,7 +112,7 @@ void Hdf5Sink::require_open() const {
 void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
   std::size_t index = 0;
   frame_planes_.take(forces);
-  for (const ForcePlane& plane : all_planes(info_)) {
+  for (const ResultPlane& plane : planes_of(info_)) {
     planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
   }
   status_.put(frames_, H5T_NATIVE_UINT8, forces.status.data());

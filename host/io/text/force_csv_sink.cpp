@@ -13,7 +13,8 @@ namespace {
 /// as the same value.
 class ForceCsvSink final : public ForceSink {
  public:
-  ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
+  ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace,
+               std::uint64_t first_frame);
 
   void append(const ForceFieldView& forces, double time_s) override;
   void finish() override { file_.finish(); }
@@ -22,25 +23,27 @@ class ForceCsvSink final : public ForceSink {
   void add_line(const ForceFieldView& forces, std::size_t pillar);
 
   ForceFileInfo info_;
-  std::vector<ForcePlane> further_;
+  std::vector<ResultPlane> planes_;
   FramePlanes frame_planes_;
   std::filesystem::path path_;
   TextPart file_;
   fmt::memory_buffer line_;
   std::string frame_cells_;  // "frame,time,", the same on each line of a frame
-  std::uint64_t frames_ = 0;
+  std::uint64_t frame_;      // the next
 };
 
 ForceCsvSink::ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info,
-                           Replace replace)
+                           Replace replace, std::uint64_t first_frame)
     : info_(info),
-      further_(further_planes(info)),
+      planes_(planes_of(info)),
       frame_planes_(info),
       path_(path),
-      file_(path, OutputKind::force_table, replace) {
-  file_.write("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status");
-  for (const ForcePlane& plane : further_) {
+      file_(path, OutputKind::force_table, replace),
+      frame_(first_frame) {
+  file_.write("frame,time_s,row,col");
+  for (const ResultPlane& plane : planes_) {
     file_.write(fmt::format(",{}_{}", plane.field(), plane.unit));
+    if (plane.index + 1 == kForcePlanes) file_.write(",status");
   }
   file_.write("\n");
 }
@@ -49,11 +52,10 @@ void ForceCsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
   line_.clear();
   line_.append(frame_cells_);
   const auto out = std::back_inserter(line_);
-  fmt::format_to(out, "{},{},{},{},{},{}", pillar / info_.cols, pillar % info_.cols,
-                 forces.shear_x[pillar], forces.shear_y[pillar], forces.normal[pillar],
-                 forces.status[pillar]);
-  for (const ForcePlane& plane : further_) {
+  fmt::format_to(out, "{},{}", pillar / info_.cols, pillar % info_.cols);
+  for (const ResultPlane& plane : planes_) {
     fmt::format_to(out, ",{}", frame_planes_.of(plane)[pillar]);
+    if (plane.index + 1 == kForcePlanes) fmt::format_to(out, ",{}", forces.status[pillar]);
   }
   line_.push_back('\n');
   file_.write(std::string_view(line_.data(), line_.size()));
@@ -63,18 +65,26 @@ void ForceCsvSink::append(const ForceFieldView& forces, double time_s) {
   file_.require_open();
   check(forces, time_s, info_, path_.string());
   frame_planes_.take(forces);
-  frame_cells_ = fmt::format("{},{},", frames_, time_s);
+  frame_cells_ = fmt::format("{},{},", frame_, time_s);
   for (std::size_t pillar = 0; pillar < forces.status.size(); ++pillar) {
     if (forces.status[pillar] != 0) add_line(forces, pillar);
   }
-  ++frames_;
+  ++frame_;
 }
 
 }  // namespace
 
 std::unique_ptr<ForceSink> create_csv_sink(const std::filesystem::path& path,
                                            const ForceFileInfo& info, Replace replace) {
-  return std::make_unique<ForceCsvSink>(path, info, replace);
+  return std::make_unique<ForceCsvSink>(path, info, replace, 0);
+}
+
+void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& info,
+                     const ForceFieldView& forces, std::uint64_t frame, double time_s,
+                     Replace replace) {
+  ForceCsvSink sink(path, info, replace, frame);
+  sink.append(forces, time_s);
+  sink.finish();
 }
 
 }  // namespace pillarfield

@@ -16,17 +16,16 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 
 constexpr std::size_t kHeaderBytes =
     1024;  // a multiple of 64, with room for all planes and any number of frames
-constexpr std::size_t kStatusEnd = 13;  // of a pillar's record: three components, the status
 
 /// NumPy's format 1.0: the magic, the length of what follows, and a Python dictionary padded with
 /// blanks, of the same size for every number of frames.
 std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
   constexpr std::size_t kPreludeBytes = 10;
   constexpr std::size_t kDictionaryBytes = kHeaderBytes - kPreludeBytes;
-  std::string fields =
-      "('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1')";
-  for (const ForcePlane& plane : further_planes(info)) {
-    fields += fmt::format(", ('{}', '<f4')", plane.field());
+  std::string fields;
+  for (const ResultPlane& plane : planes_of(info)) {
+    fields += fmt::format("{}('{}', '<f4')", fields.empty() ? "" : ", ", plane.field());
+    if (plane.index + 1 == kForcePlanes) fields += ", ('status', '|u1')";
   }
   std::string dictionary =
       fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({}, {}, {})}}", fields,
@@ -51,7 +50,7 @@ class NpySink final : public ForceSink {
   void require_open() const;
 
   ForceFileInfo info_;
-  std::vector<ForcePlane> further_;
+  std::vector<ResultPlane> planes_;
   FramePlanes frame_planes_;
   std::filesystem::path path_;
   OutputFile file_;
@@ -62,11 +61,11 @@ class NpySink final : public ForceSink {
 
 NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
     : info_(info),
-      further_(further_planes(info)),
+      planes_(planes_of(info)),
       frame_planes_(info),
       path_(path),
       file_(path, OutputKind::force_array, replace),
-      record_bytes_(kStatusEnd + 4 * further_.size()),
+      record_bytes_(sizeof(float) * planes_.size() + 1),
       records_(record_bytes_ * info.rows * info.cols) {
   file_.write(npy_header(info_, 0));
 }
@@ -89,14 +88,11 @@ void NpySink::append(const ForceFieldView& forces, double time_s) {
   require_open();
   check(forces, time_s, info_, path_.string());
   frame_planes_.take(forces);
-  interleave(forces.shear_x, 0);
-  interleave(forces.shear_y, 4);
-  interleave(forces.normal, 8);
-  interleave(forces.status, 12);
-  std::size_t offset = kStatusEnd;
-  for (const ForcePlane& plane : further_) {
+  std::size_t offset = 0;
+  for (const ResultPlane& plane : planes_) {
     interleave(frame_planes_.of(plane), offset);
-    offset += 4;
+    offset += sizeof(float);
+    if (plane.index + 1 == kForcePlanes) interleave(forces.status, offset++);
   }
   file_.write(records_);
   ++frames_;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "host/base/child_program.h"
 #include "pillarfield/error.h"
-#include "viewer/app/export/child_process.h"
 #include "viewer/app/export/export.h"
 
 namespace pillarfield::viewer {
@@ -104,7 +104,7 @@ struct VideoWriter::State {
   }
 
   OutputFile file;  ///< outlives ffmpeg, which writes it by its name
-  ChildProcess ffmpeg;
+  ChildProgram ffmpeg;
   std::uint32_t width;
   std::uint32_t height;
   std::uint64_t pictures = 0;

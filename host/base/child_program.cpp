@@ -1,4 +1,4 @@
-#include "viewer/app/export/child_process.h"
+#include "base/child_program.h"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -13,7 +13,7 @@
 
 #include "pillarfield/error.h"
 
-namespace pillarfield::viewer {
+namespace pillarfield {
 namespace {
 
 constexpr std::size_t kLongestComplaint = 400;
@@ -21,10 +21,14 @@ constexpr std::size_t kLongestComplaint = 400;
 /// The files that the program begins with in place of ours.
 class FileActions {
  public:
-  FileActions(int input, int errors) {
+  FileActions(int input, int output, int errors) {
     posix_spawn_file_actions_init(&actions_);
     posix_spawn_file_actions_adddup2(&actions_, input, STDIN_FILENO);
-    posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    if (output == ChildProgram::kDiscard) {
+      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    } else {
+      posix_spawn_file_actions_adddup2(&actions_, output, STDOUT_FILENO);
+    }
     posix_spawn_file_actions_adddup2(&actions_, errors, STDERR_FILENO);
   }
   ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
@@ -36,7 +40,7 @@ class FileActions {
   posix_spawn_file_actions_t actions_{};
 };
 
-int wait_for(pid_t process) {
+int wait_for_end(pid_t process) {
   int status = 0;
   while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
@@ -44,19 +48,19 @@ int wait_for(pid_t process) {
 }
 
 /// Returns what posix_spawnp() does: 0 or an errno.
-int spawn(const std::vector<std::string>& words, int input, int errors, pid_t& process) {
+int spawn(const std::vector<std::string>& words, const FileActions& actions, pid_t& process) {
   std::vector<std::string> copies = words;
   std::vector<char*> arguments;
   arguments.reserve(copies.size() + 1);
   for (std::string& word : copies) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  const FileActions actions(input, errors);
   return posix_spawnp(&process, arguments[0], actions.get(), nullptr, arguments.data(), environ);
 }
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::string& mend)
+ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::string& mend,
+                           int output)
     : errors_(std::tmpfile()) {
   // A socket can be written to without a signal where nobody reads any more; a pipe cannot.
   std::array<int, 2> ends{};
@@ -66,7 +70,8 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::str
   }
   fcntl(fileno(errors_.get()), F_SETFD, FD_CLOEXEC);
   input_ = ends[0];
-  const int failure = spawn(words, ends[1], fileno(errors_.get()), process_);
+  const FileActions actions(ends[1], output == kAnswer ? ends[1] : output, fileno(errors_.get()));
+  const int failure = spawn(words, actions, process_);
   close(ends[1]);
   if (failure == 0) return;
   close_input();
@@ -74,19 +79,19 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, const std::str
   throw Error(words.front(), std::string("cannot be started: ") + std::strerror(failure), mend);
 }
 
-ChildProcess::~ChildProcess() {
+ChildProgram::~ChildProgram() {
   close_input();
   if (process_ < 0) return;
   kill(process_, SIGKILL);
-  wait_for(process_);
+  wait_for_end(process_);
 }
 
-void ChildProcess::close_input() {
+void ChildProgram::close_input() {
   if (input_ >= 0) close(input_);
   input_ = -1;
 }
 
-bool ChildProcess::feed(std::span<const std::byte> bytes) const {
+bool ChildProgram::feed(std::span<const std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t taken = send(input_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (taken < 0 && errno == EINTR) continue;
@@ -96,20 +101,32 @@ bool ChildProcess::feed(std::span<const std::byte> bytes) const {
   return true;
 }
 
-bool ChildProcess::finish() {
+std::string ChildProgram::read_line() const {
+  std::string line;
+  char character = 0;
+  while (recv(input_, &character, 1, 0) == 1 && character != '\n') line += character;
+  return line;
+}
+
+bool ChildProgram::finish() {
   close_input();
-  const int status = wait_for(process_);
+  const int status = wait_for_end(process_);
   process_ = -1;
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-std::string ChildProcess::complaint() const {
+std::string ChildProgram::errors() const {
   std::string text;
   std::array<char, 4096> block{};
   std::rewind(errors_.get());
   while (const std::size_t count = std::fread(block.data(), 1, block.size(), errors_.get())) {
     text.append(block.data(), count);
   }
+  return text;
+}
+
+std::string ChildProgram::complaint() const {
+  std::string text = errors();
   while (!text.empty() && text.back() == '\n') text.pop_back();
   if (text.size() > kLongestComplaint) {
     text = "... " + text.substr(text.size() - kLongestComplaint);
@@ -120,4 +137,4 @@ std::string ChildProcess::complaint() const {
   return text.empty() ? "it does not say why" : text;
 }
 
-}  // namespace pillarfield::viewer
+}  // namespace pillarfield

@@ -1,0 +1,90 @@
+#include "device/calibration_memory.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "device/slot_memory.h"
+#include "solve/wake_levels.h"
+
+namespace pillarfield {
+namespace {
+
+template <class Value>
+void copy(const std::vector<Value>& plane, std::byte* to) {
+  std::memcpy(to, plane.data(), plane.size() * sizeof(Value));
+}
+
+/// The levels as readings of the plan's type.
+void copy_wake_levels(const SolverPlan& plan, std::byte* to) {
+  const std::vector<float> levels = wake_levels(plan);
+  if (plan.sensel_type == SenselType::u8) {
+    return copy(std::vector<std::uint8_t>(levels.begin(), levels.end()), to);
+  }
+  if (plan.sensel_type == SenselType::u16) {
+    return copy(std::vector<std::uint16_t>(levels.begin(), levels.end()), to);
+  }
+  copy(levels, to);
+}
+
+/// Writes a plane to memory that is zero, as is the tare that a plan follows from zero on.
+void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
+  switch (plane) {
+    case CalibrationPlane::tare:
+      return copy(plan.calibration.tare, to);
+    case CalibrationPlane::gain:
+      return copy(plan.calibration.gain, to);
+    case CalibrationPlane::dead_zone:
+      return copy(plan.calibration.dead_zone, to);
+    case CalibrationPlane::noise:
+      return copy(plan.calibration.noise, to);
+    case CalibrationPlane::mask:
+      return copy(plan.calibration.mask, to);
+    case CalibrationPlane::wake:
+      break;
+  }
+  copy_wake_levels(plan, to);
+}
+
+}  // namespace
+
+const char* macro_of(CalibrationPlane plane) {
+  static constexpr std::array kMacros = {"PF_TARE_PLANE",  "PF_GAIN_PLANE", "PF_DEAD_ZONE_PLANE",
+                                         "PF_NOISE_PLANE", "PF_MASK_PLANE", "PF_WAKE_PLANE"};
+  return kMacros[static_cast<std::size_t>(plane)];
+}
+
+std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const SpeedPaths& paths) {
+  const Calibration& calibration = plan.calibration;
+  std::vector<CalibrationPlane> planes;
+  const auto add = [&](bool wanted, CalibrationPlane plane) {
+    if (wanted) planes.push_back(plane);
+  };
+  add(!calibration.tare.empty() || plan.baseline_rate, CalibrationPlane::tare);
+  add(!calibration.gain.empty(), CalibrationPlane::gain);
+  add(!calibration.dead_zone.empty(), CalibrationPlane::dead_zone);
+  add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
+  add(!calibration.mask.empty(), CalibrationPlane::mask);
+  add(paths.skip_silent && has_wake_plane(plan), CalibrationPlane::wake);
+  return planes;
+}
+
+CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
+                                     const SpeedPaths& paths)
+    : plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
+  const std::vector<CalibrationPlane> planes = calibration_planes(plan, paths);
+  has_tare_ = std::ranges::count(planes, CalibrationPlane::tare) > 0;
+  if (planes.empty()) return;
+  const std::size_t bytes = planes.size() * plane_bytes_;
+  memory_ = allocate_large_pages(bytes);
+  std::memset(memory_.get(), 0, bytes);
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    copy_plane(plan, planes[i], memory_.get() + i * plane_bytes_);
+  }
+  const auto device = context.getInfo<CL_CONTEXT_DEVICES>().front();
+  const bool shared = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
+  const cl_mem_flags use = shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+  buffer_ = {context, CL_MEM_READ_WRITE | use, bytes, memory_.get()};
+  if (!shared) memory_.reset();
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+#include "kernels/frame/result_planes.h"
+#include "pillarfield/component_ends.h"
+#include "pillarfield/force_field.h"
+
+namespace pillarfield {
+
+/// Planes that a plan asks for together, or a file holds together.
+enum class PlaneSet : std::uint8_t { forces, angles, uncertainty, component_ends };
+
+/// A plane of floats of a result, as files name it.
+struct ResultPlane {
+  PlaneSet set;
+  const char* name;   ///< "shear_x", "theta_low", ...
+  const char* unit;   ///< "n" or "rad"
+  std::size_t index;  ///< in kResultPlanes
+
+  /// "force" or "uncertainty": where there are groups.
+  [[nodiscard]] const char* group() const;
+  /// "shear_x", "uncertainty_theta_low": where there are none.
+  [[nodiscard]] std::string field() const;
+};
+
+/// The planes that a solve makes, in the order in which they lie in memory, status apart; then
+/// those that files have beside them.
+inline constexpr auto kResultPlanes = [] {
+  std::array planes = {
+#define PF_PLANE(name, unit, value) ResultPlane{PlaneSet::forces, #name, #unit, 0},
+      PF_FORCE_PLANES(PF_PLANE)
+#undef PF_PLANE
+#define PF_PLANE(name, unit, value) ResultPlane{PlaneSet::angles, #name, #unit, 0},
+          PF_ANGLE_PLANES(PF_PLANE)
+#undef PF_PLANE
+#define PF_PLANE(name, unit, value) ResultPlane{PlaneSet::uncertainty, #name, #unit, 0},
+              PF_UNCERTAINTY_PLANES(PF_PLANE)
+#undef PF_PLANE
+                  ResultPlane{PlaneSet::component_ends, "shear_x_low", "n", 0},
+      ResultPlane{PlaneSet::component_ends, "shear_x_high", "n", 0},
+      ResultPlane{PlaneSet::component_ends, "shear_y_low", "n", 0},
+      ResultPlane{PlaneSet::component_ends, "shear_y_high", "n", 0},
+      ResultPlane{PlaneSet::component_ends, "normal_low", "n", 0},
+      ResultPlane{PlaneSet::component_ends, "normal_high", "n", 0},
+  };
+  for (std::size_t i = 0; i < planes.size(); ++i) planes[i].index = i;
+  return planes;
+}();
+
+inline constexpr std::size_t kSolvedPlanes = kResultPlanes.size() - kComponentEnds;
+inline constexpr std::size_t kNamedPlanes = kSolvedPlanes - kUncertaintyPlanes;
+inline constexpr std::size_t kForcePlanes = 3;
+
+/// Whether a plan or file with these has a set of planes.
+constexpr bool has_planes(bool angles, bool uncertainty, PlaneSet set) {
+  return set == PlaneSet::forces || (set == PlaneSet::angles ? angles : uncertainty);
+}
+
+/// One of the first kSolvedPlanes of a field: of a FieldView or FieldPlanes.
+template <class Field>
+auto& plane_of(Field& field, std::size_t index) {
+#define PF_PLANE(name, unit, value) &Field::name,
+  constexpr std::array kNamed = {PF_FORCE_PLANES(PF_PLANE) PF_ANGLE_PLANES(PF_PLANE)};
+#undef PF_PLANE
+  if (index < kNamed.size()) return field.*kNamed[index];
+  return field.uncertainty[static_cast<Uncertainty>(index - kNamed.size())];
+}
+
+}  // namespace pillarfield

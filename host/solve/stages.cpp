@@ -1,0 +1,72 @@
+#include "solve/stages.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+namespace pillarfield {
+namespace {
+
+using Plan = SolverPlan;
+
+constexpr bool is_always(const Plan& /*plan*/) { return true; }
+constexpr bool is_paper(const Plan& plan) { return plan.estimator == Estimator::paper; }
+
+/// In the order of kernels/frame/stages.h.
+constexpr std::array kStages = {
+    Stage{"load", "PF_SENSEL", is_always},
+    Stage{"reject_absurd", "PF_LARGEST_READING",
+          [](const Plan& plan) { return plan.sensel_type == SenselType::f32; }},
+    Stage{"mask", "PF_MASK", [](const Plan& plan) { return !plan.calibration.mask.empty(); }},
+    Stage{"saturation", "PF_FULL_SCALE",
+          [](const Plan& plan) { return plan.skin.full_scale_counts.has_value(); }},
+    Stage{"tare", "PF_TARE",
+          [](const Plan& plan) { return !plan.calibration.tare.empty() || plan.baseline_rate; }},
+    Stage{"gain", "PF_GAIN", [](const Plan& plan) { return !plan.calibration.gain.empty(); }},
+    Stage{"power_law", "PF_POWER_EXPONENT",
+          [](const Plan& plan) { return plan.skin.power_law.has_value(); }},
+    Stage{"classify", "PF_THRESHOLD", is_always},
+    Stage{"dead_zone", "PF_DEAD_ZONE",
+          [](const Plan& plan) { return !plan.calibration.dead_zone.empty(); }},
+    Stage{"direct_solve", nullptr, [](const Plan& plan) { return !is_paper(plan); }},
+    Stage{"paper_solve", "PF_PAPER", is_paper},
+    Stage{"parity_test", "PF_PARITY_TOLERANCE",
+          [](const Plan& plan) { return plan.parity_tolerance_counts.has_value(); }},
+    Stage{"angles", "PF_ANGLES", [](const Plan& plan) { return plan.angles; }},
+    Stage{"uncertainty", "PF_UNCERTAINTY", [](const Plan& plan) { return plan.uncertainty; }},
+    Stage{"store", nullptr, is_always},
+    Stage{.name = "follow_baseline",
+          .macro = "PF_BASELINE",
+          .is_named = [](const Plan& plan) { return plan.baseline_rate.has_value(); },
+          .place = StagePlace::frame,
+          .needs_neighbours = true,
+          .has_memory = true},
+    Stage{.name = "estimate_contacts",
+          .macro = nullptr,
+          .is_named = [](const Plan& plan) { return plan.estimator == Estimator::contact; },
+          .place = StagePlace::host,
+          .needs_neighbours = true,
+          .has_memory = true},
+};
+
+static_assert(std::ranges::none_of(kStages,
+                                   [](const Stage& stage) {
+                                     return stage.place == StagePlace::pillar &&
+                                            (stage.needs_neighbours || stage.has_memory);
+                                   }),
+              "a pillar's stage sees neither its neighbours nor earlier frames");
+
+}  // namespace
+
+std::vector<Stage> stages_of(const SolverPlan& plan) {
+  std::vector<Stage> stages;
+  std::ranges::copy_if(kStages, std::back_inserter(stages),
+                       [&](const Stage& stage) { return stage.is_named(plan); });
+  return stages;
+}
+
+bool may_skip_idle(const SolverPlan& plan) {
+  return std::ranges::all_of(stages_of(plan), &Stage::may_skip_idle);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,25 @@
+/* The ordered list of the kernel files. C++ includes it in a namespace, once per precision
+ * (host/solve/pillar_maths.h); CMake reads it and embeds the program that it makes of OpenCL C;
+ * clang lints it as that program. */
+/* clang-format off */
+#include "portable.h"
+#include "pillar/status.h"
+#include "pillar/pillar_model.h"
+#include "pillar/sensel.h"
+#include "pillar/direct_solve.h"
+#ifndef PF_WHOLE /* What follows computes fractions. */
+#include "pillar/elementary.h"
+#include "pillar/paper_solve.h"
+#include "pillar/angles.h"
+#include "pillar/uncertainty.h"
+#endif
+#include "frame/layout.h"
+#include "frame/result_planes.h"
+#include "frame/stages.h"
+#ifndef __cplusplus
+#include "frame/load_store.h"
+#include "frame/calibration_planes.h"
+#include "frame/silence.h"
+#include "frame/solve_frame.cl"
+#include "frame/follow_baseline.cl"
+#endif

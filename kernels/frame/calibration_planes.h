@@ -1,0 +1,119 @@
+/* The calibration of a frame's sensels, as it lies in memory (layout.h). The host writes which
+ * plane is where: PF_TARE_PLANE and so on, of stages that read one. */
+
+typedef struct {
+  global const uchar* planes;
+  size_t plane_bytes;
+  size_t stride; /* sensels of a row */
+} Calibration;
+
+#define PF_PLANE_OF(calibration, type, plane) \
+  ((global const type*)((calibration).planes + (plane) * (calibration).plane_bytes))
+
+/* Of the left and the right sensels of PF_LANES pillars. */
+typedef struct {
+  Correction left;
+  Correction right;
+} CorrectionPair;
+
+/* Of the sensels of one row under PF_LANES pillars. `offset` is the first one's place in the
+ * planes. */
+PF_FUNCTION CorrectionPair load_corrections(Calibration calibration, size_t offset) {
+  const Correction none = {(Counts)(0), (Real)(0.0f), (Counts)(0), (Counts)(0)};
+  CorrectionPair pair = {none, none};
+#ifdef PF_TARE
+  const RealPair tares = load_plane(PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset);
+  pair.left.tare = tares.left;
+  pair.right.tare = tares.right;
+#endif
+#ifdef PF_GAIN
+  const RealPair gains = load_plane(PF_PLANE_OF(calibration, float, PF_GAIN_PLANE) + offset);
+  pair.left.gain = gains.left;
+  pair.right.gain = gains.right;
+#endif
+#ifdef PF_DEAD_ZONE
+  const RealPair zones = load_plane(PF_PLANE_OF(calibration, float, PF_DEAD_ZONE_PLANE) + offset);
+  pair.left.dead_zone = zones.left;
+  pair.right.dead_zone = zones.right;
+#endif
+#ifdef PF_MASK
+  const RealPair good = load_mask(PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset);
+  pair.left.good = good.left;
+  pair.right.good = good.right;
+#endif
+  return pair;
+}
+
+typedef struct {
+  Sensel left;
+  Sensel right;
+} SenselPair;
+
+/* Those sensels, corrected. */
+PF_FUNCTION SenselPair read_sensels(global const PF_SENSEL* raw, Calibration calibration,
+                                    size_t offset) {
+  const CountsPair readings = load_readings(raw);
+  const CorrectionPair at = load_corrections(calibration, offset);
+  SenselPair pair;
+  pair.left = correct_sensel(readings.left, at.left, 0);
+  pair.right = correct_sensel(readings.right, at.right, 0);
+  return pair;
+}
+
+#ifdef PF_UNCERTAINTY
+/* The noise of those sensels as their corrections leave it, counts. */
+PF_FUNCTION RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration,
+                                size_t offset) {
+  const CountsPair readings = load_readings(raw);
+  const CorrectionPair at = load_corrections(calibration, offset);
+  RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
+#ifdef PF_NOISE
+  noise = load_plane(PF_PLANE_OF(calibration, float, PF_NOISE_PLANE) + offset);
+#endif
+  noise.left = corrected_noise(noise.left, readings.left, at.left, 0);
+  noise.right = corrected_noise(noise.right, readings.right, at.right, 0);
+  return noise;
+}
+#endif
+
+#define PF_PREFETCH_PLANE(type, plane) \
+  PF_PREFETCH(PF_PLANE_OF(calibration, type, plane) + offset + row * calibration.stride)
+
+/* Prefetches what calibrates both rows of sensels under a block. Processors follow a row by
+ * themselves, but lose it at the end of a page; a row ahead they are late for none. */
+PF_FUNCTION void prefetch_planes(Calibration calibration, size_t offset) {
+  for (uint row = 0; row < 2; ++row) {
+#ifdef PF_TARE
+    PF_PREFETCH_PLANE(float, PF_TARE_PLANE);
+#endif
+#ifdef PF_GAIN
+    PF_PREFETCH_PLANE(float, PF_GAIN_PLANE);
+#endif
+#ifdef PF_DEAD_ZONE
+    PF_PREFETCH_PLANE(float, PF_DEAD_ZONE_PLANE);
+#endif
+#ifdef PF_MASK
+    PF_PREFETCH_PLANE(uchar, PF_MASK_PLANE);
+#endif
+#ifdef PF_NOISE
+    PF_PREFETCH_PLANE(float, PF_NOISE_PLANE);
+#endif
+  }
+}
+
+/* Pillar rows. */
+typedef struct {
+  uint first;
+  uint end;
+} Band;
+
+/* The rows of this work-item: its band among get_global_size(1) of like height. */
+PF_FUNCTION Band band_of_rows(uint rows) {
+  const ulong bands = get_global_size(1);
+  const ulong band = get_global_id(1);
+  const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
+  return result;
+}
+
+/* Blocks of a row of pillars at most, wherever it begins. */
+PF_FUNCTION uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }
