@@ -155,8 +155,8 @@ void append(std::string& source, const KernelFile& file) {
 
 /// Whether a program of whole numbers has a use for a file: the others are of fractions.
 bool serves_whole_numbers(std::string_view file) {
-  return file != "maths/elementary.h" && file != "maths/paper_solve.h" &&
-         file != "maths/angles.h" && file != "maths/uncertainty.h";
+  return file != "pillar/elementary.h" && file != "pillar/paper_solve.h" &&
+         file != "pillar/angles.h" && file != "pillar/uncertainty.h";
 }
 
 }  // namespace

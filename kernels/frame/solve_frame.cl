@@ -1,5 +1,5 @@
 /* Solves a frame: readings in, forces and status bytes out. Only indexing, loading, calling and
- * storing; the mathematics is in maths/.
+ * storing; the mathematics is in pillar/.
  *
  * The host writes what a plan asks for as the first lines of the program:
  *
