@@ -9,6 +9,7 @@
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
 #include "pillarfield/read_options.h"
 
@@ -29,31 +30,21 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
 };
 
-/// Takes solved frames one by one. Like recordings, files are written under `path` + ".part" and
-/// get their name in finish(); one destroyed before that is removed, except for an HDF5 file that
-/// already holds flushed frames.
-class ForceSink {
- public:
-  virtual ~ForceSink() = default;
-  virtual void append(const ForceFieldView& forces, double time_s) = 0;
-
-  /// Takes the contacts of the frame that was appended last, of each where ForceFileInfo::contacts
-  /// is set, and of none elsewhere. Throws Error otherwise, then or with the next frame.
-  virtual void append_contacts(const FrameContacts& contacts);
-
-  virtual void finish() = 0;
-};
-
 /// Makes the sink that the ending of `path` names: .h5 or .hdf5 (format "pillarfield-forces"), .csv
 /// (one line per pillar that is not idle) or .npy (a structured array [frames, rows, cols]).
 /// `replace` says what of the same name it may replace. Throws Error for another ending or a place
 /// that cannot be written.
+///
+/// Like recordings, files are written under `path` + ".part" and get their name in finish(); one
+/// destroyed before that is removed, except for an HDF5 file that already holds flushed frames.
+/// Contacts are written where ForceFileInfo::contacts is set; each frame must then have them.
 [[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                                            const ForceFileInfo& info,
                                                            Replace replace = Replace::results);
 
-/// What create_force_sink() makes of this path, by its ending. Throws Error for another ending.
-[[nodiscard]] OutputKind kind_of_force_file(const std::filesystem::path& path);
+/// What create_force_sink() makes of this path, for check_outputs(). Throws Error for another
+/// ending.
+[[nodiscard]] PlannedOutput planned_force_file(const std::filesystem::path& path);
 
 /// Whether this is an HDF5 file that says it holds force fields; false where it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path,
