@@ -9,8 +9,8 @@
 namespace pillarfield {
 
 /// Sends the frames of a stream through a ring: each as soon as it is there and the ring has room,
-/// and while none comes, the oldest is delivered. Only where frames come faster than they are solved
-/// is more than one in flight. Takes no memory.
+/// and while none comes, the oldest is delivered. Only where frames come faster than they are
+/// solved is more than one in flight. Takes no memory.
 ///
 /// Ring: `int capacity()`; `int in_flight()`; `StreamedFrame& vacant()`, the place for the next
 /// frame; `submit()`, which starts the frame in it; and `deliver()`, which waits for the oldest.

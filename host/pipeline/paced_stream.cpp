@@ -35,7 +35,7 @@ class MonotonicClock final : public Clock {
 
 class PacedStream final : public FrameStream {
  public:
-  PacedStream(std::unique_ptr<FrameStream> stream, const Pace& pace, std::unique_ptr<Clock> clock)
+  PacedStream(std::unique_ptr<FrameStream> stream, const Pace& pace, std::shared_ptr<Clock> clock)
       : stream_(std::move(stream)),
         pace_(pace),
         clock_(std::move(clock)),
@@ -55,7 +55,7 @@ class PacedStream final : public FrameStream {
 
   std::unique_ptr<FrameStream> stream_;
   Pace pace_;
-  std::unique_ptr<Clock> clock_;
+  std::shared_ptr<Clock> clock_;
   StreamedFrame ahead_;                    ///< taken from the stream before it is due
   Arrival ahead_is_ = Arrival::timed_out;  ///< what `ahead_` holds
   nanoseconds due_{0};                     ///< when that comes
@@ -115,12 +115,12 @@ Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
 }  // namespace
 
 std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream, const Pace& pace,
-                                          std::unique_ptr<Clock> clock) {
+                                          std::shared_ptr<Clock> clock) {
   return std::make_unique<PacedStream>(std::move(stream), pace, std::move(clock));
 }
 
 std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream, const Pace& pace) {
-  return paced_stream(std::move(stream), pace, std::make_unique<MonotonicClock>());
+  return paced_stream(std::move(stream), pace, std::make_shared<MonotonicClock>());
 }
 
 }  // namespace pillarfield

@@ -10,6 +10,6 @@ namespace pillarfield {
 /// As the public function, by a clock that is given.
 [[nodiscard]] std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream,
                                                         const Pace& pace,
-                                                        std::unique_ptr<Clock> clock);
+                                                        std::shared_ptr<Clock> clock);
 
 }  // namespace pillarfield

@@ -11,7 +11,7 @@ namespace pillarfield {
 /// A frame after it was solved. It refers to memory of the solver and of the tracker, which is valid
 /// during the call that gets it.
 struct SolvedFrame {
-  ForceFieldView forces;
+  ForceFieldView forces = {};
   const FrameContacts* contacts = nullptr;  ///< null where contacts are not tracked
   double time_s = 0;                        ///< by the clock of the sensor
   std::uint64_t sequence = 0;               ///< its number in the stream that it came from

@@ -67,7 +67,7 @@ void append_line(std::string& text, const ShownField& field, const std::vector<C
 
 void write_csv(const std::filesystem::path& path, const ShownField& field, const PillarRect& rect,
                Replace replace) {
-  OutputFile file(path, OutputKind::force_table, replace);
+  OutputFile file(path, OutputKind::forces, replace);
   const ForceFieldView& forces = field.forces;
   const std::vector<Column> columns = further_columns(forces);
   std::string text = header(forces, columns);
