@@ -6,9 +6,8 @@
 #include <numeric>
 
 #include "pillarfield/error.h"
-#include "pillarfield/scene.h"
-#include "simulation/scene/scene_limits.h"
 #include "skin/force_scale.h"
+#include "solve/friction_limits.h"
 
 namespace pillarfield {
 namespace {
@@ -55,19 +54,6 @@ void check(const FrictionKnowledge& friction, std::string_view where) {
   if (friction.bound) {
     require("the bound of the friction", *friction.bound, kFrictionBound.low, kFrictionBound.high);
   }
-}
-
-void set_solver(SolverPlan& plan, const Scene& scene) {
-  plan.parity_tolerance_counts = scene.parity_tolerance_counts;
-  plan.estimator = scene.estimator;
-  plan.segment_point = scene.segment_point;
-  plan.friction = scene.friction;
-  plan.angles = scene.angles;
-  plan.uncertainty = scene.uncertainty;
-  if (scene.baseline_time_s) {
-    plan.baseline_rate = baseline_rate(*scene.baseline_time_s, 1 / scene.rate_hz);
-  }
-  if (scene.sensor.noise_counts > 0) plan.noise_counts = scene.sensor.noise_counts;
 }
 
 const char* name_of(Estimator estimator) {

@@ -144,7 +144,7 @@ TEST(KernelSource, EmbeddedFilesAreThoseOfTheTree) {
     EXPECT_EQ(text.str(), embedded.text) << embedded.name;
   }
   EXPECT_EQ(kernel_files().front().name, "portable.h");
-  EXPECT_EQ(kernel_files().back().name, "follow_baseline.cl");
+  EXPECT_EQ(kernel_files().back().name, "frame/follow_baseline.cl");
 }
 
 }  // namespace

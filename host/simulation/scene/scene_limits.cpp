@@ -133,17 +133,6 @@ void check_chart(const Chart& chart, const Skin& skin, const std::string& where)
 
 }  // namespace
 
-bool Range::contains(double value) const {
-  const bool above = open_low ? value > low : value >= low;
-  const bool below = open_high ? value < high : value <= high;
-  return above && below;
-}
-
-std::string Range::text() const {
-  return fmt::format("a number in {}{}, {}{}", open_low ? '(' : '[', low, high,
-                     open_high ? ')' : ']');
-}
-
 bool is_possible(ContactShape shape, ContactMotion motion) {
   switch (motion) {
     case ContactMotion::press:

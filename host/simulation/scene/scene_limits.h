@@ -2,23 +2,13 @@
 
 #include <array>
 #include <optional>
-#include <string>
 #include <string_view>
 
+#include "base/range.h"
 #include "pillarfield/scene.h"
+#include "solve/friction_limits.h"
 
 namespace pillarfield {
-
-/// An interval of numbers.
-struct Range {
-  double low;
-  double high;
-  bool open_low = false;
-  bool open_high = false;
-
-  [[nodiscard]] bool contains(double value) const;  ///< false for what is not a number
-  [[nodiscard]] std::string text() const;           ///< "a number in [0, 1)"
-};
 
 /// A number of a scene: its key in the file, where it is kept, and what it may be.
 template <class Part>
@@ -143,9 +133,6 @@ inline constexpr std::uint32_t kMaxFrames = 100'000'000;
 inline constexpr Range kParityToleranceCounts = {0, kMaxCounts};
 inline constexpr Range kBaselineTimeS = {1e-6, 1e9};
 inline constexpr Range kSegmentPoints = {0, 1, true};
-inline constexpr Range kFrictions = {0.1, 9.9};
-inline constexpr Range kPriorSpread = {0.01, 3};
-inline constexpr Range kFrictionBound = {0.1, 100};
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};

@@ -1,0 +1,51 @@
+"""Every include of host/ points to its own layer or to one below it (ARCHITECTURE.md, Layers)."""
+
+import os
+import pathlib
+import re
+import sys
+
+LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simulation", "evaluation",
+          "device", "io", "pipeline", "testbed", "cli"]
+# Public headers without a source file of their name.
+HEADER_MODULES = {"body": "simulation", "contact": "simulation", "scene": "simulation", "friction": "solve",
+                  "read_options": "io", "recording": "io", "force_file": "io", "contact_file": "io"}
+
+
+def modules_of_headers(host):
+    """The module of each public header: that of the source file with its name."""
+    modules = dict(HEADER_MODULES)
+    for layer in LAYERS:
+        for source in (host / layer).rglob("*.cpp"):
+            modules.setdefault(source.stem, layer)
+    return modules
+
+
+def upward_includes(host):
+    modules = modules_of_headers(host)
+    rank = {name: index for index, name in enumerate(LAYERS)}
+    found = []
+    for path in sorted([*host.rglob("*.h"), *host.rglob("*.cpp")]):
+        module = path.relative_to(host).parts[0]
+        if module == "include":
+            module = modules.get(path.stem)
+        if module not in rank:
+            continue
+        for included in re.findall(r'#include "([^"]+)"', path.read_text(encoding="utf-8")):
+            folder, _, rest = included.partition("/")
+            target = modules.get(pathlib.Path(rest).stem) if folder == "pillarfield" else folder
+            if rank.get(target, 0) > rank[module]:
+                found.append(f"{path.relative_to(host)} ({module}) includes {included} ({target})")
+    return found
+
+
+def main():
+    host = pathlib.Path(os.environ["PILLARFIELD_SOURCE"]) / "host"
+    unknown = {p.name for p in host.iterdir() if p.is_dir()} - set(LAYERS) - {"include"}
+    found = upward_includes(host) + [f"host/{name} has no place among the layers" for name in unknown]
+    print("\n".join(found))
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
