@@ -13,6 +13,7 @@
 #include "io/file_kind.h"
 #include "io/force_format.h"
 #include "io/force_sink.h"
+#include "io/frame_source.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/recording_format.h"
@@ -79,14 +80,9 @@ FoundContent content_by_beginning(const std::filesystem::path& path) {
 }
 
 FoundContent content_of(const std::filesystem::path& path) {
-  switch (kind_of(path)) {
-    case FileKind::hdf5:
-      return hdf5_content(path);
-    case FileKind::tekscan:
-      return {std::nullopt, "is a Tekscan export"};
-    case FileKind::other:
-      break;
-  }
+  const FileLook look = look_at(path);
+  if (look.kind == FileKind::hdf5) return hdf5_content(path);
+  if (look.frames != nullptr) return {std::nullopt, fmt::format("is a {}", look.frames->name)};
   return content_by_beginning(path);
 }
 
