@@ -1,5 +1,7 @@
 #include "cli/contact_output.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -27,8 +29,8 @@ bool is_hdf5(const std::string& file) {
 void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
   CLI::Option* const file = command.add_option(
       "--contacts", options.file,
-      "Find and follow contacts, and write them: .csv, .json, or the .h5 of --output; such an "
-      "output holds them in any case");
+      "Find and follow contacts, and write them: " + endings_of(OutputKind::contacts) +
+          ", or the .h5 of --output; such an output holds them in any case");
   command
       .add_option("--minimum-pillars", options.contacts.minimum_pillars,
                   "Contacts of fewer pillars are left out [1]")
@@ -55,7 +57,8 @@ void check(const ContactOutputOptions& options, const std::string& output) {
   }
   if (!same && is_hdf5(options.file)) {
     throw Error(options.file, "its ending names no table of contacts",
-                "end it in .csv or .json, or name the .h5 file of forces");
+                fmt::format("end it in {}, or name the .h5 file of forces",
+                            endings_of(OutputKind::contacts)));
   }
   static_cast<void>(planned_table(options, output));
 }

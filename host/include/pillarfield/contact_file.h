@@ -17,9 +17,9 @@ struct ContactFileInfo {
   ContactOptions options;
 };
 
-/// Makes the sink that the ending of `path` names: .csv or .json (docs/formats.md). `replace` says
-/// what of the same name it may replace. Throws Error for another ending or a place that cannot be
-/// written.
+/// Makes a sink of contacts alone in the format that the ending of `path` names (docs/formats.md;
+/// endings_of() lists them). Each frame must have contacts. `replace` says what of the same name it
+/// may replace. Throws Error for another ending or a place that cannot be written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path,
                                                              const ContactFileInfo& info,
                                                              Replace replace = Replace::results);

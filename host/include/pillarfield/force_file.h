@@ -30,8 +30,7 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
 };
 
-/// Makes the sink that the ending of `path` names: .h5 or .hdf5 (format "pillarfield-forces"), .csv
-/// (one line per pillar that is not idle) or .npy (a structured array [frames, rows, cols]).
+/// Makes the sink that the ending of `path` names (docs/formats.md; endings_of() lists them).
 /// `replace` says what of the same name it may replace. Throws Error for another ending or a place
 /// that cannot be written.
 ///
