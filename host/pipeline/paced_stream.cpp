@@ -64,11 +64,11 @@ class PacedStream final : public FrameStream {
   double first_time_s_ = 0;
 };
 
-/// When what `ahead_` holds is due.
+/// When what `ahead_` holds is due. At the end of a stream without a rate that is an earlier frame,
+/// whose time has passed.
 nanoseconds PacedStream::due_ahead() const {
   constexpr double kLongest = 1e9;  // seconds; clocks of sensors may say anything
   if (!pace_.rate_hz) {
-    if (ahead_is_ == Arrival::ended) return due_;
     const double after_s = std::clamp(ahead_.time_s - first_time_s_, 0.0, kLongest);
     return *start_ + nanoseconds(std::llround(after_s * 1e9));
   }

@@ -8,8 +8,8 @@
 
 namespace pillarfield {
 
-/// A frame after it was solved. It refers to memory of the solver and of the tracker, which is valid
-/// during the call that gets it.
+/// A frame after it was solved. It refers to memory of the solver and of the tracker, which is
+/// valid during the call that gets it.
 struct SolvedFrame {
   ForceFieldView forces = {};
   const FrameContacts* contacts = nullptr;  ///< null where contacts are not tracked

@@ -16,9 +16,9 @@ namespace pillarfield {
 struct StreamedFrame {
   StreamedFrame(SenselType type, const Skin& skin) : buffer(type, skin.rows, skin.cols) {}
 
-  FrameBuffer buffer;   ///< for streams that write or copy their readings
-  FrameView readings;   ///< the frame: in `buffer`, or in memory of the stream
-  double time_s = 0;    ///< when the sensor took it, by the sensor's clock
+  FrameBuffer buffer;  ///< for streams that write or copy their readings
+  FrameView readings;  ///< the frame: in `buffer`, or in memory of the stream
+  double time_s = 0;   ///< when the sensor took it, by the sensor's clock
   /// Which frame it is, as the sensor counts them; a gap means that frames were lost.
   std::uint64_t sequence = 0;
   std::chrono::nanoseconds arrived{0};  ///< when it reached this computer, by std::steady_clock
@@ -48,10 +48,10 @@ class FrameStream {
 
   /// Waits for the next frame, for `timeout` at most; it may give up earlier. Zero only looks.
   ///
-  /// Sets all members of `frame`. Where `readings` is not in `frame.buffer`, the memory must stay as
-  /// it is until `frame` is given to next() again: the device reads it meanwhile. Without a frame,
-  /// `sequence` may be set to the number of the frame that comes next, which tells of lost ones.
-  /// Throws Error, its place being the stream, where the stream fails.
+  /// Sets all members of `frame`. Where `readings` is not in `frame.buffer`, the memory must stay
+  /// as it is until `frame` is given to next() again: the device reads it meanwhile. Without a
+  /// frame, `sequence` may be set to the number of the frame that comes next, which tells of lost
+  /// ones. Throws Error, its place being the stream, where the stream fails.
   [[nodiscard]] virtual Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) = 0;
 };
 
@@ -67,9 +67,9 @@ struct Pace {
 };
 
 /// Lets the frames of a stream come at a pace, as from a sensor: the first at once, the others when
-/// they are due, or as soon as they are asked for where that is later. `arrived` is when a frame was
-/// due. At a rate, the stream ends one period after its last frame.
-/// Throws Error on a rate that is not above 0.
+/// they are due, or as soon as they are asked for where that is later. `arrived` is when a frame
+/// was due. At a rate, the stream ends one period after its last frame. Throws Error on a rate that
+/// is not above 0.
 [[nodiscard]] std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream,
                                                         const Pace& pace);
 

@@ -43,8 +43,8 @@ class Pipeline {
     bool half_output = false;  ///< as the plan's; sinks then get the status alone
   };
 
-  /// Makes a place for each frame in flight. All arguments must outlive the pipeline; `processor` is
-  /// that of a plan for the stream's frames, and nobody else uses it during run().
+  /// Makes a place for each frame in flight. All arguments must outlive the pipeline; `processor`
+  /// is that of a plan for the stream's frames, and nobody else uses it during run().
   Pipeline(FrameStream& stream, Processor& processor, std::vector<ForceSink*> sinks,
            const Options& options);
   Pipeline(FrameStream& stream, Processor& processor, std::vector<ForceSink*> sinks);
@@ -54,8 +54,8 @@ class Pipeline {
 
   /// Runs until the stream ends or `stop` says so; frames in flight are then delivered. May be
   /// called again to go on. Takes no memory of its own. Throws what stream, processor, tracker or
-  /// sink throws, after the frames in flight were solved; no sink gets them. Sinks are not finished:
-  /// what stopped or failed may be worth less than a file under its final name.
+  /// sink throws, after the frames in flight were solved; no sink gets them. Sinks are not
+  /// finished: what stopped or failed may be worth less than a file under its final name.
   PipelineStatistics run();
 
  private:
