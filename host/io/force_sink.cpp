@@ -26,9 +26,9 @@ namespace {
 
 /// All formats, in the order in which messages name their endings.
 std::span<const SinkFormat> sink_formats() {
-  static const std::array kFormats = {force_hdf5_format(), force_csv_format(), force_npy_format(),
-                                      contact_csv_format(), contact_json_format()};
-  return kFormats;
+  static const std::array formats = {force_hdf5_format(), force_csv_format(), force_npy_format(),
+                                     contact_csv_format(), contact_json_format()};
+  return formats;
 }
 
 const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) {

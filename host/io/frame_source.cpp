@@ -13,8 +13,8 @@ namespace pillarfield {
 SourceFormat tekscan_format();
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array kFormats = {tekscan_format()};
-  return kFormats;
+  static const std::array formats = {tekscan_format()};
+  return formats;
 }
 
 const SourceFormat* source_format(std::string_view head) {

@@ -3,8 +3,8 @@
 namespace pillarfield {
 
 const Calibration& FrameStream::calibration() const {
-  static const Calibration kNone;
-  return kNone;
+  static const Calibration none;
+  return none;
 }
 
 }  // namespace pillarfield

@@ -13,11 +13,11 @@ namespace pillarfield {
 /// The ring that run_frames() goes by.
 struct Pipeline::State {
   State(FrameStream& frame_stream, Processor& frame_processor, std::vector<ForceSink*> frame_sinks,
-        const Options& run_options)
+        Options run_options)
       : stream(frame_stream),
         processor(frame_processor),
         sinks(std::move(frame_sinks)),
-        options(run_options) {
+        options(std::move(run_options)) {
     if (options.frames_in_flight < 1) {
       throw Error("pipeline", fmt::format("{} frames in flight", options.frames_in_flight),
                   "give 1 or more");
