@@ -3,11 +3,11 @@
 namespace pillarfield::bench {
 
 FrameSolver::FrameSolver(const Device& device, const SolverPlan& plan, const Frames& frames,
-                         const Processor::Options& options)
+                         const Processor::Options& options, const ProcessorTuning& tuning)
     : frames_(&frames),
       most_in_flight_(options.frames_in_flight),
       half_output_(plan.half_output),
-      processor_(device, plan, options) {}
+      processor_(device, plan, options, tuning) {}
 
 void FrameSolver::run(int frames) {
   for (int i = 0; i < frames; ++i) {

@@ -2,6 +2,7 @@
 
 #include "bench/frames.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::bench {
 
@@ -10,7 +11,7 @@ namespace pillarfield::bench {
 class FrameSolver {
  public:
   FrameSolver(const Device& device, const SolverPlan& plan, const Frames& frames,
-              const Processor::Options& options = {});
+              const Processor::Options& options = {}, const ProcessorTuning& tuning = {});
 
   /// Solves so many frames, going on where it stopped.
   void run(int frames);

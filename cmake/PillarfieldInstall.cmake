@@ -18,6 +18,7 @@ install(DIRECTORY host/include/pillarfield "${PROJECT_BINARY_DIR}/include/pillar
 install(DIRECTORY scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/pillarfield
   FILES_MATCHING PATTERN "*.toml" PATTERN "*.png")
 install(FILES LICENSE TYPE DOC)
+install(DIRECTORY examples TYPE DOC)
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/pillarfield)
 install(EXPORT pillarfield NAMESPACE pillarfield:: FILE pillarfieldTargets.cmake

@@ -1,9 +1,9 @@
 #include "fuzz/some_frames.h"
 #include "fuzz/targets.h"
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/solver_plan.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield::fuzz {
 namespace {

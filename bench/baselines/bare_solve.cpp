@@ -1,6 +1,7 @@
 #include "bench/baselines/bare_solve.h"
 
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 
 namespace pillarfield::bench {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/pillar_maths.h"
 

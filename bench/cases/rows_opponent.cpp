@@ -18,7 +18,7 @@
 #include "bench/timing/plain_names.h"
 #include "bench/timing/solve_race.h"
 #include "pillarfield/error.h"
-#include "solve/host_solve.h"
+#include "pillarfield/host_solve.h"
 
 namespace pillarfield::bench {
 namespace {
@@ -110,7 +110,7 @@ Measurement race_paper(const Session& session) {
   Match match(session);
   SolverPlan plan = match.plan();
   plan.estimator = Estimator::paper;
-  FrameSolver paper(session.device, plan, match.frames(), {.lanes = 1});
+  FrameSolver paper(session.device, plan, match.frames(), {}, {.lanes = 1});
   require_near("the paper's equations", paper.solve(match.frames()[0]),
                solve_on_host(plan, match.frames()[0]).view(), kPaperTolerance);
   match.add("one pillar per work-item", [&](int count) { paper.run(count); });

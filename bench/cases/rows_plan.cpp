@@ -9,8 +9,8 @@ namespace pillarfield::bench {
 namespace {
 
 void add_plan_row(const Session& session, const std::string& name, const SolverPlan& plan,
-                  const Processor::Options& options = {}) {
-  add_row(name, [&session, plan, options] { return race_solve(session, plan, {}, options); });
+                  const ProcessorTuning& tuning = {}) {
+  add_row(name, [&session, plan, tuning] { return race_solve(session, plan, {}, {}, tuning); });
 }
 
 SolverPlan plan_with(std::string_view stage) {

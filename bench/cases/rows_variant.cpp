@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bench/cases/rows.h"
+#include "bench/force_error.h"
 #include "bench/noisy_frame_store.h"
 #include "bench/solve_variant.h"
 #include "bench/timing/solve_race.h"
@@ -15,12 +16,21 @@ namespace {
 
 constexpr std::size_t kFrames = 32;  ///< 80 MB of uint8 sensels: more than caches hold
 
+void tell(const ForceError& error, Measurement& measured) {
+  measured.counters["error_counts"] = error.counts;
+  measured.counters["error_over_bound"] = error.over_bound;
+  measured.counters["error_pillars"] = static_cast<double>(error.pillars);
+  measured.counters["error_counts_all_regions"] = error.all_counts;
+  measured.counters["ambiguous"] = error.ambiguous;
+}
+
 /// `over_bare_copy` is the time over that of the copy of the bare uint8 solve: 17 bytes a pillar.
 Measurement race_variant(const Session& session, const SolveVariant& variant,
                          NoisyFrameStore& store) {
   const SolverPlan plan = plan_of(variant, kSquareMetre);
   const SolverPlan bare = plan_of(SolveVariant{}, kSquareMetre);
-  const Frames& frames = store.of(plan).frames();
+  const NoisyFrames& noisy = store.of(plan);
+  const Frames& frames = noisy.frames();
   const int in_flight = Processor::Options{}.frames_in_flight;
   VariantSolver solver(session.device, variant, plan, frames);
   Race race;
@@ -32,6 +42,7 @@ Measurement race_variant(const Session& session, const SolveVariant& variant,
   measured.counters["of_ceiling"] = race.ratio(ceiling.fastest(race), solve);
   measured.counters["over_bare_copy"] = race.ratio(solve, bare_copy.fastest(race));
   ceiling.tell(race, measured);
+  tell(measure_force_error(session.device, variant, plan, noisy, 1), measured);
   measured.label = fmt::format("{} frames", frames.size());
   return measured;
 }

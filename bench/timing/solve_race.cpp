@@ -41,9 +41,9 @@ Measurement measurement_of(const Race& race, std::size_t contestant, const Solve
 }
 
 Measurement race_solve(const Session& session, const SolverPlan& plan, const Scenery& scenery,
-                       const Processor::Options& options) {
+                       const Processor::Options& options, const ProcessorTuning& tuning) {
   const Frames frames(plan.skin, plan.sensel_type, scenery);
-  FrameSolver solver(session.device, plan, frames, options);
+  FrameSolver solver(session.device, plan, frames, options, tuning);
   Race race;
   const std::size_t solve = race.add([&](int count) { solver.run(count); });
   CeilingEntry ceiling(race, session.device, plan, frames, options.frames_in_flight);

@@ -39,6 +39,6 @@ Measurement measurement_of(const Race& race, std::size_t contestant, const Solve
 
 /// Races the solve of a plan with the copies of its streams.
 Measurement race_solve(const Session& session, const SolverPlan& plan, const Scenery& scenery = {},
-                       const Processor::Options& options = {});
+                       const Processor::Options& options = {}, const ProcessorTuning& tuning = {});
 
 }  // namespace pillarfield::bench

@@ -10,6 +10,7 @@
 
 #include "calibration/finding_list.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 #include "skin/pillar_sensels.h"
 #include "skin/raw_reading.h"
 #include "solve/sensel_reader.h"

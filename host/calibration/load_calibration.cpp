@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

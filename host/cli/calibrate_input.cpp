@@ -1,12 +1,8 @@
 #include "cli/calibrate_input.h"
 
-#include <fmt/format.h>
-
 #include "cli/interrupt.h"
-#include "cli/output_options.h"
 #include "cli/progress.h"
 #include "cli/remarks.h"
-#include "cli/trust_option.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 
@@ -28,20 +24,6 @@ FrameStatistics statistics_of(FrameSource& source, const std::string& file,
 }
 
 }  // namespace
-
-void add_step_options(CLI::App& command, StepOptions& options, const char* wrote) {
-  command.add_option("-o,--output", options.output, wrote)->required();
-  add_overwrite_option(command, options.replace);
-  add_trust_option(command, options.read);
-  command.add_flag("--json", options.json, "Print the summary as JSON");
-  command.add_flag("-q,--quiet", options.quiet, "Show no progress");
-}
-
-void add_calibration_option(CLI::App& command, StepOptions& options) {
-  command
-      .add_option("--calibration", options.calibration, "Calibration that this step goes on from")
-      ->required();
-}
 
 void check_step_output(const std::vector<std::string>& files, const StepOptions& options,
                        OutputKind kind) {
@@ -78,22 +60,6 @@ StepInput read_input(const std::vector<std::string>& files, const StepOptions& o
     input.frames += source->frames();
   }
   return input;
-}
-
-void require_one_each(const char* option, const std::vector<std::string>& files,
-                      const std::vector<double>& values) {
-  if (files.size() == values.size()) return;
-  throw CLI::ValidationError(option, fmt::format("{} files and {} values; give one for each file",
-                                                 files.size(), values.size()));
-}
-
-std::vector<std::string> names_of(const std::vector<std::string>& files) {
-  std::vector<std::string> names;
-  names.reserve(files.size());
-  for (const std::string& file : files) {
-    names.push_back(std::filesystem::path(file).filename().string());
-  }
-  return names;
 }
 
 }  // namespace pillarfield::cli

@@ -3,13 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/calibrate.h"
 #include "cli/calibrate_input.h"
-#include "cli/choice.h"
-#include "cli/json_text.h"
-#include "cli/number_range.h"
-#include "pillarfield/calibration_file.h"
-#include "pillarfield/load_calibration.h"
+#include "cli/calibrate_report.h"
+#include "cli/number_text.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
@@ -18,121 +14,65 @@ namespace {
 /// Beyond this share the load stands on pillars that are ambiguous.
 constexpr double kMuchAmbiguous = 0.05;
 
-struct LoadCommand {
-  std::vector<std::string> files;
-  std::vector<double> loads_n;
-  LoadModel model = LoadModel::linear;
-  StepOptions step;
-};
-
 const char* name_of(LoadModel model) { return model == LoadModel::power ? "power" : "linear"; }
 
-void print_json(const LoadCommand& command, const LoadResult& result, std::uint64_t frames) {
-  const SkinCalibration& calibration = result.calibration;
-  nlohmann::ordered_json json = {{"output", command.step.output},
-                                 {"frames", frames},
-                                 {"model", name_of(command.model)},
-                                 {"counts_per_newton", *calibration.counts_per_newton},
-                                 {"least_counts_per_newton", result.least_counts_per_newton},
-                                 {"most_counts_per_newton", result.most_counts_per_newton},
-                                 {"misfit", result.misfit}};
-  if (calibration.power_law) {
-    json["power_law_exponent"] = calibration.power_law->exponent;
-    json["power_law_reference_counts"] = calibration.power_law->reference_counts;
-  }
-  json["loads"] = nlohmann::ordered_json::array();
-  for (const LoadResidual& load : result.loads) {
-    json["loads"].push_back({{"load_n", load.load_n},
-                             {"solved_n", load.solved_n},
-                             {"ambiguous_share", load.ambiguous_share},
-                             {"saturated", load.saturated}});
-  }
-  fmt::print("{}\n", json_text(json));
-}
-
-void print_text(const LoadCommand& command, const LoadResult& result, std::uint64_t frames) {
-  const SkinCalibration& calibration = result.calibration;
-  fmt::print(
-      "Calibrated with {} load{}, {} frames\n"
-      "  sensitivity  {:8.2f} counts per newton and pillar, {:.2f} to {:.2f} as ambiguous pillars "
-      "allow\n",
-      result.loads.size(), result.loads.size() == 1 ? "" : "s", frames,
-      *calibration.counts_per_newton, result.least_counts_per_newton,
-      result.most_counts_per_newton);
-  if (calibration.power_law) {
-    fmt::print("  power law    exponent {:.4f}, reference {:.2f} counts\n",
-               calibration.power_law->exponent, calibration.power_law->reference_counts);
-  }
-  for (const LoadResidual& load : result.loads) {
-    fmt::print("  {:8.3f} N is solved as {:8.3f} N ({:+.2f} %), {:.1f} % of it ambiguous\n",
-               load.load_n, load.solved_n, 100 * (load.solved_n / load.load_n - 1),
-               100 * load.ambiguous_share);
-  }
-  fmt::print("Wrote {}\n", printable(command.step.output));
-}
-
-void print_remarks(const LoadCommand& command, const LoadResult& result) {
-  for (std::size_t i = 0; i < result.loads.size(); ++i) {
-    const LoadResidual& load = result.loads[i];
-    if (load.ambiguous_share > kMuchAmbiguous) {
+void warn_of_loads(const LoadCommand& command, const std::vector<LoadResidual>& loads) {
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    if (loads[i].ambiguous_share > kMuchAmbiguous) {
       fmt::print(stderr,
                  "{}: {:.0f} % of the load stands on ambiguous pillars; press flat and without "
                  "shear\n",
-                 printable(command.files[i]), 100 * load.ambiguous_share);
+                 printable(command.files[i]), 100 * loads[i].ambiguous_share);
     }
-    if (load.saturated > 0) {
+    if (loads[i].saturated > 0) {
       fmt::print(stderr, "{}: {} pillars have a saturated sensel and lack force; press less\n",
-                 printable(command.files[i]), load.saturated);
+                 printable(command.files[i]), loads[i].saturated);
     }
-  }
-}
-
-void run(const LoadCommand& command) {
-  const StepInput input = read_input(command.files, command.step);
-  std::vector<KnownLoad> loads;
-  for (std::size_t i = 0; i < input.files.size(); ++i) {
-    loads.push_back({input.files[i], command.loads_n[i]});
-  }
-  LoadResult result = calibrate_load(input.before, loads, command.model);
-  result.calibration.history.push_back(
-      step_done("load", names_of(command.files), input.frames,
-                fmt::format("loads_n = {}, model = {}", fmt::join(command.loads_n, " "),
-                            name_of(command.model))));
-  write_calibration_file(command.step.output, result.calibration, command.step.replace);
-  print_remarks(command, result);
-  if (command.step.json) {
-    print_json(command, result, input.frames);
-  } else {
-    print_text(command, result, input.frames);
   }
 }
 
 }  // namespace
 
-void add_calibrate_load(CLI::App& calibrate, Work& work) {
-  const auto options = std::make_shared<LoadCommand>();
-  CLI::App* const command = calibrate.add_subcommand(
-      "load", "Counts per newton, and a power law, from known normal loads");
-  command
-      ->add_option("FRAMES", options->files, "Frames under a load that stands still, a file each")
-      ->required();
-  command
-      ->add_option("--load-n", options->loads_n,
-                   "Normal load of each file, in their order: L1,L2,... or given again for each")
-      ->required()
-      ->check(number_range(1e-6, 1e6).description(""))
-      ->delimiter(',')
-      ->allow_extra_args(false);
-  add_choice<LoadModel>(
-      *command, "--model", options->model,
-      {{"linear", LoadModel::linear}, {"power", LoadModel::power}},
-      "linear: in proportion; power: by a power law, from two loads or more [linear]");
-  add_calibration_option(*command, options->step);
-  add_step_options(*command, options->step, "Calibration to write (HDF5)");
-  command->callback([options, &work] {
-    require_one_each("--load-n", options->files, options->loads_n);
-    work = [options] { run(*options); };
-  });
+void calibrate(const LoadCommand& command) {
+  const StepInput input = read_input(command.files, command);
+  std::vector<KnownLoad> known;
+  for (std::size_t i = 0; i < input.files.size(); ++i) {
+    known.push_back({input.files[i], command.loads_n[i]});
+  }
+  const LoadResult result = calibrate_load(input.before, known, command.model);
+  const SkinCalibration& calibration = result.calibration;
+  StepReport report = {
+      .headline = fmt::format("Calibrated with {}, {}", counted(known.size(), "load"),
+                              counted(input.frames, "frame")),
+      .facts = {
+          {"model", name_of(command.model)},
+          {"counts_per_newton", *calibration.counts_per_newton, "sensitivity",
+           fmt::format("counts per newton and pillar, {:.2f} to {:.2f} as ambiguous pillars allow",
+                       result.least_counts_per_newton, result.most_counts_per_newton)},
+          {"least_counts_per_newton", result.least_counts_per_newton},
+          {"most_counts_per_newton", result.most_counts_per_newton},
+          {"misfit", result.misfit}}};
+  if (const auto& law = calibration.power_law) {
+    report.facts.push_back({"power_law_exponent", law->exponent, "exponent", "of the power law"});
+    report.facts.push_back({"power_law_reference_counts", law->reference_counts, "reference",
+                            "counts, of the power law"});
+  }
+  auto loads = nlohmann::ordered_json::array();
+  for (const LoadResidual& load : result.loads) {
+    loads.push_back({{"load_n", load.load_n},
+                     {"solved_n", load.solved_n},
+                     {"ambiguous_share", load.ambiguous_share},
+                     {"saturated", load.saturated}});
+    report.lines.push_back(fmt::format(
+        "  {:8.3f} N is solved as {:8.3f} N ({:+.2f} %), {:.1f} % of it ambiguous", load.load_n,
+        load.solved_n, 100 * (load.solved_n / load.load_n - 1), 100 * load.ambiguous_share));
+  }
+  report.more.push_back({"loads", loads});
+  warn_of_loads(command, result.loads);
+  finish_step(command, calibration, "load", command.files, input.frames,
+              fmt::format("loads_n = {}, model = {}", fmt::join(command.loads_n, " "),
+                          name_of(command.model)),
+              report);
 }
 
 }  // namespace pillarfield::cli

@@ -4,32 +4,22 @@
 
 #include <algorithm>
 
+#include "cli/json_text.h"
+#include "cli/number_text.h"
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/printable.h"
+
 namespace pillarfield::cli {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 constexpr std::size_t kMostLines = 20;
-
-nlohmann::ordered_json json_of(const SenselFinding& finding) {
-  return {{"row", finding.row},
-          {"col", finding.col},
-          {"fault", name_of(finding.fault)},
-          {"masked", finding.masked},
-          {"mean_counts", finding.mean_counts}};
-}
-
-}  // namespace
-
-void add_findings(nlohmann::ordered_json& json, const SkinCalibration& calibration,
-                  const std::vector<SenselFinding>& findings) {
-  json["masked"] = count_masked(calibration.planes);
-  json["findings"] = nlohmann::ordered_json::array();
-  for (const SenselFinding& finding : findings) json["findings"].push_back(json_of(finding));
-}
 
 void print_findings(const SkinCalibration& calibration,
                     const std::vector<SenselFinding>& findings) {
-  fmt::print("Masked: {} of {} sensels\n", count_masked(calibration.planes),
-             std::size_t{calibration.rows} * calibration.cols);
+  fmt::print("Masked: {} of {} sensels\n", grouped(count_masked(calibration.planes)),
+             grouped(std::size_t{calibration.rows} * calibration.cols));
   const std::size_t shown = std::min(findings.size(), kMostLines);
   for (std::size_t i = 0; i < shown; ++i) {
     const SenselFinding& finding = findings[i];
@@ -39,6 +29,59 @@ void print_findings(const SkinCalibration& calibration,
   }
   if (shown < findings.size()) {
     fmt::print("  and {} more; --json lists all\n", findings.size() - shown);
+  }
+}
+
+void print_step_text(const StepReport& report, const SkinCalibration& calibration) {
+  fmt::print("{}\n", report.headline);
+  for (const StepFact& fact : report.facts) {
+    if (fact.label.empty()) continue;
+    const double scale = fact.unit.starts_with('%') ? 100 : 1;
+    fmt::print("  {:<12} {:9.2f} {}\n", fact.label, scale * fact.value.get<double>(), fact.unit);
+  }
+  if (report.findings != nullptr) print_findings(calibration, *report.findings);
+  for (const std::string& line : report.lines) fmt::print("{}\n", line);
+}
+
+void print_step_json(const StepReport& report, const SkinCalibration& calibration, Json json) {
+  for (const StepFact& fact : report.facts) json[fact.key] = fact.value;
+  if (report.findings != nullptr) {
+    json["masked"] = count_masked(calibration.planes);
+    json["findings"] = Json::array();
+    for (const SenselFinding& finding : *report.findings) {
+      json["findings"].push_back({{"row", finding.row},
+                                  {"col", finding.col},
+                                  {"fault", name_of(finding.fault)},
+                                  {"masked", finding.masked},
+                                  {"mean_counts", finding.mean_counts}});
+    }
+  }
+  for (const StepFact& fact : report.more) json[fact.key] = fact.value;
+  fmt::print("{}\n", json_text(json));
+}
+
+/// The names of files without their folders.
+std::vector<std::string> names_of(const std::vector<std::string>& files) {
+  std::vector<std::string> names;
+  names.reserve(files.size());
+  for (const std::string& file : files) {
+    names.push_back(std::filesystem::path(file).filename().string());
+  }
+  return names;
+}
+
+}  // namespace
+
+void finish_step(const StepOptions& options, SkinCalibration calibration, const char* name,
+                 const std::vector<std::string>& files, std::uint64_t frames,
+                 const std::string& parameters, const StepReport& report) {
+  calibration.history.push_back(step_done(name, names_of(files), frames, parameters));
+  write_calibration_file(options.output, calibration, options.replace);
+  if (options.json) {
+    print_step_json(report, calibration, {{"output", options.output}, {"frames", frames}});
+  } else if (!options.quiet) {
+    print_step_text(report, calibration);
+    fmt::print("Wrote {}\n", printable(options.output));
   }
 }
 

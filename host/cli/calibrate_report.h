@@ -1,18 +1,35 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 #include <vector>
 
+#include "cli/commands.h"
 #include "pillarfield/sensel_finding.h"
 #include "pillarfield/skin_calibration.h"
 
 namespace pillarfield::cli {
 
-/// Adds "masked", the number of sensels that the calibration has as missing, and "findings".
-void add_findings(nlohmann::ordered_json& json, const SkinCalibration& calibration,
-                  const std::vector<SenselFinding>& findings);
+/// A result of a step: a key of JSON and, with a label, a number on a line of text. The line has
+/// 100 times the value where its unit begins with "%".
+struct StepFact {
+  const char* key;
+  nlohmann::ordered_json value;
+  std::string label = {};
+  std::string unit = {};
+};
 
-/// The same as text, the first twenty findings one to a line.
-void print_findings(const SkinCalibration& calibration, const std::vector<SenselFinding>& findings);
+struct StepReport {
+  std::string headline;
+  std::vector<StepFact> facts;
+  const std::vector<SenselFinding>* findings = nullptr;  ///< where the step looks for faults
+  std::vector<StepFact> more = {};                       ///< JSON after the findings
+  std::vector<std::string> lines = {};                   ///< text after the findings
+};
+
+/// Adds the step `name` to the calibration's history, writes it and prints the report.
+void finish_step(const StepOptions& options, SkinCalibration calibration, const char* name,
+                 const std::vector<std::string>& files, std::uint64_t frames,
+                 const std::string& parameters, const StepReport& report);
 
 }  // namespace pillarfield::cli

@@ -4,13 +4,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 #include <optional>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
+#include "cli/number_text.h"
 #include "cli/progress.h"
-#include "cli/trust_option.h"
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
 #include "pillarfield/error.h"
@@ -20,14 +22,6 @@
 
 namespace pillarfield::cli {
 namespace {
-
-struct CompareOptions {
-  std::string forces;
-  std::string recording;
-  ReadOptions read;
-  bool json = false;
-  bool quiet = false;
-};
 
 struct Row {
   std::string name;
@@ -44,10 +38,38 @@ std::vector<Row> rows_of(const Comparison& comparison) {
   return rows;
 }
 
+/// The sum of all forces of the skin, frame by frame.
+class Resultant {
+ public:
+  void add(const ForceFieldView& solved, const ForceFieldView& truth) {
+    ++frames_;
+    for (const auto plane :
+         {&ForceFieldView::shear_x, &ForceFieldView::shear_y, &ForceFieldView::normal}) {
+      const double of_truth = sum(truth.*plane);
+      truth_ += of_truth * of_truth;
+      error_ += std::pow(sum(solved.*plane) - of_truth, 2);
+    }
+  }
+  [[nodiscard]] double true_rms_n() const { return rms(truth_); }
+  [[nodiscard]] double error_rms_n() const { return rms(error_); }
+
+ private:
+  static double sum(std::span<const float> plane) {
+    return std::accumulate(plane.begin(), plane.end(), 0.0);
+  }
+  [[nodiscard]] double rms(double squares) const {
+    return frames_ == 0 ? 0 : std::sqrt(squares / static_cast<double>(frames_));
+  }
+
+  std::uint64_t frames_ = 0;
+  double truth_ = 0;
+  double error_ = 0;
+};
+
 constexpr std::array kCoveredRegions = {Region::one, Region::two, Region::three, Region::four};
 
-void print_json(const std::vector<Row>& rows, const std::optional<Coverage>& coverage,
-                std::uint64_t frames) {
+void print_json(const std::vector<Row>& rows, const Resultant& resultant,
+                const std::optional<Coverage>& coverage, std::uint64_t frames) {
   nlohmann::ordered_json regions;
   for (const auto& [name, errors] : rows) {
     regions[name] = {{"pillars", errors.pillars},
@@ -59,7 +81,11 @@ void print_json(const std::vector<Row>& rows, const std::optional<Coverage>& cov
                      {"theta_rms_rad", errors.theta_rms_rad},
                      {"phi_rms_rad", errors.phi_rms_rad}};
   }
-  nlohmann::ordered_json json = {{"frames", frames}, {"regions", regions}};
+  nlohmann::ordered_json json = {
+      {"frames", frames},
+      {"regions", regions},
+      {"resultant",
+       {{"true_rms_n", resultant.true_rms_n()}, {"error_rms_n", resultant.error_rms_n()}}}};
   if (coverage) {
     for (const Region region : kCoveredRegions) {
       const RegionCoverage of_region = coverage->region(region);
@@ -86,7 +112,7 @@ void print_row(const Row& row) {
                                 ? 0
                                 : 100 * static_cast<double>(errors.status_mismatches) /
                                       static_cast<double>(errors.pillars);
-  fmt::print("{:<8} {:>10} {} {}", row.name, errors.pillars, fitted(errors.rms_n, 9, 4),
+  fmt::print("{:<8} {:>13} {} {}", row.name, grouped(errors.pillars), fitted(errors.rms_n, 9, 4),
              fitted(errors.p95_n, 9, 4));
   if (row.name == "none") {
     fmt::print(" {:>8} {:>8} {:>9} {:>9}", "-", "-", "-", "-");
@@ -95,17 +121,21 @@ void print_row(const Row& row) {
                fitted(100 * errors.p95_relative, 8, 1, "%"), errors.theta_rms_rad,
                errors.phi_rms_rad);
   }
-  fmt::print(" {:>9.2f}%\n", mismatches);
+  fmt::print(" {:>9.1f}%\n", mismatches);
 }
 
-void print_text(const std::vector<Row>& rows, std::uint64_t frames, const CompareOptions& options) {
-  fmt::print("{} against the truth in {}, {} frames\n\n", printable(options.forces),
-             printable(options.recording), frames);
-  fmt::print("{:<8} {:>10} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
+void print_text(const std::vector<Row>& rows, const Resultant& resultant, std::uint64_t frames,
+                const CompareOptions& options) {
+  fmt::print("{} against the truth in {}, {}\n\n", printable(options.forces),
+             printable(options.recording), counted(frames, "frame"));
+  fmt::print("{:<8} {:>13} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
              "of the true force", "angle RMS, rad", "status");
-  fmt::print("{:<8} {:>10} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
+  fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
              "RMS", "95 %", "RMS", "95 %", "theta", "phi", "differs");
   for (const Row& row : rows) print_row(row);
+  fmt::print("\nResultant force of the skin, RMS over frames: {} N, error {} N\n",
+             rounded(resultant.true_rms_n()),
+             rounded(std::round(1e4 * resultant.error_rms_n()) / 1e4));
   fmt::print(
       "\nForce error: length of (solved - true). 95 %: that share of the pillars has at most "
       "this.\n"
@@ -115,14 +145,14 @@ void print_text(const std::vector<Row>& rows, std::uint64_t frames, const Compar
 }
 
 void print_coverage(const Coverage& coverage) {
-  fmt::print("\n{:<8} {:>10} {:^29} {:>12}\n", "solved", "", "truths within 1.96 deviations",
+  fmt::print("\n{:<8} {:>13} {:^29} {:>12}\n", "solved", "", "truths within 1.96 deviations",
              "between");
-  fmt::print("{:<8} {:>10} {:>9} {:>9} {:>9} {:>12}\n", "region", "pillars", "shear_x", "shear_y",
+  fmt::print("{:<8} {:>13} {:>9} {:>9} {:>9} {:>12}\n", "region", "pillars", "shear_x", "shear_y",
              "normal", "the ends");
   for (const Region region : kCoveredRegions) {
     const RegionCoverage of_region = coverage.region(region);
-    fmt::print("{:<8} {:>10} {:>8.2f}% {:>8.2f}% {:>8.2f}% {:>11.2f}%\n", name_of(region),
-               of_region.pillars, 100 * of_region.shear_x, 100 * of_region.shear_y,
+    fmt::print("{:<8} {:>13} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>11.1f}%\n", name_of(region),
+               grouped(of_region.pillars), 100 * of_region.shear_x, 100 * of_region.shear_y,
                100 * of_region.normal, 100 * of_region.ends);
   }
   fmt::print(
@@ -155,6 +185,8 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
   return frames;
 }
 
+}  // namespace
+
 void compare(const CompareOptions& options) {
   const ForceFileReader forces(options.forces, options.read);
   const std::unique_ptr<FrameSource> recording = open_frames(options.recording, options.read);
@@ -163,6 +195,7 @@ void compare(const CompareOptions& options) {
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
+  Resultant resultant;
   std::optional<Coverage> coverage;
   if (info.uncertainty) coverage.emplace();
   {
@@ -172,33 +205,18 @@ void compare(const CompareOptions& options) {
       forces.read(index, solved);
       recording->read_truth(index, truth);
       comparison.add(solved.view(), truth.view());
+      resultant.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
   }
   const std::vector<Row> rows = rows_of(comparison);
   if (options.json) {
-    print_json(rows, coverage, frames);
+    print_json(rows, resultant, coverage, frames);
   } else {
-    print_text(rows, frames, options);
+    print_text(rows, resultant, frames, options);
     if (coverage) print_coverage(*coverage);
   }
-}
-
-}  // namespace
-
-void add_compare(CLI::App& app, Work& work) {
-  const auto options = std::make_shared<CompareOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "compare", "Tell how far solved forces are from the truth, region by region");
-  command->add_option("FORCES", options->forces, "Force fields written by solve (.h5)")->required();
-  command
-      ->add_option("RECORDING", options->recording, "The recording they come from, with its truth")
-      ->required();
-  add_trust_option(*command, options->read);
-  command->add_flag("--json", options->json, "Print the table as JSON");
-  command->add_flag("-q,--quiet", options->quiet, "Show no progress");
-  command->callback([options, &work] { work = [options] { compare(*options); }; });
 }
 
 }  // namespace pillarfield::cli

@@ -26,21 +26,6 @@ bool is_hdf5(const std::string& file) {
 
 }  // namespace
 
-void add_contact_options(CLI::App& command, ContactOutputOptions& options) {
-  CLI::Option* const file = command.add_option(
-      "--contacts", options.file,
-      "Find and follow contacts, and write them: " + endings_of(OutputKind::contacts) +
-          ", or the .h5 of --output; such an output holds them in any case");
-  command
-      .add_option("--minimum-pillars", options.contacts.minimum_pillars,
-                  "Contacts of fewer pillars are left out [1]")
-      ->needs(file);
-  command
-      .add_option("--contact-reach", options.contacts.reach_mm,
-                  "How far a contact may jump from frame to frame, mm [10]")
-      ->needs(file);
-}
-
 void take_friction(const SolverPlan& plan, ContactOptions& contacts) {
   contacts.friction = plan.friction;
   contacts.noise_n = reading_noise_n(plan);

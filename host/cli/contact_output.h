@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -18,9 +17,6 @@ struct ContactOutputOptions {
   std::string file;  ///< empty: nowhere
   ContactOptions contacts;
 };
-
-/// --contacts and what goes with it.
-void add_contact_options(CLI::App& command, ContactOutputOptions& options);
 
 /// Takes what `plan` knows of friction, by --friction or by a scene, and of noise for contacts.
 void take_friction(const SolverPlan& plan, ContactOptions& contacts);

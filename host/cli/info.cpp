@@ -5,9 +5,10 @@
 
 #include <optional>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/json_text.h"
-#include "cli/trust_option.h"
+#include "cli/number_text.h"
+#include "cli/remarks.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -15,6 +16,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/tuning.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::cli {
@@ -25,21 +27,17 @@ using Json = nlohmann::ordered_json;
 /// A file is opened several times; it is probed once, before, unless it is trusted.
 constexpr ReadOptions kProbed = {.trust = true};
 
-struct InfoOptions {
-  std::string file;
-  std::string kernel;
-  ReadOptions read;
-  bool devices = false;
-  bool json = false;
-};
-
-/// A value as text; of an object or a list, the values of its members.
+/// A value as text: of a list its members, of an object also their names.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return rounded(value.get<double>());
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (!value.is_structured()) return json_text(value);
   std::vector<std::string> parts;
-  for (const Json& part : value) parts.push_back(text_of(part));
-  return fmt::format("{}", fmt::join(parts, ", "));
+  for (const auto& [key, part] : value.items()) {
+    parts.push_back(value.is_object() ? key + " " + text_of(part) : text_of(part));
+  }
+  return fmt::format("{}", fmt::join(parts, value.is_object() ? ", " : " "));
 }
 
 void print_fact(const std::string& key, const Json& value) {
@@ -173,6 +171,7 @@ Json facts_of_scene(const std::string& file) {
   }
   if (!scene.bodies.empty()) add_bodies(facts, scene);
   add_skin(facts, scene.skin);
+  facts["remarks"] = scene.remarks;
   return facts;
 }
 
@@ -199,6 +198,7 @@ void print_devices(bool json) {
       list.push_back({{"index", device.index},
                       {"name", device.name},
                       {"platform", device.platform},
+                      {"version", device.version},
                       {"type", device.type},
                       {"lanes", device.lanes},
                       {"shares_memory", device.shares_memory},
@@ -219,7 +219,7 @@ void print_devices(bool json) {
 
 /// The stages and the source that frames of the scene would be solved with.
 void print_kernel(const std::string& scene_file) {
-  const Simulator simulator(load_scene(scene_file));
+  const Simulator simulator(load_scene_aloud(scene_file));
   const Scene& scene = simulator.scene();
   SolverPlan plan;
   plan.skin = scene.skin;
@@ -232,6 +232,8 @@ void print_kernel(const std::string& scene_file) {
   fmt::print("\n{}", kernel_source(plan, device.lanes));
 }
 
+}  // namespace
+
 void info(const InfoOptions& options) {
   if (options.devices) {
     print_devices(options.json);
@@ -243,26 +245,6 @@ void info(const InfoOptions& options) {
     print_facts({{"version", kVersion}, {"license", "MIT"}}, options.json);
     print_devices(options.json);
   }
-}
-
-}  // namespace
-
-void add_info(CLI::App& app, Work& work) {
-  const auto options = std::make_shared<InfoOptions>();
-  CLI::App* const command =
-      app.add_subcommand("info", "Describe a file, the OpenCL devices, or a scene's kernel");
-  CLI::Option* const file = command->add_option(
-      "FILE", options->file,
-      "Recording, Tekscan export, force fields, calibration or scene to describe");
-  CLI::Option* const devices =
-      command->add_flag("--devices", options->devices, "List the OpenCL devices");
-  CLI::Option* const kernel = command->add_option(
-      "--kernel", options->kernel, "Print the stages of a scene and the OpenCL C compiled for it");
-  file->excludes(devices)->excludes(kernel);
-  devices->excludes(kernel);
-  add_trust_option(*command, options->read);
-  command->add_flag("--json", options->json, "Print as JSON")->excludes(kernel);
-  command->callback([options, &work] { work = [options] { info(*options); }; });
 }
 
 }  // namespace pillarfield::cli

@@ -1,4 +1,4 @@
-// pillarfield live: frames at a fixed rate, and how late their forces come.
+// pillarfield pace: solves frames at a fixed rate and reports how late their forces are.
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -8,14 +8,11 @@
 #include <optional>
 #include <span>
 
-#include "cli/command.h"
-#include "cli/device_options.h"
+#include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/live_frames.h"
 #include "cli/live_report.h"
 #include "cli/live_run.h"
-#include "cli/number_range.h"
-#include "cli/plan_options.h"
 #include "cli/progress.h"
 #include "cli/realtime.h"
 #include "pillarfield/error.h"
@@ -25,52 +22,29 @@
 namespace pillarfield::cli {
 namespace {
 
-struct LiveOptions {
-  std::string source;
-  double rate_hz = 1000;
-  double seconds = 10;
-  std::optional<double> deadline_ms;
-  std::uint64_t backlog_frames = 4;
-  int frames_in_flight = 2;
-  double spin_us = 0;
-  std::uint64_t memory_limit_mib = 1024;
-  bool half = false;
-  bool realtime = false;
-  bool strict = false;
-  PlanOptions plan;
-  DeviceOptions device;
-  bool json = false;
-  bool quiet = false;
-};
-
-void require_between(const char* option, double value, double least, double most) {
-  if (value >= least && value <= most) return;
-  throw Error(option, fmt::format("{:g} is out of range", value),
-              fmt::format("give {:g} to {:g}", least, most));
-}
-
 Nanoseconds nanoseconds(double seconds) { return Nanoseconds(std::llround(1e9 * seconds)); }
 
-LiveSchedule schedule_of(const LiveOptions& options) {
+LiveSchedule schedule_of(const PaceOptions& options) {
   constexpr double kMostFrames = 1e7;  // Each leaves its latency in memory.
-  require_between("--rate", options.rate_hz, 0.01, 1e5);
-  require_between("--seconds", options.seconds, 0.5 / options.rate_hz,
-                  kMostFrames / options.rate_hz);
-  require_between("--spin", options.spin_us, 0, 1e6);
+  const double frames = options.rate_hz * options.seconds;
+  if (!(frames >= 0.5 && frames <= kMostFrames)) {
+    throw Error(
+        "--seconds",
+        fmt::format("{:g} s at {:g} Hz are {:g} frames", options.seconds, options.rate_hz, frames),
+        fmt::format("give {:g} to {:g}", 0.5 / options.rate_hz, kMostFrames / options.rate_hz));
+  }
   return {.rate_hz = options.rate_hz,
-          .frames = static_cast<std::uint64_t>(std::llround(options.rate_hz * options.seconds)),
+          .frames = static_cast<std::uint64_t>(std::llround(frames)),
           .backlog_frames = options.backlog_frames,
           .spin = nanoseconds(1e-6 * options.spin_us)};
 }
 
-Nanoseconds deadline_of(const LiveOptions& options) {
-  const double deadline_ms = options.deadline_ms.value_or(1e3 / options.rate_hz);
-  require_between("--deadline", deadline_ms, 1e-3, 1e6);
-  return nanoseconds(1e-3 * deadline_ms);
+Nanoseconds deadline_of(const PaceOptions& options) {
+  return nanoseconds(1e-3 * options.deadline_ms.value_or(1e3 / options.rate_hz));
 }
 
 /// Time goes on where frames come again, so the interval is that of the run, not of the file.
-SolverPlan plan_of(const LiveOptions& options, const LiveFrames& live) {
+SolverPlan plan_of(const PaceOptions& options, const LiveFrames& live) {
   SolverPlan plan;
   plan.skin = live.skin;
   plan.sensel_type = live.sensel_type;
@@ -140,7 +114,7 @@ std::string remark_on(const char* what, const std::string& refused) {
 }
 
 /// Says what a user may wonder about while nothing else is written.
-void announce(const LiveReport& report, const LiveOptions& options) {
+void announce(const LiveReport& report, const PaceOptions& options) {
   if (report.realtime) {
     fmt::print(stderr, "{}{}",
                remark_on("real-time scheduling", report.realtime->scheduling_refused),
@@ -152,13 +126,13 @@ void announce(const LiveReport& report, const LiveOptions& options) {
                options.memory_limit_mib);
   }
   if (options.quiet || isatty(STDERR_FILENO) == 0) return;
-  fmt::print(stderr, "Live for {:g} s at {:g} Hz, {}\n", options.seconds, options.rate_hz,
+  fmt::print(stderr, "Pacing for {:g} s at {:g} Hz, {}\n", options.seconds, options.rate_hz,
              report.frames_loaded < report.schedule.frames
                  ? fmt::format("{} frames over and over ...", report.frames_loaded)
                  : "each frame once ...");
 }
 
-void print(const LiveReport& report, const LiveOptions& options, const SolverPlan& plan,
+void print(const LiveReport& report, const PaceOptions& options, const SolverPlan& plan,
            const Processor& processor) {
   if (options.json) {
     print_live_json(report, plan, processor);
@@ -183,7 +157,9 @@ void require_success(const LiveReport& report) {
       "ask for a lower --rate, a later --deadline or fewer outputs");
 }
 
-void live(const LiveOptions& options) {
+}  // namespace
+
+void pace(const PaceOptions& options) {
   LiveReport report;
   report.source = options.source;
   report.schedule = schedule_of(options);
@@ -222,53 +198,6 @@ void live(const LiveOptions& options) {
   report.last_frame.add(stopwatches.status);
   print(report, options, plan, processor);
   if (options.strict) require_success(report);
-}
-
-void add_run_options(CLI::App& command, LiveOptions& options) {
-  command.add_option("--rate", options.rate_hz, "Frames per second [1000]");
-  command.add_option("--seconds", options.seconds, "How long the run lasts [10]");
-  command.add_option("--deadline", options.deadline_ms,
-                     "Milliseconds from when a frame is due until its forces must be there "
-                     "[one period]");
-  command
-      .add_option("--backlog", options.backlog_frames,
-                  "Drop a frame whose turn comes more than so many frames late [4]")
-      ->check(whole_number_range(0, 1000));
-  command
-      .add_option("--in-flight", options.frames_in_flight,
-                  "While the solver is late, start so many frames before the first is done [2]")
-      ->check(whole_number_range(1, 64));
-  command.add_option("--spin", options.spin_us,
-                     "Of each wait, spend the last so many microseconds spinning [0]");
-  command
-      .add_option("--memory-limit", options.memory_limit_mib,
-                  "Frames are loaded beforehand, into so many MiB at most [1024]")
-      ->check(whole_number_range(1, 1U << 20U));
-  command.add_flag(
-      "--half", options.half,
-      "Forces of half precision, which take fewer bytes to memory; not with --estimator contact");
-  command.add_flag("--realtime", options.realtime,
-                   "Ask for real-time scheduling and locked memory; says so where refused");
-  command.add_flag("--strict", options.strict,
-                   "Fail where a frame was dropped, missed its deadline, or the run was cut short");
-}
-
-}  // namespace
-
-void add_live(CLI::App& app, Work& work) {
-  const auto options = std::make_shared<LiveOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "live", "Solve frames at a fixed rate, and tell how late their forces come");
-  command
-      ->add_option("SOURCE", options->source,
-                   "Scene (TOML), recording (HDF5) or Tekscan ASCII export, replayed from memory")
-      ->required();
-  add_run_options(*command, *options);
-  add_plan_options(*command, options->plan);
-  add_device_options(*command, options->device);
-  command->add_flag("--json", options->json, "Print the report as JSON");
-  command->add_flag("-q,--quiet", options->quiet, "Show no progress");
-  command->callback([options, &work] { work = [options] { live(*options); }; });
 }
 
 }  // namespace pillarfield::cli

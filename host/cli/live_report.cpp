@@ -9,7 +9,9 @@
 
 #include "cli/json_text.h"
 #include "cli/latencies.h"
+#include "cli/number_text.h"
 #include "pillarfield/printable.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -17,8 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 double seconds(Nanoseconds time) { return std::chrono::duration<double>(time).count(); }
-double milliseconds(Nanoseconds time) { return 1e3 * seconds(time); }
-double microseconds(Nanoseconds time) { return 1e6 * seconds(time); }
+double microseconds(Nanoseconds time) { return static_cast<double>(time.count()) / 1e3; }
+double milliseconds(Nanoseconds time) { return static_cast<double>(time.count()) / 1e6; }
 
 double achieved_rate_hz(const LiveResult& result) {
   return result.elapsed > Nanoseconds(0)
@@ -65,8 +67,8 @@ void print_counts(const LiveReport& report, const Latencies& latencies) {
   const LiveResult& result = report.result;
   const LiveSchedule& schedule = report.schedule;
   fmt::print("  scheduled {:9}  in {:.3f} s\n", result.scheduled(), seconds(result.elapsed));
-  fmt::print("  solved    {:9}  {:.2f} frames/s of {:g} asked for\n", result.solved(),
-             achieved_rate_hz(result), schedule.rate_hz);
+  fmt::print("  solved    {:9}  {} frames/s of {} asked for\n", result.solved(),
+             rounded(achieved_rate_hz(result)), rounded(schedule.rate_hz));
   fmt::print("  dropped   {:9}  their turn came more than {} frames late\n", result.dropped,
              schedule.backlog_frames);
   fmt::print("  missed    {:9}  solved later than the deadline of {:.3f} ms\n",
@@ -74,13 +76,14 @@ void print_counts(const LiveReport& report, const Latencies& latencies) {
 }
 
 void print_histogram(const std::vector<LatencyBin>& bins) {
-  constexpr double kWidth = 40;
+  constexpr double kBarWidth = 40;
   const auto fuller = [](const LatencyBin& a, const LatencyBin& b) { return a.frames < b.frames; };
   const auto fullest = std::ranges::max_element(bins, fuller);
   for (const LatencyBin& bin : bins) {
     const double share = static_cast<double>(bin.frames) / static_cast<double>(fullest->frames);
     fmt::print("  {:>8.3f} to {:>8.3f} {:>9}  {}\n", milliseconds(bin.from), milliseconds(bin.to),
-               bin.frames, std::string(static_cast<std::size_t>(std::ceil(kWidth * share)), '#'));
+               bin.frames,
+               std::string(static_cast<std::size_t>(std::ceil(kBarWidth * share)), '#'));
   }
 }
 
@@ -97,9 +100,10 @@ void print_usage(const LiveReport& report) {
   const ProcessUsage& usage = report.usage;
   fmt::print(
       "Used {:.2f} of {} cores; threads waited {} times and gave way {} times; page faults: ",
-      busy_cores(report), std::thread::hardware_concurrency(), usage.voluntary_switches,
-      usage.involuntary_switches);
-  fmt::print("{} from memory, {} from disk\n", usage.minor_page_faults, usage.major_page_faults);
+      busy_cores(report), std::thread::hardware_concurrency(), grouped(usage.voluntary_switches),
+      grouped(usage.involuntary_switches));
+  fmt::print("{} from memory, {} from disk\n", grouped(usage.minor_page_faults),
+             grouped(usage.major_page_faults));
 }
 
 }  // namespace
@@ -159,8 +163,8 @@ void print_live_text(const LiveReport& report, const SolverPlan& plan, const Pro
   print_counts(report, latencies);
   print_latencies(latencies);
   print_usage(report);
-  fmt::print("In contact in the last frame: {:.2f} % of the pillars\n",
-             100 * contact_share(report.last_frame));
+  fmt::print("In contact in the last frame: {} of the pillars\n",
+             percent(report.last_frame.in_contact(), report.last_frame.all()));
 }
 
 }  // namespace pillarfield::cli

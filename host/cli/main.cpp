@@ -3,10 +3,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "cli/command.h"
+#include "cli/arguments.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
-#include "pillarfield/version.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -14,11 +13,6 @@ namespace {
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongCommandLine = 2;
-
-constexpr const char* kFooter = R"(
-Try:  pillarfield simulate scenes/demo.toml -o demo.h5
-      pillarfield solve demo.h5 -o forces.h5
-      pillarfield compare forces.h5 demo.h5)";
 
 /// For use where nothing may throw any more.
 int complain(const char* message) noexcept {
@@ -36,25 +30,7 @@ int complain_of(const std::exception& error) noexcept {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Turns frames of a high-density artificial skin into fields of three-axis force.",
-               "pillarfield");
-  app.set_version_flag("--version", kVersion, "Print the version and exit");
-  app.require_subcommand(1);
-  app.footer(kFooter);
-  Work work;
-  add_simulate(app, work);
-  add_solve(app, work);
-  add_live(app, work);
-  add_compare(app, work);
-  add_calibrate(app, work);
-  add_testbed(app, work);
-  add_info(app, work);
-  add_completion(app, work);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kDone : kWrongCommandLine;
-  }
+  const std::function<void()> work = parse_arguments(argc, argv);
   catch_interrupts();
   work();
   if (std::fflush(stdout) != 0) return complain("standard output cannot be written");
@@ -67,6 +43,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     return pillarfield::cli::run(argc, argv);
+  } catch (const pillarfield::cli::WrongCommandLine& error) {
+    pillarfield::cli::complain_of(error);
+    return pillarfield::cli::kWrongCommandLine;
   } catch (const std::bad_alloc&) {
     return pillarfield::cli::complain("out of memory; take a smaller patch");
   } catch (const std::exception& error) {

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/choice.h"
-#include "cli/number_range.h"
-#include "cli/trust_option.h"
+#include "cli/remarks.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -29,7 +28,7 @@ bool asks_for(const PlanOptions& options, const char* output) {
 
 /// Applies the scene; returns the time constant of the baseline that it asks for.
 std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
-  const Scene scene = load_scene(file);
+  const Scene scene = load_scene_aloud(file);
   plan.skin.counts_per_newton = scene.skin.counts_per_newton;
   plan.skin.threshold_counts = scene.skin.threshold_counts;
   plan.skin.full_scale_counts = scene.skin.full_scale_counts;
@@ -65,25 +64,6 @@ void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s
   }
 }
 
-void add_friction_options(CLI::App& command, PlanOptions& options) {
-  command
-      .add_option("--friction", options.friction,
-                  "The friction coefficient of all contacts, to 3 % [learnt from what they show]")
-      ->check(number_range(0.1, 9.9).description("RATIO"));
-  command
-      .add_option("--friction-bound", options.friction_bound,
-                  "No friction coefficient is larger [not known]")
-      ->check(number_range(0.1, 100).description("RATIO"));
-  command
-      .add_option("--friction-prior", options.friction_prior,
-                  "Friction coefficients before any reading, log-normal, MEDIAN,SPREAD [1,0.5]")
-      ->expected(2)
-      ->delimiter(',')
-      ->check(number_range(0.01, 9.9).description("NUMBER"));
-  command.add_flag("--unrelated-frames", options.unrelated_frames,
-                   "What a contact showed of its friction in earlier frames does not count");
-}
-
 /// Applies what is said of friction.
 void apply_friction(const PlanOptions& options, FrictionKnowledge& friction) {
   if (options.friction) friction.given = options.friction;
@@ -106,57 +86,6 @@ void apply_segment_point(const PlanOptions& options, const std::string& source, 
 }
 
 }  // namespace
-
-void add_plan_options(CLI::App& command, PlanOptions& options) {
-  command.add_option("--scene", options.scene,
-                     "Take the sensor's constants and the parity test from a scene file");
-  command.add_option("--calibration", options.calibration,
-                     "Take planes and constants from a calibration made by calibrate");
-  add_trust_option(command, options.read);
-  add_choice<Estimator>(
-      command, "--estimator", options.estimator,
-      {{"direct", Estimator::direct},
-       {"paper", Estimator::paper},
-       {"contact", Estimator::contact},
-       {"field", Estimator::contact}},
-      "How forces are estimated: direct; the paper's equations; or contact, which estimates "
-      "ambiguous pillars by the friction of their contact (field is its former name) [direct]");
-  command
-      .add_option("--segment-point", options.segment_point,
-                  "Where the force of a pillar with two adjacent usable sensels is put, as a "
-                  "fraction of the largest normal force that its readings allow; 0.5: the middle, "
-                  "whose largest error is the least [0.875]")
-      ->check(number_range(1e-6, 1).description("FRACTION"));
-  add_friction_options(command, options);
-  command
-      .add_option("--outputs", options.outputs,
-                  "What is computed: forces; angles adds magnitude, theta and phi; uncertainty "
-                  "adds standard deviations and the ends of ambiguous forces [forces]")
-      ->check(CLI::IsMember({"forces", "angles", "uncertainty"}))
-      ->delimiter(',');
-  command.add_option("--threshold", options.threshold_counts,
-                     "Readings above so many counts are usable [the file's]");
-  command.add_option("--counts-per-newton", options.counts_per_newton,
-                     "Counts per newton and pillar [the file's]");
-  command.add_option("--full-scale", options.full_scale_counts,
-                     "Readings of so many counts or more are saturated [the file's]");
-  command.add_option("--parity-tolerance", options.parity_tolerance_counts,
-                     "Flag pillars whose redundant reading is off by more counts [not tested]");
-  command.add_option("--noise", options.noise_counts,
-                     "Standard deviation of a reading, counts [the calibration's or scene's]");
-  command
-      .add_option("--follow-baseline", options.baseline_time_s,
-                  "Let the tare of untouched sensels follow a drift, time constant in seconds "
-                  "[stays]")
-      ->check(number_range(1e-6, 1e9).description("SECONDS"));
-  command
-      .add_option("--baseline-interval", options.baseline_interval,
-                  "Follow it in one pillar row of so many after each frame, at that share of the "
-                  "cost [1; --everything: up to 16]")
-      ->check(whole_number_range(1, 1024).description("FRAMES"));
-  command.add_flag("--everything", options.everything,
-                   "All outputs, the parity test, and the baseline followed; needs the noise");
-}
 
 SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::string& source,
                    const std::function<double()>& frame_interval_s) {

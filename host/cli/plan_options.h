@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
@@ -32,9 +31,6 @@ struct PlanOptions {
   std::optional<int> baseline_interval;
   bool everything = false;
 };
-
-/// --scene, --calibration, --trust-input, --estimator, ... of every command that solves frames.
-void add_plan_options(CLI::App& command, PlanOptions& options);
 
 /// The plan for frames of the skin, sensel type and calibration of `plan`: what the scene says of
 /// them, then the calibration, then the other options. `source` names the frames in messages;

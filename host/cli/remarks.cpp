@@ -12,4 +12,10 @@ void print_file_remarks(const std::string& file, const std::vector<std::string>&
   }
 }
 
+Scene load_scene_aloud(const std::string& file) {
+  Scene scene = load_scene(file);
+  print_file_remarks(file, scene.remarks);
+  return scene;
+}
+
 }  // namespace pillarfield::cli

@@ -4,13 +4,10 @@
 
 #include <filesystem>
 
-#include "cli/command.h"
-#include "cli/contact_output.h"
-#include "cli/device_options.h"
+#include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
-#include "cli/output_options.h"
-#include "cli/plan_options.h"
+#include "cli/number_text.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/remarks.h"
@@ -21,20 +18,10 @@
 #include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
 namespace {
-
-struct SolveOptions {
-  std::string input;
-  std::string output;
-  PlanOptions plan;
-  DeviceOptions device;
-  ContactOutputOptions contacts;
-  Replace replace = Replace::results;
-  bool json = false;
-  bool quiet = false;
-};
 
 struct SolveSummary {
   PipelineStatistics done;
@@ -99,10 +86,6 @@ class Counter final : public ForceSink {
 
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
 
-double percent(std::uint64_t part, std::uint64_t whole) {
-  return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
-}
-
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
                 const SolveSummary& summary, const std::vector<std::string>& remarks) {
   nlohmann::ordered_json regions;
@@ -140,31 +123,45 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   const auto frames = static_cast<double>(summary.done.frames);
   const auto pillars = static_cast<double>(regions.all());
   const DeviceInfo& device = processor.device().info();
-  fmt::print("Solved {} frames of {} x {} pillars on {} ({}, {})\n", summary.done.frames,
+  fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.done.frames, "frame"),
              plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
              processor.shares_memory() ? "zero copy" : "staged");
-  fmt::print("  reading, solving, writing  {:.2f} s, {:.1f} frames/s, {:.3g} million pillars/s\n",
-             summary.seconds, per_second(frames, summary.seconds),
+  fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million pillars/s\n",
+             summary.seconds, rounded(per_second(frames, summary.seconds)),
              per_second(pillars, summary.seconds) / 1e6);
   fmt::print("  opening, compiling         {:.2f} s\n", summary.startup_seconds);
-  fmt::print("In contact: {} of {} pillars ({:.2f} %), of these\n", regions.in_contact(),
-             regions.all(), percent(regions.in_contact(), regions.all()));
+  fmt::print("In contact: {} of {} pillars ({}), of these\n", grouped(regions.in_contact()),
+             grouped(regions.all()), percent(regions.in_contact(), regions.all()));
   for (const Region region : kContactRegions) {
-    fmt::print("  {:<9} {:6.2f} %  {}\n",
+    fmt::print("  {:<9} {:>7}  {}\n",
                region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
   if (plan.estimator == Estimator::contact) {
     fmt::print("Resolved with the help of their contacts: {} of {} pillars of region 3\n",
-               regions.resolved, regions.of(Region::three));
+               grouped(regions.resolved), grouped(regions.of(Region::three)));
   }
   fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
-             regions.saturated, regions.inconsistent);
+             grouped(regions.saturated), grouped(regions.inconsistent));
   if (!options.contacts.file.empty()) {
-    fmt::print("Contacts: {} in all, at most {} at once, in {}\n", summary.done.contacts,
+    fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
                summary.done.most_contacts, printable(options.contacts.file));
   }
   fmt::print("Wrote {}\n", printable(options.output));
+}
+
+/// Where nearly all pillars of a real skin are in contact, its tare is likely to be missing.
+void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
+                  const RegionCount& regions) {
+  constexpr double kNearlyAll = 0.95;
+  if (source.has_truth() || !plan.calibration.tare.empty() || regions.all() == 0 ||
+      static_cast<double>(regions.in_contact()) < kNearlyAll * static_cast<double>(regions.all())) {
+    return;
+  }
+  fmt::print(stderr,
+             "{}: {} of all pillars are in contact and it has no tare; measure one with "
+             "'pillarfield calibrate tare'\n",
+             printable(options.input), percent(regions.in_contact(), regions.all()));
 }
 
 void check_solve_outputs(const SolveOptions& options) {
@@ -193,7 +190,10 @@ void run(const SolveOptions& options, FrameSource& source, Processor& processor,
   for (const auto& file : files) file->finish();
 }
 
-void solve(SolveOptions options) {
+}  // namespace
+
+void solve(const SolveOptions& asked) {
+  SolveOptions options = asked;
   const Stopwatch watch;
   check(options.contacts, options.output);
   check_solve_outputs(options);
@@ -222,33 +222,12 @@ void solve(SolveOptions options) {
   summary.startup_seconds = watch.seconds();
   run(options, *source, processor, files, tracker ? &*tracker : nullptr, summary);
   summary.seconds = watch.seconds() - summary.startup_seconds;
+  warn_of_tare(options, *source, plan, summary.regions);
   if (options.json) {
     print_json(options, plan, processor, summary, source->remarks());
-  } else {
+  } else if (!options.quiet) {
     print_text(options, plan, processor, summary);
   }
-}
-
-}  // namespace
-
-void add_solve(CLI::App& app, Work& work) {
-  const auto options = std::make_shared<SolveOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "solve", "Turn frames into fields of three-axis force, in newtons per pillar");
-  command
-      ->add_option("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export (raw units)")
-      ->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "Force fields to write; the ending chooses: " + endings_of(OutputKind::forces))
-      ->required();
-  add_plan_options(*command, options->plan);
-  add_contact_options(*command, options->contacts);
-  add_device_options(*command, options->device);
-  add_overwrite_option(*command, options->replace);
-  command->add_flag("--json", options->json, "Print the summary as JSON");
-  command->add_flag("-q,--quiet", options->quiet, "Show no progress");
-  command->callback([options, &work] { work = [options] { solve(*options); }; });
 }
 
 }  // namespace pillarfield::cli

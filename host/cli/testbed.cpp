@@ -8,10 +8,8 @@
 #include <span>
 #include <string_view>
 
-#include "cli/command.h"
+#include "cli/commands.h"
 #include "cli/json_text.h"
-#include "cli/number_range.h"
-#include "cli/output_options.h"
 #include "pillarfield/printable.h"
 #include "testbed/figures.h"
 #include "testbed/magnitude.h"
@@ -24,14 +22,6 @@ using Json = nlohmann::ordered_json;
 using testbed::MagnitudeFigure;
 using testbed::Statistics;
 using testbed::TableTwo;
-
-struct TestbedOptions {
-  testbed::Parameters parameters;
-  std::uint64_t runs = 1000;
-  std::string figures;
-  Replace replace = Replace::results;
-  bool json = false;
-};
 
 Json json_of(const Statistics& statistics) {
   return {{"mean", statistics.mean},
@@ -198,6 +188,8 @@ void print_magnitudes(const MagnitudeFigure& figure) {
   }
 }
 
+}  // namespace
+
 void run_testbed(const TestbedOptions& options) {
   const testbed::Parameters& parameters = options.parameters;
   testbed::check(parameters);
@@ -216,44 +208,6 @@ void run_testbed(const TestbedOptions& options) {
   print_magnitudes(figure);
   if (!options.figures.empty())
     fmt::print("\nDrew Figures 3, 4, 5 and 8 in {}\n", printable(options.figures));
-}
-
-void add_parameters(CLI::App& command, testbed::Parameters& parameters) {
-  PillarSensor& sensor = parameters.sensor;
-  command.add_option("--counts-per-newton", sensor.counts_per_newton,
-                     "Counts per newton and pillar [20]");
-  command.add_option("--dead-zone", sensor.dead_zone_counts,
-                     "Counts that a sensel swallows before it answers [144]");
-  command.add_option("--threshold", sensor.threshold_counts,
-                     "Readings above so many counts are usable [3]");
-  command.add_option("--noise", sensor.noise_counts,
-                     "Standard deviation of a reading, counts [0.5]");
-  command.add_option("--full-scale", sensor.full_scale_counts,
-                     "Largest reading of the converter, counts [4095]");
-  command.add_option("--positioner", parameters.positioner_rad,
-                     "A direction's angles are off by at most this, rad [0.04]");
-  command.add_option("--play", parameters.play_rad,
-                     "They turn by at most this as the force rises, rad [0.01]");
-  command.add_option("--probe-resolution", parameters.probe_resolution_n,
-                     "Resolution of the applied force, N [0.1]");
-  command.add_option("--seed", parameters.seed, "Seed of the testbed's randomness [1]")
-      ->check(whole_number_range(0, kLargestSeed));
-}
-
-}  // namespace
-
-void add_testbed(CLI::App& app, Work& work) {
-  const auto options = std::make_shared<TestbedOptions>();
-  CLI::App* const command = app.add_subcommand(
-      "testbed", "Repeat the paper's experiment on a single pillar: its Table II and its figures");
-  command->add_option("--figures", options->figures,
-                      "Draw Figures 3, 4, 5 and 8 into this folder, as SVG and PNG (gnuplot)");
-  command->add_option("--runs", options->runs, "Repetitions of the experiment [1000]")
-      ->check(whole_number_range(2, 1'000'000));
-  add_parameters(*command, options->parameters);
-  add_overwrite_option(*command, options->replace);
-  command->add_flag("--json", options->json, "Print the results as JSON");
-  command->callback([options, &work] { work = [options] { run_testbed(*options); }; });
 }
 
 }  // namespace pillarfield::cli

@@ -47,6 +47,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int 
   const cl_device_type type = device.getInfo<CL_DEVICE_TYPE>();
   info.name = device.getInfo<CL_DEVICE_NAME>();
   info.platform = platform.getInfo<CL_PLATFORM_NAME>();
+  info.version = device.getInfo<CL_DEVICE_VERSION>();
   info.type = type_name(type);
   info.lanes = (type & CL_DEVICE_TYPE_CPU) != 0 ? kLanesOfCpu : 1;
   info.shares_memory = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;

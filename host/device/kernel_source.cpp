@@ -8,7 +8,7 @@
 #include "device/block_lanes.h"
 #include "device/kernel_files.h"
 #include "device/sensel_macro.h"
-#include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/wake_levels.h"
 

@@ -13,6 +13,7 @@
 #include "device/slot.h"
 #include "device/slot_turns.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 namespace {
@@ -20,12 +21,12 @@ namespace {
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
 constexpr std::chrono::milliseconds kMoment{300};  ///< that nobody minds to wait
 
-void check_options(const Processor::Options& options) {
+void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
     throw Error("Processor", fmt::format("frames_in_flight is {}", options.frames_in_flight),
                 fmt::format("it must lie in [1, {}]", kMaxFramesInFlight));
   }
-  const int lanes = options.lanes;
+  const int lanes = tuning.lanes;
   if (lanes != 0 && lanes != 1 && lanes != 2 && lanes != 4 && lanes != 8 && lanes != 16) {
     throw Error("Processor", fmt::format("lanes is {}", lanes),
                 "it must be 1, 2, 4, 8 or 16, or 0 for the device's own");
@@ -43,8 +44,8 @@ bool decide_sharing(Memory memory, const Device& device) {
 
 /// The paths with what the device leaves to choose decided.
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
-                        const Processor::Options& options) {
-  SpeedPaths paths = options.paths;
+                        const Processor::Options& options, const ProcessorTuning& tuning) {
+  SpeedPaths paths = tuning.paths;
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
   if (plan.half_output) return paths;  // Half a cache line at a time is slow to stream.
@@ -83,20 +84,21 @@ std::string line_on_compiling(const DeviceInfo& device) {
 }  // namespace
 
 struct Processor::State {
-  State(const Device& opened, const SolverPlan& wanted, const Options& options)
+  State(const Device& opened, const SolverPlan& wanted, const Options& options,
+        const ProcessorTuning& tuning)
       : device(opened),
         skin(wanted.skin),
         sensel_type(wanted.sensel_type),
         half_output(wanted.half_output),
         shares_memory(decide_sharing(options.memory, opened)),
-        calibration(opened.state().context, wanted, options.paths),
+        calibration(opened.state().context, wanted, tuning.paths),
         turns(static_cast<std::size_t>(options.frames_in_flight)) {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
-    const int lanes = options.lanes != 0 ? options.lanes : device.info().lanes;
+    const int lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
     settings.lanes = block_lanes(lanes, skin.pillar_cols());
-    settings.paths = decide_paths(device, wanted, options);
+    settings.paths = decide_paths(device, wanted, options, tuning);
     settings.program =
         device.state().program(kernel_source(wanted, settings.lanes, settings.paths));
     settings.shares_memory = shares_memory;
@@ -151,17 +153,21 @@ Processor::Kept::~Kept() = default;
 
 std::span<const std::byte> Processor::Kept::pages() const { return state_->slot->pages(); }
 
-Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options) {
-  check_options(options);
+Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options,
+                     const ProcessorTuning& tuning) {
+  check_options(options, tuning);
   check(plan, "solver plan");
   std::function<void()> tell;
   if (options.on_compiling) {
     tell = [&] { options.on_compiling(line_on_compiling(device.info())); };
   }
   const LateCall notice(kMoment, tell);
-  state_ = with_opencl_errors(device.info().name,
-                              [&] { return std::make_unique<State>(device, plan, options); });
+  state_ = with_opencl_errors(
+      device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
 }
+
+Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options)
+    : Processor(device, plan, options, ProcessorTuning{}) {}
 
 Processor::Processor(const Device& device, const SolverPlan& plan)
     : Processor(device, plan, Options{}) {}
@@ -171,17 +177,7 @@ Processor::Processor(Processor&&) noexcept = default;
 Processor& Processor::operator=(Processor&&) noexcept = default;
 
 void Processor::submit(const FrameView& frame) {
-  const Skin& skin = state_->skin;
-  if (frame.rows != skin.rows || frame.cols != skin.cols || frame.type != state_->sensel_type) {
-    throw Error("Processor::submit",
-                fmt::format("the frame is {} x {} {}", frame.rows, frame.cols, name_of(frame.type)),
-                fmt::format("the plan says {} x {} {}", skin.rows, skin.cols,
-                            name_of(state_->sensel_type)));
-  }
-  if (frame.data == nullptr || frame.row_stride < frame.cols) {
-    throw Error("Processor::submit", "the frame has no data or rows that overlap",
-                "row_stride counts readings and is at least cols");
-  }
+  check(frame, state_->skin, state_->sensel_type, "Processor::submit");
   const std::optional<std::size_t> slot = state_->turns.next();
   if (!slot) throw_no_slot(state_->turns);
   try {

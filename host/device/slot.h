@@ -8,6 +8,7 @@
 #include "device/device_state.h"
 #include "device/large_pages.h"
 #include "device/slot_memory.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 

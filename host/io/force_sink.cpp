@@ -34,7 +34,7 @@ std::span<const SinkFormat> sink_formats() {
 const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) {
   if (const SinkFormat* const format = format_by_ending(path, kind)) return *format;
   throw Error(path.string(),
-              kind == OutputKind::forces ? "its ending names no format of forces"
+              kind == OutputKind::forces ? "its ending is not that of a force file"
                                          : "its ending names no table of contacts",
               "end it in " + endings_of(kind));
 }

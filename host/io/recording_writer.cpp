@@ -92,11 +92,7 @@ void RecordingWriter::State::create_datasets() {
 void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
                                          const ForceField* field) const {
   const std::string where = fmt::format("{}: frame {}", part.part_path().string(), frames);
-  if (frame.type != type || frame.rows != skin.rows || frame.cols != skin.cols ||
-      frame.row_stride < frame.cols || frame.data == nullptr) {
-    throw Error(where, fmt::format("is {} x {} {}", frame.rows, frame.cols, name_of(frame.type)),
-                fmt::format("the recording is {} x {} {}", skin.rows, skin.cols, name_of(type)));
-  }
+  check(frame, skin, type, where);
   if (!std::isfinite(time_s))
     throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
   if ((field != nullptr) != options.truth) {

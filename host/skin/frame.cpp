@@ -1,7 +1,11 @@
 #include "pillarfield/frame.h"
 
+#include <fmt/format.h>
+
 #include <cstring>
 #include <new>
+
+#include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
@@ -22,5 +26,18 @@ FrameBuffer::FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols
 void FrameBuffer::Free::operator()(std::byte* memory) const { ::operator delete[](memory, kPage); }
 
 FrameView FrameBuffer::view() const { return {data_.get(), type_, rows_, cols_, cols_}; }
+
+void check(const FrameView& frame, const Skin& skin, SenselType type, std::string_view where) {
+  if (frame.rows != skin.rows || frame.cols != skin.cols || frame.type != type) {
+    throw Error(where,
+                fmt::format("the frame is {} x {} {}", frame.rows, frame.cols, name_of(frame.type)),
+                fmt::format("it must be {} x {} {}", skin.rows, skin.cols, name_of(type)));
+  }
+  if (frame.data == nullptr) throw Error(where, "the frame has no data", "set FrameView::data");
+  if (frame.row_stride < frame.cols) {
+    throw Error(where, fmt::format("row_stride is {}", frame.row_stride),
+                fmt::format("it counts readings and must be at least cols, {}", frame.cols));
+  }
+}
 
 }  // namespace pillarfield

@@ -1,8 +1,12 @@
-#include "solve/host_solve.h"
+#include "pillarfield/host_solve.h"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 
 #include "contacts/estimator/contact_estimator.h"
+#include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
@@ -102,6 +106,13 @@ bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
 
 void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces,
                              std::uint64_t index) {
+  check(frame, plan.skin, plan.sensel_type, "follow_baseline_on_host");
+  if (forces.rows != plan.skin.pillar_rows() || forces.cols != plan.skin.pillar_cols()) {
+    throw Error("follow_baseline_on_host",
+                fmt::format("the forces are {} x {}", forces.rows, forces.cols),
+                "give the forces of this frame");
+  }
+  if (plan.calibration.tare.empty()) plan.calibration.tare.resize(plan.skin.sensels());
   const SenselReader sensel(plan, frame);
   const auto rate = static_cast<float>(baseline_turn_rate(plan));
   const auto interval = static_cast<std::uint64_t>(plan.baseline_interval);
@@ -116,6 +127,8 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
 }
 
 ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
+  check(plan, "solve_on_host");
+  check(frame, plan.skin, plan.sensel_type, "solve_on_host");
   ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   PillarSolver solver(plan, frame, field);
   for (std::size_t row = 0; row < field.rows; ++row) {

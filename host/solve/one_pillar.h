@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "pillarfield/solver_plan.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/pillar_maths.h"
 

@@ -1,5 +1,7 @@
 #include "solve/sensel_reader.h"
 
+#include "pillarfield/tuning.h"
+
 namespace pillarfield {
 
 namespace maths = single_precision;

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "pillarfield/error.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/friction_limits.h"
 

@@ -8,10 +8,10 @@
 
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
 #include "simulation/ideal_readings.h"
 #include "simulation/sensor.h"
-#include "solve/host_solve.h"
 #include "testbed/testbed.h"
 
 namespace pillarfield::testbed {

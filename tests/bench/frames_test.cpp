@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "bench/variants.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield::bench {
 namespace {

@@ -15,7 +15,7 @@
 #include "bench/frames.h"
 #include "bench/variants.h"
 #include "pillarfield/error.h"
-#include "solve/host_solve.h"
+#include "pillarfield/host_solve.h"
 
 namespace pillarfield::bench {
 namespace {

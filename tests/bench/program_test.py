@@ -60,6 +60,12 @@ class Rows(unittest.TestCase):
         self.assertGreater(row["speedup"], 0)
         self.assertGreater(row["our_ns_per_pillar"], 0)
 
+    def test_a_variant_says_its_error(self):
+        row = rows("^variant/direct/float/u8/float32/none$")[0]["variant/direct/float/u8/float32/none"]
+        self.assertAlmostEqual(row["error_over_bound"], 1, delta=0.005)
+        self.assertGreater(row["error_pillars"], 200_000)
+        self.assertGreater(row["error_counts_all_regions"], row["error_counts"])
+
     def test_numpy_agrees(self):
         found, _ = rows("^opponent/numpy$")
         row = found["opponent/numpy"]

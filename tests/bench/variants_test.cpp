@@ -13,8 +13,8 @@
 #include "bench/noisy_frames.h"
 #include "bench/solve_variant.h"
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield::bench {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "pillarfield/host_solve.h"
 #include "pillarfield/simulator.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

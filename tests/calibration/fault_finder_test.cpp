@@ -9,9 +9,9 @@
 #include <functional>
 #include <limits>
 
+#include "pillarfield/host_solve.h"
 #include "pillarfield/simulator.h"
 #include "skin/pillar_sensels.h"
-#include "solve/host_solve.h"
 #include "tests/base/message.h"
 
 namespace pillarfield {

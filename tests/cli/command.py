@@ -6,6 +6,8 @@ The environment gives PILLARFIELD, the program, and PILLARFIELD_SOURCE, the proj
 import json
 import os
 import pathlib
+import pty
+import re
 import subprocess
 import tempfile
 import unittest
@@ -13,6 +15,26 @@ import unittest
 PROGRAM = os.environ["PILLARFIELD"]
 SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
 SCENES = SOURCE / "scenes"
+
+BALL = """
+title = "A ball"
+[skin]
+pillars = [20, 20]
+threshold_counts = 2
+[time]
+frames = 6
+[sensor]
+adc_bits = 8
+noise_counts = 0.5
+[[contact]]
+shape = "sphere"
+motion = "slide"
+contact_radius_mm = 8
+load_n = 20
+position_mm = [0, 0]
+friction = 0.5
+direction_deg = 30
+"""
 
 
 def run(*arguments, expect=0, **options):
@@ -27,6 +49,27 @@ def run(*arguments, expect=0, **options):
 def run_json(*arguments):
     """Runs the command with --json and returns what it printed, which must be JSON and all of it."""
     return json.loads(run(*arguments, "--json").stdout)
+
+
+def on_terminal(words, watch=lambda process, said: True, **options):
+    """Runs `words` with standard error a terminal: exit status, standard output, what was said there.
+    watch(process, said) is called with all of it so far until it returns true."""
+    controller, terminal = pty.openpty()
+    with tempfile.TemporaryFile("w+") as out, subprocess.Popen(
+            words, stdout=out, stderr=terminal, stdin=subprocess.DEVNULL, **options) as process:
+        os.close(terminal)
+        said, watched = "", False
+        try:
+            while chunk := os.read(controller, 4096).decode():
+                # PoCL lets its compiler say so where a kernel is not in its cache yet.
+                said += re.sub(r"\d+ warnings? generated.\r?\n", "", chunk)
+                watched = watched or watch(process, said)
+        except OSError:
+            pass  # Nobody has the other end any more.
+        os.close(controller)
+        status = process.wait(timeout=120)
+        out.seek(0)
+        return status, out.read(), said
 
 
 class CommandTest(unittest.TestCase):

@@ -147,16 +147,6 @@ class Contacts(CommandTest):
             run("solve", self.recording, "-o", forces, "--contacts", self.csv)
             self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)
 
-    def test_given_friction(self):
-        for estimator in ("direct", "contact"):
-            self.solve("--contacts", self.csv, "--estimator", estimator, "--friction", 2)
-            for row in self.rows():
-                if row["row"] != "ended":
-                    self.assertEqual((row["friction"], row["friction_source"]), ("2", "given"))
-                    self.assertGreater(float(row["friction_deviation"]), 0)
-        text = run("solve", self.recording, "-o", self.forces, "--contacts", self.csv).stdout
-        self.assertIn("Contacts: ", text)
-
     def friction_of(self, *arguments):
         """What the table says of all rows, and what the force file says it was given."""
         run("solve", self.recording, "-o", self.forces, "--contacts", self.csv, *arguments)
@@ -243,8 +233,6 @@ class Contacts(CommandTest):
         self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
                           "--contact-reach", "1e9", says=["the command line"])
         self.assert_folder_holds(*before)
-        result = run("solve", self.recording, "-o", self.forces, "--minimum-pillars", 4, expect=2)
-        self.assertIn("--contacts", result.stderr)
 
     def test_interrupt_leaves_no_half_table(self):
         run("simulate", SCENES / "several_contacts.toml", "-o", self.recording, "--frames", 4000,
@@ -261,11 +249,6 @@ class Contacts(CommandTest):
             self.assertEqual(process.wait(60), 1)
         self.assertEqual(self.csv.read_text(encoding="utf-8"), "precious")
         self.assert_folder_holds("contacts.csv", "several.h5")
-
-    def test_completion_knows_the_options(self):
-        script = run("completion", "bash").stdout
-        for option in ("--contacts", "--minimum-pillars", "--friction", "--contact-reach"):
-            self.assertIn(option, script)
 
 
 if __name__ == "__main__":

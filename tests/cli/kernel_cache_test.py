@@ -2,24 +2,12 @@
 
 import os
 import pathlib
-import pty
 import resource
 import shutil
 import subprocess
 import unittest
 
-from command import PROGRAM, CommandTest, run, run_json
-
-SCENE = """
-[skin]
-pillars = [2, 2]
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 1
-load_n = 1
-position_mm = [0, 0]
-"""
+from command import BALL, PROGRAM, CommandTest, on_terminal, run
 
 # A library that ends the process that loads it.
 PLANTED = "__attribute__((constructor)) static void planted(void) { _Exit(42); }"
@@ -36,7 +24,7 @@ class KernelCache(CommandTest):
     def setUp(self):
         super().setUp()
         scene = self.folder / "scene.toml"
-        scene.write_text(SCENE)
+        scene.write_text(BALL)
         self.recording = self.folder / "recording.h5"
         self.outputs = 0
         run("simulate", scene, "-o", self.recording)
@@ -106,31 +94,22 @@ class KernelCache(CommandTest):
     def test_compiling_is_announced_on_a_terminal(self):
         home = self.directory("home")
         self.assertIn(f"the next start finds them in {home}/.cache/pillarfield/kernels",
-                      self.on_terminal(HOME=home))
+                      self.said(HOME=home))
         shared = pathlib.Path("/tmp/pocl").exists()
         temporary = self.directory("temporary")
         self.assertIn("as at every start: HOME and XDG_CACHE_HOME are not set",
-                      self.on_terminal(TMPDIR=temporary))
+                      self.said(TMPDIR=temporary))
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertEqual(pathlib.Path("/tmp/pocl").exists(), shared)
-        self.assertNotIn("Compiling", self.on_terminal("--quiet", HOME=self.directory("other")))
+        self.assertNotIn("Compiling", self.said("--quiet", HOME=self.directory("other")))
 
-    def on_terminal(self, *more, **changes):
+    def said(self, *more, **changes):
         """What solving says to standard error where that is a terminal."""
-        terminal, end = pty.openpty()
-        process = subprocess.Popen(
+        status, _, said = on_terminal(
             [PROGRAM, "solve", self.recording, "-o", self.output(), *more],
-            stdout=subprocess.DEVNULL, stderr=end, env=environment(**changes))
-        os.close(end)
-        said = b""
-        try:
-            while part := os.read(terminal, 4096):
-                said += part
-        except OSError:
-            pass  # Nobody has the other end any more.
-        os.close(terminal)
-        self.assertEqual(process.wait(timeout=120), 0, said)
-        return said.decode()
+            env=environment(**changes))
+        self.assertEqual(status, 0, said)
+        return said
 
     @unittest.skipIf("ASAN_OPTIONS" in os.environ, "AddressSanitizer needs much address space")
     def test_a_driver_that_does_not_fit_is_said(self):
@@ -142,14 +121,6 @@ class KernelCache(CommandTest):
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
             self.assertIn("limited to 200 MiB: raise the limit (ulimit -v)",
                           result.stdout + result.stderr)
-
-    def test_startup_is_kept_out_of_the_rate(self):
-        solved = run_json("solve", self.recording, "-o", self.output())
-        self.assertGreater(solved["startup_seconds"], 0)
-        text = run("solve", self.recording, "-o", self.output()).stdout
-        self.assertRegex(text, r"reading, solving, writing +[\d.]+ s, [\d.]+ frames/s")
-        self.assertRegex(text, r"opening, compiling +[\d.]+ s\n")
-        self.assertNotIn("alone", text)
 
 
 if __name__ == "__main__":

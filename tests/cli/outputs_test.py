@@ -15,7 +15,7 @@ import unittest
 import h5py
 import numpy
 
-from command import PROGRAM, CommandTest, run
+from command import PROGRAM, CommandTest, run, run_json
 
 PAIRS = 6
 
@@ -305,11 +305,24 @@ class Ends(OutputTest):
         self.assertGreater(frames, 0)
         run("info", self.part)
 
-    def test_hang_up(self):
-        status, lines = self.simulate(lambda process: process.send_signal(signal.SIGHUP))
-        self.assertEqual((status, len(lines)), (1, 1), lines)
-        self.assertIn("interrupted after", lines[0])
-        self.assert_part_is_read()
+    def test_signals_end_it_in_one_line(self):
+        for ending in (signal.SIGHUP, signal.SIGINT):
+            status, lines = self.simulate(lambda process, ending=ending: process.send_signal(ending))
+            self.assertEqual((status, len(lines)), (1, 1), lines)
+            self.assertIn("long.h5: interrupted after", lines[0])
+            self.assert_part_is_read()
+            self.part.unlink()
+
+    def test_killed(self):
+        status, _ = self.simulate(lambda process: process.send_signal(signal.SIGKILL))
+        self.assertEqual(status, -signal.SIGKILL)
+        self.assertFalse((self.folder / "long.h5").exists())
+        facts = run_json("info", self.part)
+        self.assertGreater(facts["frames"], 16)
+        self.assertTrue(facts["truth"])
+        forces = self.folder / "forces.h5"
+        self.assertEqual(run_json("solve", self.part, "-o", forces)["frames"], facts["frames"])
+        self.assertLess(run_json("compare", forces, self.part)["regions"]["1"]["rms_n"], 1.5 / 320)
 
     def test_hang_up_is_ignored_where_it_was(self):
         def hang_up_then_stop(process):

@@ -9,24 +9,9 @@ import unittest
 import h5py
 import numpy
 
-from command import PROGRAM, CommandTest, run
+from command import BALL, PROGRAM, CommandTest, run
 
-SCENE = """
-title = "{title}"
-[skin]
-pillars = [4, 4]
-[time]
-frames = 10
-[sensor]
-adc_bits = 8
-noise_counts = 0.5
-[[contact]]
-shape = "sphere"
-motion = "press"
-contact_radius_mm = 3
-load_n = 2
-position_mm = [0, 0]
-"""
+SCENE = BALL.replace("A ball", "{title}").replace("frames = 6", "frames = 10")
 
 ESCAPES = "a\x1b[31mb\x1b]0;c\x07\x9b2Jd\x7f"
 ESCAPED = r"a\u001b[31mb\u001b]0;c\u0007\u009b2Jd\u007f"
@@ -68,8 +53,8 @@ class StrangeText(CommandTest):
                          "i\ufffdn.h5")
         compared = json.loads(output_of("compare", forces, recording, "--json")[0])
         self.assertEqual(compared["frames"], 10)
-        live = json.loads(output_of("live", recording, "--seconds", "0.1", "--json")[0])
-        self.assertTrue(live["source"].endswith("i\ufffdn.h5"))
+        paced = json.loads(output_of("pace", recording, "--seconds", "0.1", "--json")[0])
+        self.assertTrue(paced["source"].endswith("i\ufffdn.h5"))
         calibration = name(b"k\xff.h5")
         for step, written in ((["tare", recording, "--preloaded"], calibration),
                               (["apply", calibration, recording], name(b"l\xff.h5"))):
@@ -102,7 +87,7 @@ class StrangeText(CommandTest):
     def test_names_of_files_do_not_command_the_terminal(self):
         absent = self.folder / f"{ESCAPES}.h5"
         for command in (["info", absent], ["solve", absent, "-o", "a.h5"],
-                        ["compare", absent, absent], ["live", absent],
+                        ["compare", absent, absent], ["pace", absent],
                         ["calibrate", "tare", absent, "-o", "a.h5"]):
             self.assertIn(ESCAPED, self.either(*command)[1])
         self.assertIn(ESCAPED, self.either("simulate", self.scene, "-o", absent)[0])

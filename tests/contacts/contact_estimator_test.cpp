@@ -11,10 +11,10 @@
 #include <limits>
 #include <string>
 
+#include "pillarfield/host_solve.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

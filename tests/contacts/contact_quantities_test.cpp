@@ -9,9 +9,9 @@
 #include <string>
 
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

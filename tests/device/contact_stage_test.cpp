@@ -8,13 +8,14 @@
 
 #include "contacts/estimator/contact_estimator.h"
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "pillarfield/status.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
 #include "same_bits.h"
-#include "solve/host_solve.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {

@@ -12,6 +12,7 @@
 #include "device/device_state.h"
 #include "pillarfield/error.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
 #include "tests/device/test_device.h"
 
@@ -147,9 +148,10 @@ class HalfOutputPaths : public testing::TestWithParam<Path> {
 
   /// Solves random frames of `plan` both ways.
   static void expect_rounded_results(const SolverPlan& plan) {
-    const Processor::Options options = {.memory = GetParam().memory, .lanes = GetParam().lanes};
-    Processor single(test_device(), plan, options);
-    Processor half(test_device(), in_halves(plan), options);
+    const Processor::Options options = {.memory = GetParam().memory};
+    const ProcessorTuning tuning = {.lanes = GetParam().lanes};
+    Processor single(test_device(), plan, options, tuning);
+    Processor half(test_device(), in_halves(plan), options, tuning);
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const RandomFrame frame(plan, 3, seed);
       single.submit(frame.view());
@@ -193,7 +195,7 @@ FrameBuffer touched_frame(const Skin& skin, std::uint32_t at) {
 
 TEST(HalfOutput, ContactsThatMoveLeaveSilenceBehind) {
   const SolverPlan plan = bare_plan(80, 2 * 101, SenselType::u8);
-  Processor all(test_device(), plan, {.paths = {.skip_silent = false}});
+  Processor all(test_device(), plan, {}, {.paths = {.skip_silent = false}});
   Processor half(test_device(), in_halves(plan), {.frames_in_flight = 2});
   for (std::uint32_t at = 0; at < 60; at += 7) {
     const FrameBuffer frame = touched_frame(plan.skin, at);

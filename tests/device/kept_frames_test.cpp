@@ -12,9 +12,9 @@
 
 #include "device/slot_turns.h"
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
 #include "random_plan.h"
-#include "solve/host_solve.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {

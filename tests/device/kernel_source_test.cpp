@@ -10,6 +10,7 @@
 
 #include "device/kernel_files.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
 
 namespace pillarfield {

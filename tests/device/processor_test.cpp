@@ -12,9 +12,10 @@
 #include <optional>
 
 #include "pillarfield/error.h"
+#include "pillarfield/host_solve.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
 #include "same_bits.h"
-#include "solve/host_solve.h"
 #include "tests/device/test_device.h"
 
 namespace pillarfield {
@@ -103,8 +104,8 @@ class EveryPath : public testing::TestWithParam<Path> {
   static void expect_host_bits(const SolverPlan& plan, std::size_t padding,
                                const SpeedPaths& paths = {}) {
     const Path& path = GetParam();
-    Processor processor(test_device(), plan,
-                        {.memory = path.memory, .lanes = path.lanes, .paths = paths});
+    Processor processor(test_device(), plan, {.memory = path.memory},
+                        {.lanes = path.lanes, .paths = paths});
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const RandomFrame frame(plan, padding, seed);
       processor.submit(frame.view());
@@ -133,8 +134,8 @@ TEST_P(FurtherStages, UncertaintyIsThatOfTheHost) {
   plain.uncertainty = true;
   plain.noise_counts = 0.7;
   for (const SolverPlan& plan : {known, plain}) {
-    Processor processor(test_device(), plan,
-                        {.memory = GetParam().memory, .lanes = GetParam().lanes});
+    Processor processor(test_device(), plan, {.memory = GetParam().memory},
+                        {.lanes = GetParam().lanes});
     const RandomFrame frame(plan, 3, 1);
     processor.submit(frame.view());
     const ForceFieldView forces = processor.receive();
@@ -149,8 +150,8 @@ TEST_P(FurtherStages, PaperSolveIsThatOfTheHost) {
   SolverPlan bare = bare_plan(12, 2 * 37, GetParam().type);
   for (SolverPlan* plan : {&all_stages, &bare}) {
     plan->estimator = Estimator::paper;
-    Processor processor(test_device(), *plan,
-                        {.memory = GetParam().memory, .lanes = GetParam().lanes});
+    Processor processor(test_device(), *plan, {.memory = GetParam().memory},
+                        {.lanes = GetParam().lanes});
     const RandomFrame frame(*plan, 0, 2);
     processor.submit(frame.view());
     expect_same_forces(processor.receive(), solve_on_host(*plan, frame.view()).view(), 64);
@@ -172,9 +173,8 @@ TEST_P(FurtherStages, BaselineFollowsAsOnTheHost) {
   for (const std::uint32_t cols : {2U * 37, 2U * 3 + 1}) {
     SolverPlan plan = following_plan(23, cols, GetParam().type);
     const std::vector<float> before = plan.calibration.tare;
-    Processor processor(
-        test_device(), plan,
-        {.memory = GetParam().memory, .frames_in_flight = 3, .lanes = GetParam().lanes});
+    Processor processor(test_device(), plan, {.memory = GetParam().memory, .frames_in_flight = 3},
+                        {.lanes = GetParam().lanes});
     ASSERT_EQ(processor.tare(), before) << "making a processor moves the tare";
     std::vector<RandomFrame> frames;
     for (std::uint32_t seed = 0; seed < 6; ++seed) frames.emplace_back(plan, 5, seed);
@@ -196,8 +196,8 @@ TEST_P(FurtherStages, PowerLawIsThatOfTheHost) {
   plan.calibration.dead_zone.clear();
   plan.skin.power_law = PowerLaw{0.8, 100};
   plan.uncertainty = true;
-  Processor processor(test_device(), plan,
-                      {.memory = GetParam().memory, .lanes = GetParam().lanes});
+  Processor processor(test_device(), plan, {.memory = GetParam().memory},
+                      {.lanes = GetParam().lanes});
   const RandomFrame frame(plan, 0, 3);
   processor.submit(frame.view());
   expect_same_forces(processor.receive(), solve_on_host(plan, frame.view()).view(), 64);
@@ -312,7 +312,7 @@ TEST(Processor, AnglesAreThoseOfTheForces) {
   SolverPlan plan = full_plan(40, 74, SenselType::u8, 5);
   plan.angles = true;
   for (const int lanes : {1, 16}) {
-    Processor processor(test_device(), plan, {.lanes = lanes});
+    Processor processor(test_device(), plan, {}, {.lanes = lanes});
     const RandomFrame frame(plan, 0, 4);
     processor.submit(frame.view());
     const ForceFieldView forces = processor.receive();
@@ -432,7 +432,7 @@ TEST(Processor, RefusesPlansOutOfRange) {
   refuses([](SolverPlan& plan) { plan.calibration.mask.assign(64, 2); });
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   EXPECT_THROW(Processor(test_device(), plan, {.frames_in_flight = 0}), Error);
-  EXPECT_THROW(Processor(test_device(), plan, {.lanes = 3}), Error);
+  EXPECT_THROW(Processor(test_device(), plan, {}, {.lanes = 3}), Error);
 }
 
 }  // namespace

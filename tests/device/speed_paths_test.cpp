@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
 
 namespace pillarfield {
@@ -95,9 +96,9 @@ constexpr SpeedPaths kPlain = {.skip_silent = false, .stores = Stores::cached};
 /// Both ways through the same frames, two in flight, so that slots are used by turns.
 void expect_same(const Device& device, const SolverPlan& plan, int lanes, const SpeedPaths& paths,
                  Memory memory = Memory::automatic) {
-  Processor reference(device, plan, {.lanes = lanes, .paths = kPlain});
-  Processor fast(device, plan,
-                 {.memory = memory, .frames_in_flight = 2, .lanes = lanes, .paths = paths});
+  Processor reference(device, plan, {}, {.lanes = lanes, .paths = kPlain});
+  Processor fast(device, plan, {.memory = memory, .frames_in_flight = 2},
+                 {.lanes = lanes, .paths = paths});
   MovingContact contact(plan, 5);
   std::vector<FrameBuffer> frames;
   for (int i = 0; i < 14; ++i) frames.push_back(contact.next());
@@ -172,7 +173,7 @@ TEST(SpeedPaths, ASilentBlockIsNotWrittenAgain) {
   SolverPlan plan = bare_plan(8, 2 * 64, SenselType::u8);
   plan.skin.threshold_counts = 3;
   for (const bool skip : {true, false}) {
-    Processor processor(device, plan, {.frames_in_flight = 1, .paths = {.skip_silent = skip}});
+    Processor processor(device, plan, {.frames_in_flight = 1}, {.paths = {.skip_silent = skip}});
     FrameBuffer frame(SenselType::u8, plan.skin.rows, plan.skin.cols);
     processor.submit(frame.view());
     const ForceFieldView forces = processor.receive();

@@ -9,9 +9,10 @@
 #include <optional>
 #include <span>
 
+#include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 #include "random_plan.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {
@@ -54,7 +55,7 @@ class WholeNumbers : public testing::Test {
   static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
     const ForceField expected = solve_on_host(plan, frame_.view());
     for (const bool whole : {true, false}) {
-      Processor processor(*device_, plan, {.lanes = lanes, .paths = {.whole_numbers = whole}});
+      Processor processor(*device_, plan, {}, {.lanes = lanes, .paths = {.whole_numbers = whole}});
       processor.submit(frame_.view());
       const ForceFieldView forces = processor.receive();
       expect_same(forces.shear_x, expected.shear_x, "shear_x");

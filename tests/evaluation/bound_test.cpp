@@ -1,7 +1,7 @@
 // The Cramér–Rao bound, and that the direct solve has it wherever noise cannot carry a reading over
 // the threshold.
 
-#include "bound.h"
+#include "evaluation/bound.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // The stated uncertainty holds the truth as often as it says, on scenes with every imperfection of
 // a sensor that a calibration knows.
 
-#include "coverage_study.h"
+#include "evaluation/coverage_study.h"
 
 #include <gtest/gtest.h>
 

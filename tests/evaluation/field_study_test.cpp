@@ -1,4 +1,4 @@
-#include "field_study.h"
+#include "evaluation/field_study.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 #include <string>
 #include <utility>
 
-#include "field_study_histories.h"
-#include "field_study_scenes.h"
-#include "field_study_twins.h"
+#include "evaluation/field_study_histories.h"
+#include "evaluation/field_study_scenes.h"
+#include "evaluation/field_study_twins.h"
 #include "pillarfield/status.h"
 #include "simulation/closed_form/contact_traction.h"
 #include "solve/pillar_maths.h"

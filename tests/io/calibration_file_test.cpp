@@ -124,7 +124,7 @@ TEST(CalibrationFile, IsToldFromItsCousins) {
                       {"r.h5", "pillarfield-recording", "calibrate"}));
   write_bytes(directory / "text", "tare = 3\n");
   EXPECT_TRUE(has_all(error_of([&] { (void)read_calibration_file(directory / "text"); }),
-                      {"text", "is no HDF5 file"}));
+                      {"text", "is not an HDF5 file"}));
 }
 
 // What the cases below do to the file, in the words of the HDF5 library.

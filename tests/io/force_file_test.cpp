@@ -227,12 +227,12 @@ TEST(ForceFileReader, RefusesWhatIsNoForceFile) {
   skin.rows = skin.cols = 2;
   RecordingWriter(directory / "r.h5", skin, SenselType::u8, {}, {}).finish();
   write(directory / "f.h5", info_of(2, 3), 3);
-  write_bytes(directory / "text.h5", "no HDF5 file");
+  write_bytes(directory / "text.h5", "not an HDF5 file");
   const auto refused = [&](const std::string& name) {
     return error_of([&] { const ForceFileReader reader(directory / name); });
   };
   EXPECT_TRUE(has_all(refused("r.h5"), {"r.h5", "pillarfield-recording", "solve it first"}));
-  EXPECT_TRUE(has_all(refused("text.h5"), {"text.h5", "no HDF5 file"}));
+  EXPECT_TRUE(has_all(refused("text.h5"), {"text.h5", "not an HDF5 file"}));
   EXPECT_TRUE(has_all(refused("none.h5"), {"none.h5", "No such file"}));
   EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(directory / "f.h5"); }),
                       {"f.h5", "pillarfield-forces", "recording they were solved from"}));

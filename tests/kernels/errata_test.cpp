@@ -1,7 +1,7 @@
 // The paper's printed equations are wrong where docs/derivations/pillar_model.md says so, and what
 // it puts in their place is right.
 
-#include "errata.h"
+#include "evaluation/errata.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,13 @@
 // The oracle itself, against what is known without it.
 
-#include "oracle.h"
+#include "evaluation/oracle.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "paper_oracle.h"
+#include "evaluation/paper_oracle.h"
 
 namespace pillarfield::oracle {
 namespace {

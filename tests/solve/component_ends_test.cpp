@@ -11,8 +11,8 @@
 #include <set>
 #include <string>
 
+#include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
-#include "solve/host_solve.h"
 
 namespace pillarfield {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "solve/host_solve.h"
+#include "pillarfield/host_solve.h"
 
 namespace pillarfield {
 namespace {

@@ -10,44 +10,43 @@
 
 namespace pillarfield {
 
-/// What is known of each sensel apart: planes [rows, cols] of sensels, row by row. An empty plane
-/// means that nothing has to be corrected, and its correction is not compiled into the kernel.
+/// Corrections of single sensels: planes [sensel rows, cols], row by row. An empty plane needs no
+/// correction, and none is compiled into the kernel.
 ///
-/// A sensel of sensitivity g, tare t and dead zone z answers the model's V of equation (2) with
-/// raw = t + g·max(0, V − z). Its reading is therefore taken as V = (raw − t)·gain + z where
-/// (raw − t)·gain is above the threshold, with gain = 1/g.
+/// A sensel with sensitivity g, tare t and dead zone z reads raw = t + g·max(0, V − z) for the V of
+/// equation (2). It is usable if (raw − t)·gain, gain = 1/g, is above the threshold; then
+/// V = (raw − t)·gain + z.
 struct Calibration {
-  std::vector<float> tare;         ///< counts, reading of the unloaded sensel, |tare| <= full scale
-  std::vector<float> gain;         ///< factor on (raw − tare) that makes sensels equal, > 0
-  std::vector<float> dead_zone;    ///< counts, what a sensel swallows before it answers, >= 0
+  std::vector<float> tare;         ///< reading of the unloaded sensel, counts, |tare| <= full scale
+  std::vector<float> gain;         ///< factor on (raw − tare), [kMinGain, kMaxGain]
+  std::vector<float> dead_zone;    ///< load below which a sensel reads zero, counts, >= 0
   std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
-  std::vector<float> noise;  ///< counts of the raw reading, standard deviation, unloaded, >= 0
+  std::vector<float> noise;        ///< standard deviation of the unloaded raw reading, counts, >= 0
 
   [[nodiscard]] bool empty() const {
     return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty() && noise.empty();
   }
 };
 
-/// The number of sensels that the mask has as missing.
+/// The number of sensels masked as missing.
 [[nodiscard]] std::size_t count_masked(const Calibration& calibration);
 
 /// Limits of Calibration::gain.
 inline constexpr double kMinGain = 1e-2;
 inline constexpr double kMaxGain = 1e2;
 
-/// Limit of Calibration::noise, and of noise elsewhere.
+/// Largest standard deviation of a reading, counts.
 inline constexpr double kMaxNoiseCounts = 1e6;
 
-/// Limit of tare, dead zone and noise where readings are floats or of a type that is not known. A
-/// reading of 1e9 counts would be one of 30 bits.
+/// Largest tare, dead zone and noise for float readings and for an unknown type: 30 bits.
 inline constexpr double kMaxPlaneCounts = 1e9;
 
-/// The largest reading of integer sensels, 255 or 65535; kMaxPlaneCounts of floats.
+/// The largest reading of a type: 255, 65535, or kMaxPlaneCounts for floats.
 [[nodiscard]] double largest_plane_counts(SenselType type);
 
-/// Throws Error, its place being `where`, when a plane has not one value per sensel of `skin` or a
-/// value is out of its range: tare within ± the largest reading of `type`, dead zone from 0 to it,
-/// noise from 0 to it and to kMaxNoiseCounts, gain from kMinGain to kMaxGain, mask 0 or 1.
+/// Throws Error, naming `where`, if a plane is neither empty nor of the skin's size, or a value is
+/// out of range: tare within ± largest_plane_counts(type), dead zone and noise from 0 to that
+/// (noise at most kMaxNoiseCounts), gain within [kMinGain, kMaxGain], mask 0 or 1.
 void check(const Calibration& calibration, const Skin& skin, std::string_view where,
            std::optional<SenselType> type = {});
 

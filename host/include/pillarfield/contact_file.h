@@ -10,10 +10,10 @@
 
 namespace pillarfield {
 
-/// What a table of contacts says of itself.
+/// Attributes of a table of contacts.
 struct ContactFileInfo {
   double pillar_pitch_mm = 0;
-  std::string source;  ///< name of the file the frames came from
+  std::string source;  ///< name of the file of frames
   ContactOptions options;
 };
 

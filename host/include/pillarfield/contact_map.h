@@ -9,41 +9,47 @@
 
 namespace pillarfield {
 
+/// @cond internal
 struct SilentBlocks;  // solve/silent_blocks.h
+/// @endcond
 
-/// Loaded pillars of one row, side by side.
+/// A run of adjacent loaded pillars in one row.
 struct ContactRun {
   std::uint32_t row = 0;
   std::uint32_t first = 0;    ///< column
   std::uint32_t end = 0;      ///< one past the last column
-  std::uint32_t contact = 0;  ///< which contact they belong to
+  std::uint32_t contact = 0;  ///< label of its contact
 };
 
-/// The contacts of a frame: connected components of its loaded pillars, which are those with a
-/// usable sensel. Pillars that touch at a side or at a corner are connected.
+/// The contacts of a frame: connected components (sides and corners) of its loaded pillars, which
+/// are those with a usable sensel.
 ///
-/// Contacts are numbered from 0 in the order in which their first pillars come row by row, so the
-/// numbers depend on the frame alone. Memory is kept from frame to frame.
+/// Labels count from 0 in the order of first pillars, row by row, so they depend on the frame
+/// alone. Reuse the object from frame to frame: it keeps its memory.
 class ContactMap {
  public:
-  /// Finds the contacts of a frame's status bytes [rows, cols]. Linear in its pillars. Throws Error
-  /// where the span has another size.
+  /// Labels the contacts of a frame from its status bytes, [rows, cols], in time linear in pillars.
+  /// Throws Error if `status` has another size.
   void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols);
 
-  /// The same where it is known which blocks have no loaded pillar: their status is not read.
+  /// @cond internal
+  /// The same, without reading the status of blocks known to be idle.
   void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols,
             const SilentBlocks& silent);
+  /// @endcond
 
+  /// The number of contacts.
   [[nodiscard]] std::uint32_t contacts() const {
     return static_cast<std::uint32_t>(starts_.empty() ? 0 : starts_.size() - 1);
   }
-  /// All runs, contact by contact; those of a contact row by row from the left.
+  /// All runs, by label; within a contact row by row from the left.
   [[nodiscard]] std::span<const ContactRun> runs() const { return runs_; }
+  /// The runs of one contact.
   [[nodiscard]] std::span<const ContactRun> runs(std::uint32_t contact) const {
     return std::span(runs_).subspan(starts_[contact], starts_[contact + 1] - starts_[contact]);
   }
 
-  /// The same runs row by row from the left.
+  /// All runs, row by row from the left.
   [[nodiscard]] std::span<const ContactRun> runs_by_row() const { return found_; }
 
  private:
@@ -59,10 +65,10 @@ class ContactMap {
   std::vector<std::size_t> next_;       ///< of each contact, where its next run goes
 };
 
-/// The contacts of a frame that were found already, and what is believed of the friction of each.
+/// The contacts of a frame as a Processor found them, a view.
 struct FoundContacts {
-  const ContactMap* map = nullptr;            ///< null: they were not looked for
-  std::span<const ContactFriction> friction;  ///< by number; empty where it was not asked for
+  const ContactMap* map = nullptr;            ///< null: none were looked for
+  std::span<const ContactFriction> friction;  ///< by label; empty if it was not estimated
 };
 
 }  // namespace pillarfield

@@ -7,76 +7,74 @@
 
 namespace pillarfield {
 
-/// A place on the patch, mm: from its centre, x right and y up, as in scenes.
+/// A point on the skin, mm from the centre of the patch: x right, y up.
 struct PatchPlace {
   double x_mm = 0;
   double y_mm = 0;
 };
 
-/// What is known of a contact's slip.
+/// Whether a contact slips.
 enum class SlipState : std::uint8_t {
-  unknown,   ///< the friction is not known, or too much of the load is borne by ambiguous pillars
-  sticking,  ///< pillars that bear at most a tenth of the load slip
-  partial,   ///< some slip, some stick
-  sliding,   ///< pillars that bear nine tenths or more slip
+  unknown,   ///< the friction is unknown, or ambiguous pillars carry too much of the load
+  sticking,  ///< slipping pillars carry at most a tenth of the load
+  partial,   ///< neither sticking nor sliding
+  sliding,   ///< slipping pillars carry at least nine tenths
 };
 
 /// "unknown", "sticking", "partial", "sliding".
 [[nodiscard]] const char* name_of(SlipState state);
 
-/// What a contact exerts on the skin, and where (docs/contacts_found.md). Forces are sums over its
-/// pillars, with the signs of ForceFieldView.
+/// Force, torque, place, friction and slip of a contact (docs/contacts_found.md). Forces are sums
+/// over its pillars, with the signs of ForceFieldView.
 ///
-/// Sums are exact: forces are rounded to 2^-24 N and added as integers, so they are the same bits
-/// whatever the order of pillars, and within 30 nN a pillar of the true sum. A pillar's NaN counts
-/// as zero, a force beyond 8192 N (256 N on a patch of 2^29 pillars) as that.
+/// Sums do not depend on the order of pillars: forces are rounded to 2^-24 N and added as integers,
+/// an error of at most 30 nN a pillar. NaN counts as zero; larger forces are clamped to 8192 N (256
+/// N on a patch of 2^29 pillars).
 struct ContactQuantities {
   std::uint64_t pillars = 0;
-  std::uint64_t ambiguous = 0;  ///< of these, pillars that readings alone leave open
-  std::uint64_t resolved = 0;   ///< of these, such as the contact's friction resolved
+  std::uint64_t ambiguous = 0;  ///< of these, ambiguous by their readings alone
+  std::uint64_t resolved = 0;   ///< of the ambiguous, resolved by friction
 
   double shear_x_n = 0;
   double shear_y_n = 0;
   double normal_n = 0;
-  /// Sum of normal times place over sum of normal; where that sum is not above zero, `centre`.
+  /// Mean position weighted by normal force; `centre` if normal_n is not above zero.
   PatchPlace centre_of_pressure;
-  PatchPlace centre;  ///< mean place of the pillars
+  PatchPlace centre;  ///< mean position of the pillars
   /// Moment of the shear about the outward normal through the centre of pressure, counter-clockwise
-  /// positive. The other two moments vanish there: that is what makes it the centre of pressure.
+  /// positive. The moments about the other two axes are zero there.
   double torque_nmm = 0;
 
-  double area_mm2 = 0;  ///< pillars times pitch²
-  double peak_n = 0;    ///< the largest normal force of a pillar
-  PatchPlace peak;      ///< where; of equal ones the first row by row
-  double mean_pressure_kpa = 0;
+  double area_mm2 = 0;           ///< pillars times pitch²
+  double peak_n = 0;             ///< the largest normal force of a pillar
+  PatchPlace peak;               ///< its position; the first, row by row, if several are equal
+  double mean_pressure_kpa = 0;  ///< normal_n over area_mm2
 
-  /// The friction coefficient, where it was given, or where the standard deviation of the
-  /// posterior's logarithm is at most 0.02 and the contact is no flat face that may stick
-  /// (docs/derivations/contact.md, section 5). Unset elsewhere.
+  /// Friction coefficient. Set if it was given, or if the posterior's logarithm has a standard
+  /// deviation of at most 0.02 and the contact cannot be a flat face that sticks
+  /// (docs/derivations/contact.md, section 5).
   std::optional<double> friction;
-  std::optional<double> friction_deviation;  ///< its standard deviation; unset as friction
+  std::optional<double> friction_deviation;  ///< its standard deviation; set with it
   FrictionSource friction_source = FrictionSource::prior;
   SlipState slip = SlipState::unknown;
-  /// Of the normal force of the unambiguous pillars, the share on those whose shear / normal is
-  /// 0.92 of the friction or more. Unset where the friction is not known, or no pillar is
-  /// unambiguous.
+  /// Slipping fraction of the normal force, [0, 1]: of the unambiguous pillars, the part carried by
+  /// those with shear / normal >= 0.92 friction. Unset without friction, or without such pillars.
   std::optional<double> slipping_share;
-  /// 1 - |shear| / (friction normal) of the sums: what is left before the whole contact slides in a
-  /// straight line. It says nothing of a spin, whose shear cancels. Unset without friction, or
-  /// where nothing presses.
+  /// Slip margin, 1 − |shear| / (friction · normal) of the sums: the reserve before the whole
+  /// contact slides in a straight line. A spin, whose shear cancels, does not lower it. Unset
+  /// without friction, or if normal_n is not above zero.
   std::optional<double> slip_margin;
 };
 
-/// The moment about another point in the plane of the skin, N mm; axes as in ForceFieldView with z
-/// outwards.
+/// A moment about a point of the skin: x right, y up, z outwards.
 struct Moment {
   double x_nmm = 0;
   double y_nmm = 0;
   double z_nmm = 0;
 };
 
-/// Moves the moment of a contact from its centre of pressure to `point`: M = r × F + torque, r from
-/// `point` to the centre of pressure.
+/// The moment of a contact's force about `point`: M = r × F + torque, r from `point` to the centre
+/// of pressure.
 [[nodiscard]] Moment moment_about(const PatchPlace& point, const ContactQuantities& contact);
 
 }  // namespace pillarfield

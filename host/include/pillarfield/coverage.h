@@ -8,28 +8,28 @@
 
 namespace pillarfield {
 
-/// How often the stated uncertainty holds the truth, over the pillars solved in one region.
+/// How often intervals of the stated uncertainty contain the truth, over the pillars of one region.
 struct RegionCoverage {
   std::uint64_t pillars = 0;
-  double shear_x = 0;  ///< share with the true component within 1.96 standard deviations; 0.95 due
+  double shear_x = 0;  ///< fraction within 1.96 standard deviations; ideal: 0.95
   double shear_y = 0;
   double normal = 0;
-  double ends = 0;  ///< share with true theta, phi and magnitude between the ends; see Coverage
+  double ends = 0;  ///< fraction with theta, phi and magnitude all within bounds; see Coverage
 };
 
-/// Accumulates the coverage of frames. Regions are those of the status, for a user has no other.
-/// Pillars with a missing or saturated sensel, or readings at odds, are left out: of them nothing
-/// is claimed.
+/// Measures the coverage of the stated uncertainty over many frames. Regions are those of the
+/// solved status. Pillars with missing, saturated or inconsistent readings are left out, since
+/// their uncertainty is not stated.
 ///
-/// The ends are stated noise apart. They are therefore widened by three standard deviations of the
-/// force's vector: sigma for the magnitude, sigma / magnitude for theta, and that over sin(theta)
-/// for phi.
+/// The bounds of theta, phi and magnitude exclude noise. They are therefore widened by three
+/// standard deviations of the force vector: sigma for the magnitude, sigma / magnitude for theta,
+/// and that over sin(theta) for phi.
 class Coverage {
  public:
-  /// Adds one frame; `solved` with its uncertainty, both of the same size. Throws Error where
-  /// planes are absent or sizes differ.
+  /// Adds a frame. Throws Error if `solved` has no uncertainty or sizes differ.
   void add(const ForceFieldView& solved, const ForceFieldView& truth);
 
+  /// The coverage in one region.
   [[nodiscard]] RegionCoverage region(Region region) const;
 
  private:

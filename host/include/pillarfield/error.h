@@ -6,14 +6,13 @@
 
 namespace pillarfield {
 
-/// The one exception type of the library. Its text is a single printable() line of three parts:
-/// where it happened, what failed, and how to mend it.
+/// The only exception type that the library throws, apart from std::bad_alloc. Its text is one
+/// printable() line: where it happened, what failed, how to mend it.
 ///
 ///     scenes/press.toml:12: key 'radius' is unknown; allowed: radius_mm, load_n
 class Error : public std::runtime_error {
  public:
-  /// `where` names a file, line, device or argument; it may be empty. `mend` may be empty where
-  /// the failure itself tells what to do.
+  /// `where` names a file, line, device or argument. `where` and `mend` may be empty.
   Error(std::string_view where, std::string_view what_failed, std::string_view mend = {});
 };
 

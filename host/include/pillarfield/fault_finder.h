@@ -13,50 +13,50 @@
 
 namespace pillarfield {
 
+/// Options of FaultFinder.
 struct FaultOptions {
-  std::uint32_t least_frames = 30;  ///< in which parity must have told of a sensel
-  double still_factor = 10;  ///< a range of so many times its noise is no movement of a reading
-  /// A standard deviation of so many times its noise is a movement of what parity leaves.
-  double moving_factor = 5;
+  std::uint32_t least_frames = 30;  ///< frames in which parity must predict a sensel
+  double still_factor = 10;         ///< a still reading's range is below this multiple of its noise
+  double moving_factor = 5;         ///< a moving prediction's deviation is above this one
 };
 
-/// What many frames told of the sensels.
+/// The result of FaultFinder.
 struct FaultResult {
   SkinCalibration calibration;
-  /// Masked: not_a_number, silent, stuck and saturated. Not masked: undecided.
+  /// Masked: not_a_number, saturated, silent, stuck. Not masked: undecided.
   std::vector<SenselFinding> findings;
-  /// [row, col] of sensels of which nothing can be said: they were not asked to answer.
+  /// [row, col] of sensels that no frame tests: parity never predicts them to change.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> untested;
-  std::uint32_t frames = 0;
+  std::uint32_t frames = 0;  ///< frames added
 };
 
 /// Finds dead, stuck and permanently saturated sensels by parity over time (docs/calibration.md).
 ///
-/// A sensel is at fault where its reading stays still while what the other three of its pillar
-/// leave for it by V1 + V3 = V2 + V4, within what a sensel can show, moves. Frames are taken one by
-/// one; 72 bytes per sensel are kept.
+/// A sensel is faulty if its reading is still while the value that the other three predict by
+/// V1 + V3 = V2 + V4, clipped to its range, moves. Memory: 72 bytes per sensel, however many
+/// frames.
 class FaultFinder {
  public:
-  /// `name` stands for the frames in messages. Throws Error where the calibration is not one of
-  /// this skin.
+  /// Messages use `name` as the name of the frames. Throws Error if the calibration is of another
+  /// skin.
   FaultFinder(std::string name, const Skin& skin, SenselType type,
               const SkinCalibration& calibration, const FaultOptions& options);
 
   /// Adds a frame of the skin's size and type; about 20 ns per sensel.
   void add(const FrameView& frame);
 
-  /// Throws Error where the frames are too few or nothing moved in them.
+  /// The findings so far. Throws Error if the frames are too few or nothing moves in them.
   [[nodiscard]] FaultResult result() const;
 
  private:
-  /// What parity left for a sensel in the frames in which the other three were usable.
+  /// The value that parity predicts for a sensel, over frames in which the other three are usable.
   struct Implied {
     std::uint32_t frames = 0;
-    std::uint32_t usable = 0;  ///< frames in which the sensel itself was
+    std::uint32_t usable = 0;  ///< frames in which the sensel itself is usable
     double mean = 0;
     double squares = 0;
   };
-  /// What V a sensel can tell apart, counts.
+  /// The range of V that a sensel can show, counts.
   struct Sight {
     double least;
     double most;

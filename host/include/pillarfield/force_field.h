@@ -10,19 +10,19 @@
 
 namespace pillarfield {
 
-/// What is told of the uncertainty of a force (docs/derivations/uncertainty.md). The first three
-/// are standard deviations, N: of the noise of the sensels, and in an ambiguous pillar also of what
-/// its readings leave open. The others are the ends of what direction and magnitude may be,
-/// noise apart: both the estimate itself where the pillar is not ambiguous. They hold for pillars
-/// without missing and saturated sensels.
+/// Planes that state the uncertainty of a force (docs/derivations/uncertainty.md). The first three
+/// are standard deviations: from sensel noise and, in ambiguous pillars, from the segment that the
+/// readings leave open. The others bound direction and magnitude over that segment, without noise;
+/// in other pillars both bounds equal the estimate. All are valid for pillars without missing and
+/// saturated sensels.
 enum class Uncertainty : std::uint8_t {
   shear_x,         ///< N
   shear_y,         ///< N
   normal,          ///< N
   theta_low,       ///< rad
   theta_high,      ///< rad
-  phi_low,         ///< rad; phi runs counter-clockwise from low to high, which is the smaller one
-  phi_high,        ///< rad; where it passes pi
+  phi_low,         ///< rad; phi runs counter-clockwise from low to high;
+  phi_high,        ///< rad; high is below low if the interval contains pi
   magnitude_low,   ///< N
   magnitude_high,  ///< N
 };
@@ -31,7 +31,7 @@ inline constexpr std::size_t kUncertaintyPlanes = 9;
 /// "shear_x", "theta_low", ...: as in files.
 [[nodiscard]] const char* name_of(Uncertainty plane);
 
-/// One plane of each kind.
+/// One plane of each kind of Uncertainty.
 template <class Plane>
 class UncertaintyPlanes {
  public:
@@ -48,30 +48,31 @@ class UncertaintyPlanes {
   std::array<Plane, kUncertaintyPlanes> planes_;
 };
 
-/// A field of three-axis force, row by row from the top left, one value per pillar and plane.
+/// A view of a field of three-axis force: planes [rows, cols], one value per pillar, row by row
+/// from the top left. `Value` is float or Half.
 ///
-/// Forces are in newtons: shear_x (+ right) and shear_y (+ up) are the tangential force that acts
-/// on the skin, normal is positive when the skin is pressed. Status bytes: see status.h.
-/// Planes that were not asked for are empty. `Value` is float or Half.
+/// shear_x (+ right) and shear_y (+ up) are the tangential force on the skin; normal is positive
+/// under pressure. The status byte is described in status.h. Planes that the plan does not ask for
+/// are empty.
 template <class Value>
 struct FieldView {
-  std::uint32_t rows = 0;  ///< pillar rows
-  std::uint32_t cols = 0;  ///< pillar columns
-  std::span<const Value> shear_x;
-  std::span<const Value> shear_y;
-  std::span<const Value> normal;
+  std::uint32_t rows = 0;          ///< pillar rows
+  std::uint32_t cols = 0;          ///< pillar columns
+  std::span<const Value> shear_x;  ///< N
+  std::span<const Value> shear_y;  ///< N
+  std::span<const Value> normal;   ///< N
   std::span<const std::uint8_t> status;
-  std::span<const Value> magnitude;  ///< N, only where angles were asked for
-  std::span<const Value> theta;      ///< rad from the outward normal, [0, pi]; as magnitude
-  std::span<const Value> phi;        ///< rad in the plane, (-pi, pi]; as magnitude
-  UncertaintyPlanes<std::span<const Value>> uncertainty;  ///< only where asked for
+  std::span<const Value> magnitude;  ///< N; of SolverPlan::angles, as the two that follow
+  std::span<const Value> theta;      ///< rad from the outward normal, [0, pi]
+  std::span<const Value> phi;        ///< rad in the plane of the skin, (-pi, pi]
+  UncertaintyPlanes<std::span<const Value>> uncertainty;  ///< of SolverPlan::uncertainty
 };
 
 using ForceFieldView = FieldView<float>;
 using HalfFieldView = FieldView<Half>;  ///< of SolverPlan::half_output
 
-/// The same with memory of its own; used for truths and copies. Magnitude and angles are absent,
-/// and the uncertainty mostly is.
+/// A field of force that owns its memory, without magnitude and angles: the result of
+/// solve_on_host(), truths, copies. See FieldView for shapes, units and signs.
 struct ForceField {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
@@ -79,16 +80,17 @@ struct ForceField {
   std::vector<float> shear_y;
   std::vector<float> normal;
   std::vector<std::uint8_t> status;
-  UncertaintyPlanes<std::vector<float>> uncertainty;  ///< empty where not known
+  UncertaintyPlanes<std::vector<float>> uncertainty;  ///< empty if not computed
 
   ForceField() = default;
+  /// All forces and status bytes zero, no uncertainty.
   ForceField(std::uint32_t pillar_rows, std::uint32_t pillar_cols);
 
   [[nodiscard]] std::size_t pillars() const { return std::size_t{rows} * cols; }
   [[nodiscard]] ForceFieldView view() const;
 };
 
-/// A copy in single precision, exact, without magnitude and angles.
+/// An exact copy in single precision, without magnitude and angles.
 [[nodiscard]] ForceField to_single(const HalfFieldView& half);
 
 }  // namespace pillarfield

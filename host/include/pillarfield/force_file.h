@@ -15,18 +15,19 @@
 
 namespace pillarfield {
 
-/// What a file of force fields says of itself.
+/// Attributes of a file of force fields.
 struct ForceFileInfo {
   std::uint32_t rows = 0;  ///< pillar rows
   std::uint32_t cols = 0;  ///< pillar columns
   double pillar_pitch_mm = 0;
-  std::string estimator;                        ///< "direct", "paper" or "contact"
-  std::string device;                           ///< name of the device that solved it
-  std::string source;                           ///< name of the file the frames came from
-  bool angles = false;                          ///< with magnitude, theta and phi
-  bool uncertainty = false;                     ///< with the planes of Uncertainty
-  std::optional<ContactOptions> contacts = {};  ///< with the contacts that these find; HDF5 only
-  /// That of SolverPlan; unset: the file does not say. HDF5 only.
+  std::string estimator;     ///< "direct", "paper" or "contact"
+  std::string device;        ///< device that solved it
+  std::string source;        ///< name of the file of frames
+  bool angles = false;       ///< holds magnitude, theta and phi
+  bool uncertainty = false;  ///< holds the planes of Uncertainty
+  std::optional<ContactOptions> contacts =
+      {};  ///< holds contacts, found with these options; HDF5 only
+  /// SolverPlan::segment_point; HDF5 only. Unset: not stated.
   std::optional<double> segment_point = {};
 };
 
@@ -45,27 +46,29 @@ struct ForceFileInfo {
 /// ending.
 [[nodiscard]] PlannedOutput planned_force_file(const std::filesystem::path& path);
 
-/// Whether this is an HDF5 file that says it holds force fields; false where it cannot be read.
+/// Whether this is an HDF5 file of force fields; false if it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path,
                                  const ReadOptions& options = {});
 
-/// Reads "pillarfield-forces" files, also ones whose writer was killed.
+/// Reads files of the format "pillarfield-forces" (docs/formats.md), also if their writer was
+/// killed.
 class ForceFileReader {
  public:
+  /// Throws Error if the file is of another format or damaged.
   explicit ForceFileReader(const std::filesystem::path& path, const ReadOptions& options = {});
   ~ForceFileReader();
   ForceFileReader(ForceFileReader&&) noexcept;
   ForceFileReader& operator=(ForceFileReader&&) noexcept;
 
   [[nodiscard]] const ForceFileInfo& info() const;
-  [[nodiscard]] std::uint64_t frames() const;
+  [[nodiscard]] std::uint64_t frames() const;  ///< number of frames
+  /// Warnings about the file, one sentence each.
   [[nodiscard]] const std::vector<std::string>& remarks() const;
 
-  /// Reads frame `index`, with its uncertainty where the file has it, and returns its time in
-  /// seconds.
+  /// Reads a frame, with its uncertainty if the file has it, and returns its time, s.
   double read(std::uint64_t index, ForceField& forces) const;
 
-  /// Reads the contacts of frame `index`. Throws Error where ForceFileInfo::contacts is unset.
+  /// Reads the contacts of a frame. Throws Error if ForceFileInfo::contacts is unset.
   [[nodiscard]] FrameContacts read_contacts(std::uint64_t index) const;
 
  private:

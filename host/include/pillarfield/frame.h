@@ -4,31 +4,41 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
 
-/// One frame of readings in memory that somebody else owns.
+/// One frame of readings in the caller's memory, row by row from the top left of the skin, counts.
+///
+///     std::vector<std::uint16_t> readings(rows * cols);
+///     FrameView frame = {readings.data(), SenselType::u16, rows, cols, cols};
 struct FrameView {
-  const void* data = nullptr;  ///< first reading of row 0, aligned to its type
+  const void* data = nullptr;  ///< reading of row 0, column 0; aligned to its type
   SenselType type = SenselType::u8;
   std::uint32_t rows = 0;      ///< sensel rows
   std::uint32_t cols = 0;      ///< sensel columns
   std::size_t row_stride = 0;  ///< readings from one row to the next, at least cols
 };
 
-/// One frame of readings, dense, zero at first, on a page boundary so that a device which shares
-/// the host's memory reads it in place.
+/// Throws Error, naming `where`, if the frame is not of this size and type, has no data, or its
+/// rows overlap.
+void check(const FrameView& frame, const Skin& skin, SenselType type, std::string_view where);
+
+/// One frame of readings that owns its memory. Its rows are dense, its readings start at zero, and
+/// its memory starts on a page boundary, so that a device that shares the host's memory reads it in
+/// place.
 class FrameBuffer {
  public:
+  /// Allocates `rows` x `cols` readings.
   FrameBuffer(SenselType type, std::uint32_t rows, std::uint32_t cols);
 
   [[nodiscard]] FrameView view() const;
   [[nodiscard]] std::span<std::byte> bytes() { return {data_.get(), size_}; }
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
 
-  /// The readings as T; T must be the type the buffer was made for.
+  /// The readings, [rows, cols]. T must be the buffer's type: std::uint8_t, std::uint16_t or float.
   template <class T>
   [[nodiscard]] std::span<T> readings() {
     return {reinterpret_cast<T*>(data_.get()), size_ / sizeof(T)};

@@ -10,26 +10,27 @@
 
 namespace pillarfield {
 
-/// What one sensel read over many frames, in raw counts. Readings that are no number of at
-/// most kMaxCounts are passed over, as if their frames had not been.
+/// Statistics of one sensel's raw readings over many frames, counts. NaN and magnitudes above
+/// kMaxCounts are skipped.
 struct SenselStatistics {
-  std::uint32_t readings = 0;   ///< that are numbers
-  std::uint32_t saturated = 0;  ///< of these at full scale or above
+  std::uint32_t readings = 0;   ///< number of readings, without skipped ones
+  std::uint32_t saturated = 0;  ///< of these, at full scale or above
   float lowest = 0;
   float highest = 0;
   double mean = 0;
-  double squares = 0;  ///< sum of the squared differences from the mean
+  double squares = 0;  ///< sum of squared differences from the mean
 
+  /// Adds a reading.
   void add(float reading, float full_scale);
 
-  /// Standard deviation of a reading, unbiased in its square; 0 for less than two.
+  /// Standard deviation of a reading (its square is unbiased); 0 for fewer than two.
   [[nodiscard]] double deviation() const;
 };
 
-/// The same for all sensels of a skin; 40 bytes each, however many frames there are.
+/// Statistics of all sensels of a skin. Memory: 40 bytes per sensel, however many frames.
 class FrameStatistics {
  public:
-  /// `name` stands for the frames in messages, as their file.
+  /// Messages use `name` as the name of the frames, for instance that of their file.
   FrameStatistics(std::string name, const Skin& skin, SenselType type);
 
   /// Adds a frame of the skin's size and type; about 5 ns per sensel.
@@ -40,7 +41,7 @@ class FrameStatistics {
   [[nodiscard]] SenselType type() const { return type_; }
   [[nodiscard]] std::uint32_t frames() const { return frames_; }
 
-  /// Row by row, [rows, cols].
+  /// One entry per sensel, [rows, cols], row by row.
   [[nodiscard]] std::span<const SenselStatistics> sensels() const { return sensels_; }
 
  private:
@@ -51,7 +52,7 @@ class FrameStatistics {
   std::vector<SenselStatistics> sensels_;
 };
 
-/// Throws Error, naming `statistics`, where they are of fewer than `least` frames.
+/// Throws Error if `statistics` are of fewer than `least` frames.
 void require_frames(const FrameStatistics& statistics, std::uint32_t least);
 
 }  // namespace pillarfield

@@ -2,13 +2,13 @@
 
 namespace pillarfield {
 
-/// For a program that writes files, once at its start: from now on SIGINT (Ctrl+C), SIGTERM and
-/// SIGHUP are noted instead of ending the process, and a second one of a kind ends it. SIGHUP stays
-/// ignored where it is (nohup). A file that grows beyond the process's limit is then an Error of
-/// the write, not a signal (SIGXFSZ). The library itself never calls this.
+/// Makes SIGINT (Ctrl+C), SIGTERM and SIGHUP set is_interrupted() instead of ending the process; a
+/// second signal of the same kind ends it. SIGHUP stays ignored if it is (nohup). A write beyond
+/// the limit on file sizes becomes an Error instead of SIGXFSZ. A program calls this once at its
+/// start; the library never does.
 void catch_interrupts();
 
-/// Whether an interrupt was noted.
+/// Whether one of these signals has arrived.
 [[nodiscard]] bool is_interrupted();
 
 }  // namespace pillarfield

@@ -9,41 +9,41 @@
 
 namespace pillarfield {
 
-/// Frames in which bodies that stand still press the skin with a known normal force in all.
+/// Frames of the skin under bodies at rest with a known total normal force.
 struct KnownLoad {
   const FrameStatistics& frames;
   double load_n;
 };
 
-/// How readings and load belong together.
+/// The relation of readings and load.
 enum class LoadModel : std::uint8_t {
-  linear,  ///< in proportion
-  power,   ///< by a PowerLaw; needs two different loads
+  linear,  ///< proportional
+  power,   ///< a PowerLaw; needs two different loads
 };
 
-/// How one load came out.
+/// The residual of one load.
 struct LoadResidual {
   double load_n = 0;
-  double solved_n = 0;          ///< total normal force by the new calibration
-  double ambiguous_share = 0;   ///< of solved_n, from pillars whose force is ambiguous
-  std::uint64_t saturated = 0;  ///< pillars with a saturated sensel, whose force is too small
+  double solved_n = 0;          ///< total normal force with the new calibration
+  double ambiguous_share = 0;   ///< fraction of solved_n on ambiguous pillars
+  std::uint64_t saturated = 0;  ///< pillars with a saturated sensel; their force is too small
 };
 
-/// What known loads told.
+/// The result of calibrate_load().
 struct LoadResult {
   SkinCalibration calibration;
-  std::vector<LoadResidual> loads;  ///< as given
-  double misfit = 0;                ///< relative root mean square of solved − load
-  /// The counts per newton if the ambiguous pillars had the least, or the most, of their segments.
+  std::vector<LoadResidual> loads;  ///< in the order given
+  double misfit = 0;                ///< relative RMS of solved − load
+  /// Counts per newton if all ambiguous pillars had the lower, or the upper, end of their segments.
   double least_counts_per_newton = 0;
   double most_counts_per_newton = 0;
 };
 
-/// Fits the counts per newton, and for LoadModel::power the exponent, so that the normal forces the
-/// solver finds add up to the known loads. The frames of a load are averaged first. A power law
-/// that `before` has is replaced, or dropped for LoadModel::linear; what else it knows is kept.
-/// Formulas and limits: docs/calibration.md. Throws Error where a frame shows no contact or the
-/// loads do not tell.
+/// Fits the counts per newton and, for LoadModel::power, the exponent, so that the solved normal
+/// forces add up to the known loads. Averages the frames of a load first. Replaces the power law of
+/// `before`, or removes it for LoadModel::linear; keeps everything else. Formulas and limits:
+/// docs/calibration.md. Throws Error if the frames of a load show no contact or the loads do not
+/// determine the fit.
 [[nodiscard]] LoadResult calibrate_load(const SkinCalibration& before,
                                         std::span<const KnownLoad> loads, LoadModel model);
 

@@ -13,7 +13,7 @@
 
 namespace pillarfield {
 
-/// What a program writes.
+/// The format of an output.
 enum class OutputKind : std::uint8_t {
   recording,
   calibration,
@@ -28,75 +28,72 @@ enum class OutputKind : std::uint8_t {
 /// The endings of files of forces or of contacts: ".csv or .json".
 [[nodiscard]] std::string endings_of(OutputKind kind);
 
-/// What an output may replace under its name; an empty file in any case but `nothing`.
+/// Which existing file an output may replace. All but `nothing` replace an empty file.
 enum class Replace : std::uint8_t {
   nothing,
-  results,   ///< an earlier result of the same kind, by its content. Recordings, calibrations
-             ///< and texts are no results: they cannot be made again.
+  results,   ///< a file whose content is of the same kind, except recordings, calibrations and
+             ///< texts, which cannot be made again
   anything,  ///< any regular file
 };
 
-/// An output that a command is about to begin.
+/// An output that a program is about to write.
 struct PlannedOutput {
   std::filesystem::path path;
   OutputKind kind = OutputKind::text;
 };
 
-/// Whether two paths lead to the same file, also through links and where it does not exist yet.
+/// Whether two paths lead to the same file, links and files that do not exist yet included.
 [[nodiscard]] bool name_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 
-/// Looks at the outputs of a command before its work begins, and writes nothing. Throws Error where
-/// one of them, under its name or under the name of its part, is a file of `inputs` (by device and
-/// inode) or of another output, where it may not replace what bears its name, where another process
-/// is writing it, or where its directory cannot be written. Empty paths in `inputs` are passed
-/// over.
+/// Checks the outputs of a program before its work begins; writes nothing. Throws Error if an
+/// output or its part is an input (by device and inode) or another output, may not replace the
+/// existing file, is being written by another process, or lies in a directory that cannot be
+/// written. Empty paths in `inputs` are ignored.
 void check_outputs(const std::vector<std::filesystem::path>& inputs,
                    const std::vector<PlannedOutput>& outputs, Replace replace);
 
 class LockedPart;
 
-/// A file that is written as a part, its name and ".part", and takes its name in commit().
+/// A file that is written as a part, `path` + ".part", which commit() renames to `path`.
 ///
-/// The part is locked (an open file description lock) before it is truncated, and until it has its
-/// name: of two writers the second gets an Error. A symbolic link or a file with further names is
-/// never taken for a part, nor is a part in which an earlier writer left what cannot be made again.
-/// Where the final name is a symbolic link, the file that it leads to is the one that is written.
-/// Destroyed before commit(), the part is removed unless it is kept.
+/// The part is locked (an open file description lock) from before it is truncated until it is
+/// renamed: a second writer gets an Error. Symbolic links, files with several names, and parts
+/// whose content cannot be made again are never used as the part. If `path` is a symbolic link, its
+/// target is written. The destructor removes a part that is neither committed nor kept.
 class OutputFile {
  public:
-  /// Parts that grow are written to the disk at most so often.
+  /// Default interval of sync_at_intervals().
   static constexpr std::chrono::seconds kSyncInterval{5};
 
-  /// Creates the part, empty. Throws Error where that or the final name is impossible, as
-  /// check_outputs() does.
+  /// Creates an empty part. Throws Error in the cases of check_outputs().
   OutputFile(std::filesystem::path path, OutputKind kind, Replace replace = Replace::results);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }  ///< as it was given
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }  ///< as given
   [[nodiscard]] const std::filesystem::path& part_path() const { return part_path_; }
 
-  /// Of the part, open for reading and writing until commit().
+  /// The part's file descriptor, open for reading and writing until commit().
   [[nodiscard]] int descriptor() const;
   [[nodiscard]] bool is_open() const { return part_ != nullptr; }
 
-  /// Appends. Throws Error where the disk is full. The caller gathers large blocks.
+  /// Appends. Throws Error if the disk is full. Unbuffered: pass large blocks.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
-  /// Writes `text` over what stands at the file's beginning.
+  /// Overwrites the beginning of the file.
   void write_at_begin(std::string_view text);
 
-  /// Begins to write the part to the disk, in a thread of its own, unless that was begun less than
-  /// `interval` ago or still goes on. Throws Error where it failed before.
+  /// Starts fsync of the part in another thread, unless the last one started less than `interval`
+  /// ago or is still running. Throws Error if an earlier one failed.
   void sync_at_intervals(std::chrono::steady_clock::duration interval = kSyncInterval);
 
-  /// From now on the part outlives this object.
+  /// Lets the part outlive this object.
   void keep() { kept_ = true; }
 
-  /// Writes the part to the disk and gives it its final name. Throws Error where that fails; the
-  /// text tells where the data are.
+  /// Writes the part to the disk and renames it to its final name. Throws Error if that fails; the
+  /// text says where the data are.
   void commit();
 
  private:

@@ -1,26 +1,28 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace pillarfield {
 
-/// How a file is opened to be read.
+/// How a file is opened for reading.
 struct ReadOptions {
-  /// Whether it comes from a source that you trust, as your own programs. Other HDF5 files pass
+  /// The file comes from a trusted source, such as your own programs. Other HDF5 files pass
   /// probe_file() first.
   bool trust = false;
 };
 
-/// Opens an HDF5 file in a child process that lives at most 2 s of processor time and takes at most
-/// a gigabyte of memory, and leads the HDF5 library there over all that opening and reading the
-/// file here will lead it over. Throws Error where the child crashes, does not end, or finds that
-/// the file is damaged, or that a frame of it has more than 8,388,608 sensels. Files of other
-/// formats pass: no library but this one reads them. So does a file that this process has open by
+/// Reads an HDF5 file in a child process, limited to 2 s of processor time and 1 GB of memory, to
+/// protect this process from damaged or hostile files. Throws Error if the child crashes, exceeds
+/// its limits, finds damage, or finds a frame of more than 8,388,608 sensels. Files of other
+/// formats pass, since only this library reads them; so do files that this process has open through
 /// HDF5.
 ///
-/// Takes some milliseconds (docs/formats.md). The child makes no call but to HDF5 and this library,
-/// runs no handler of signals or of exit, and prints nothing. Once a file has passed it may be
-/// opened with ReadOptions::trust.
+/// Cost: some milliseconds (docs/formats.md). The child runs no signal or exit handlers and prints
+/// nothing. A file that passes may be opened with ReadOptions::trust.
 void probe_file(const std::filesystem::path& path);
+
+/// The version of the HDF5 library, as "1.10.8".
+[[nodiscard]] std::string hdf5_version();
 
 }  // namespace pillarfield

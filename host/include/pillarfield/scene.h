@@ -15,30 +15,29 @@
 
 namespace pillarfield {
 
-/// What makes a sensor differ from the model, each absent (zero or unset) unless the scene lists
-/// it. The order is that of the signal: dead zone, the skin's power law, sensitivity, tare, drift,
-/// noise, converter, dead.
+/// Deviations of a sensor from the model, absent by default. They apply in the order of the signal:
+/// dead zone, the skin's power law, sensitivity, tare, drift, noise, converter, dead sensels.
 struct SensorModel {
-  double dead_zone_counts = 0;  ///< what a sensel swallows before it answers
-  double gain_spread = 0;       ///< relative standard deviation of the sensels' sensitivity, < 0.3
-  double tare_counts = 0;       ///< mean reading of an unloaded sensel
-  double tare_spread_counts = 0;  ///< its standard deviation over sensels
-  double noise_counts = 0;        ///< standard deviation of a reading over frames
-  double drift_counts_per_s = 0;  ///< standard deviation over sensels of their constant drift
-  std::optional<int> adc_bits;    ///< 1..16; readings are rounded to whole counts; unset: float32
-  double dead_share = 0;          ///< share of the sensels that always read zero, 0..1
+  double dead_zone_counts = 0;    ///< load below which a sensel reads zero
+  double gain_spread = 0;         ///< relative standard deviation of sensitivity, < 0.3
+  double tare_counts = 0;         ///< mean reading of an unloaded sensel
+  double tare_spread_counts = 0;  ///< standard deviation of the tare over sensels
+  double noise_counts = 0;        ///< standard deviation of a reading from frame to frame
+  double drift_counts_per_s = 0;  ///< standard deviation over sensels of a constant drift
+  std::optional<int> adc_bits;    ///< converter, 1 to 16 bits; unset: float32, not rounded
+  double dead_share = 0;          ///< fraction of sensels that always read zero, [0, 1]
 };
 
-/// A frame in which every pillar has a force of its own: direction phi runs along a row, theta down
-/// the columns, and the whole chart repeats for each magnitude.
+/// A frame that sweeps all directions of force: phi along rows, theta down columns, one block per
+/// magnitude.
 struct Chart {
-  std::uint32_t directions = 72;    ///< columns: phi in equal steps over the circle
+  std::uint32_t directions = 72;    ///< columns: phi in equal steps over a circle
   std::uint32_t inclinations = 31;  ///< rows of a block: theta from 0 to max_theta_deg
   double max_theta_deg = 90;
   std::vector<double> magnitudes_n = {0.3};  ///< blocks, top to bottom
 };
 
-/// A scene file (docs/scenes.md): the skin, the sensor, the time, and what touches it.
+/// A scene (docs/scenes.md): the skin, its sensor, the frames, and what touches it.
 struct Scene {
   std::string title;
   Skin skin;
@@ -46,26 +45,28 @@ struct Scene {
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
-  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan, as the four that follow
+  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan; so are the next five
   Estimator estimator = Estimator::direct;
   double segment_point = kSegmentPoint;
   FrictionKnowledge friction;
   bool angles = false;
   bool uncertainty = false;
-  std::optional<double> baseline_time_s;  ///< time constant with which the tare follows a drift
+  std::optional<double> baseline_time_s;  ///< time constant with which the tare follows drift
+  std::vector<std::string> remarks;       ///< warnings about its file, such as former names
   std::variant<std::vector<Contact>, Chart> load;
-  std::vector<Body> bodies;   ///< beside contacts, not beside a chart
-  double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies; incompressible
+  std::vector<Body> bodies;   ///< combined with contacts, not with a Chart
+  double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies
 };
 
-/// Sets what a scene asks of the solver, and the sensor's noise where the scene has any.
+/// Sets the solver's options, and the noise of the sensor if any, as the scene says. The skin and
+/// the calibration of the plan stay.
 void set_solver(SolverPlan& plan, const Scene& scene);
 
-/// Reads a scene from a TOML file. Throws Error with file, line, key and the allowed values. Height
-/// maps are not opened; their paths, given relative to the scene's folder, have it before them.
+/// Reads a scene from a TOML file. Throws Error with file, line, key and the allowed values. Paths
+/// of height maps are resolved relative to the file; the maps are not opened.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
-/// The same from text; `name` stands for the file in messages.
+/// Reads a scene from text; messages use `name` as the file's name.
 [[nodiscard]] Scene parse_scene(std::string_view text, const std::string& name);
 
 }  // namespace pillarfield

@@ -10,16 +10,16 @@
 
 namespace pillarfield {
 
-/// Makes frames with exact truth from a scene: the tractions of its contacts and bodies, integrated
-/// over each pillar, through the pillar model (2) and the sensor the scene describes.
+/// Makes frames with exact truth from a scene: integrates the tractions of its contacts and bodies
+/// over each pillar and applies the pillar model (2) and the scene's sensor.
 ///
-/// Every frame depends on the scene, its seed and the frame's index alone, so frames may be made
-/// in any order and from several threads at once. Bodies have a history: those frames of it that
-/// were not asked for before are solved first, at about 0.1 s each, one thread for each body.
+/// A frame depends only on the scene, its seed and the index, so frames may be made in any order
+/// and in several threads at once. Bodies have a history: render() first solves all earlier frames
+/// not solved yet, about 0.1 s each, in one thread per body.
 class Simulator {
  public:
-  /// Draws the sensor (sensitivities, tares, dead sensels) from the scene's seed, and reads the
-  /// height maps of its bodies. Throws Error.
+  /// Draws the sensor (sensitivities, tares, dead sensels) from the scene's seed and reads the
+  /// height maps of bodies. Throws Error if the scene is out of range or a map cannot be read.
   explicit Simulator(Scene scene);
   ~Simulator();
   Simulator(Simulator&&) noexcept;
@@ -27,18 +27,18 @@ class Simulator {
 
   [[nodiscard]] const Scene& scene() const;
 
-  /// u8 or u16 with an analogue-to-digital converter, float32 without.
+  /// SenselType::u8 or u16 with a converter (SensorModel::adc_bits), f32 without.
   [[nodiscard]] SenselType sensel_type() const;
 
-  /// What a faultless calibration of this sensor would find.
+  /// The exact calibration of the simulated sensor.
   [[nodiscard]] const Calibration& calibration() const;
 
-  /// Seconds since frame 0.
+  /// Time of a frame since frame 0, s.
   [[nodiscard]] double time_of(std::uint64_t index) const;
 
-  /// Fills `raw` [skin rows, cols] of sensel_type() and `truth` [pillar rows, cols] (newtons; its
-  /// status holds the readings the ideal model makes positive). Both are overwritten whole. Throws
-  /// Error where a body's contact cannot be solved, and where is_interrupted() while it is.
+  /// Overwrites `raw`, [sensel rows, cols] of sensel_type(), and `truth`, [pillar rows, cols], N.
+  /// The status of `truth` has the bits of the sensels that the ideal model loads. Throws Error if
+  /// the contact of a body cannot be solved, or is_interrupted() becomes true meanwhile.
   void render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace pillarfield {
 
-/// How a sensel reading is stored.
+/// Data type of a sensel reading.
 enum class SenselType : std::uint8_t { u8, u16, f32 };
 
 /// Bytes of one reading: 1, 2 or 4.
@@ -16,29 +16,30 @@ enum class SenselType : std::uint8_t { u8, u16, f32 };
 /// "uint8", "uint16" or "float32", as in recordings and in messages.
 [[nodiscard]] const char* name_of(SenselType type);
 
-/// How a sensel that does not answer in proportion is straightened: a corrected reading r > 0
-/// stands for V = reference_counts · (r / reference_counts)^exponent, so that one of
-/// reference_counts stays.
+/// Linearises sensels whose response is a power of the force: a corrected reading r > 0 becomes
+/// V = reference_counts · (r / reference_counts)^exponent. A reading of reference_counts is its own
+/// image.
 struct PowerLaw {
   double exponent = 1;          ///< 0.2..5
   double reference_counts = 1;  ///< 1e-3..1e6
 };
 
-/// What a corrected reading of zero counts or more stands for.
+/// The V of a corrected reading, >= 0 counts.
 [[nodiscard]] double straightened(const PowerLaw& law, double reading);
 
-/// A patch of skin: its size and the sensor's constants, the same for every sensel.
+/// A patch of skin: its size, and the constants that all its sensels share.
 ///
 /// Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at
 /// (r, c) stands on the sensels (2r..2r+1, 2c..2c+1); a last odd row or column has no pillar.
 struct Skin {
-  std::uint32_t rows = 0;                   ///< sensel rows, 2..65534
-  std::uint32_t cols = 0;                   ///< sensel columns, 2..65534
-  double sensel_pitch_mm = 0.632455532;     ///< 250 sensels per cm²: 10/sqrt(250) mm
-  double counts_per_newton = 320;           ///< k of equation (2): counts per newton and pillar
-  double threshold_counts = 0;              ///< a reading above it is usable
-  std::optional<double> full_scale_counts;  ///< a reading at or above it is saturated
-  std::optional<PowerLaw> power_law;        ///< unset: readings are in proportion to the force
+  std::uint32_t rows = 0;                ///< sensel rows, 2..65534
+  std::uint32_t cols = 0;                ///< sensel columns, 2..65534
+  double sensel_pitch_mm = 0.632455532;  ///< 250 sensels per cm²: 10/sqrt(250) mm
+  double counts_per_newton =
+      320;  ///< k of equation (2): counts a sensel reads per newton on its pillar
+  double threshold_counts = 0;              ///< a sensel is usable if its reading is above
+  std::optional<double> full_scale_counts;  ///< a reading is saturated from here on
+  std::optional<PowerLaw> power_law;        ///< unset: readings are proportional to force
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
@@ -47,7 +48,7 @@ struct Skin {
   [[nodiscard]] double pillar_pitch_mm() const { return 2 * sensel_pitch_mm; }
 };
 
-/// Limits within which no result can overflow single precision.
+/// Limits that keep every result within single precision.
 inline constexpr std::uint32_t kMaxSensels = 65534;  ///< rows or columns of a skin
 inline constexpr double kMaxCounts = 1e33;           ///< readings, threshold, full scale
 inline constexpr double kMinCountsPerNewton = 1e-2;
@@ -59,7 +60,7 @@ inline constexpr double kMaxExponent = 5;
 inline constexpr double kMinReferenceCounts = 1e-3;
 inline constexpr double kMaxReferenceCounts = 1e6;
 
-/// Throws Error, its place being `where`, when a member of `skin` is out of its range.
+/// Throws Error, naming `where`, if a member is out of range.
 void check(const Skin& skin, std::string_view where);
 
 }  // namespace pillarfield

@@ -12,7 +12,7 @@
 
 namespace pillarfield {
 
-/// One step by which a calibration came about: what a calibration file keeps as its provenance.
+/// One step of a calibration's history, as its file keeps it.
 struct CalibrationStep {
   std::string step;                  ///< "tare", "equilibrate", "load" or "faults"
   std::vector<std::string> sources;  ///< names of the files of frames
@@ -22,50 +22,50 @@ struct CalibrationStep {
   std::string program_version;
 };
 
-/// What was found out about one skin (docs/calibration.md): its planes, and those of its constants
-/// that a step has measured. The steps take one and give a better one.
+/// The calibration of one skin (docs/calibration.md): its planes and measured constants. Each step,
+/// take_tare(), equilibrate(), calibrate_load() and FaultFinder, takes one and returns a better
+/// one. Constants are unset until a step measures them.
 struct SkinCalibration {
-  std::uint32_t rows = 0;  ///< sensels
-  std::uint32_t cols = 0;
+  std::uint32_t rows = 0;  ///< sensel rows
+  std::uint32_t cols = 0;  ///< sensel columns
   Calibration planes;
   std::optional<double> threshold_counts;
-  /// The threshold as a multiple of the noise; see set_threshold.
+  /// The threshold as a multiple of the noise; see set_threshold().
   std::optional<double> threshold_factor;
   std::optional<double> counts_per_newton;
-  std::optional<PowerLaw> power_law;     ///< comes with counts_per_newton
+  std::optional<PowerLaw> power_law;     ///< set only with counts_per_newton
   std::vector<CalibrationStep> history;  ///< oldest first
 };
 
-/// Limit of SkinCalibration::threshold_factor.
+/// Largest SkinCalibration::threshold_factor.
 inline constexpr double kMaxThresholdFactor = 1000;
 
-/// The step just done, by this version of the program and now.
+/// A step of the history, dated now, with this version of the program.
 [[nodiscard]] CalibrationStep step_done(std::string step, std::vector<std::string> sources,
                                         std::uint64_t frames, std::string parameters);
 
-/// A calibration of which nothing is known but the size of the skin.
+/// An empty calibration of the skin's size: where a new skin starts.
 [[nodiscard]] SkinCalibration blank_calibration(const Skin& skin);
 
-/// Masks the sensels that `mask` (as Calibration::mask, of the calibration's size) has as missing.
+/// Masks the sensels where `mask` is 0, [rows, cols] of the calibration. Masked sensels stay
+/// masked.
 void mask_missing(SkinCalibration& calibration, const std::vector<std::uint8_t>& mask);
 
-/// Throws Error, its place being `where`, when a plane or a constant is out of its range.
+/// Throws Error, naming `where`, if a plane or a constant is out of range.
 void check(const SkinCalibration& calibration, std::string_view where);
 
-/// Throws Error, its place being `where`, when the calibration is that of a skin of another size.
+/// Throws Error, naming `where`, if the calibration and the skin differ in size.
 void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where);
 
-/// Replaces the planes, and the constants that the calibration has. A sensel that is missing in
-/// `planes` stays missing. `skin` must be of the calibration's size.
+/// Puts a calibration into effect: replaces all of `planes`, and the constants of `skin` that the
+/// calibration has. Sensels masked in `planes` stay masked. Both must have the same size.
 void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes);
 
-/// Makes the threshold `factor` times the noise that 99 % of the good sensels do not exceed, in
-/// counts of the readings that it is compared with: noise · gain, and that by the power law where
-/// there is one. Needs the noise plane.
+/// Sets the threshold to `factor` times the 99th percentile of noise · gain over the good sensels,
+/// through the power law if there is one. The calibration must have a noise plane.
 void set_threshold(SkinCalibration& calibration, double factor);
 
-/// Gives the calibration this power law in place of what it has, and moves the threshold, where
-/// there is one, so that it stays at the same reading.
+/// Replaces the power law, and moves the threshold so that the same readings stay above it.
 void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law);
 
 }  // namespace pillarfield

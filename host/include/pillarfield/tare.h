@@ -8,26 +8,27 @@
 
 namespace pillarfield {
 
+/// Options of take_tare().
 struct TareOptions {
-  double threshold_factor = 4;  ///< see set_threshold
-  bool preloaded = false;       ///< a patch that reads far above its fellows is meant to be so
+  double threshold_factor = 4;  ///< see set_threshold()
+  bool preloaded = false;  ///< accept an area that reads far above the rest: it is bent or covered
 };
 
-/// What the unloaded skin told.
+/// The result of take_tare().
 struct TareResult {
   SkinCalibration calibration;
-  std::vector<SenselFinding> findings;  ///< all of them masked
+  std::vector<SenselFinding> findings;  ///< all masked
   double tare_counts = 0;               ///< median of the good sensels
-  double noise_counts = 0;              ///< the same
+  double noise_counts = 0;              ///< median of the good sensels
 };
 
-/// The fewest frames a tare is taken from: ten give the noise to about a quarter.
+/// Least number of frames for a tare: ten determine the noise to about a quarter.
 inline constexpr std::uint32_t kLeastTareFrames = 10;
 
-/// Takes the tare (mean) and the noise (standard deviation) of each sensel from frames of the
-/// unloaded skin, makes the threshold, and masks sensels that cannot be right. What else `before`
-/// knows is kept. Formulas and limits: docs/calibration.md. Throws Error where the frames are too
-/// few, of another skin, or show that something touches it.
+/// Measures the tare (mean) and the noise (standard deviation) of each sensel on the unloaded skin,
+/// sets the threshold, and masks faulty sensels. Keeps everything else of `before`. Formulas and
+/// limits: docs/calibration.md. Throws Error if the frames are too few or of another skin, or
+/// something touches the skin.
 [[nodiscard]] TareResult take_tare(const SkinCalibration& before, const FrameStatistics& unloaded,
                                    const TareOptions& options);
 

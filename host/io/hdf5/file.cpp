@@ -38,7 +38,7 @@ Handle reading_access(const std::filesystem::path& path, bool unclosed) {
 }  // namespace
 
 File open_to_read(const std::filesystem::path& path, bool probing) {
-  if (kind_of(path) != FileKind::hdf5) throw Error(path.string(), "is no HDF5 file", kLayout);
+  if (kind_of(path) != FileKind::hdf5) throw Error(path.string(), "is not an HDF5 file", kLayout);
   const WriterState state = writer_state(path);
   if (state == WriterState::abandoned) {
     throw Error(path.string(), "was never closed by its writer, and holds nothing that was flushed",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "pillarfield/error.h"
+#include "pillarfield/read_options.h"
 
 namespace pillarfield::hdf5 {
 namespace {
@@ -56,3 +57,15 @@ void require(herr_t result, const std::filesystem::path& file, std::string_view 
 }
 
 }  // namespace pillarfield::hdf5
+
+namespace pillarfield {
+
+std::string hdf5_version() {
+  unsigned major = 0;
+  unsigned minor = 0;
+  unsigned release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
+}  // namespace pillarfield

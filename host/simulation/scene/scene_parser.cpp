@@ -102,6 +102,10 @@ void read_solver(TomlSection section, Scene& scene) {
   scene.parity_tolerance_counts = section.number("parity_tolerance_counts", kParityToleranceCounts);
   scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
   scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
+  if (section.text("estimator") == "field") {
+    scene.remarks.emplace_back(
+        "estimator = \"field\" is now \"contact\"; the former name works in this release only");
+  }
   scene.segment_point =
       section.number("segment_point", kSegmentPoints).value_or(scene.segment_point);
   scene.angles = section.flag("angles").value_or(scene.angles);

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "contacts/estimator/contact_estimator.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/scene.h"
-#include "solve/host_solve.h"
 #include "tests/io/sample_files.h"
 #include "tests/viewer/source/solved_scene.h"
 #include "viewer/source/field_producer.h"

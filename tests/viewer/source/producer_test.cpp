@@ -10,10 +10,10 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
-#include "solve/host_solve.h"
 #include "tests/io/sample_files.h"
 #include "tests/viewer/source/solved_scene.h"
 #include "tests/viewer/source/touched_field.h"

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/contact_output.h"
+#include "cli/plan_options.h"
+#include "pillarfield/equilibration.h"
+#include "pillarfield/fault_finder.h"
+#include "pillarfield/load_calibration.h"
+#include "pillarfield/output_file.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/read_options.h"
+#include "pillarfield/tare.h"
+#include "testbed/testbed.h"
+
+/// The commands, each with its arguments. A command throws Error where its work fails.
+namespace pillarfield::cli {
+
+/// How a command prints.
+struct PrintOptions {
+  bool json = false;
+  bool quiet = false;  ///< no progress, and no summary of a file that is written
+};
+
+struct WriteOptions : PrintOptions {
+  std::string output;
+  Replace replace = Replace::results;
+};
+
+struct DeviceOptions {
+  std::string name;  ///< for open_device()
+  Memory memory = Memory::automatic;
+};
+
+struct SimulateOptions : WriteOptions {
+  std::string scene;
+  std::optional<std::uint32_t> frames;
+  std::optional<std::uint64_t> seed;
+  bool uncalibrated = false;
+};
+
+struct SolveOptions : WriteOptions {
+  std::string input;
+  PlanOptions plan;
+  DeviceOptions device;
+  ContactOutputOptions contacts;
+};
+
+struct PaceOptions : PrintOptions {
+  std::string source;
+  double rate_hz = 1000;
+  double seconds = 10;
+  std::optional<double> deadline_ms;
+  std::uint64_t backlog_frames = 4;
+  int frames_in_flight = 2;
+  double spin_us = 0;
+  std::uint64_t memory_limit_mib = 1024;
+  bool half = false;
+  bool realtime = false;
+  bool strict = false;
+  PlanOptions plan;
+  DeviceOptions device;
+};
+
+struct CompareOptions : PrintOptions {
+  std::string forces;
+  std::string recording;
+  ReadOptions read;
+};
+
+/// What every step of a calibration is given.
+struct StepOptions : WriteOptions {
+  std::string calibration;  ///< file to go on from; empty where there is none
+  ReadOptions read;
+};
+
+struct TareCommand : StepOptions {
+  std::string unloaded;
+  TareOptions tare;
+};
+
+struct EquilibrateCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<double> pressures_kpa;  ///< one for each file
+  EquilibrationOptions equilibration;
+};
+
+struct LoadCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<double> loads_n;  ///< one for each file
+  LoadModel model = LoadModel::linear;
+};
+
+struct FaultsCommand : StepOptions {
+  std::string frames;
+  FaultOptions faults;
+};
+
+struct ApplyCommand : StepOptions {
+  std::string recording;
+};
+
+struct TestbedOptions : PrintOptions {
+  testbed::Parameters parameters;
+  std::uint64_t runs = 1000;
+  std::string figures;
+  Replace replace = Replace::results;
+};
+
+/// What to describe: a file, the devices, the kernel of a scene, or the program where all are
+/// unset.
+struct InfoOptions : PrintOptions {
+  std::string file;
+  std::string kernel;
+  ReadOptions read;
+  bool devices = false;
+};
+
+void simulate(const SimulateOptions& options);
+void solve(const SolveOptions& asked);
+void pace(const PaceOptions& options);
+void compare(const CompareOptions& options);
+void calibrate(const TareCommand& command);
+void calibrate(const EquilibrateCommand& command);
+void calibrate(const LoadCommand& command);
+void calibrate(const FaultsCommand& command);
+void calibrate(const ApplyCommand& command);
+void run_testbed(const TestbedOptions& options);
+void info(const InfoOptions& options);
+
+/// Version, commit, compiler and libraries of the program.
+void print_version(bool json);
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,34 @@
+#include "cli/number_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace pillarfield::cli {
+
+std::string grouped(std::uint64_t number) {
+  std::string digits = std::to_string(number);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
+  return digits;
+}
+
+std::string counted(std::uint64_t number, const char* noun) {
+  return fmt::format("{} {}{}", grouped(number), noun, number == 1 ? "" : "s");
+}
+
+std::string rounded(double number) {
+  constexpr double kFiveDigits = 1e4;
+  constexpr double kWhole = 1e15;
+  const double size = std::abs(number);
+  if (!(size >= kFiveDigits && size < kWhole)) return fmt::format("{:.5g}", number);
+  const auto whole = static_cast<std::uint64_t>(std::llround(size));
+  return (number < 0 ? "-" : "") + grouped(whole);
+}
+
+std::string percent(std::uint64_t part, std::uint64_t whole) {
+  if (part == 0 || whole == 0) return "0 %";
+  const double value = 100 * static_cast<double>(part) / static_cast<double>(whole);
+  return value < 0.05 ? "<0.1 %" : fmt::format("{:.1f} %", value);
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+
+#include "pillarfield/force_field.h"
+#include "pillarfield/frame.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield {
+
+/// Solves one frame in the calling thread, without OpenCL; link `pillarfield::core`.
+///
+///     ForceField forces = solve_on_host(plan, frame.view());
+///
+/// It computes what Processor computes, from the same source in single precision. The results are
+/// the same bits, save for the power law and the estimator `paper`, which call library functions.
+/// It is the reference that devices are tested against, and the simplest choice for small skins and
+/// single frames: it compiles no kernel, but solves one pillar at a time.
+///
+/// `frame` has the plan's size and type, with any row stride; the result is [pillar rows, pillar
+/// cols] and owns its memory. The function keeps no state: with the estimator `contact` each frame
+/// stands alone (as with FrictionKnowledge::memory off), and the tare follows the readings only if
+/// the caller calls follow_baseline_on_host(). `plan.angles` and `plan.half_output` have no effect.
+///
+/// Throws Error if the plan is out of range or the frame does not fit it. Threads: any number at
+/// once.
+[[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
+
+/// Moves `plan.calibration.tare` towards the readings of untouched sensels, as Processor does after
+/// each frame if `plan.baseline_rate` is set. `forces` is the result of `frame`, and `index` is the
+/// number of the frame, from 0; it selects the pillar rows whose turn it is
+/// (SolverPlan::baseline_interval). An empty tare counts as zero.
+/// Throws Error if the frame or the forces do not fit the plan.
+void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const ForceField& forces,
+                             std::uint64_t index = 0);
+
+}  // namespace pillarfield

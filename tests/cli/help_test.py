@@ -1,0 +1,227 @@
+"""Help, wrong command lines, --quiet and --version of every command."""
+
+import json
+import os
+import pathlib
+import re
+import shlex
+import shutil
+import subprocess
+import unittest
+
+from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
+
+STEPS = ["tare", "equilibrate", "load", "faults", "apply"]
+COMMANDS = [["simulate"], ["solve"], ["pace"], ["compare"], ["calibrate"],
+            *(["calibrate", step] for step in STEPS), ["testbed"], ["info"], ["completion"]]
+
+
+def examples_of(command):
+    """The lines under the last heading of a command's help."""
+    return [line.strip() for line in run(*command, "--help").stdout.split("\nExamples:\n")[1]
+            .splitlines()]
+
+
+class Help(CommandTest):
+    def test_every_command_explains_itself(self):
+        for command in [[], *COMMANDS]:
+            name = " ".join(["pillarfield", *command])
+            with self.subTest(command=name):
+                text = run(*command, "--help").stdout
+                self.assertEqual(run("help", *command).stdout, text)
+                usage, options = text.split("\nExamples:\n")[0].split("\n\n", 2)[1:]
+                self.assertTrue(usage.startswith("Usage: " + name), usage)
+                self.assertTrue(text.replace("\n", "").isprintable())
+                self.assertLessEqual(max(map(len, options.splitlines())), 80)
+                self.assertRegex(options, r"(?m)^General:\n(  .*\n)*  -h, --help +Print")
+                self.assertNotRegex(options, "TEXT|FLOAT|UINT|REQUIRED|Options:")
+                own = [line for line in examples_of(command) if name in line]
+                self.assertGreaterEqual(len(own), 1 if command[:1] == ["calibrate"] else 2)
+
+    def run_examples(self, more, check):
+        """Runs the examples of each command in a folder of their own, `more` added to each line, and
+        calls check(line, standard output, standard error); the latter is a terminal."""
+        environment = dict(os.environ, PATH=os.pathsep.join(
+            [str(pathlib.Path(PROGRAM).parent), os.environ["PATH"]]))
+        for command in COMMANDS:
+            folder = self.folder / "_".join([*command, *more])
+            folder.mkdir()
+            (folder / "scenes").symlink_to(SOURCE / "scenes")
+            for line in examples_of(command):
+                if not line.startswith("pillarfield ") or "completion" in line:
+                    words = ["bash", "-c", line]
+                else:
+                    words = [PROGRAM, *shlex.split(line)[1:], *more]
+                with self.subTest(line=line, more=more):
+                    status, out, said = on_terminal(words, cwd=folder, env=environment)
+                    self.assertEqual(status, 0, said)
+                    check(line, out, said)
+
+    def test_examples_work_and_print_numbers_for_people(self):
+        def check(line, out, _):
+            if "--json" not in line and "--kernel" not in line:
+                self.assertNotRegex(out, r"\d\.\d{6}|\d\.\d+e|[1-9]\.\d{5}|(?<![\w.])\d{6}")
+        self.run_examples([], check)
+
+    def test_quiet_is_quiet(self):
+        def check(line, out, said):
+            self.assertEqual(said, "")
+            if " -o " in line:
+                self.assertEqual(out, "")
+        self.run_examples(["-q"], check)
+
+
+class Version(CommandTest):
+    def test_it_tells_of_the_build(self):
+        facts = json.loads(run("--version", "--json").stdout)
+        self.assertEqual(list(facts), ["version", "commit", "compiler", "build_type", "hdf5",
+                                       "opencl"])
+        self.assertRegex(facts["version"], r"^\d+\.\d+\.\d+$")
+        self.assertRegex(facts["hdf5"], r"^\d+\.\d+\.\d+$")
+        self.assertRegex(facts["commit"], r"^([0-9a-f]{10}|.*-g?[0-9a-f]{10})(-dirty)?$|unknown")
+        self.assertEqual([device["device"] for device in facts["opencl"]],
+                         [device["name"] for device in run_json("info", "--devices")])
+        text = run("--version").stdout
+        self.assertTrue(text.startswith(f"pillarfield {facts['version']}\n"))
+        for key in ("commit", "compiler", "build_type", "hdf5"):
+            self.assertIn(facts[key], text)
+
+
+class WrongCommandLines(CommandTest):
+    def test_what_was_meant_is_suggested(self):
+        solve = ("solve", "a", "-o", "b.h5")
+        for meant, *arguments in (
+                ("solve", "slove"), ("simulate", "sim", "x"), ("tare", "calibrate", "tear", "a"),
+                ("--version", "--verison"), ("--threshold", *solve, "--thresold", 3),
+                ("--threshold", *solve, "--thresold=3"), ("--rate", "pace", "a", "--rat", 3),
+                ("direct", *solve, "--estimator", "direckt"), ("linear", "calibrate", "load", "a",
+                "--model", "liner"), ("angles", *solve, "--outputs", "forces,angels"),
+                ("shared", *solve, "--memory", "share"), ("bash", "completion", "bsh")):
+            self.assert_fails(*arguments, status=2, says=[f"; did you mean '{meant}'?"])
+        for arguments in (["fly"], [*solve, "--helicopter"], [*solve, "--estimator", "magic"]):
+            self.assertNotIn("mean", self.assert_fails(*arguments, status=2, says=[arguments[-1]]))
+
+    def test_each_ends_with_2_and_a_line_that_names_the_fault(self):
+        solve = ("solve", "a", "-o", "b")
+        step = ("a", "--calibration", "c", "-o", "d")
+        press = ("calibrate", "equilibrate", *step)
+        load = ("calibrate", "load", *step, "--load-n")
+        for fault, *arguments in (
+                ("no command", ), ("no command", "calibrate"), ("INPUT", "solve"),
+                ("--output", "solve", "a"), ("one argument too many", *solve, "c"),
+                ("--seed", "simulate", "--seed", "x"), ("--segment-point", *solve,
+                "--segment-point", 0), ("1.1", *solve, "--segment-point", 1.1),
+                ("much", *solve, "--threshold", "much"),
+                ("--minimum-pillars requires --contacts", *solve, "--minimum-pillars", 4),
+                ("--slips", *solve, "--slips"), ("--frames-close", *solve, "--frames-close"),
+                ("--sweeps", *solve, "--sweeps", 8),
+                ("--contact-friction", *solve, "--contact-friction", 0.8),
+                ("--friction", *solve, "--friction", 0.05), ("20", *solve, "--friction", 20),
+                ("--frames", "simulate", "a", "-o", "b", "--frames", 0),
+                ("--runs", "testbed", "--runs", 1), ("wide", "testbed", "--dead-zone", "wide"),
+                ("--devices", "info", "file", "--devices"), ("tcsh", "completion", "tcsh"),
+                ("UNLOADED", "calibrate", "tare"), ("--output", "calibrate", "tare", "a"),
+                ("--pressure-kpa", *press), ("'0'", *press, "--pressure-kpa", 0),
+                ("2 files and 1 values", *press, "b", "--pressure-kpa", 1),
+                ("'-3'", *load, -3), ("1 files and 2 values", *load, "1,2"),
+                ("cubic", *load, 1, "--model", "cubic"), ("RECORDING", "calibrate", "apply", "a"),
+                ("--threshold-factor", "calibrate", "tare", "a", "-o", "b", "--threshold-factor",
+                 -1), ("SOURCE", "pace"), ("fast", "pace", "a", "--rate", "fast"),
+                ("--backlog", "pace", "a", "--backlog", -1), ("--rate", "pace", "a", "--rate", 0),
+                ("'nan'", "pace", "a", "--rate", "nan"), ("--rate", "pace", "a", "--rate", 1e6),
+                ("--deadline", "pace", "a", "--deadline", 0), ("--spin", "pace", "a", "--spin", -1),
+                ("'0'", "pace", "a", "--memory-limit", 0)):
+            line = self.assert_fails(*arguments, status=2, says=[fault])
+            self.assertRegex(line, r"; see 'pillarfield.* --help'$|; did you mean")
+
+    def test_former_names_work_with_a_note(self):
+        scene = SOURCE / "scenes/spin.toml"
+        said = run("live", scene, "--rate", 50, "--seconds", 0.1, "-q", "--json").stderr
+        self.assertRegex(said, r"\Apillarfield: 'live' is now 'pace'; .*\n\Z")
+        old = self.folder / "old.toml"
+        old.write_text(scene.read_text() + '\n[solver]\nestimator = "field"\n')
+        said = run("simulate", old, "-o", self.folder / "a.h5", "-q").stderr
+        self.assertRegex(said, r'\A.*old.toml: estimator = "field" is now "contact"; .*\n\Z')
+        copies = []
+        for name, notes in (("contact", 0), ("field", 1)):
+            copies.append(self.folder / f"{name}.npy")
+            said = run("solve", self.folder / "a.h5", "-o", copies[-1], "--estimator", name).stderr
+            self.assertEqual(said.count("'--estimator field' is now"), notes)
+        self.assertEqual(*(copy.read_bytes() for copy in copies))
+
+
+class Numbers(CommandTest):
+    """Every option that takes a number refuses what is none, in every command."""
+
+    def test_what_is_no_number_is_refused(self):
+        scene = SOURCE / "scenes/spin.toml"
+        recording, output = self.folder / "recording.h5", self.folder / "output.h5"
+        run("simulate", scene, "-o", recording)
+        needed = {"simulate": [scene, "-o", output], "pace": [recording], "testbed": [],
+                  "solve": [recording, "-o", output, "--contacts", output]}
+        step = [recording, "--calibration", recording, "-o", output]
+        needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
+                   "load": [*step, "--load-n", 10]}
+        tried = 0
+        for command in COMMANDS:
+            text = run(*command, "--help").stdout
+            options = re.findall(r"^  (--[\w-]+) ([A-Z][\w,.]*)", text, re.MULTILINE)
+            for option in [name for name, kind in options
+                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE")]:
+                for value in ("nan", "-inf", "1e999", "x"):
+                    with self.subTest(command=command, option=option, value=value):
+                        self.assert_fails(*command, *needed[command[-1]], f"{option}={value}",
+                                          status=2, says=[option, value])
+                    tried += 1
+        self.assertGreater(tried, 4 * 35)
+        self.assert_folder_holds("recording.h5")
+
+    def test_whole_numbers(self):
+        simulate = ["simulate", "scene.toml", "-o", "a.h5"]
+        for command in (simulate, ["testbed", "--runs", "2"]):
+            for seed in ("-1", "1.5", "0x10", "010", "9223372036854775808",
+                         "99999999999999999999", "18446744073709551617", " 1"):
+                self.assert_fails(*command, f"--seed={seed}", status=2,
+                                  says=["whole number from 0 to 9223372036854775807"])
+        for frames in ("-1", "0", "1.5", "4294967297", "18446744073709551617"):
+            self.assert_fails(*simulate, f"--frames={frames}", status=2,
+                              says=["whole number from 1 to 100000000"])
+        run("testbed", "--runs", 2, "--seed", "9223372036854775807")
+
+
+class Completion(CommandTest):
+    def complete(self, *words):
+        """What bash offers for the last of `words`."""
+        script = run("completion", "bash").stdout + (
+            f"PATH={pathlib.Path(PROGRAM).parent}:$PATH\n"
+            f"COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; _pillarfield\n"
+            'printf "%s\\n" "${COMPREPLY[@]}"\n')
+        result = subprocess.run(["bash", "-c", script], capture_output=True, text=True, check=True)
+        return result.stdout.split()
+
+    def test_bash(self):
+        self.assertEqual(self.complete("pillarfield", "si"), ["simulate"])
+        self.assertIn("--threshold", self.complete("pillarfield", "solve", "--th"))
+        self.assertEqual(self.complete("pillarfield", "solve", "demo"), [])
+        self.assertEqual(self.complete("pillarfield", "calibrate", "eq"), ["equilibrate"])
+        self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "--pre"),
+                         ["--preloaded"])
+        self.assertEqual(self.complete("pillarfield", "calibrate", "tare", "eq"), [])
+        self.assertEqual(self.complete("pillarfield", "--vers"), ["--version"])
+        self.assertEqual(self.complete("pillarfield", "solve", "a.h5", "--noise", "3", "--mem"),
+                         ["--memory"])
+
+    def test_other_shells(self):
+        self.assertIn("bashcompinit", run("completion", "zsh").stdout)
+        self.assertIn("complete -c pillarfield", run("completion", "fish").stdout)
+        words = run("completion", "words", "--", "calibrate").stdout  # what fish shows
+        self.assertIn("\ntare\tTare, noise and threshold", "\n" + words)
+        for shell in ("zsh", "fish"):
+            if shutil.which(shell):
+                script = self.folder / "script"
+                script.write_text(run("completion", shell).stdout)
+                subprocess.run([shell, "-n", script], check=True)
+
+
+if __name__ == "__main__":
+    unittest.main()

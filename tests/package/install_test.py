@@ -1,0 +1,125 @@
+"""What a new user does: installs a copy, builds the examples against it and runs them, and follows the
+README. PILLARFIELD_BUILD is the build tree that is installed, PILLARFIELD_WORK a folder for it all."""
+
+import csv
+import io
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import unittest
+
+SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
+WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
+HOME = WORK / "home"
+PREFIX = HOME / ".local"
+ENVIRONMENT = {**os.environ, "HOME": str(HOME), "PATH": f"{PREFIX}/bin:{os.environ['PATH']}"}
+README = (SOURCE / "README.md").read_text()
+
+
+def run(*command, cwd=WORK):
+    done = subprocess.run([str(word) for word in command], cwd=cwd, env=ENVIRONMENT, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    if done.returncode != 0:
+        raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout}")
+    return done.stdout
+
+
+def readme_blocks(language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+
+
+def setUpModule():
+    shutil.rmtree(WORK, ignore_errors=True)
+    WORK.mkdir(parents=True)
+    run("cmake", "--install", os.environ["PILLARFIELD_BUILD"], "--prefix", PREFIX)
+    run("cmake", "-S", SOURCE / "examples", "-B", "examples", "-G", "Ninja",
+        "-D", f"CMAKE_PREFIX_PATH={PREFIX}", "-D", "CMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
+    run("cmake", "--build", "examples")
+
+
+class Examples(unittest.TestCase):
+    def test_a_frame_in_memory(self):
+        self.assertEqual(run("examples/solve_frame"),
+                         "row 3, column 4: shear (0.199, 0.000) N, normal 0.500 N\n")
+
+    def test_a_live_loop_with_tare(self):
+        lines = run("examples/live").splitlines()
+        tare = re.fullmatch(r"tare ([\d.]+) counts, noise ([\d.]+) counts, 0 sensels masked", lines[0])
+        self.assertAlmostEqual(float(tare[1]), 100, delta=0.5)
+        self.assertAlmostEqual(float(tare[2]), 1, delta=0.2)
+        self.assertEqual(len(lines), 6)
+        for pressed, line in enumerate(lines[1:]):
+            total = float(re.fullmatch(r"frame \d+: ([\d.]+) N", line)[1])
+            self.assertAlmostEqual(total, 0.5 * pressed, delta=0.02)
+
+    def test_a_simulated_scene_and_its_contacts(self):
+        errors = run("examples/simulate", SOURCE / "scenes/spin.toml", "spin.h5")
+        rms = {m[1]: float(m[2]) for m in re.finditer(r"region (\d): .* error ([\d.]+) N", errors)}
+        self.assertLess(rms["1"], 0.001)
+        self.assertGreater(rms["3"], rms["1"])
+        table = list(csv.DictReader(io.StringIO(run("examples/contacts", "spin.h5"))))
+        self.assertEqual([row["id"] for row in table], ["1"])
+        # A ball of 60 N that spins about the centre of the patch.
+        self.assertAlmostEqual(float(table[0]["normal_n"]), 60, delta=1)
+        self.assertAlmostEqual(float(table[0]["shear_x_n"]), 0, delta=0.5)
+        self.assertAlmostEqual(float(table[0]["x_mm"]), 0, delta=0.1)
+
+    def test_solving_on_the_host_links_no_opencl(self):
+        self.assertNotIn("libOpenCL", run("readelf", "--dynamic", "examples/simulate"))
+        self.assertIn("libOpenCL", run("readelf", "--dynamic", "examples/solve_frame"))
+
+    def test_the_core_is_found_without_opencl_and_hdf5(self):
+        folder = WORK / "core"
+        folder.mkdir()
+        (folder / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(core LANGUAGES CXX)\n"
+            "find_package(pillarfield REQUIRED COMPONENTS core)\n"
+            "add_executable(core main.cpp)\ntarget_link_libraries(core PRIVATE pillarfield::core)\n")
+        (folder / "main.cpp").write_text(
+            "#include <pillarfield/pillarfield.h>\n"
+            "int main() {\n"
+            "  pillarfield::SolverPlan plan;\n"
+            "  plan.skin.rows = plan.skin.cols = 2;\n"
+            "  const std::uint8_t readings[] = {80, 80, 80, 80};  // 0.25 N\n"
+            "  const auto forces = solve_on_host(plan, {readings, plan.sensel_type, 2, 2, 2});\n"
+            "  return forces.normal[0] == 0.25F ? 0 : 1;\n"
+            "}\n")
+        run("cmake", "-S", "core", "-B", "core/build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={PREFIX}",
+            "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_HDF5=ON")
+        run("cmake", "--build", "core/build")
+        run("core/build/core")
+
+
+class Readme(unittest.TestCase):
+    def test_its_program_is_the_example(self):
+        self.assertEqual(readme_blocks("cpp"), [(SOURCE / "examples/solve_frame.cpp").read_text()])
+
+    def test_its_commands_work_as_printed(self):
+        folder = WORK / "readme"
+        folder.mkdir()
+        (folder / "scenes").symlink_to(SOURCE / "scenes")
+        (folder / "main.cpp").write_text(readme_blocks("cpp")[0])
+        (folder / "CMakeLists.txt").write_text(readme_blocks("cmake")[0])
+        dev, install, first, own, program = readme_blocks("sh")
+        self.assertIn("./dev demo", dev)
+        self.assertIn("cmake --install build/release --prefix $HOME/.local", install)
+        if not (PREFIX / "bin/pillarfield-viewer").exists():
+            first = re.sub("^pillarfield-viewer.*\n", "", first, flags=re.MULTILINE)
+        run("bash", "-ec", first, cwd=folder)
+        run(sys.executable, "-c", readme_blocks("python")[0], cwd=folder)
+        run("bash", "-ec", own, cwd=folder)
+        output = run("bash", "-ec", program, cwd=folder).splitlines()[-1]
+        self.assertEqual(output, re.search("# (row 3.*)", program)[1])
+
+        import h5py
+        with h5py.File(folder / "mine_forces.h5") as forces:
+            normal = forces["force/normal"][:].sum(axis=(1, 2))
+        self.assertAlmostEqual(normal[:100].max(), 0, delta=0.1)
+        self.assertAlmostEqual(normal[100:].mean(), 25, delta=0.2)  # 50 pillars of 160 counts
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,294 @@
+"""accuracy.py DOCS MEASURED PILLARFIELD: writes DOCS/accuracy.md with its pictures.
+
+MEASURED is what measure_accuracy printed; PILLARFIELD is the program, whose `testbed` command draws
+the paper's figures."""
+
+import json
+import math
+import subprocess
+from pathlib import Path
+
+import page
+import pictures
+from page import percent, root_mean_square, text
+
+
+
+# --- Error against the Cramér–Rao bound ---
+
+def ratio_rows(table):
+    """A row for each inclination; the noises follow each other within it."""
+    result = []
+    for cell in table:
+        if not result or result[-1][0] != f"{cell['theta_deg']}°":
+            regions = sorted({5 - force["usable"] for force in cell["forces"]})
+            result.append([f"{cell['theta_deg']}°", ", ".join(map(str, regions))])
+        result[-1] += [text(root_mean_square(force[estimator] for force in cell["forces"]))
+                       for estimator in ("direct", "paper")]
+    return result
+
+
+def draw_bound(curves, folder):
+    figure, axes = pictures.panels(960, 400, 1, 2, sharex=True, sharey=True)
+    for axis, curve in zip(axes, curves):
+        points = curve["points"]
+        thetas = [point["theta_deg"] for point in points]
+        for point in points:
+            if point["near_border"]:
+                axis.axvspan(point["theta_deg"] - 0.5, point["theta_deg"] + 0.5, color="#e6e6e6",
+                             linewidth=0)
+        axis.axhline(1, color=pictures.GREY, linewidth=0.8)
+        for key, label, style in (
+                ("paper", "paper", {"color": pictures.VERMILION}),
+                ("direct_all_draws", "direct, all draws",
+                 {"color": pictures.BLUE, "linestyle": "--", "linewidth": 1.2}),
+                ("direct", "direct", {"color": pictures.BLUE})):
+            axis.plot(thetas, [point[key] for point in points], label=label, **style)
+        axis.set_title(f"φ = {curve['phi_deg']:g}°")
+        axis.set_xlabel("inclination θ")
+        axis.set(xlim=(0, 90), ylim=(0.9, 1.7), xticks=range(0, 91, 15))
+        axis.xaxis.set_major_formatter("{x:g}°")
+    axes[0].set_ylabel("RMS error over the bound")
+    axes[0].legend(loc="upper left", bbox_to_anchor=(0.5, 1))
+    pictures.save(figure, folder, "bound")
+
+
+def bound_values(bound):
+    forces = [force for cell in bound["table"] for force in cell["forces"]]
+    of_region_1 = [force["paper"] for force in forces if force["usable"] == 4]
+    return {
+        "ratio_rows": ratio_rows(bound["table"]),
+        "direct_most": max(force["direct"] for force in forces),
+        # The standard error of an RMS error, and so of a ratio.
+        "ratio_error": 0.7 / math.sqrt(bound["draws"]),
+        "paper_least": min(of_region_1),
+        "paper_most": max(of_region_1),
+        "cost_of_misreading": percent(bound["cost_of_misreading"], 0),
+    }
+
+
+# --- Coverage, and region 3 ---
+
+def coverage_rows(scenes):
+    for scene in scenes:
+        for region, covered in enumerate(scene["all"]):
+            held = [f"{percent(covered[key])} %" if region < 2 else "–"
+                    for key in ("shear_x", "shear_y", "normal")]
+            yield [scene["name"] if region == 0 else "", region + 1, covered["pillars"], *held,
+                   f"{percent(covered['ends'], 2)} %"]
+
+
+def luck_rows(scenes):
+    for scene in scenes:
+        for region in (0, 1):
+            cells = []
+            for part in ("as_without_noise", "usable_by_luck", "inactive_by_bad_luck"):
+                covered = scene[part][region]
+                if covered["pillars"] == 0:
+                    cells += ["none", "–"]
+                    continue
+                held = (covered["shear_x"] + covered["shear_y"] + covered["normal"]) / 3
+                share = covered["pillars"] / scene["all"][region]["pillars"]
+                cells += [f"{percent(share)} %", f"{percent(held)} %"]
+            yield [scene["name"] if region == 0 else "", region + 1, *cells]
+
+
+# --- Small forces ---
+
+def draw_small_forces(points, folder):
+    figure, (left, right) = pictures.panels(960, 400, 1, 2)
+    loads = [point["load"] for point in points]
+
+    def curve(axis, solve, key, scale, label, style, **options):
+        axis.plot(loads, [math.nan if point[solve][key] is None else scale * point[solve][key]
+                          for point in points], style, label=label, **options)
+
+    black, blue, red = pictures.BLACK, pictures.BLUE, pictures.VERMILION
+    curve(left, "after", "unfelt", 100, "unfelt", ":", color=black)
+    curve(left, "after", "wrong_region", 100, "wrong region", "o-", color=black)
+    curve(left, "before", "unflagged", 100, "unflagged, before", "s-", color=red)
+    curve(left, "after", "unflagged", 100, "unflagged, after", "o-", color=blue)
+    curve(right, "paper", "force", 1, "all: paper", "--", color=pictures.ORANGE)
+    curve(right, "after", "force", 1, "all: direct, after", "--", color=pictures.SKY_BLUE)
+    curve(right, "before", "determined", 1, "3 or 4 usable, before", "s-", color=red)
+    curve(right, "after", "determined", 1, "3 or 4 usable, after", "o-", color=blue)
+    for axis in (left, right):
+        axis.set(xscale="log", xlim=(0.3, 105), xlabel="force over dead zone, F k / z")
+        pictures.plain_ticks(axis.xaxis, (0.3, 1, 3, 10, 30, 100))
+    left.set(ylim=(-2, 102), ylabel="share of the directions (%)")
+    right.set(yscale="log", ylim=(1e-4, 1.1), ylabel="RMS error of the force, over F")
+    pictures.plain_ticks(right.yaxis, (1e-4, 1e-3, 1e-2, 0.1, 1),
+                         ("0.0001", "0.001", "0.01", "0.1", "1"))
+    left.legend(loc="upper right")
+    right.legend(loc="lower left")
+    pictures.save(figure, folder, "small_forces")
+
+
+def share_rows(points):
+    for point in points:
+        shares = [point["after"]["unfelt"], point["after"]["wrong_region"],
+                  point["before"]["unflagged"], point["after"]["unflagged"],
+                  point["before"]["held"], point["after"]["held"]]
+        yield [f"{point['load']:g}", *(f"{percent(share)} %" for share in shares)]
+
+
+def error_rows(points):
+    for point in points:
+        cells = []
+        for key in ("determined", "force", "theta_rad", "phi_rad"):
+            errors = [point[solve][key] for solve in ("paper", "before", "after")]
+            cells.append("none" if errors[2] is None else
+                         " / ".join(f"{error:.3f}" for error in errors))
+        yield [f"{point['load']:g}", *cells]
+
+
+def small_forces_values(points):
+    gain = next(point["before"]["determined"] / point["after"]["determined"]
+                for point in points if point["load"] == 10)
+    return {"share_rows": share_rows(points), "error_rows": error_rows(points),
+            "dead_zone_gain": gain, "largest_force": points[-1]}
+
+
+# --- The testbed ---
+
+STATISTICS = ("mean", "deviation", "mean_error")
+
+
+def testbed(program, *options):
+    """What `pillarfield testbed` measures."""
+    command = [program, "testbed", "--json", *options]
+    try:
+        return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+    except (OSError, subprocess.CalledProcessError, ValueError) as error:
+        raise page.Failure(f"{' '.join(command)}: {error}") from error
+
+
+def name_of(row):
+    return f"{row['site']}, {'φ' if row['angle'] == 'phi' else 'θ'}"
+
+
+def as_printed(figure):
+    """With the three digits that the paper gives, or four."""
+    return f"{figure:.4f}".removesuffix("0")
+
+
+def run_rows(table):
+    for row in table:
+        yield [name_of(row), f"{row['truth']:.3f}",
+               *(as_printed(row["published"][key]) for key in STATISTICS),
+               *(f"{row[solve]['run'][key]:.3f}" for solve in ("paper", "direct")
+                 for key in STATISTICS)]
+
+
+def expected_rows(table):
+    for row in table:
+        cells = []
+        for solve in ("paper", "direct"):
+            for key in STATISTICS:
+                bold = "**" if solve == "paper" and row["reproduced"][key] else ""
+                answer = row[solve]
+                cells.append(f"{bold}{answer['expected'][key]:.3f} ± "
+                             f"{answer['spread'][key]:.3f}{bold}")
+        yield [name_of(row), *cells]
+
+
+def scan_rows(scan):
+    """Every tenth point, and those next to the nearest, which is bold."""
+    nearest = min(range(len(scan)), key=lambda i: scan[i]["distance_rad"])
+    for i, point in enumerate(scan):
+        if i % 10 == 0 or abs(i - nearest) <= 3:
+            bold = "**" if i == nearest else ""
+            yield [f"{bold}{point['dead_zone_n']:.1f}{bold}",
+                   *(f"{point[key]:.3f}" for key in (*STATISTICS, "distance_rad"))]
+
+
+def difference(table):
+    """RMS over the paper's 18 figures of what is printed less what is expected, rad."""
+    return root_mean_square(row["paper"]["expected"][key] - row["published"][key]
+                            for row in table for key in STATISTICS)
+
+
+def nearest_threshold(program):
+    """The sensor without a dead zone whose threshold comes nearest to the paper's figures."""
+    runs = [testbed(program, "--dead-zone", "0", "--threshold", str(counts))
+            for counts in range(10, 201, 10)]
+    return min(runs, key=lambda run: difference(run["table_2"]))
+
+
+def band(figure, site):
+    """Half of what uncertain angles make of an applied force, percent."""
+    point = next(point for point in figure if point["site"] == site)
+    return percent((point["uncertain_high_n"] - point["uncertain_low_n"]) / point["applied_n"] / 2)
+
+
+def testbed_values(program, scan, folder):
+    ours, other = testbed(program, "--figures", str(folder)), nearest_threshold(program)
+    table, sensor = ours["table_2"], ours["sensor"]
+    phi, theta = (row["paper"]["expected"] for row in other["table_2"][:2])
+    threshold = other["sensor"]["threshold_counts"]
+    return {
+        "testbed": ours,
+        "sensor": sensor,
+        "dead_zone_n": sensor["dead_zone_counts"] / sensor["counts_per_newton"],
+        "run_rows": run_rows(table),
+        "expected_rows": expected_rows(table),
+        "scan_rows": scan_rows(scan),
+        "theta": table[1],
+        "dead_zone_difference": difference(table),
+        "threshold_difference": difference(other["table_2"]),
+        "threshold_counts": threshold,
+        "threshold_n": threshold / other["sensor"]["counts_per_newton"],
+        "threshold_phi": phi,
+        "threshold_theta": theta,
+        "bands": [band(ours["figure_8"], f"Region {number}") for number in (1, 2, 3)],
+    }
+
+
+# --- Errata, and hard cases ---
+
+def worst_text(deviation):
+    worst = deviation["worst_rad"]
+    if worst is None:
+        return "0/0"
+    return "0" if worst == 0 else format(worst, ".0e" if worst < 0.001 else ".2f")
+
+
+def erratum_rows(equations):
+    for erratum in equations:
+        cells = [erratum["where"]]
+        for form in ("printed", "mended"):
+            deviation = erratum[f"{form}_deviation"]
+            cells += [erratum[form], f"{deviation['wrong']} of {deviation['cases']}",
+                      worst_text(deviation)]
+        yield cells
+
+
+def condition_text(condition):
+    return "∞" if condition is not None and condition > 1e6 else text(condition, otherwise="0/0")
+
+
+def hard_case_rows(cases):
+    for case in cases:
+        yield [case["what"], *map(condition_text, case["conditions"]),
+               *(f"{error:.2f}" for error in case["direct"] + case["paper"])]
+
+
+def main(docs, measured, program):
+    folder = Path(docs, "pictures", "accuracy")
+    found = page.load(measured)
+    small, errata, cases = found["small_forces"]["points"], found["errata"], found["hard_cases"]
+    draw_bound(found["bound"]["curves"], folder)
+    draw_small_forces(small, folder)
+    page.write(
+        docs, "accuracy", **found, **bound_values(found["bound"]), **small_forces_values(small),
+        **testbed_values(program, found["dead_zone_scan"], folder),
+        coverage_rows=coverage_rows(found["coverage"]), luck_rows=luck_rows(found["coverage"]),
+        erratum_rows=erratum_rows(errata["equations"]),
+        right_as_printed=[worst_text(right) for right in errata["right_as_printed"]],
+        hard_case_rows=hard_case_rows(cases),
+        direct_worst=max(max(case["direct"]) for case in cases),
+        paper_worst=max(max(case["paper"]) for case in cases))
+
+
+if __name__ == "__main__":
+    page.run(main)

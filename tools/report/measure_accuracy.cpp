@@ -1,0 +1,311 @@
+// measure_accuracy: the measurements of docs/accuracy.md, as one JSON document on standard output.
+// The result depends on nothing but the code.
+
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "evaluation/bound.h"
+#include "evaluation/case_accuracy.h"
+#include "evaluation/coverage_study.h"
+#include "evaluation/errata.h"
+#include "solve/one_pillar.h"
+#include "testbed/small_forces.h"
+#include "testbed/table_two.h"
+
+namespace pillarfield::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using bound::Force;
+
+// --- Error against the Cramér–Rao bound ---
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kForceCounts = 60;
+constexpr double kFar = 3;  // standard deviations from a border
+constexpr int kDraws = 40'000;
+
+/// One newton is one count.
+PillarSensor sensor_of(double noise_counts) {
+  PillarSensor sensor;
+  sensor.threshold_counts = 5 * noise_counts;
+  sensor.noise_counts = noise_counts;
+  return sensor;
+}
+
+Force force_from(double theta_deg, double phi_deg) {
+  return bound::force_from(kForceCounts, theta_deg * kDegree, phi_deg * kDegree);
+}
+
+bool has_bound(Force force, const PillarSensor& sensor) {
+  return bound::usable_sensels(force, sensor) >= 3;
+}
+
+bool is_measured(Force force, const PillarSensor& sensor) {
+  return has_bound(force, sensor) && bound::is_far_from_borders(force, sensor, kFar);
+}
+
+/// RMS errors of both estimators over the bound. `number` distinguishes the noise of experiments.
+Json ratios(Force force, const PillarSensor& sensor, std::uint64_t number) {
+  const double least = bound::least_error(force, sensor);
+  const auto direct = bound::rms_error(force, sensor, Estimator::direct, kDraws, 2 * number);
+  const auto paper = bound::rms_error(force, sensor, Estimator::paper, kDraws, 2 * number + 1);
+  return {{"usable", bound::usable_sensels(force, sensor)},
+          {"direct", direct.of_rightly_read / least},
+          {"direct_all_draws", direct.of_all / least},
+          {"paper", paper.of_rightly_read / least}};
+}
+
+/// For each inclination and noise, the forces from azimuths all round a quarter that have a bound
+/// and are far from the borders of regions.
+Json bound_table() {
+  Json table = Json::array();
+  std::uint64_t number = 0;
+  for (int theta_deg = 0; theta_deg <= 80; theta_deg += 10) {
+    for (const double noise_counts : {0.5, 1.0, 2.0}) {
+      const PillarSensor sensor = sensor_of(noise_counts);
+      Json forces = Json::array();
+      for (int i = 0; i < 12; ++i) {
+        const Force force = force_from(theta_deg, 7.5 * (i + 0.5));
+        if (is_measured(force, sensor)) forces.push_back(ratios(force, sensor, ++number));
+      }
+      table.push_back({{"theta_deg", theta_deg},
+                       {"noise_counts", noise_counts},
+                       {"forces", std::move(forces)}});
+    }
+  }
+  return table;
+}
+
+Json bound_curves() {
+  const PillarSensor sensor = sensor_of(1);
+  Json curves = Json::array();
+  std::uint64_t number = 1'000'000;
+  for (const double phi_deg : {45.0, 22.5}) {
+    Json points = Json::array();
+    for (int theta_deg = 0; theta_deg < 90; ++theta_deg) {
+      const Force force = force_from(theta_deg, phi_deg);
+      if (!has_bound(force, sensor)) continue;
+      Json point = ratios(force, sensor, ++number);
+      point["theta_deg"] = theta_deg;
+      point["near_border"] = !bound::is_far_from_borders(force, sensor, kFar);
+      points.push_back(std::move(point));
+    }
+    curves.push_back({{"phi_deg", phi_deg}, {"points", std::move(points)}});
+  }
+  return curves;
+}
+
+/// By how much misread draws raise the error over the bound where the third reading of region 2 is
+/// kFar standard deviations from the threshold.
+double cost_of_misreading() {
+  constexpr int kManyDraws = 1'000'000;
+  const PillarSensor sensor = sensor_of(1);
+  double far = 50;
+  double near = 64;
+  for (int step = 0; step < 40; ++step) {
+    const double middle = (far + near) / 2;
+    (is_measured(force_from(middle, 22.5), sensor) ? far : near) = middle;
+  }
+  const Force force = force_from(far, 22.5);
+  const auto error = bound::rms_error(force, sensor, Estimator::direct, kManyDraws, 0);
+  return error.of_all / bound::least_error(force, sensor) - 1;
+}
+
+Json bound_json() {
+  return {{"force_counts", kForceCounts}, {"draws", kDraws},
+          {"far_deviations", kFar},       {"table", bound_table()},
+          {"curves", bound_curves()},     {"cost_of_misreading", cost_of_misreading()}};
+}
+
+// --- Coverage ---
+
+Json json_of(const Coverage& coverage) {
+  Json regions = Json::array();
+  for (const Region region : {Region::one, Region::two, Region::three, Region::four}) {
+    const RegionCoverage c = coverage.region(region);
+    regions.push_back({{"pillars", c.pillars},
+                       {"shear_x", c.shear_x},
+                       {"shear_y", c.shear_y},
+                       {"normal", c.normal},
+                       {"ends", c.ends}});
+  }
+  return regions;
+}
+
+Json coverage_json() {
+  Json scenes = Json::array();
+  for (const coverage_study::Study& study : coverage_study::studies()) {
+    const auto parted = coverage_study::cover(study.scene);
+    scenes.push_back({{"name", study.name},
+                      {"all", json_of(parted.all)},
+                      {"as_without_noise", json_of(parted.rightly_read)},
+                      {"usable_by_luck", json_of(parted.by_luck)},
+                      {"inactive_by_bad_luck", json_of(parted.by_bad_luck)}});
+  }
+  return scenes;
+}
+
+// --- What region 3 leaves open ---
+
+/// The largest half-width of an angle, and the ratio of the two readings there.
+struct Worst {
+  double half_width_rad = 0;
+  double ratio = 0;
+
+  void add(double width_rad, double at) {
+    if (width_rad / 2 > half_width_rad) *this = {width_rad / 2, at};
+  }
+  [[nodiscard]] Json json() const { return {{"half_width_rad", half_width_rad}, {"ratio", ratio}}; }
+};
+
+Json region_three_json() {
+  constexpr int kStepsToOne = 2000;
+  constexpr int kLargest = 50;
+  Worst theta;
+  Worst phi;
+  for (int step = kStepsToOne; step <= kLargest * kStepsToOne; ++step) {
+    const double ratio = static_cast<double>(step) / kStepsToOne;
+    const auto ends = estimate_pillar<double>({ratio, 1, 0, 0}, {}, Estimator::direct).interval;
+    theta.add(ends.theta_high - ends.theta_low, ratio);
+    phi.add(ends.phi_high - ends.phi_low, ratio);
+  }
+  return {{"largest_ratio", kLargest},
+          {"ratio_step", 1.0 / kStepsToOne},
+          {"theta", theta.json()},
+          {"phi", phi.json()}};
+}
+
+// --- Small forces, and the dead zone of the testbed ---
+
+Json json_of(const testbed::SmallForceErrors& errors) {
+  return {{"unfelt", errors.unfelt},         {"wrong_region", errors.wrong_region},
+          {"unflagged", errors.unflagged},   {"held", errors.held},
+          {"determined", errors.determined}, {"force", errors.force},
+          {"theta_rad", errors.theta_rad},   {"phi_rad", errors.phi_rad}};
+}
+
+Json small_forces_json() {
+  Json points = Json::array();
+  for (const testbed::SmallForcePoint& point : testbed::small_forces()) {
+    points.push_back({{"load", point.load},
+                      {"paper", json_of(point.paper)},
+                      {"before", json_of(point.naive)},
+                      {"after", json_of(point.direct)}});
+  }
+  return {{"directions", testbed::kStudyDirections},
+          {"dead_zone_counts", testbed::kStudyDeadZoneCounts},
+          {"noise_counts", testbed::kStudyNoiseCounts},
+          {"threshold_counts", testbed::kStudyThresholdCounts},
+          {"points", std::move(points)}};
+}
+
+Json dead_zone_scan_json() {
+  constexpr std::uint64_t kRuns = 1000;
+  Json points = Json::array();
+  for (const testbed::ScanPoint& point : testbed::scan_dead_zones({}, kRuns)) {
+    points.push_back({{"dead_zone_n", point.dead_zone_n},
+                      {"mean", point.expected.mean},
+                      {"deviation", point.expected.deviation},
+                      {"mean_error", point.expected.mean_error},
+                      {"distance_rad", point.distance_rad}});
+  }
+  return points;
+}
+
+// --- Errata, and hard cases ---
+
+/// `worst_rad` is null where a case is 0/0.
+Json json_of(const errata::Deviation& deviation) {
+  return {
+      {"cases", deviation.cases}, {"wrong", deviation.wrong}, {"worst_rad", deviation.worst_rad}};
+}
+
+Json errata_json() {
+  Json equations = Json::array();
+  for (const errata::Erratum& erratum : errata::equation_errata()) {
+    equations.push_back({{"where", erratum.where},
+                         {"printed", erratum.printed},
+                         {"printed_deviation", json_of(erratum.measure_printed())},
+                         {"mended", erratum.mended},
+                         {"mended_deviation", json_of(erratum.measure_mended())}});
+  }
+  const auto right = errata::right_as_printed();
+  return {{"equations", std::move(equations)},
+          {"right_as_printed", {json_of(right[0]), json_of(right[1])}},
+          {"table_two_region_three", errata::table_two_region_three()}};
+}
+
+/// The largest of what `measure` finds of a case's examples; null where one is not a number.
+template <class Measure>
+Json worst_of(const hard_cases::HardCase& hard_case, hard_cases::Precision precision,
+              Measure measure) {
+  double worst = 0;
+  for (const hard_cases::Example& example : hard_case.examples(precision)) {
+    const double value = measure(example);
+    if (std::isnan(value) || value > worst) worst = value;
+    if (std::isnan(worst)) return nullptr;
+  }
+  return worst;
+}
+
+Json hard_cases_json() {
+  using hard_cases::Example;
+  using hard_cases::Precision;
+  Json cases = Json::array();
+  for (const hard_cases::HardCase& hard_case : hard_cases::hard_cases()) {
+    const auto condition = [&](Estimator estimator) {
+      return worst_of(hard_case, Precision::double_precision, [&](const Example& example) {
+        return condition_of(example, estimator, Precision::double_precision);
+      });
+    };
+    const auto error = [&](Estimator estimator, Precision precision) {
+      return worst_of(hard_case, precision, [&](const Example& example) {
+        return error_of(solve(example, estimator, precision), example, estimator, precision);
+      });
+    };
+    const Json as_assigned =
+        worst_of(hard_case, Precision::double_precision, [](const Example& example) {
+          return condition_as_assigned(example, Precision::double_precision);
+        });
+    cases.push_back(
+        {{"what", hard_case.what},
+         {"conditions", {condition(Estimator::direct), condition(Estimator::paper), as_assigned}},
+         {"direct",
+          {error(Estimator::direct, Precision::single_precision),
+           error(Estimator::direct, Precision::double_precision)}},
+         {"paper",
+          {error(Estimator::paper, Precision::single_precision),
+           error(Estimator::paper, Precision::double_precision)}}});
+  }
+  return cases;
+}
+
+Json all() {
+  return {{"bound", bound_json()},
+          {"coverage", coverage_json()},
+          {"region_three", region_three_json()},
+          {"small_forces", small_forces_json()},
+          {"dead_zone_scan", dead_zone_scan_json()},
+          {"errata", errata_json()},
+          {"hard_cases", hard_cases_json()}};
+}
+
+}  // namespace
+}  // namespace pillarfield::report
+
+int main() {
+  try {
+    std::puts(pillarfield::report::all().dump(1).c_str());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "measure_accuracy: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,66 @@
+"""What the pages of ./dev report have in common: JSON is read, a Markdown template is filled."""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+
+class Failure(Exception):
+    """One line for the user: what failed, where, and the mend."""
+
+
+def load(path):
+    """The JSON document in a file."""
+    try:
+        return json.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise Failure(f"{path}: {error}; measure again with ./dev report") from error
+
+
+def rows(table):
+    """Rows of cells as rows of a Markdown table."""
+    return "\n".join(f"| {' | '.join(map(str, row))} |" for row in table)
+
+
+def cells(values, formats):
+    """The values that "key:format key:format" names, as texts."""
+    return [format(values[key], pattern)
+            for key, pattern in (word.split(":") for word in formats.split())]
+
+
+def percent(share, digits=1):
+    return f"{100 * share:.{digits}f}"
+
+
+def root_mean_square(values):
+    """None of no values."""
+    values = list(values)
+    return math.sqrt(sum(value * value for value in values) / len(values)) if values else None
+
+
+def text(value, pattern=".2f", otherwise="–"):
+    """A number by a format specification; `otherwise` where there is none."""
+    return otherwise if value is None else format(value, pattern)
+
+
+def write(docs, name, **values):
+    """Fills the template NAME.md beside this script, whose fields are those of str.format, and
+    writes it into the folder of documents. Values whose name ends in _rows are rows of a table."""
+    template = Path(__file__).with_name(f"{name}.md").read_text(encoding="utf-8")
+    values = {key: rows(value) if key.endswith("_rows") else value for key, value in values.items()}
+    Path(docs, f"{name}.md").write_text(template.format_map(values), encoding="utf-8")
+
+
+def run(main):
+    """Runs a script's main function on the words of its command line."""
+    if len(sys.argv) - 1 != main.__code__.co_argcount:
+        print(sys.modules["__main__"].__doc__, file=sys.stderr)
+        sys.exit(2)
+    try:
+        main(*sys.argv[1:])
+    except Failure as failure:
+        sys.exit(f"{Path(sys.argv[0]).name}: {failure}")
+    except KeyError as key:
+        sys.exit(f"{Path(sys.argv[0]).name}: the measurements have no {key}; "
+                 "measure again with ./dev report")

@@ -1,0 +1,425 @@
+"""speed.py DOCS BENCH LIVE: writes DOCS/performance.md with its pictures.
+
+BENCH is what pillarfield-bench printed with --benchmark_format=json, LIVE what `pillarfield live
+--json` printed."""
+
+import math
+import os
+import platform
+from pathlib import Path
+
+import page
+import pictures
+from page import Failure, percent, text
+
+
+class Bench:
+    """The rows of a run of pillarfield-bench."""
+
+    def __init__(self, name, measured):
+        self.name = name
+        try:
+            self.context = measured["context"]
+            self.rows = {row["name"]: row for row in measured["benchmarks"]}
+        except (KeyError, TypeError) as error:
+            raise Failure(f"{name}: is no run of pillarfield-bench: there is no {error}; "
+                          "measure again with ./dev report speed") from error
+
+    def row(self, name):
+        """A row, also one that was left out."""
+        if name not in self.rows:
+            raise Failure(f"{self.name}: there is no row '{name}'; "
+                          "measure again with ./dev report speed")
+        return self.rows[name]
+
+    def left_out(self, name):
+        """Why a row was left out; empty where it was measured."""
+        row = self.row(name)
+        return row.get("error_message", "failed") if row.get("error_occurred") else ""
+
+    def value(self, name, counter):
+        if self.left_out(name):
+            raise Failure(f"{self.name}: the row '{name}' was not measured: {self.left_out(name)}")
+        if counter not in self.row(name):
+            raise Failure(f"{self.name}: the row '{name}' has no '{counter}'; "
+                          "measure again with ./dev report speed")
+        return self.row(name)[counter]
+
+    def find(self, name, counter):
+        """None where the row is not there or was left out."""
+        if name not in self.rows or self.left_out(name):
+            return None
+        return self.value(name, counter)
+
+    def cells(self, name, formats):
+        """As page.cells."""
+        return [format(self.value(name, key), pattern)
+                for key, pattern in (word.split(":") for word in formats.split())]
+
+    def group(self, name):
+        return [row for row in self.rows if row.startswith(f"{name}/")]
+
+
+# --- Goals ---
+
+def ratio(numerator, denominator):
+    return None if numerator is None or denominator is None else numerator / denominator
+
+
+def of_ceiling(row):
+    return lambda bench, live: bench.find(row, "of_ceiling")
+
+
+def speedup(opponent):
+    return lambda bench, live: bench.find(f"opponent/{opponent}", "speedup")
+
+
+def unevenness(bench, live):
+    """The slowest of the large skins over the fastest."""
+    times = [bench.find(f"size/{pillars}", "ns_per_pillar")
+             for pillars in (99856, 624100, 1000000, 9998244)]
+    return None if None in times else max(times) / min(times)
+
+
+GOALS = (
+    ("Bare solve of 10⁶ pillars from memory: share of the copy's speed", "≥", 0.95,
+     of_ceiling("size/1000000")),
+    ("Bare solve of 10⁵ pillars in the cache: share of the copy's speed", "≥", 0.85,
+     of_ceiling("size/99856")),
+    ("Times as fast as the loop vectorised by hand", "≥", 1, speedup("vectorised")),
+    ("Times as fast as the paper's equations in OpenCL, one pillar per work-item", "≥", 80,
+     speedup("paper_opencl")),
+    ("Times as fast as NumPy", "≥", 50, speedup("numpy")),
+    ("All stages: time over the copy of the same bytes", "≤", 1.3,
+     lambda bench, live: ratio(1, bench.find("stage/all", "of_ceiling"))),
+    # Both rows have the same bytes: over their copies they compare as if in one race.
+    ("1 % in contact: time over that of the whole skin in contact", "≤", 0.3,
+     lambda bench, live: ratio(bench.find("contact/100/bare", "of_ceiling"),
+                               bench.find("contact/1/bare", "of_ceiling"))),
+    ("10⁵ to 10⁷ pillars: most over least time per pillar", "≤", 1.25, unevenness),
+    ("One frame of 79 × 79 pillars: time over that of an empty launch", "≤", 1.5,
+     lambda bench, live: bench.find("latency/6241", "of_empty_launch")),
+    ("Results of half precision: time over that of float32 ones", "≤", 0.75,
+     lambda bench, live: ratio(
+         bench.find("variant/direct/float/u8/half/none", "over_bare_copy"),
+         bench.find("variant/direct/float/u8/float32/none", "over_bare_copy"))),
+    ("A square metre at 1 kHz, live: frames missed or dropped", "≤", 0,
+     lambda bench, live: live["missed"] + live["dropped"]),
+)
+
+
+def goal_row(what, sign, limit, measured):
+    """Three digits of what was measured, and all of whole numbers."""
+    if measured is None:
+        return [what, f"{sign} {limit:g}", "–", "not measured"]
+    met = measured >= limit if sign == "≥" else measured <= limit
+    return [what, f"{sign} {limit:g}", format(measured, ".0f" if measured >= 100 else ".3g"),
+            "met" if met else "**not met**"]
+
+
+def goal_rows(bench, live):
+    return [goal_row(what, sign, limit, measure(bench, live))
+            for what, sign, limit, measure in GOALS]
+
+
+# --- Error against time ---
+
+RESOLUTION = 0.003  # of an error: smaller differences are none
+
+
+def pareto_front(points, resolution):
+    """The indices of the points (cost, error), from the cheapest on, than which none as cheap has
+    a smaller error. Of errors that differ by no more than `resolution` the cheapest stands."""
+    front = []
+    least = math.inf
+    for i in sorted(range(len(points)), key=lambda i: points[i]):
+        if points[i][1] < (1 - resolution) * least:
+            front.append(i)
+            least = points[i][1]
+    return front
+
+
+def variants(bench):
+    """The ways to solve, from the fastest on."""
+    keys = ("ns_per_pillar", "of_ceiling", "over_bare_copy", "error_counts", "error_over_bound",
+            "error_pillars", "error_counts_all_regions", "ambiguous")
+    found = []
+    for row in bench.group("variant"):
+        estimator, arithmetic, sensels, results, stages = row.split("/")[1:]
+        found.append({
+            "name": ", ".join((estimator, arithmetic, sensels, results, stages)),
+            "solve": f"{estimator}, {arithmetic}", "sensels": sensels, "results": results,
+            "stages": stages, **{key: bench.value(row, key) for key in keys}})
+    return sorted(found, key=lambda way: way["over_bare_copy"])
+
+
+def front_by(ways, error):
+    return [ways[i] for i in pareto_front([(way["over_bare_copy"], way[error]) for way in ways],
+                                          RESOLUTION)]
+
+
+def front_text(front, error, unit):
+    return "; ".join(f"*{way['name']}* ({way['over_bare_copy']:.3g} times the bare copy, "
+                     f"{way[error]:.3f} {unit})" for way in front)
+
+
+def variant_rows(ways, front):
+    for way in ways:
+        cells = [way["name"], *page.cells(
+            way, "ns_per_pillar:.3g of_ceiling:.3f over_bare_copy:.3g error_counts:.3f "
+                 "error_over_bound:.3f error_counts_all_regions:.2f"),
+            f"{percent(way['ambiguous'])} %"]
+        if way in front:
+            for bold in (0, 3, 5):
+                cells[bold] = f"**{cells[bold]}**"
+        yield cells
+
+
+COLOURS = {"direct, float": pictures.BLUE, "direct, double": pictures.SKY_BLUE,
+           "paper, float": pictures.VERMILION, "paper, double": pictures.ORANGE}
+MARKERS = {"none": "o", "angles": "^", "uncertainty": "v", "calibration": "s", "all": "D"}
+
+
+def draw_variants(ways, front, folder):
+    """A strip for each type of sensel; hollow where results are of half precision."""
+    figure, axes = pictures.panels(960, 600, 3, 1, sharex=True, sharey=True)
+    for axis, sensels in zip(axes, ("u8", "u16", "f32")):
+        axis.axhline(1, color=pictures.GREY, linewidth=1, zorder=1)
+        for way in ways:
+            if way["sensels"] != sensels:
+                continue
+            place = way["over_bare_copy"], way["error_over_bound"]
+            colour = COLOURS[way["solve"]]
+            axis.plot(*place, MARKERS[way["stages"]], color=colour, markersize=6,
+                      markerfacecolor="white" if way["results"] == "half" else colour)
+            if way in front:
+                axis.plot(*place, "o", color=pictures.BLACK, markersize=13, markerfacecolor="none")
+        axis.text(0.01, 0.8, sensels, transform=axis.transAxes)
+    most = max(way["error_over_bound"] for way in ways)
+    axes[0].set(xscale="log", ylim=(0.97, most + 0.03),
+                yticks=[1 + 0.05 * step for step in range(1 + int((most - 0.97) / 0.05))])
+    pictures.plain_ticks(axes[0].xaxis)
+    axes[1].set_ylabel("RMS error over the Cramér–Rao bound")
+    axes[2].set_xlabel("time over that of the bare copy")
+
+    def entry(marker, colour, label, **options):
+        return axes[0].plot([], [], marker, color=colour, label=label, linestyle="", **options)[0]
+
+    entries = [entry("o", colour, label) for label, colour in COLOURS.items()]
+    entries += [entry(marker, pictures.GREY, "bare" if stages == "none" else stages)
+                for stages, marker in MARKERS.items()]
+    entries += [entry("o", pictures.GREY, "half results", markerfacecolor="white"),
+                entry("o", pictures.BLACK, "Pareto front", markersize=10, markerfacecolor="none")]
+    axes[0].legend(handles=entries, loc="lower center", bbox_to_anchor=(0.5, 1), ncols=6)
+    pictures.save(figure, folder, "error_and_time")
+
+
+# --- Size and contact ---
+
+def sizes(bench):
+    """From the races with the loop by hand, or without it where the processor has none."""
+    for row in bench.group("by_hand"):
+        raced = not bench.left_out(row)
+        ours = row if raced else row.replace("by_hand", "size")
+        time = bench.value(ours, "our_ns_per_pillar" if raced else "ns_per_pillar")
+        share = bench.value(ours, "of_ceiling")
+        yield {"pillars": bench.value(ours, "pillars"), "ours": time, "copy": time * share,
+               "of_ceiling": share, "by_hand": bench.find(row, "ns_per_pillar")}
+
+
+def contact_costs(bench, what):
+    for share in ("0.1", "1", "10", "100"):
+        row = f"contact/{share}/{what}"
+        time = bench.value(row, "ns_per_pillar")
+        over_copy = 1 / bench.value(row, "of_ceiling")
+        yield {"percent": share, "time": time, "over_copy": over_copy, "copy": time / over_copy}
+
+
+def draw_sizes(found, bare, every, folder):
+    figure, (left, right) = pictures.panels(960, 400, 1, 2)
+    pillars = [size["pillars"] for size in found]
+    for key, label, style, colour in (("copy", "copy", "o--", pictures.BLACK),
+                                      ("by_hand", "by hand", "s-", pictures.ORANGE),
+                                      ("ours", "ours", "o-", pictures.BLUE)):
+        left.plot(pillars, [math.nan if size[key] is None else size[key] for size in found], style,
+                  color=colour, label=label)
+    left.set(xscale="log", yscale="log", xlabel="pillars", ylabel="ns per pillar")
+    pictures.plain_ticks(left.xaxis, (1e3, 1e4, 1e5, 1e6, 1e7),
+                         ("$10^3$", "$10^4$", "$10^5$", "$10^6$", "$10^7$"))
+    for costs, name, colour in ((every, "all stages", pictures.VERMILION),
+                                (bare, "bare", pictures.BLUE)):
+        shares = [float(cost["percent"]) for cost in costs]
+        right.plot(shares, [cost["copy"] for cost in costs], "o--", color=colour,
+                   markerfacecolor="white", label=f"copy, {name}")
+        right.plot(shares, [cost["time"] for cost in costs], "o-", color=colour, label=name)
+    right.set(xscale="log", yscale="log", xlabel="share of the skin in contact (%)",
+              ylabel="ns per pillar")
+    pictures.plain_ticks(right.xaxis, (0.1, 1, 10, 100))
+    # Room for the legend above the lines.
+    right.set_ylim(top=5 * right.get_ylim()[1])
+    for axis in (left, right):
+        pictures.plain_ticks(axis.yaxis)
+    left.legend(loc="upper right")
+    right.legend(loc="upper left")
+    pictures.save(figure, folder, "size_and_contact")
+
+
+def size_rows(found):
+    for size in found:
+        yield [f"{size['pillars']:.0f}", text(size["ours"], ".3g"), text(size["copy"], ".3g"),
+               text(size["by_hand"], ".3g", "unmeasured"), text(size["of_ceiling"]),
+               text(ratio(size["by_hand"], size["ours"]))]
+
+
+def contact_rows(bare, every):
+    """Times are taken over the copies of the same bytes before they are compared."""
+    for costs in zip(bare, every):
+        cells = [f"{costs[0]['percent']} %"]
+        for cost, whole in zip(costs, (bare[-1], every[-1])):
+            cells += [f"{cost['time']:.3g}", f"{cost['over_copy'] / whole['over_copy']:.3f}"]
+        yield cells
+
+
+# --- Latency ---
+
+SPREAD = "spread/6241"
+
+
+def spread(bench, who):
+    """Shares of the times by the lower end of their bin in µs, ten bins a decade; of the counters
+    "<who>_from_<end>us"."""
+    beginning = f"{who}_from_"
+    found = {float(key.removeprefix(beginning).removesuffix("us")): share
+             for key, share in bench.row(SPREAD).items() if key.startswith(beginning)}
+    if not found:
+        raise Failure(f"{bench.name}: the row '{SPREAD}' has no times of '{who}'; "
+                      "measure again with ./dev report speed")
+    return found
+
+
+def draw_latency(bench, live, folder):
+    figure, (left, right) = pictures.panels(960, 400, 1, 2)
+    for who, label, colour in (("empty", "empty launch", pictures.GREY),
+                               ("solve", "79 × 79 pillars", pictures.BLUE)):
+        shares = spread(bench, who)
+        left.bar(list(shares), [100 * share for share in shares.values()],
+                 [(10**0.1 - 1) * begin for begin in shares], align="edge", alpha=0.6,
+                 color=colour, label=label)
+    left.set(xscale="log", xlabel="time of one frame (µs)", ylabel="share of the frames (%)")
+    left.legend(loc="upper right")
+    bins = [bin for bin in live["latency_histogram"] if bin["frames"] > 0]
+    right.bar([bin["from_ms"] for bin in bins], [bin["frames"] for bin in bins],
+              [bin["to_ms"] - bin["from_ms"] for bin in bins], align="edge", color=pictures.BLUE)
+    right.axvline(live["deadline_ms"], color=pictures.VERMILION, linestyle="--")
+    right.set(xscale="log", yscale="log", ylim=(0.7, None), xlabel="latency (ms)", ylabel="frames")
+    right.text(live["deadline_ms"], 1, "deadline", color=pictures.VERMILION, ha="center",
+               va="bottom", transform=right.get_xaxis_transform())
+    pictures.plain_ticks(left.xaxis, digits=(1, 3))
+    pictures.plain_ticks(right.xaxis)
+    pictures.plain_ticks(right.yaxis, digits=(1,))
+    for axis in (left, right):
+        axis.grid(axis="x", visible=False)
+    pictures.save(figure, folder, "latency")
+
+
+def latency_rows(bench):
+    return [bench.cells(row, "pillars:.0f median_us:.1f p99_us:.1f of_empty_launch:.2f")
+            for row in bench.group("latency")]
+
+
+# --- Opponents, stages, lanes ---
+
+OPPONENTS = {
+    "vectorised": "the same solve by hand for this processor",
+    "cpp_all_threads": "C++ loop over the same mathematics, all threads",
+    "cpp_one_thread": "C++ loop, one thread",
+    "numpy": "NumPy, array expressions",
+    "paper_opencl": "the paper's equations in OpenCL",
+}
+
+
+def opponent_rows(bench):
+    for name, what in OPPONENTS.items():
+        row = f"opponent/{name}"
+        if why := bench.left_out(row):
+            yield [what, f"unmeasured: {why.removeprefix('skipped: ')}", *"––––"]
+            continue
+        yield [what, bench.row(row)["label"], *bench.cells(
+            row, "ns_per_pillar:.3g our_ns_per_pillar:.3g speedup:.3g of_ceiling:.3f")]
+
+
+def stage_rows(bench):
+    bare = bench.value("stage/none", "ns_per_pillar")
+    for row in bench.group("stage"):
+        time, share = bench.value(row, "ns_per_pillar"), bench.value(row, "of_ceiling")
+        yield [row.removeprefix("stage/"), f"{bench.value(row, 'bytes_per_pillar'):.0f}",
+               f"{time:.3g}", f"{share * time:.3g}", text(share), text(time / bare)]
+
+
+def lane_rows(bench):
+    for row in bench.group("lanes"):
+        yield [row.removeprefix("lanes/"), *bench.cells(row, "ns_per_pillar:.3g of_ceiling:.3f")]
+    if "(GPU)" not in bench.context["device"]:
+        yield ["GPU, 1 lane: unmeasured, there was none", "–", "–"]
+
+
+# --- The machine ---
+
+def caches_text(caches):
+    """"level 1: 32 KiB, level 2: 1 MiB for 2 cores": of data, from the nearest on."""
+    texts = []
+    for cache in caches:
+        if cache["type"] != "Instruction":
+            size = cache["size"] // 1024
+            size = f"{size // 1024} MiB" if size >= 1024 else f"{size} KiB"
+            sharing = cache["num_sharing"]
+            texts.append(f"level {cache['level']}: {size}"
+                         + (f" for {sharing} cores" if sharing > 1 else ""))
+    return ", ".join(texts)
+
+
+def processor_name():
+    for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown"
+
+
+def loads_text(loads):
+    return ", ".join(f"{load:.2f}" for load in loads)
+
+
+def latencies(live):
+    return {key: text(live[f"latency_{key}_ms"], ".3f", "never")
+            for key in ("p50", "p99", "p99_9", "longest")}
+
+
+def main(docs, bench_json, live_json):
+    folder = Path(docs, "pictures", "performance")
+    bench, live = Bench(bench_json, page.load(bench_json)), page.load(live_json)
+    ways = variants(bench)
+    front = front_by(ways, "error_over_bound")
+    found = list(sizes(bench))
+    bare, every = list(contact_costs(bench, "bare")), list(contact_costs(bench, "all"))
+    draw_variants(ways, front, folder)
+    draw_sizes(found, bare, every, folder)
+    draw_latency(bench, live, folder)
+    page.write(
+        docs, "performance", goal_rows=goal_rows(bench, live),
+        error_pillars=ways[0]["error_pillars"], variants=len(ways),
+        front=front_text(front, "error_over_bound", "times the bound"),
+        front_by_counts=front_text(front_by(ways, "error_counts"), "error_counts", "counts"),
+        variant_rows=variant_rows(ways, front), size_rows=size_rows(found),
+        contact_rows=contact_rows(bare, every), latency_rows=latency_rows(bench),
+        spread_times=bench.row(SPREAD)["label"], live=live, latencies=latencies(live),
+        live_pillars=live["pillar_rows"] * live["pillar_cols"],
+        contact_share=percent(live["contact_share"]), opponent_rows=opponent_rows(bench),
+        stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
+        context={"commit": "unknown"} | bench.context, processor=processor_name(),
+        caches=caches_text(bench.context["caches"]),
+        system=f"{platform.freedesktop_os_release()['PRETTY_NAME']}, kernel {platform.release()}",
+        load_before=loads_text(bench.context["load_avg"]), load_after=loads_text(os.getloadavg()))
+
+
+if __name__ == "__main__":
+    page.run(main)
