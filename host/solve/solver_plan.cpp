@@ -33,6 +33,13 @@ double mean_noise(const Calibration& calibration) {
   return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
 }
 
+/// Standard deviation of a reading, counts: of the noise plane, else of the plan; unset without.
+std::optional<double> known_noise(const SolverPlan& plan) {
+  if (!plan.calibration.noise.empty()) return mean_noise(plan.calibration);
+  if (plan.noise_counts) return reading_noise(plan);
+  return std::nullopt;
+}
+
 constexpr int kMaxBaselineInterval = 1024;
 
 /// Where the noise is not known, the threshold is taken to be so many deviations.
@@ -119,10 +126,8 @@ double reading_noise(const SolverPlan& plan) {
 }
 
 double reading_noise_n(const SolverPlan& plan) {
-  const bool known = plan.noise_counts || !plan.calibration.noise.empty();
-  const double counts =
-      known ? reading_noise(plan) : plan.skin.threshold_counts / kThresholdDeviations;
-  return counts / plan.skin.counts_per_newton;
+  const double assumed = plan.skin.threshold_counts / kThresholdDeviations;
+  return known_noise(plan).value_or(assumed) / plan.skin.counts_per_newton;
 }
 
 double hidden_normal_n(const Skin& skin) {
@@ -130,8 +135,8 @@ double hidden_normal_n(const Skin& skin) {
 }
 
 double region_doubt(const SolverPlan& plan) {
-  if (!plan.calibration.noise.empty()) return region_doubt(mean_noise(plan.calibration));
-  return plan.noise_counts ? region_doubt(reading_noise(plan)) : 0;
+  const std::optional<double> noise = known_noise(plan);
+  return noise ? region_doubt(*noise) : 0;
 }
 
 double region_doubt(double noise_counts) {

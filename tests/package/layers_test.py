@@ -8,7 +8,7 @@ import sys
 LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simulation", "evaluation",
           "device", "io", "pipeline", "testbed", "cli"]
 # Public headers without a source file of their name.
-HEADER_MODULES = {"body": "simulation", "contact": "simulation", "scene": "simulation", "friction": "solve",
+HEADER_MODULES = {"version": "base", "body": "simulation", "contact": "simulation", "scene": "simulation", "friction": "solve",
                   "read_options": "io", "recording": "io", "force_file": "io", "contact_file": "io"}
 
 
