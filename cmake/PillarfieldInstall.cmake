@@ -6,7 +6,7 @@ add_library(pillarfield_all INTERFACE)
 add_library(pillarfield::pillarfield ALIAS pillarfield_all)
 set_target_properties(pillarfield_all PROPERTIES EXPORT_NAME pillarfield)
 
-foreach(floor kernels core device io)
+foreach(floor kernels core device io pipeline)
   target_link_libraries(pillarfield_all INTERFACE pillarfield_${floor})
   install(TARGETS pillarfield_${floor} EXPORT pillarfield)
 endforeach()

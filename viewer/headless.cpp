@@ -77,9 +77,11 @@ void check_exports(const Options& options, const std::vector<std::filesystem::pa
                    Replace replace) {
   std::vector<PlannedOutput> outputs;
   for (const auto& picture : pictures) outputs.push_back({picture, OutputKind::png});
-  if (!options.csv.empty()) outputs.push_back({options.csv, OutputKind::force_table});
+  if (!options.csv.empty()) outputs.push_back({options.csv, OutputKind::forces});
   if (!options.video.empty()) outputs.push_back({options.video, OutputKind::video});
   check_outputs({options.source}, outputs, replace);
+  if (options.csv.empty() || options.csv.extension() == ".csv") return;
+  throw Error(options.csv.string(), "its ending names no table", "end it in .csv");
 }
 
 /// Pictures that are complete stay; a video is there whole or not at all.

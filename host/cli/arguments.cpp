@@ -81,7 +81,7 @@ class Group {
 
   template <class Target>
   CLI::Option* text(const std::string& names, Target& target, const char* kind,
-                    const char* description) {
+                    const std::string& description) {
     return command_->add_option(names, target, description)
         ->type_name(kind)
         ->group(heading_)
@@ -166,7 +166,7 @@ void add_overwrite(CLI::App* command, Replace& replace) {
       ->group("Output");
 }
 
-void add_output(CLI::App* command, WriteOptions& options, const char* description) {
+void add_output(CLI::App* command, WriteOptions& options, const std::string& description) {
   Group(command, "Output").text("-o,--output", options.output, "FILE", description)->required();
   add_overwrite(command, options.replace);
 }
@@ -294,14 +294,16 @@ void add_solve(CLI::App& parent, Work& work) {
       "  pillarfield solve demo.h5 -o forces.h5 --estimator contact --contacts contacts.csv\n");
   Group input(command, "Input");
   input.file("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export");
-  add_output(command, *options, "Force fields; the ending chooses: .h5, .csv or .npy");
+  add_output(command, *options,
+             "Force fields; the ending chooses: " + endings_of(OutputKind::forces));
   add_sensor(command, options->plan);
   add_solver(command, options->plan);
   Group contacts(command, "Contacts");
   CLI::Option* const file = contacts.text(
       "--contacts", options->contacts.file, "FILE",
-      "Find and follow contacts, and write them: .csv, .json, or the .h5 of --output, which holds "
-      "them in any case");
+      "Find and follow contacts, and write them: " + endings_of(OutputKind::contacts) +
+          ", or the .h5 of --output, which holds "
+          "them in any case");
   ContactOptions& found = options->contacts.contacts;
   contacts
       .whole("--minimum-pillars", found.minimum_pillars, "N",

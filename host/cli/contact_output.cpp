@@ -1,5 +1,7 @@
 #include "cli/contact_output.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -40,7 +42,8 @@ void check(const ContactOutputOptions& options, const std::string& output) {
   }
   if (!same && is_hdf5(options.file)) {
     throw Error(options.file, "its ending names no table of contacts",
-                "end it in .csv or .json, or name the .h5 file of forces");
+                fmt::format("end it in {}, or name the .h5 file of forces",
+                            endings_of(OutputKind::contacts)));
   }
   static_cast<void>(planned_table(options, output));
 }
@@ -48,34 +51,12 @@ void check(const ContactOutputOptions& options, const std::string& output) {
 std::optional<PlannedOutput> planned_table(const ContactOutputOptions& options,
                                            const std::string& output) {
   if (options.file.empty() || name_same_file(options.file, output)) return std::nullopt;
-  return PlannedOutput{options.file, kind_of_contact_file(options.file)};
+  return planned_contact_file(options.file);
 }
 
 void ask_for_contacts(const ContactOutputOptions& options, const std::string& output,
                       ForceFileInfo& forces) {
   if (!options.file.empty() && is_hdf5(output)) forces.contacts = options.contacts;
-}
-
-ContactOutput::ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
-                             const std::string& output, Replace replace)
-    : tracker_(forces.pillar_pitch_mm, options.contacts),
-      in_force_file_(forces.contacts.has_value()) {
-  if (!planned_table(options, output)) return;
-  table_ = create_contact_sink(options.file,
-                               {forces.pillar_pitch_mm, forces.source, options.contacts}, replace);
-}
-
-void ContactOutput::append(const ForceFieldView& forces, const FoundContacts& found, double time_s,
-                           ForceSink& sink) {
-  const FrameContacts& frame = tracker_.update(forces, time_s, found);
-  if (in_force_file_) sink.append_contacts(frame);
-  if (table_) table_->append(frame);
-  most_at_once_ = std::max(most_at_once_, frame.contacts.size());
-  for (const TrackedContact& contact : frame.contacts) contacts_ = std::max(contacts_, contact.id);
-}
-
-void ContactOutput::finish() {
-  if (table_) table_->finish();
 }
 
 }  // namespace pillarfield::cli

@@ -33,28 +33,4 @@ void check(const ContactOutputOptions& options, const std::string& output);
 void ask_for_contacts(const ContactOutputOptions& options, const std::string& output,
                       ForceFileInfo& forces);
 
-/// Follows the contacts of solved frames and writes them: into the file of forces where that is
-/// HDF5, and into a table of their own unless the options name that file.
-class ContactOutput {
- public:
-  /// `forces` is what its file `output` says of itself.
-  ContactOutput(const ContactOutputOptions& options, const ForceFileInfo& forces,
-                const std::string& output, Replace replace);
-
-  /// Takes a frame that `sink` has just taken; `found` as ContactTracker::update() has it.
-  void append(const ForceFieldView& forces, const FoundContacts& found, double time_s,
-              ForceSink& sink);
-  void finish();
-
-  [[nodiscard]] std::uint64_t contacts() const { return contacts_; }  ///< different ones
-  [[nodiscard]] std::size_t most_at_once() const { return most_at_once_; }
-
- private:
-  ContactTracker tracker_;
-  bool in_force_file_;
-  std::unique_ptr<ContactSink> table_;
-  std::uint64_t contacts_ = 0;
-  std::size_t most_at_once_ = 0;
-};
-
 }  // namespace pillarfield::cli

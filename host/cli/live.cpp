@@ -13,10 +13,10 @@
 #include "cli/live_frames.h"
 #include "cli/live_report.h"
 #include "cli/live_run.h"
-#include "cli/monotonic_clock.h"
 #include "cli/progress.h"
 #include "cli/realtime.h"
 #include "pillarfield/error.h"
+#include "pillarfield/pipeline.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
@@ -56,36 +56,57 @@ SolverPlan plan_of(const PaceOptions& options, const LiveFrames& live) {
   return plan;
 }
 
-/// Frames in memory on their way through a processor, over and over.
-class Replay {
+/// Frames in memory, over and over.
+class Replay final : public FrameStream {
  public:
-  Replay(const LiveFrames& live, Processor& processor, const PaceOptions& options)
-      : live_(live), processor_(processor), capacity_(options.frames_in_flight) {}
+  Replay(const LiveFrames& live, std::uint64_t frames) : live_(live), frames_(frames) {}
 
-  [[nodiscard]] int capacity() const { return capacity_; }
-  [[nodiscard]] int in_flight() const { return processor_.in_flight(); }
-  void submit(std::uint64_t frame) {
-    processor_.submit(live_.loaded[frame % live_.loaded.size()].view());
+  [[nodiscard]] const Skin& skin() const override { return live_.skin; }
+  [[nodiscard]] SenselType sensel_type() const override { return live_.sensel_type; }
+  [[nodiscard]] Arrival next(StreamedFrame& frame, Nanoseconds) override {
+    frame.sequence = next_;
+    if (next_ == frames_) return Arrival::ended;
+    frame.readings = live_.loaded[next_++ % live_.loaded.size()].view();
+    return Arrival::arrived;
   }
-  void receive() { status_ = processor_.receive().status; }
-
-  /// Solves a frame in every slot: the first result of a slot takes its memory page by page.
-  void warm_up() {
-    for (int slot = 0; slot < capacity_; ++slot) {
-      submit(0);
-      receive();
-    }
-  }
-
-  /// Of the last frame received; valid as long as Processor says.
-  [[nodiscard]] std::span<const std::uint8_t> status() const { return status_; }
 
  private:
   const LiveFrames& live_;
-  Processor& processor_;
-  int capacity_;
-  std::span<const std::uint8_t> status_;
+  std::uint64_t frames_;
+  std::uint64_t next_ = 0;
 };
+
+/// Notes how late forces come. Its memory is taken beforehand.
+class Stopwatches final : public ForceSink {
+ public:
+  explicit Stopwatches(std::uint64_t frames) {
+    latencies.resize(frames);  // Touches the pages.
+    latencies.clear();
+  }
+  void append(const SolvedFrame& frame) override {
+    latencies.push_back(std::chrono::steady_clock::now().time_since_epoch() - frame.arrived);
+    status = frame.forces.status;
+  }
+
+  std::vector<Nanoseconds> latencies;
+  std::span<const std::uint8_t> status;  ///< of the last frame; stays until one is submitted
+};
+
+std::unique_ptr<FrameStream> paced(const LiveFrames& frames, const LiveSchedule& schedule) {
+  return paced_stream(
+      std::make_unique<Replay>(frames, schedule.frames),
+      {.rate_hz = schedule.rate_hz,
+       .drop_after = nanoseconds(static_cast<double>(schedule.backlog_frames) / schedule.rate_hz),
+       .spin = schedule.spin});
+}
+
+/// Solves a frame in every slot: the first result of a slot takes its memory page by page.
+void warm_up(const LiveFrames& frames, Processor& processor, const Pipeline::Options& options,
+             Stopwatches& sink) {
+  Replay once(frames, static_cast<std::uint64_t>(options.frames_in_flight));
+  Pipeline(once, processor, {&sink}, options).run();
+  sink.latencies.clear();
+}
 
 std::string remark_on(const char* what, const std::string& refused) {
   return refused.empty() ? "" : fmt::format("pillarfield: {}: refused, {}\n", what, refused);
@@ -153,20 +174,27 @@ void pace(const PaceOptions& options) {
                       {.memory = options.device.memory,
                        .frames_in_flight = options.frames_in_flight,
                        .on_compiling = terminal_line(options.quiet)});
-  Replay replay(frames, processor, options);
   report.frames_in_flight = options.frames_in_flight;
-  LiveRun run(report.schedule);
-  replay.warm_up();
+  Stopwatches stopwatches(report.schedule.frames);
+  const Pipeline::Options run_options = {.frames_in_flight = options.frames_in_flight,
+                                         .stop = is_interrupted,
+                                         .half_output = options.half};
+  warm_up(frames, processor, run_options, stopwatches);
+  const auto stream = paced(frames, report.schedule);
+  Pipeline pipeline(*stream, processor, {&stopwatches}, run_options);
   if (report.realtime) report.realtime->memory_refused = ask_for_locked_memory();
   announce(report, options);
 
-  const MonotonicClock clock;
   const ProcessUsage before = process_usage();
-  run.run(clock, replay, is_interrupted);
+  const auto start = std::chrono::steady_clock::now();
+  const PipelineStatistics done = pipeline.run();
+  report.result.elapsed = std::chrono::steady_clock::now() - start;
   report.usage = process_usage_since(before);
 
-  report.result = run.result();
-  report.last_frame.add(replay.status());
+  report.result.latencies = std::move(stopwatches.latencies);
+  report.result.dropped = done.lost;
+  report.result.interrupted = done.stopped;
+  report.last_frame.add(stopwatches.status);
   print(report, options, plan, processor);
   if (options.strict) require_success(report);
 }

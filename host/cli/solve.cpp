@@ -14,6 +14,7 @@
 #include "cli/stopwatch.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/pipeline.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
@@ -23,7 +24,7 @@ namespace pillarfield::cli {
 namespace {
 
 struct SolveSummary {
-  std::uint64_t frames = 0;
+  PipelineStatistics done;
   RegionCount regions;
   double startup_seconds = 0;  ///< opening the files and the device, compiling
   double seconds = 0;          ///< reading, solving and writing, which overlap
@@ -65,61 +66,28 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   return info;
 }
 
-/// Frames on their way through the processor: reading, solving and writing overlap.
-class Pipeline {
+constexpr int kFramesInFlight = 3;
+
+/// Counts what is solved, and shows how far the work is.
+class Counter final : public ForceSink {
  public:
-  /// `contacts` may be null.
-  Pipeline(FrameSource& source, Processor& processor, ForceSink& sink, ContactOutput* contacts,
-           const SolverPlan& plan)
-      : source_(source), processor_(processor), sink_(sink), contacts_(contacts) {
-    for (int i = 0; i < kFramesInFlight; ++i) {
-      frames_.emplace_back(plan.sensel_type, plan.skin.rows, plan.skin.cols);
-    }
+  Counter(std::uint64_t frames, bool quiet) : progress_("Solving", frames, quiet) {}
+
+  void append(const SolvedFrame& frame) override {
+    regions_.add(frame.forces.status);
+    progress_.show(frame.sequence + 1);
   }
-
-  static constexpr int kFramesInFlight = 3;
-
-  /// Reads and starts the next frame, taking the oldest result first where the ring is full.
-  void push() {
-    if (processor_.in_flight() == kFramesInFlight) pop();
-    const std::size_t slot = pushed_ % frames_.size();
-    times_.at(slot) = source_.read(pushed_, frames_[slot]);
-    processor_.submit(frames_[slot].view());
-    ++pushed_;
-  }
-
-  /// Writes the result of the oldest frame.
-  void pop() {
-    const ForceFieldView forces = processor_.receive();
-    summary_.regions.add(forces.status);
-    const double time_s = times_.at(summary_.frames % frames_.size());
-    sink_.append(forces, time_s);
-    if (contacts_ != nullptr) contacts_->append(forces, processor_.contacts(), time_s, sink_);
-    ++summary_.frames;
-  }
-
-  void drain() {
-    while (processor_.in_flight() > 0) pop();
-  }
-
-  [[nodiscard]] const SolveSummary& summary() const { return summary_; }
+  [[nodiscard]] const RegionCount& regions() const { return regions_; }
 
  private:
-  FrameSource& source_;
-  Processor& processor_;
-  ForceSink& sink_;
-  ContactOutput* contacts_;
-  std::vector<FrameBuffer> frames_;
-  std::array<double, kFramesInFlight> times_{};
-  std::uint64_t pushed_ = 0;
-  SolveSummary summary_;
+  Progress progress_;
+  RegionCount regions_;
 };
 
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
 
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
-                const SolveSummary& summary, const ContactOutput* contacts,
-                const std::vector<std::string>& remarks) {
+                const SolveSummary& summary, const std::vector<std::string>& remarks) {
   nlohmann::ordered_json regions;
   for (const Region region :
        {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
@@ -131,7 +99,7 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
                                  {"device", processor.device().info().name},
                                  {"zero_copy", processor.shares_memory()},
                                  {"stages", kernel_stages(plan)},
-                                 {"frames", summary.frames},
+                                 {"frames", summary.done.frames},
                                  {"pillar_rows", plan.skin.pillar_rows()},
                                  {"pillar_cols", plan.skin.pillar_cols()},
                                  {"regions", regions},
@@ -141,21 +109,21 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
                                  {"startup_seconds", summary.startup_seconds},
                                  {"seconds", summary.seconds},
                                  {"remarks", remarks}};
-  if (contacts != nullptr) {
+  if (!options.contacts.file.empty()) {
     json["contacts_output"] = options.contacts.file;
-    json["contacts"] = contacts->contacts();
-    json["contacts_at_once"] = contacts->most_at_once();
+    json["contacts"] = summary.done.contacts;
+    json["contacts_at_once"] = summary.done.most_contacts;
   }
   fmt::print("{}\n", json_text(json));
 }
 
 void print_text(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
-                const SolveSummary& summary, const ContactOutput* contacts) {
+                const SolveSummary& summary) {
   const RegionCount& regions = summary.regions;
-  const auto frames = static_cast<double>(summary.frames);
+  const auto frames = static_cast<double>(summary.done.frames);
   const auto pillars = static_cast<double>(regions.all());
   const DeviceInfo& device = processor.device().info();
-  fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.frames, "frame"),
+  fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.done.frames, "frame"),
              plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
              processor.shares_memory() ? "zero copy" : "staged");
   fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million pillars/s\n",
@@ -175,9 +143,9 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   }
   fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
              grouped(regions.saturated), grouped(regions.inconsistent));
-  if (contacts != nullptr) {
-    fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(contacts->contacts()),
-               contacts->most_at_once(), printable(options.contacts.file));
+  if (!options.contacts.file.empty()) {
+    fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
+               summary.done.most_contacts, printable(options.contacts.file));
   }
   fmt::print("Wrote {}\n", printable(options.output));
 }
@@ -197,10 +165,29 @@ void warn_of_tare(const SolveOptions& options, const FrameSource& source, const 
 }
 
 void check_solve_outputs(const SolveOptions& options) {
-  std::vector<PlannedOutput> outputs = {{options.output, kind_of_force_file(options.output)}};
+  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
   if (const auto table = planned_table(options.contacts, options.output)) outputs.push_back(*table);
   check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
                 options.replace);
+}
+
+/// Reads, solves, tracks and writes all frames.
+void run(const SolveOptions& options, FrameSource& source, Processor& processor,
+         const std::vector<std::unique_ptr<ForceSink>>& files, ContactTracker* tracker,
+         SolveSummary& summary) {
+  {
+    Counter counter(source.frames(), options.quiet);
+    std::vector<ForceSink*> sinks = {&counter};
+    for (const auto& file : files) sinks.push_back(file.get());
+    const auto stream = file_stream(source);
+    Pipeline pipeline(
+        *stream, processor, sinks,
+        {.frames_in_flight = kFramesInFlight, .contacts = tracker, .stop = is_interrupted});
+    summary.done = pipeline.run();
+    summary.regions = counter.regions();
+  }
+  if (summary.done.stopped) stop_if_interrupted(summary.done.frames, options.output);
+  for (const auto& file : files) file->finish();
 }
 
 }  // namespace
@@ -217,36 +204,29 @@ void solve(const SolveOptions& asked) {
   const Device device = open_device(options.device.name);
   Processor processor(device, plan,
                       {.memory = options.device.memory,
-                       .frames_in_flight = Pipeline::kFramesInFlight,
+                       .frames_in_flight = kFramesInFlight,
                        .on_compiling = terminal_line(options.quiet)});
   const ForceFileInfo info = file_info(options, plan, device);
-  const std::unique_ptr<ForceSink> sink = create_force_sink(options.output, info, options.replace);
-  std::optional<ContactOutput> contacts;
+  std::vector<std::unique_ptr<ForceSink>> files;
+  files.push_back(create_force_sink(options.output, info, options.replace));
+  std::optional<ContactTracker> tracker;
   if (!options.contacts.file.empty()) {
-    contacts.emplace(options.contacts, info, options.output, options.replace);
-  }
-  const double startup_seconds = watch.seconds();
-  Pipeline pipeline(*source, processor, *sink, contacts ? &*contacts : nullptr, plan);
-  {
-    Progress progress("Solving", source->frames(), options.quiet);
-    for (std::uint64_t index = 0; index < source->frames(); ++index) {
-      stop_if_interrupted(index, options.output);
-      pipeline.push();
-      progress.show(index + 1);
+    tracker.emplace(info.pillar_pitch_mm, options.contacts.contacts);
+    if (const auto table = planned_table(options.contacts, options.output)) {
+      files.push_back(create_contact_sink(
+          table->path, {info.pillar_pitch_mm, info.source, options.contacts.contacts},
+          options.replace));
     }
-    pipeline.drain();
   }
-  sink->finish();
-  if (contacts) contacts->finish();
-  SolveSummary summary = pipeline.summary();
-  summary.startup_seconds = startup_seconds;
-  summary.seconds = watch.seconds() - startup_seconds;
+  SolveSummary summary;
+  summary.startup_seconds = watch.seconds();
+  run(options, *source, processor, files, tracker ? &*tracker : nullptr, summary);
+  summary.seconds = watch.seconds() - summary.startup_seconds;
   warn_of_tare(options, *source, plan, summary.regions);
   if (options.json) {
-    print_json(options, plan, processor, summary, contacts ? &*contacts : nullptr,
-               source->remarks());
+    print_json(options, plan, processor, summary, source->remarks());
   } else if (!options.quiet) {
-    print_text(options, plan, processor, summary, contacts ? &*contacts : nullptr);
+    print_text(options, plan, processor, summary);
   }
 }
 

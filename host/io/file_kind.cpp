@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "io/frame_source.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -60,30 +61,16 @@ void require_regular_file(const std::filesystem::path& path) {
   }
 }
 
-bool has_line_beginning(std::string_view text, std::string_view beginning) {
-  for (std::size_t at = text.find(beginning); at != std::string_view::npos;
-       at = text.find(beginning, at + 1)) {
-    if (at == 0 || text[at - 1] == '\n') return true;
-  }
-  return false;
-}
-
-bool looks_like_tekscan(std::string_view head) {
-  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
-  if (head.find('\0') != std::string_view::npos) return false;
-  return has_line_beginning(head, "DATA_TYPE") || has_line_beginning(head, "ASCII_DATA") ||
-         has_line_beginning(head, "Frame ");
-}
-
 }  // namespace
 
-FileKind kind_of(const std::filesystem::path& path) {
+FileLook look_at(const std::filesystem::path& path) {
   require_regular_file(path);
   std::ifstream file = open_binary(path);
   const std::uint64_t size = size_of(file);
   if (size == 0) throw Error(path.string(), "is empty", "give a recording or a Tekscan export");
-  if (superblock_offset(file, size)) return FileKind::hdf5;
-  return looks_like_tekscan(bytes_at(file, 0, 4096)) ? FileKind::tekscan : FileKind::other;
+  if (superblock_offset(file, size)) return {FileKind::hdf5, nullptr};
+  const SourceFormat* const frames = source_format(bytes_at(file, 0, 4096));
+  return {frames != nullptr ? FileKind::frames : FileKind::other, frames};
 }
 
 WriterState writer_state(const std::filesystem::path& path) {

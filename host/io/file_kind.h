@@ -6,11 +6,25 @@
 
 namespace pillarfield {
 
+struct SourceFormat;  // io/frame_source.h
+
 /// What a file is, told by its first bytes and never by its name.
-enum class FileKind : std::uint8_t { hdf5, tekscan, other };
+enum class FileKind : std::uint8_t {
+  hdf5,
+  frames,  ///< of a SourceFormat
+  other
+};
+
+struct FileLook {
+  FileKind kind = FileKind::other;
+  const SourceFormat* frames = nullptr;  ///< with FileKind::frames
+};
 
 /// Throws Error where `path` is no regular file, is empty or cannot be read.
-[[nodiscard]] FileKind kind_of(const std::filesystem::path& path);
+[[nodiscard]] FileLook look_at(const std::filesystem::path& path);
+[[nodiscard]] inline FileKind kind_of(const std::filesystem::path& path) {
+  return look_at(path).kind;
+}
 
 /// How the last writer of an HDF5 file left it.
 enum class WriterState : std::uint8_t {

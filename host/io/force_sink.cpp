@@ -1,16 +1,48 @@
 #include "io/force_sink.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "io/ending.h"
 #include "io/force_planes.h"
+#include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
+
+// Each is defined beside its sink.
+SinkFormat force_hdf5_format();
+SinkFormat force_csv_format();
+SinkFormat force_npy_format();
+SinkFormat contact_csv_format();
+SinkFormat contact_json_format();
+
 namespace {
+
+/// All formats, in the order in which messages name their endings.
+std::span<const SinkFormat> sink_formats() {
+  static const std::array formats = {force_hdf5_format(), force_csv_format(), force_npy_format(),
+                                     contact_csv_format(), contact_json_format()};
+  return formats;
+}
+
+const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) {
+  if (const SinkFormat* const format = format_by_ending(path, kind)) return *format;
+  throw Error(path.string(),
+              kind == OutputKind::forces ? "its ending is not that of a force file"
+                                         : "its ending names no table of contacts",
+              "end it in " + endings_of(kind));
+}
+
+void check_time(const SolvedFrame& frame, const std::string& where) {
+  if (std::isfinite(frame.time_s)) return;
+  throw Error(where, fmt::format("its time is {}", frame.time_s), "give seconds");
+}
 
 void check(const ForceFileInfo& info, const std::string& where) {
   const auto in_range = [](std::uint32_t size) { return size >= 1 && size <= kMaxSensels / 2; };
@@ -26,8 +58,8 @@ void check(const ForceFileInfo& info, const std::string& where) {
 
 }  // namespace
 
-void check(const ForceFieldView& forces, double time_s, const ForceFileInfo& info,
-           const std::string& where) {
+void check(const SolvedFrame& frame, const ForceFileInfo& info, const std::string& where) {
+  const ForceFieldView& forces = frame.forces;
   const std::size_t pillars = std::size_t{info.rows} * info.cols;
   const auto complete = [&](std::span<const float> plane) { return plane.size() == pillars; };
   if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.shear_x) ||
@@ -40,34 +72,72 @@ void check(const ForceFieldView& forces, double time_s, const ForceFileInfo& inf
     throw Error(where, fmt::format("a frame without {}", plane.field()),
                 "solve with all outputs that the file shall have");
   }
-  if (!std::isfinite(time_s))
-    throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
+  check_time(frame, where);
+  if (info.contacts) static_cast<void>(contacts_of(frame, where));
 }
 
-void ForceSink::append_contacts(const FrameContacts& /*contacts*/) {
-  throw Error("", "a file of forces alone was given contacts", "name them in its ForceFileInfo");
+const FrameContacts& contacts_of(const SolvedFrame& frame, const std::string& where) {
+  check_time(frame, where);
+  if (frame.contacts != nullptr) return *frame.contacts;
+  throw Error(where, "a frame without its contacts", "track them, or write forces alone");
 }
 
-OutputKind kind_of_force_file(const std::filesystem::path& path) {
+const SinkFormat* format_by_ending(const std::filesystem::path& path, OutputKind kind) {
   const std::string ending = ending_of(path);
-  if (ending == ".h5" || ending == ".hdf5") return OutputKind::forces;
-  if (ending == ".csv") return OutputKind::force_table;
-  if (ending == ".npy") return OutputKind::force_array;
-  throw Error(path.string(), "its ending is not that of a force file",
-              "end it in .h5, .hdf5, .csv or .npy");
+  for (const SinkFormat& format : sink_formats()) {
+    const auto& endings = format.endings;
+    const bool has_ending = std::find(endings.begin(), endings.end(), ending) != endings.end();
+    if (format.kind == kind && !ending.empty() && has_ending) return &format;
+  }
+  return nullptr;
+}
+
+const SinkFormat* format_by_beginning(std::string_view head) {
+  for (const SinkFormat& format : sink_formats()) {
+    if (format.recognises != nullptr && format.recognises(head)) return &format;
+  }
+  return nullptr;
+}
+
+std::string endings_of(OutputKind kind) {
+  std::vector<std::string_view> endings;
+  for (const SinkFormat& format : sink_formats()) {
+    for (const std::string_view ending : format.endings) {
+      if (format.kind == kind && !ending.empty()) endings.push_back(ending);
+    }
+  }
+  if (endings.empty()) return "";
+  const std::string_view last = endings.back();
+  endings.pop_back();
+  return fmt::format("{} or {}", fmt::join(endings, ", "), last);
+}
+
+PlannedOutput planned_force_file(const std::filesystem::path& path) {
+  return {path, format_of(path, OutputKind::forces).kind};
+}
+
+PlannedOutput planned_contact_file(const std::filesystem::path& path) {
+  return {path, format_of(path, OutputKind::contacts).kind};
 }
 
 std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                              const ForceFileInfo& info, Replace replace) {
   check(info, path.string());
-  const OutputKind kind = kind_of_force_file(path);
-  if (kind == OutputKind::forces) return create_hdf5_sink(path, info, replace);
-  if (info.contacts) {
+  const SinkFormat& format = format_of(path, OutputKind::forces);
+  if (info.contacts && format.recognises != nullptr) {
     throw Error(path.string(), "only HDF5 files hold contacts beside the forces",
                 "end it in .h5, or write the contacts to a file of their own");
   }
-  if (kind == OutputKind::force_table) return create_csv_sink(path, info, replace);
-  return create_npy_sink(path, info, replace);
+  return format.create(path, info, replace);
+}
+
+std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path,
+                                               const ContactFileInfo& info, Replace replace) {
+  ForceFileInfo forces;
+  forces.pillar_pitch_mm = info.pillar_pitch_mm;
+  forces.source = info.source;
+  forces.contacts = info.options;
+  return format_of(path, OutputKind::contacts).create(path, forces, replace);
 }
 
 }  // namespace pillarfield

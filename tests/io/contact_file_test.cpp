@@ -35,7 +35,10 @@ ContactFileInfo sample_info() { return {1.25, "a \"quoted\"\\\n name.h5", sample
 
 void write(const std::filesystem::path& path, std::uint64_t frames) {
   const auto sink = create_contact_sink(path, sample_info());
-  for (std::uint64_t index = 0; index < frames; ++index) sink->append(sample_contacts(index));
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    const FrameContacts found = sample_contacts(index);
+    sink->append({.contacts = &found, .time_s = found.time_s});
+  }
   sink->finish();
 }
 
@@ -53,8 +56,10 @@ ForceFileInfo force_info(std::optional<ContactOptions> contacts = sample_options
 }
 
 void append(ForceSink& sink, std::uint64_t index) {
-  sink.append(sample_forces(index, 2, 3).view(), 0.25 * static_cast<double>(index));
-  sink.append_contacts(sample_contacts(index));
+  const ForceField forces = sample_forces(index, 2, 3);
+  const FrameContacts found = sample_contacts(index);
+  sink.append(
+      {.forces = forces.view(), .contacts = &found, .time_s = 0.25 * static_cast<double>(index)});
 }
 
 void write_forces(const std::filesystem::path& path, std::uint64_t frames) {
@@ -157,11 +162,14 @@ TEST(ContactSink, RefusesWhatItCannotWrite) {
   EXPECT_TRUE(directory.names().empty());
   for (const std::string name : {"c.csv", "c.json"}) {
     const auto sink = create_contact_sink(directory / name, sample_info());
-    FrameContacts frame;
-    frame.time_s = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_TRUE(has_all(error_of([&] { sink->append(frame); }), {name, "its time is nan"}));
+    const FrameContacts found;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(has_all(error_of([&] { sink->append({.contacts = &found, .time_s = nan}); }),
+                        {name, "its time is nan"}));
+    EXPECT_TRUE(has_all(error_of([&] { sink->append({}); }), {name, "without its contacts"}));
     sink->finish();
-    EXPECT_TRUE(has_all(error_of([&] { sink->append({}); }), {name, "is finished"}));
+    EXPECT_TRUE(
+        has_all(error_of([&] { sink->append({.contacts = &found}); }), {name, "is finished"}));
     EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {name, "is finished"}));
   }
 }
@@ -172,7 +180,8 @@ TEST(ContactSink, KeepsTheOldFileUntilItIsFinished) {
     write_bytes(directory / name, "old");
     {
       const auto sink = create_contact_sink(directory / name, sample_info(), Replace::anything);
-      sink->append(sample_contacts(3));
+      const FrameContacts found = sample_contacts(3);
+      sink->append({.contacts = &found});
       EXPECT_EQ(bytes_of(directory / name), "old");
       EXPECT_EQ(directory.names(), (Names{name, name + ".part"}));
     }
@@ -202,8 +211,7 @@ TEST(ContactsOfForceFile, AreKept) {
 TEST(ContactsOfForceFile, AreThereOnlyWhereAskedFor) {
   const TemporaryDirectory directory;
   const auto sink = create_force_sink(directory / "f.h5", force_info(std::nullopt));
-  sink->append(sample_forces(0, 2, 3).view(), 0);
-  EXPECT_TRUE(has_all(error_of([&] { sink->append_contacts({}); }), {"forces alone"}));
+  append(*sink, 0);
   sink->finish();
   const ForceFileReader reader(directory / "f.h5");
   EXPECT_FALSE(reader.info().contacts);
@@ -215,19 +223,18 @@ TEST(ContactsOfForceFile, AreThereOnlyWhereAskedFor) {
   }
 }
 
-TEST(ContactsOfForceFile, ComeOnceAfterEachFrame) {
+TEST(ContactsOfForceFile, ComeWithEachFrame) {
   const TemporaryDirectory directory;
   const auto sink = create_force_sink(directory / "f.h5", force_info());
-  EXPECT_TRUE(has_all(error_of([&] { sink->append_contacts({}); }), {"already"}));
   append(*sink, 0);
-  EXPECT_TRUE(has_all(error_of([&] { sink->append_contacts({}); }), {"already"}));
   const ForceField forces = sample_forces(1, 2, 3);
-  sink->append(forces.view(), 1);
-  EXPECT_TRUE(has_all(error_of([&] { sink->append(forces.view(), 2); }), {"without its contacts"}));
-  EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {"without its contacts"}));
-  sink->append_contacts(sample_contacts(1));
+  EXPECT_TRUE(has_all(error_of([&] { sink->append({.forces = forces.view()}); }),
+                      {"f.h5", "without its contacts"}));
+  append(*sink, 1);
   sink->finish();
-  EXPECT_EQ(ForceFileReader(directory / "f.h5").frames(), 2);
+  const ForceFileReader reader(directory / "f.h5");
+  ASSERT_EQ(reader.frames(), 2);
+  EXPECT_EQ(written_out(reader.read_contacts(1)), written_out(sample_contacts(1)));
 }
 
 /// Changes the one value of an unsigned column at `row`.

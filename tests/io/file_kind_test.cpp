@@ -33,8 +33,8 @@ TEST(FileKind, IsToldByTheContent) {
   EXPECT_EQ(kind_of(directory / "a"), FileKind::hdf5);
   EXPECT_EQ(kind_of(directory / "b"), FileKind::hdf5);
   EXPECT_EQ(kind_of(directory / "c"), FileKind::other);
-  EXPECT_EQ(kind_of(directory / "d"), FileKind::tekscan);
-  EXPECT_EQ(kind_of(directory / "e"), FileKind::tekscan);
+  EXPECT_EQ(kind_of(directory / "d"), FileKind::frames);
+  EXPECT_EQ(kind_of(directory / "e"), FileKind::frames);
   EXPECT_EQ(kind_of(directory / "f"), FileKind::other);
 }
 

@@ -51,7 +51,8 @@ ForceFileInfo info_of(std::uint32_t rows, std::uint32_t cols, bool angles = fals
 void write(const std::filesystem::path& path, const ForceFileInfo& info, std::uint64_t frames) {
   const auto sink = create_force_sink(path, info);
   for (std::uint64_t index = 0; index < frames; ++index) {
-    sink->append(Field(index, info.rows, info.cols).view(), static_cast<double>(index) / 3);
+    const Field field(index, info.rows, info.cols);
+    sink->append({.forces = field.view(), .time_s = static_cast<double>(index) / 3});
   }
   sink->finish();
 }
@@ -181,13 +182,13 @@ TEST(ForceSink, RefusesFramesThatDoNotFitAndGoesOn) {
     const TemporaryDirectory directory;
     const auto sink = create_force_sink(directory / name, info_of(2, 3, true));
     const auto refused = [&](const ForceFieldView& view, double time_s) {
-      return error_of([&] { sink->append(view, time_s); });
+      return error_of([&] { sink->append({.forces = view, .time_s = time_s}); });
     };
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_TRUE(has_all(refused(Field(0, 3, 2).view(), 0), {name, "3 x 2", "2 x 3"}));
     EXPECT_TRUE(has_all(refused(Field(0, 2, 3).forces.view(), 0), {name, "without magnitude"}));
     EXPECT_TRUE(has_all(refused(Field(0, 2, 3).view(), nan), {name, "nan"}));
-    sink->append(Field(0, 2, 3).view(), 0);
+    sink->append({.forces = Field(0, 2, 3).view()});
     sink->finish();
     EXPECT_TRUE(has_all(refused(Field(0, 2, 3).view(), 0), {name, "is finished"}));
     EXPECT_TRUE(has_all(error_of([&] { sink->finish(); }), {name, "is finished"}));
@@ -201,7 +202,7 @@ TEST(ForceSink, KeepsTheOldFileUntilItIsFinishedAndCleansUp) {
     write_bytes(directory / name, "precious");
     {
       const auto sink = create_force_sink(directory / name, info_of(2, 3), Replace::anything);
-      sink->append(Field(0, 2, 3).view(), 0);
+      sink->append({.forces = Field(0, 2, 3).view()});
     }
     EXPECT_EQ(directory.names(), Names{name});
     EXPECT_EQ(bytes_of(directory / name), "precious");
@@ -212,7 +213,9 @@ TEST(ForceSink, LeavesAnHdf5PartWithFlushedFrames) {
   const TemporaryDirectory directory;
   {
     const auto sink = create_force_sink(directory / "f.h5", info_of(2, 3));
-    for (std::uint64_t index = 0; index < 20; ++index) sink->append(Field(index, 2, 3).view(), 0);
+    for (std::uint64_t index = 0; index < 20; ++index) {
+      sink->append({.forces = Field(index, 2, 3).view()});
+    }
   }
   EXPECT_EQ(directory.names(), Names{"f.h5.part"});
   EXPECT_GE(ForceFileReader(directory / "f.h5.part").frames(), 16u);

@@ -101,7 +101,8 @@ void write_some_forces(const fs::path& path, std::uint64_t frames,
   const auto sink =
       create_force_sink(path, {2, 2, 1.25, "direct", "a device", "it", false}, replace);
   for (std::uint64_t index = 0; index < frames; ++index) {
-    sink->append(sample_forces(index, 2, 2).view(), static_cast<double>(index));
+    const ForceField forces = sample_forces(index, 2, 2);
+    sink->append({.forces = forces.view(), .time_s = static_cast<double>(index)});
   }
   sink->finish();
 }
@@ -113,14 +114,14 @@ SkinCalibration small_calibration() {
 }
 
 void write_text(const fs::path& path, const std::string& text, Replace replace) {
-  OutputFile file(path, OutputKind::force_table, replace);
+  OutputFile file(path, OutputKind::forces, replace);
   file.write(text);
   file.commit();
 }
 
 TEST(OutputFile, TakesItsNameWhenItIsComplete) {
   const TemporaryDirectory directory;
-  OutputFile file(directory / "a.csv", OutputKind::force_table);
+  OutputFile file(directory / "a.csv", OutputKind::forces);
   EXPECT_EQ(directory.names(), Names{"a.csv.part"});
   file.write("one ");
   file.write("two");
@@ -133,10 +134,10 @@ TEST(OutputFile, TakesItsNameWhenItIsComplete) {
 
 TEST(OutputFile, IsRemovedUnlessItIsKept) {
   const TemporaryDirectory directory;
-  { OutputFile(directory / "a.csv", OutputKind::force_table).write("lost"); }
+  { OutputFile(directory / "a.csv", OutputKind::forces).write("lost"); }
   EXPECT_EQ(directory.names(), Names{});
   {
-    OutputFile file(directory / "a.csv", OutputKind::force_table);
+    OutputFile file(directory / "a.csv", OutputKind::forces);
     file.write("kept");
     file.keep();
   }
@@ -145,20 +146,19 @@ TEST(OutputFile, IsRemovedUnlessItIsKept) {
 
 TEST(OutputFile, ASecondWriterEndsAndTheFirstWritesOn) {
   const TemporaryDirectory directory;
-  OutputFile first(directory / "a.csv", OutputKind::force_table);
+  OutputFile first(directory / "a.csv", OutputKind::forces);
   first.write("first");
   fs::create_symlink("a.csv", directory / "link.csv");
   for (const char* name : {"a.csv", "link.csv"}) {
-    const std::string error =
-        error_of([&] { OutputFile(directory / name, OutputKind::force_table); });
+    const std::string error = error_of([&] { OutputFile(directory / name, OutputKind::forces); });
     EXPECT_TRUE(has_all(error, {"a.csv: is being written by another process", "wait"})) << error;
   }
   EXPECT_EQ(bytes_of(directory / "a.csv.part"), "first") << "truncated before it was locked";
-  EXPECT_TRUE(has_all(
-      error_of([&] {
-        check_outputs({}, {{directory / "a.csv", OutputKind::force_table}}, Replace::anything);
-      }),
-      {"is being written"}));
+  EXPECT_TRUE(
+      has_all(error_of([&] {
+                check_outputs({}, {{directory / "a.csv", OutputKind::forces}}, Replace::anything);
+              }),
+              {"is being written"}));
   first.commit();
   EXPECT_EQ(bytes_of(directory / "a.csv"), "first");
 }
@@ -169,7 +169,7 @@ TEST(OutputFile, ItsLockEndsWithAKilledProcess) {
   ASSERT_EQ(pipe(ready), 0);
   const pid_t child = fork();
   if (child == 0) {
-    OutputFile file(directory / "a.csv", OutputKind::force_table);
+    OutputFile file(directory / "a.csv", OutputKind::forces);
     file.write("half");
     if (::write(ready[1], "!", 1) != 1) _exit(1);
     pause();
@@ -178,7 +178,7 @@ TEST(OutputFile, ItsLockEndsWithAKilledProcess) {
   ASSERT_EQ(read(ready[0], &byte, 1), 1);
   close(ready[0]);
   close(ready[1]);
-  EXPECT_TRUE(has_all(error_of([&] { OutputFile(directory / "a.csv", OutputKind::force_table); }),
+  EXPECT_TRUE(has_all(error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces); }),
                       {"is being written"}));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
@@ -191,7 +191,7 @@ TEST(OutputFile, APartThatTakesItsNameBeforeTheLockIsLeftAlone) {
   const TemporaryDirectory directory;
   write_bytes(directory / "a.csv.part", "finished");
   before_lock() = [&] { fs::rename(directory / "a.csv.part", directory / "a.csv"); };
-  OutputFile file(directory / "a.csv", OutputKind::force_table, Replace::anything);
+  OutputFile file(directory / "a.csv", OutputKind::forces, Replace::anything);
   EXPECT_FALSE(before_lock());
   EXPECT_EQ(bytes_of(directory / "a.csv"), "finished");
   file.write("next");
@@ -214,7 +214,7 @@ TEST(OutputFile, OfManyWritersAtOnceEachFileIsOfOne) {
       char byte = 0;
       static_cast<void>(!read(start[0], &byte, 1));
       try {
-        OutputFile file(directory / "a.csv", OutputKind::force_table, Replace::anything);
+        OutputFile file(directory / "a.csv", OutputKind::forces, Replace::anything);
         for (int line = 0; line < 200; ++line) file.write(std::to_string(writer) + "\n");
         file.commit();
       } catch (const Error& error) {
@@ -245,10 +245,10 @@ TEST(OutputFile, APartThatIsALinkIsRefused) {
   write_bytes(directory / "victim", "precious");
   const auto refusal = [&] {
     const std::string checked = error_of([&] {
-      check_outputs({}, {{directory / "a.csv", OutputKind::force_table}}, Replace::anything);
+      check_outputs({}, {{directory / "a.csv", OutputKind::forces}}, Replace::anything);
     });
-    const std::string opened = error_of(
-        [&] { OutputFile(directory / "a.csv", OutputKind::force_table, Replace::anything); });
+    const std::string opened =
+        error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces, Replace::anything); });
     EXPECT_EQ(checked, opened);
     fs::remove(directory / "a.csv.part");
     EXPECT_EQ(bytes_of(directory / "victim"), "precious");
@@ -268,8 +268,8 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   const TemporaryDirectory directory;
   const auto refusal = [&] {
     const std::string before = bytes_of(directory / "a.csv.part");
-    const std::string error = error_of(
-        [&] { OutputFile(directory / "a.csv", OutputKind::force_table, Replace::anything); });
+    const std::string error =
+        error_of([&] { OutputFile(directory / "a.csv", OutputKind::forces, Replace::anything); });
     EXPECT_EQ(bytes_of(directory / "a.csv.part"), before);
     return error;
   };
@@ -360,7 +360,7 @@ TEST(OutputFile, WhatComesWhileItIsWrittenIsNotReplaced) {
 
 TEST(OutputFile, APartThatWasRemovedIsNotSaidToBeThere) {
   const TemporaryDirectory directory;
-  OutputFile file(directory / "a.csv", OutputKind::force_table);
+  OutputFile file(directory / "a.csv", OutputKind::forces);
   fs::remove(directory / "a.csv.part");
   write_bytes(directory / "a.csv.part", "of somebody else");
   const std::string error = error_of([&] { file.commit(); });
@@ -403,7 +403,7 @@ TEST(OutputFile, IsOnTheDiskBeforeItHasItsNameAndItsFolderAfter) {
 
 TEST(OutputFile, APartThatGrowsIsWrittenToTheDiskAtIntervals) {
   const TemporaryDirectory directory;
-  OutputFile file(directory / "a.csv", OutputKind::force_table);
+  OutputFile file(directory / "a.csv", OutputKind::forces);
   disk_calls().clear();
   file.sync_at_intervals();
   file.sync_at_intervals(std::chrono::hours(1));
@@ -427,7 +427,7 @@ TEST(CheckOutputs, InputsAreNeverOutputs) {
     for (const Replace replace : {Replace::results, Replace::anything}) {
       const std::string error = error_of([&] {
         check_outputs({"", directory / "absent", directory / "in2.csv", input},
-                      {{directory / name, OutputKind::force_table}}, replace);
+                      {{directory / name, OutputKind::forces}}, replace);
       });
       EXPECT_TRUE(has_all(error, {name, "is a file that is read", "another file"}));
     }
@@ -435,7 +435,7 @@ TEST(CheckOutputs, InputsAreNeverOutputs) {
   fs::rename(input, directory / "new.csv.part");
   EXPECT_TRUE(has_all(error_of([&] {
                         check_outputs({directory / "link.csv", directory / "new.csv.part"},
-                                      {{directory / "new.csv", OutputKind::force_table}},
+                                      {{directory / "new.csv", OutputKind::forces}},
                                       Replace::anything);
                       }),
                       {"new.csv", "part", "is read"}));
@@ -446,17 +446,16 @@ TEST(CheckOutputs, TwoOutputsNeverShareAFile) {
   fs::create_symlink("a.csv", directory / "link.csv");
   for (const char* other : {"a.csv", "./a.csv", "link.csv", "a.csv.part"}) {
     const std::string error = error_of([&] {
-      check_outputs({},
-                    {{directory / "a.csv", OutputKind::force_table},
-                     {directory / other, OutputKind::contact_table}},
-                    Replace::anything);
+      check_outputs(
+          {},
+          {{directory / "a.csv", OutputKind::forces}, {directory / other, OutputKind::contacts}},
+          Replace::anything);
     });
     EXPECT_TRUE(has_all(error, {"cannot share this file"}));
   }
-  check_outputs({},
-                {{directory / "a.csv", OutputKind::force_table},
-                 {directory / "b.csv", OutputKind::contact_table}},
-                Replace::results);
+  check_outputs(
+      {}, {{directory / "a.csv", OutputKind::forces}, {directory / "b.csv", OutputKind::contacts}},
+      Replace::results);
   EXPECT_TRUE(name_same_file(directory / "a.csv", directory / "link.csv"));
   EXPECT_FALSE(name_same_file(directory / "a.csv", directory / "b.csv"));
 }

@@ -56,8 +56,11 @@ void write_forces(const std::string& path, std::uint32_t rows, std::uint32_t col
   if (contacts) info.contacts.emplace();
   const auto sink = create_force_sink(path, info);
   for (std::uint64_t index = 0; index < frames; ++index) {
-    sink->append(sample_forces(index, rows, cols).view(), 0.25 * static_cast<double>(index));
-    if (contacts) sink->append_contacts(io_test::sample_contacts(index));
+    const ForceField forces = sample_forces(index, rows, cols);
+    const FrameContacts found = io_test::sample_contacts(index);
+    sink->append({.forces = forces.view(),
+                  .contacts = contacts ? &found : nullptr,
+                  .time_s = 0.25 * static_cast<double>(index)});
     if ((index + 1) % kForceFlushEvery == 0) say(index + 1);
   }
   sink->finish();

@@ -316,7 +316,7 @@ void Application::write_picture() {
 void Application::write_table() {
   const std::string frame = fmt::format("frame_{}", session_.field->index + 1);
   const auto path = free_path(*place_.source, frame, ".csv");
-  check_outputs({options_.source}, {{path, OutputKind::force_table}}, Replace::nothing);
+  check_outputs({options_.source}, {{path, OutputKind::forces}}, Replace::nothing);
   write_csv(path, *session_.field, visible_pillars(place_, session_.look), Replace::nothing);
   session_.notice = "wrote " + path.string();
 }

@@ -9,6 +9,7 @@
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
 #include "pillarfield/read_options.h"
 
@@ -30,29 +31,13 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
 };
 
-/// Writes solved frames to a file, one by one. It writes to `path` + ".part", which finish()
-/// renames. The destructor without finish() removes the part, except an HDF5 file with flushed
-/// frames.
-class ForceSink {
- public:
-  virtual ~ForceSink() = default;
-
-  /// Appends a frame; `time_s` must be finite. Throws Error if it cannot be written.
-  virtual void append(const ForceFieldView& forces, double time_s) = 0;
-
-  /// Appends the contacts of the frame appended last. Call it after every append() if
-  /// ForceFileInfo::contacts is set, and never otherwise. Throws Error if not, here or at the next
-  /// append().
-  virtual void append_contacts(const FrameContacts& contacts);
-
-  /// Closes the file and renames the part to its final name.
-  virtual void finish() = 0;
-};
-
-/// Creates a file of forces, whose ending selects the format: .h5 or .hdf5 ("pillarfield-forces"),
-/// .csv (one line per loaded pillar) or .npy (a structured array [frames, rows, cols]). `replace`
-/// says which existing file it may replace. Throws Error for another ending or a path that cannot
-/// be written.
+/// Makes the sink that the ending of `path` names (docs/formats.md; endings_of() lists them).
+/// `replace` says what of the same name it may replace. Throws Error for another ending or a place
+/// that cannot be written.
+///
+/// Like recordings, files are written under `path` + ".part" and get their name in finish(); one
+/// destroyed before that is removed, except for an HDF5 file that already holds flushed frames.
+/// Contacts are written where ForceFileInfo::contacts is set; each frame must then have them.
 [[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                                            const ForceFileInfo& info,
                                                            Replace replace = Replace::results);
@@ -63,8 +48,9 @@ void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& inf
                      const ForceFieldView& forces, std::uint64_t frame, double time_s,
                      Replace replace = Replace::results);
 
-/// The format that create_force_sink() selects. Throws Error for an unknown ending.
-[[nodiscard]] OutputKind kind_of_force_file(const std::filesystem::path& path);
+/// What create_force_sink() makes of this path, for check_outputs(). Throws Error for another
+/// ending.
+[[nodiscard]] PlannedOutput planned_force_file(const std::filesystem::path& path);
 
 /// Whether this is an HDF5 file of force fields; false if it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path,

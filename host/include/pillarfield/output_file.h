@@ -7,6 +7,7 @@
 #include <future>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,16 +17,16 @@ namespace pillarfield {
 enum class OutputKind : std::uint8_t {
   recording,
   calibration,
-  forces,         ///< HDF5
-  force_table,    ///< CSV
-  force_array,    ///< NPY
-  contact_table,  ///< CSV
-  contact_list,   ///< JSON
+  forces,    ///< the ending of the path says in which format
+  contacts,  ///< as forces
   png,
   svg,
   video,
   text,
 };
+
+/// The endings of files of forces or of contacts: ".csv or .json".
+[[nodiscard]] std::string endings_of(OutputKind kind);
 
 /// Which existing file an output may replace. All but `nothing` replace an empty file.
 enum class Replace : std::uint8_t {

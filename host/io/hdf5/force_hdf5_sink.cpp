@@ -28,16 +28,14 @@ class Hdf5Sink final : public ForceSink {
   Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replace replace);
   ~Hdf5Sink() override;
 
-  void append(const ForceFieldView& forces, double time_s) override;
-  void append_contacts(const FrameContacts& contacts) override;
+  void append(const SolvedFrame& frame) override;
   void finish() override;
 
  private:
   void write_info();
   void create_datasets();
   void require_open() const;
-  void require_contacts() const;
-  void put(const ForceFieldView& forces, double time_s);
+  void put(const SolvedFrame& frame);
   void flush();
 
   ForceFileInfo info_;
@@ -109,20 +107,15 @@ void Hdf5Sink::require_open() const {
   throw Error(path_.string(), "is finished", "start another file");
 }
 
-void Hdf5Sink::put(const ForceFieldView& forces, double time_s) {
+void Hdf5Sink::put(const SolvedFrame& frame) {
   std::size_t index = 0;
-  frame_planes_.take(forces);
+  frame_planes_.take(frame.forces);
   for (const ResultPlane& plane : planes_of(info_)) {
     planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
   }
-  status_.put(frames_, H5T_NATIVE_UINT8, forces.status.data());
-  time_.put(frames_, H5T_NATIVE_DOUBLE, &time_s);
-}
-
-/// Those of all frames so far.
-void Hdf5Sink::require_contacts() const {
-  if (!info_.contacts || contacts_.frames() == frames_) return;
-  throw Error(path_.string(), "a frame is without its contacts", "append them after each frame");
+  status_.put(frames_, H5T_NATIVE_UINT8, frame.forces.status.data());
+  time_.put(frames_, H5T_NATIVE_DOUBLE, &frame.time_s);
+  if (info_.contacts) contacts_.append(*frame.contacts);
 }
 
 void Hdf5Sink::flush() {
@@ -132,31 +125,18 @@ void Hdf5Sink::flush() {
   part_.sync_at_intervals();
 }
 
-void Hdf5Sink::append(const ForceFieldView& forces, double time_s) {
+void Hdf5Sink::append(const SolvedFrame& frame) {
   const hdf5::QuietErrors quiet;
   require_open();
-  require_contacts();
-  check(forces, time_s, info_, path_.string());
-  put(forces, time_s);
+  check(frame, info_, path_.string());
+  put(frame);
   ++frames_;
-  if (!info_.contacts && frames_ % kFlushEvery == 0) flush();
-}
-
-void Hdf5Sink::append_contacts(const FrameContacts& contacts) {
-  const hdf5::QuietErrors quiet;
-  require_open();
-  if (!info_.contacts) return ForceSink::append_contacts(contacts);
-  if (contacts_.frames() >= frames_) {
-    throw Error(path_.string(), "a frame has its contacts already", "append the next frame first");
-  }
-  contacts_.append(contacts);
   if (frames_ % kFlushEvery == 0) flush();
 }
 
 void Hdf5Sink::finish() {
   const hdf5::QuietErrors quiet;
   require_open();
-  require_contacts();
   flush();
   for (auto& plane : planes_) plane.close();
   status_.close();
@@ -168,10 +148,15 @@ void Hdf5Sink::finish() {
 
 }  // namespace
 
-std::unique_ptr<ForceSink> create_hdf5_sink(const std::filesystem::path& path,
-                                            const ForceFileInfo& info, Replace replace) {
-  const hdf5::QuietErrors quiet;
-  return std::make_unique<Hdf5Sink>(path, info, replace);
+SinkFormat force_hdf5_format() {
+  return {.kind = OutputKind::forces,
+          .endings = {".h5", ".hdf5"},
+          .content = "holds force fields",
+          .create = [](const std::filesystem::path& path, const ForceFileInfo& info,
+                       Replace replace) -> std::unique_ptr<ForceSink> {
+            const hdf5::QuietErrors quiet;
+            return std::make_unique<Hdf5Sink>(path, info, replace);
+          }};
 }
 
 }  // namespace pillarfield

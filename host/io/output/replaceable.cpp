@@ -12,6 +12,8 @@
 #include "io/calibration_format.h"
 #include "io/file_kind.h"
 #include "io/force_format.h"
+#include "io/force_sink.h"
+#include "io/frame_source.h"
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/recording_format.h"
@@ -23,8 +25,9 @@ namespace {
 
 /// What a file is, by its content.
 struct FoundContent {
-  std::optional<OutputKind> kind;  ///< unset: nothing that this project writes
-  std::string words;               ///< "holds a recording"
+  std::optional<OutputKind> kind;      ///< unset: nothing that this project writes
+  std::string words;                   ///< "holds a recording"
+  const SinkFormat* format = nullptr;  ///< of forces and contacts
 };
 
 FoundContent hdf5_content(const std::filesystem::path& path) {
@@ -33,11 +36,14 @@ FoundContent hdf5_content(const std::filesystem::path& path) {
   const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
   if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
   if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};
-  if (format == force_format::kName) return {OutputKind::forces, "holds force fields"};
+  if (format == force_format::kName) {
+    const SinkFormat* const written = format_by_ending("forces.h5", OutputKind::forces);
+    return {OutputKind::forces, written->content, written};
+  }
   return {std::nullopt, "is an HDF5 file of another kind"};
 }
 
-/// How a file of text, numbers or pixels begins.
+/// How a file of pixels or lines begins.
 struct Beginning {
   OutputKind kind;
   const char* words;
@@ -45,10 +51,7 @@ struct Beginning {
   std::string_view bytes;
 };
 
-constexpr std::array<Beginning, 7> kBeginnings = {{
-    {OutputKind::force_table, "is a table of forces", 0, "frame,time_s,row,col,shear_x_n,"},
-    {OutputKind::contact_table, "is a table of contacts", 0, "row,frame,time_s,id,parent,"},
-    {OutputKind::contact_list, "is a list of contacts", 0, R"({"format":"pillarfield-contacts")"},
+constexpr std::array<Beginning, 4> kBeginnings = {{
     {OutputKind::png, "is a picture", 0, "\x89PNG\r\n\x1a\n"},
     {OutputKind::video, "is a video", 4, "ftyp"},              // MP4, QuickTime
     {OutputKind::video, "is a video", 0, "\x1a\x45\xdf\xa3"},  // Matroska, WebM
@@ -66,24 +69,20 @@ FoundContent content_by_beginning(const std::filesystem::path& path) {
       return {beginning.kind, beginning.words};
     }
   }
-  const auto has = [&](const char* words) { return head.find(words) != std::string::npos; };
-  if (head.starts_with("\x93NUMPY") && has("('shear_x', '<f4'), ('shear_y', '<f4')")) {
-    return {OutputKind::force_array, "is an array of forces"};
+  if (const SinkFormat* const format = format_by_beginning(head)) {
+    return {format->kind, format->content, format};
   }
-  if (head.starts_with("<?xml") && has("<svg")) return {OutputKind::svg, "is a drawing"};
+  if (head.starts_with("<?xml") && head.find("<svg") != std::string::npos) {
+    return {OutputKind::svg, "is a drawing"};
+  }
   return {std::nullopt, path.extension() == ".toml" ? "is a scene, or another TOML file"
                                                     : "is no earlier output of this kind"};
 }
 
 FoundContent content_of(const std::filesystem::path& path) {
-  switch (kind_of(path)) {
-    case FileKind::hdf5:
-      return hdf5_content(path);
-    case FileKind::tekscan:
-      return {std::nullopt, "is a Tekscan export"};
-    case FileKind::other:
-      break;
-  }
+  const FileLook look = look_at(path);
+  if (look.kind == FileKind::hdf5) return hdf5_content(path);
+  if (look.frames != nullptr) return {std::nullopt, fmt::format("is a {}", look.frames->name)};
   return content_by_beginning(path);
 }
 
@@ -125,7 +124,9 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
   } catch (const Error&) {
     found.words = "cannot be read";
   }
-  if (found.kind == kind && is_result(kind)) return;
+  const SinkFormat* const asked = format_by_ending(path, kind);
+  const bool is_of_its_format = asked == nullptr || asked == found.format;
+  if (found.kind == kind && is_result(kind) && is_of_its_format) return;
   throw Error(path.string(), "exists and " + found.words,
               "choose another name, or replace it with --overwrite");
 }

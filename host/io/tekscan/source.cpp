@@ -1,5 +1,3 @@
-#include "io/tekscan/source.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,12 +5,14 @@
 #include <utility>
 
 #include "io/file_source.h"
+#include "io/frame_source.h"
 #include "io/tekscan/parser.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
 
+/// An export in raw units (docs/formats.md), read whole into memory.
 class Tekscan final : public FileSource {
  public:
   explicit Tekscan(const std::filesystem::path& path);
@@ -121,10 +121,29 @@ double Tekscan::read(std::uint64_t index, FrameBuffer& frame) {
   return times_s_[index];
 }
 
+bool has_line_beginning(std::string_view text, std::string_view beginning) {
+  for (std::size_t at = text.find(beginning); at != std::string_view::npos;
+       at = text.find(beginning, at + 1)) {
+    if (at == 0 || text[at - 1] == '\n') return true;
+  }
+  return false;
+}
+
+bool looks_like_tekscan(std::string_view head) {
+  if (head.starts_with("\xef\xbb\xbf")) head.remove_prefix(3);
+  if (head.find('\0') != std::string_view::npos) return false;
+  return has_line_beginning(head, "DATA_TYPE") || has_line_beginning(head, "ASCII_DATA") ||
+         has_line_beginning(head, "Frame ");
+}
+
 }  // namespace
 
-std::unique_ptr<FrameSource> open_tekscan(const std::filesystem::path& path) {
-  return std::make_unique<Tekscan>(path);
+SourceFormat tekscan_format() {
+  return {.name = "Tekscan ASCII export",
+          .recognises = looks_like_tekscan,
+          .open = [](const std::filesystem::path& path) -> std::unique_ptr<FrameSource> {
+            return std::make_unique<Tekscan>(path);
+          }};
 }
 
 }  // namespace pillarfield

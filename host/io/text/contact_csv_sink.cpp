@@ -1,18 +1,21 @@
 #include <fmt/format.h>
 
 #include "io/contact_columns.h"
-#include "io/contact_sink.h"
+#include "io/force_sink.h"
 #include "io/output/text_part.h"
 
 namespace pillarfield {
 namespace {
 
-/// A line for the patch, for each contact and for each that ended.
-class ContactCsvSink final : public ContactSink {
- public:
-  ContactCsvSink(const std::filesystem::path& path, Replace replace);
+constexpr std::string_view kContactCsvHead =
+    "row,frame,time_s,id,parent,merged_into,first_time_s,age_s";
 
-  void append(const FrameContacts& frame) override;
+/// A line for the patch, for each contact and for each that ended.
+class ContactCsvSink final : public ForceSink {
+ public:
+  ContactCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
+
+  void append(const SolvedFrame& frame) override;
   void finish() override { file_.finish(); }
 
  private:
@@ -26,9 +29,10 @@ class ContactCsvSink final : public ContactSink {
   std::uint64_t frames_ = 0;
 };
 
-ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, Replace replace)
-    : path_(path), file_(path, OutputKind::contact_table, replace) {
-  file_.write("row,frame,time_s,id,parent,merged_into,first_time_s,age_s");
+ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, const ForceFileInfo& /*info*/,
+                               Replace replace)
+    : path_(path), file_(path, OutputKind::contacts, replace) {
+  file_.write(kContactCsvHead);
   for (const auto& column : quantity_columns()) file_.write(fmt::format(",{}", column.name));
   file_.write("\n");
 }
@@ -54,23 +58,25 @@ void ContactCsvSink::add_ended(const EndedContact& contact) {
   file_.write(std::string(quantity_columns().size(), ',') + "\n");
 }
 
-void ContactCsvSink::append(const FrameContacts& frame) {
+void ContactCsvSink::append(const SolvedFrame& frame) {
   file_.require_open();
-  check(frame, path_);
+  const FrameContacts& found = contacts_of(frame, path_.string());
   frame_cells_ = fmt::format("{},{},", frames_, frame.time_s);
   file_.write(fmt::format("patch,{},,,,", frame_cells_));
-  add_quantities(frame.patch);
-  for (const TrackedContact& contact : frame.contacts) add_contact(contact);
-  for (const EndedContact& contact : frame.ended) add_ended(contact);
+  add_quantities(found.patch);
+  for (const TrackedContact& contact : found.contacts) add_contact(contact);
+  for (const EndedContact& contact : found.ended) add_ended(contact);
   ++frames_;
 }
 
 }  // namespace
 
-std::unique_ptr<ContactSink> create_contact_csv_sink(const std::filesystem::path& path,
-                                                     const ContactFileInfo& /*info*/,
-                                                     Replace replace) {
-  return std::make_unique<ContactCsvSink>(path, replace);
+SinkFormat contact_csv_format() {
+  return {.kind = OutputKind::contacts,
+          .endings = {".csv"},
+          .content = "is a table of contacts",
+          .recognises = [](std::string_view head) { return head.starts_with(kContactCsvHead); },
+          .create = create_sink<ContactCsvSink>};
 }
 
 }  // namespace pillarfield

@@ -5,7 +5,7 @@
 
 #include "base/utf8.h"
 #include "io/contact_columns.h"
-#include "io/contact_sink.h"
+#include "io/force_sink.h"
 #include "io/output/text_part.h"
 
 namespace pillarfield {
@@ -45,12 +45,14 @@ std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& r
   return members;
 }
 
-/// One object; each frame is a line of it.
-class JsonSink final : public ContactSink {
- public:
-  JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace);
+constexpr std::string_view kContactJsonHead = R"({"format":"pillarfield-contacts")";
 
-  void append(const FrameContacts& frame) override;
+/// One object; each frame is a line of it.
+class JsonSink final : public ForceSink {
+ public:
+  JsonSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
+
+  void append(const SolvedFrame& frame) override;
   void finish() override;
 
  private:
@@ -59,32 +61,33 @@ class JsonSink final : public ContactSink {
   std::uint64_t frames_ = 0;
 };
 
-JsonSink::JsonSink(const std::filesystem::path& path, const ContactFileInfo& info, Replace replace)
-    : path_(path), file_(path, OutputKind::contact_list, replace) {
-  const auto& friction = info.options.friction.given;
-  file_.write(
-      fmt::format("{{\"format\":\"pillarfield-contacts\",\"version\":1,\"source\":{},"
-                  "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"
-                  "\"reach_mm\":{},\"frames\":[",
-                  json_string(info.source), info.pillar_pitch_mm, info.options.minimum_pillars,
-                  friction ? fmt::format("{}", *friction) : "null", info.options.reach_mm));
+JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
+    : path_(path), file_(path, OutputKind::contacts, replace) {
+  const ContactOptions& options = info.contacts.value();
+  const auto& friction = options.friction.given;
+  file_.write(fmt::format(
+      "{},\"version\":1,\"source\":{},"
+      "\"pillar_pitch_mm\":{},\"minimum_pillars\":{},\"given_friction\":{},"
+      "\"reach_mm\":{},\"frames\":[",
+      kContactJsonHead, json_string(info.source), info.pillar_pitch_mm, options.minimum_pillars,
+      friction ? fmt::format("{}", *friction) : "null", options.reach_mm));
 }
 
-void JsonSink::append(const FrameContacts& frame) {
+void JsonSink::append(const SolvedFrame& frame) {
   file_.require_open();
-  check(frame, path_);
+  const FrameContacts& found = contacts_of(frame, path_.string());
   file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
                           frames_ == 0 ? "" : ",", frames_, frame.time_s,
-                          members_of(quantity_columns(), frame.patch)));
+                          members_of(quantity_columns(), found.patch)));
   const char* separator = "";
-  for (const TrackedContact& contact : frame.contacts) {
+  for (const TrackedContact& contact : found.contacts) {
     file_.write(fmt::format("{}{{{},{}}}", separator, members_of(identity_columns(), contact),
                             members_of(quantity_columns(), contact.quantities)));
     separator = ",";
   }
   file_.write("],\"ended\":[");
   separator = "";
-  for (const EndedContact& contact : frame.ended) {
+  for (const EndedContact& contact : found.ended) {
     file_.write(fmt::format("{}{{{}}}", separator, members_of(ended_columns(), contact)));
     separator = ",";
   }
@@ -100,10 +103,12 @@ void JsonSink::finish() {
 
 }  // namespace
 
-std::unique_ptr<ContactSink> create_contact_json_sink(const std::filesystem::path& path,
-                                                      const ContactFileInfo& info,
-                                                      Replace replace) {
-  return std::make_unique<JsonSink>(path, info, replace);
+SinkFormat contact_json_format() {
+  return {.kind = OutputKind::contacts,
+          .endings = {".json"},
+          .content = "is a list of contacts",
+          .recognises = [](std::string_view head) { return head.starts_with(kContactJsonHead); },
+          .create = create_sink<JsonSink>};
 }
 
 }  // namespace pillarfield

@@ -9,14 +9,17 @@
 namespace pillarfield {
 namespace {
 
+constexpr std::string_view kForceCsvHead =
+    "frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status";
+
 /// One line per pillar with a status other than 0; numbers in the fewest digits that read back
 /// as the same value.
 class ForceCsvSink final : public ForceSink {
  public:
   ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace,
-               std::uint64_t first_frame);
+               std::uint64_t first_frame = 0);
 
-  void append(const ForceFieldView& forces, double time_s) override;
+  void append(const SolvedFrame& frame) override;
   void finish() override { file_.finish(); }
 
  private:
@@ -38,7 +41,7 @@ ForceCsvSink::ForceCsvSink(const std::filesystem::path& path, const ForceFileInf
       planes_(planes_of(info)),
       frame_planes_(info),
       path_(path),
-      file_(path, OutputKind::force_table, replace),
+      file_(path, OutputKind::forces, replace),
       frame_(first_frame) {
   file_.write("frame,time_s,row,col");
   for (const ResultPlane& plane : planes_) {
@@ -61,11 +64,12 @@ void ForceCsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
   file_.write(std::string_view(line_.data(), line_.size()));
 }
 
-void ForceCsvSink::append(const ForceFieldView& forces, double time_s) {
+void ForceCsvSink::append(const SolvedFrame& frame) {
   file_.require_open();
-  check(forces, time_s, info_, path_.string());
+  check(frame, info_, path_.string());
+  const ForceFieldView& forces = frame.forces;
   frame_planes_.take(forces);
-  frame_cells_ = fmt::format("{},{},", frame_, time_s);
+  frame_cells_ = fmt::format("{},{},", frame_, frame.time_s);
   for (std::size_t pillar = 0; pillar < forces.status.size(); ++pillar) {
     if (forces.status[pillar] != 0) add_line(forces, pillar);
   }
@@ -74,16 +78,19 @@ void ForceCsvSink::append(const ForceFieldView& forces, double time_s) {
 
 }  // namespace
 
-std::unique_ptr<ForceSink> create_csv_sink(const std::filesystem::path& path,
-                                           const ForceFileInfo& info, Replace replace) {
-  return std::make_unique<ForceCsvSink>(path, info, replace, 0);
+SinkFormat force_csv_format() {
+  return {.kind = OutputKind::forces,
+          .endings = {".csv"},
+          .content = "is a table of forces",
+          .recognises = [](std::string_view head) { return head.starts_with(kForceCsvHead); },
+          .create = create_sink<ForceCsvSink>};
 }
 
 void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& info,
                      const ForceFieldView& forces, std::uint64_t frame, double time_s,
                      Replace replace) {
   ForceCsvSink sink(path, info, replace, frame);
-  sink.append(forces, time_s);
+  sink.append({.forces = forces, .contacts = nullptr, .time_s = time_s});
   sink.finish();
 }
 

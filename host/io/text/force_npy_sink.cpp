@@ -17,6 +17,10 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 constexpr std::size_t kHeaderBytes =
     1024;  // a multiple of 64, with room for all planes and any number of frames
 
+constexpr std::string_view kNpyMagic = "\x93NUMPY";
+constexpr std::string_view kNpyFields =
+    "('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1')";
+
 /// NumPy's format 1.0: the magic, the length of what follows, and a Python dictionary padded with
 /// blanks, of the same size for every number of frames.
 std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
@@ -31,7 +35,7 @@ std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
       fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({}, {}, {})}}", fields,
                   frames, info.rows, info.cols);
   dictionary.resize(kDictionaryBytes - 1, ' ');
-  std::string header = "\x93NUMPY";
+  std::string header(kNpyMagic);
   header += {'\x01', '\x00', static_cast<char>(kDictionaryBytes & 0xff),
              static_cast<char>(kDictionaryBytes >> 8)};
   return header + dictionary + '\n';
@@ -41,7 +45,7 @@ class NpySink final : public ForceSink {
  public:
   NpySink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
 
-  void append(const ForceFieldView& forces, double time_s) override;
+  void append(const SolvedFrame& frame) override;
   void finish() override;
 
  private:
@@ -64,7 +68,7 @@ NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info, R
       planes_(planes_of(info)),
       frame_planes_(info),
       path_(path),
-      file_(path, OutputKind::force_array, replace),
+      file_(path, OutputKind::forces, replace),
       record_bytes_(sizeof(float) * planes_.size() + 1),
       records_(record_bytes_ * info.rows * info.cols) {
   file_.write(npy_header(info_, 0));
@@ -84,9 +88,10 @@ void NpySink::require_open() const {
   throw Error(path_.string(), "is finished", "start another file");
 }
 
-void NpySink::append(const ForceFieldView& forces, double time_s) {
+void NpySink::append(const SolvedFrame& frame) {
   require_open();
-  check(forces, time_s, info_, path_.string());
+  check(frame, info_, path_.string());
+  const ForceFieldView& forces = frame.forces;
   frame_planes_.take(forces);
   std::size_t offset = 0;
   for (const ResultPlane& plane : planes_) {
@@ -106,9 +111,16 @@ void NpySink::finish() {
 
 }  // namespace
 
-std::unique_ptr<ForceSink> create_npy_sink(const std::filesystem::path& path,
-                                           const ForceFileInfo& info, Replace replace) {
-  return std::make_unique<NpySink>(path, info, replace);
+SinkFormat force_npy_format() {
+  return {.kind = OutputKind::forces,
+          .endings = {".npy"},
+          .content = "is an array of forces",
+          .recognises =
+              [](std::string_view head) {
+                return head.starts_with(kNpyMagic) &&
+                       head.find(kNpyFields) != std::string_view::npos;
+              },
+          .create = create_sink<NpySink>};
 }
 
 }  // namespace pillarfield

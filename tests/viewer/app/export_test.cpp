@@ -167,7 +167,7 @@ std::string librarys_table(const fs::path& path, const MadeField& made, const Sh
   info.angles = !field.forces.theta.empty();
   info.uncertainty = !field.forces.uncertainty[Uncertainty::shear_x].empty();
   const auto sink = create_force_sink(path, info);
-  sink->append(field.forces, field.time_s);
+  sink->append({.forces = field.forces, .time_s = field.time_s});
   sink->finish();
   return text_of(path);
 }

@@ -84,7 +84,8 @@ TEST(GrowingFile, APartGoesOnUnderItsFinalName) {
 void write_forces(const std::filesystem::path& path, std::uint64_t frames, std::uint32_t cols) {
   const auto sink = create_force_sink(path, {8, cols, 1.3, "direct", "", "", false, false});
   for (std::uint64_t index = 0; index < frames; ++index) {
-    sink->append(sample_forces(index, 8, cols).view(), 0.01 * static_cast<double>(index));
+    const ForceField forces = sample_forces(index, 8, cols);
+    sink->append({.forces = forces.view(), .time_s = 0.01 * static_cast<double>(index)});
   }
   sink->finish();
 }

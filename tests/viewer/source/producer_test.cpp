@@ -225,7 +225,7 @@ void write_forces(const std::filesystem::path& path, bool uncertainty) {
       }
       forces.uncertainty[Uncertainty::magnitude_high].assign(forces.pillars(), 0.25F);
     }
-    sink->append(forces.view(), 0.005 * static_cast<double>(index));
+    sink->append({.forces = forces.view(), .time_s = 0.005 * static_cast<double>(index)});
   }
   sink->finish();
 }
@@ -337,8 +337,10 @@ void write_passing(const std::filesystem::path& path, bool with_contacts) {
   ContactTracker tracker(info.pillar_pitch_mm, options);
   for (std::uint64_t index = 0; index < kFrames; ++index) {
     const ShownField field = passing(index);
-    sink->append(field.forces, field.time_s);
-    if (with_contacts) sink->append_contacts(tracker.update(field.forces, field.time_s));
+    const FrameContacts& found = tracker.update(field.forces, field.time_s);
+    sink->append({.forces = field.forces,
+                  .contacts = with_contacts ? &found : nullptr,
+                  .time_s = field.time_s});
   }
   sink->finish();
 }

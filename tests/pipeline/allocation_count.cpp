@@ -1,4 +1,4 @@
-#include "tests/cli/allocation_count.h"
+#include "tests/pipeline/allocation_count.h"
 
 #include <atomic>
 #include <cstdlib>
@@ -32,8 +32,8 @@ void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 // NOLINTEND(cppcoreguidelines-no-malloc)
 
-namespace pillarfield::cli_test {
+namespace pillarfield::pipeline_test {
 
 std::uint64_t allocations() { return count; }
 
-}  // namespace pillarfield::cli_test
+}  // namespace pillarfield::pipeline_test

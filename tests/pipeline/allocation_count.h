@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
-namespace pillarfield::cli_test {
+namespace pillarfield::pipeline_test {
 
 /// How often the program has asked operator new for memory. Linking this file replaces it.
 [[nodiscard]] std::uint64_t allocations();
 
-}  // namespace pillarfield::cli_test
+}  // namespace pillarfield::pipeline_test

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "pillarfield/recording.h"
+
+namespace pillarfield {
+
+/// A format of files of frames besides HDF5. Each is defined beside its source and listed in
+/// frame_source.cpp.
+struct SourceFormat {
+  const char* name = "";  ///< "Tekscan ASCII export"
+  /// Whether a file that begins so, with its first 4096 bytes, is of this format.
+  bool (*recognises)(std::string_view head) = nullptr;
+  std::unique_ptr<FrameSource> (*open)(const std::filesystem::path& path) = nullptr;
+};
+
+[[nodiscard]] std::span<const SourceFormat> source_formats();
+
+/// The format of a file, by its first 4096 bytes; null where it is none.
+[[nodiscard]] const SourceFormat* source_format(std::string_view head);
+
+}  // namespace pillarfield

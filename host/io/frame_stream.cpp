@@ -1,0 +1,10 @@
+#include "pillarfield/frame_stream.h"
+
+namespace pillarfield {
+
+const Calibration& FrameStream::calibration() const {
+  static const Calibration none;
+  return none;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,126 @@
+#include "pipeline/paced_stream.h"
+
+#include <fmt/format.h>
+#include <sys/prctl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+using std::chrono::nanoseconds;
+
+class MonotonicClock final : public Clock {
+ public:
+  /// Sleeps of this thread end when they should. Linux otherwise delays them by up to 50
+  /// microseconds in order to wake less often.
+  MonotonicClock() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
+
+  [[nodiscard]] nanoseconds now() override {
+    return std::chrono::steady_clock::now().time_since_epoch();
+  }
+
+  /// Returns early where a signal comes in.
+  void sleep_until(nanoseconds time) override {
+    const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time);
+    const timespec until = {.tv_sec = whole.count(), .tv_nsec = (time - whole).count()};
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+  }
+};
+
+class PacedStream final : public FrameStream {
+ public:
+  PacedStream(std::unique_ptr<FrameStream> stream, const Pace& pace, std::shared_ptr<Clock> clock)
+      : stream_(std::move(stream)),
+        pace_(pace),
+        clock_(std::move(clock)),
+        ahead_(stream_->sensel_type(), stream_->skin()) {
+    if (!pace.rate_hz || (std::isfinite(*pace.rate_hz) && *pace.rate_hz > 0)) return;
+    throw Error("pace", fmt::format("rate_hz is {}", *pace.rate_hz), "it must be above zero");
+  }
+
+  [[nodiscard]] const Skin& skin() const override { return stream_->skin(); }
+  [[nodiscard]] SenselType sensel_type() const override { return stream_->sensel_type(); }
+  [[nodiscard]] const Calibration& calibration() const override { return stream_->calibration(); }
+  [[nodiscard]] Arrival next(StreamedFrame& frame, nanoseconds timeout) override;
+
+ private:
+  [[nodiscard]] nanoseconds due_ahead() const;
+  void sleep(nanoseconds now, nanoseconds timeout);
+
+  std::unique_ptr<FrameStream> stream_;
+  Pace pace_;
+  std::shared_ptr<Clock> clock_;
+  StreamedFrame ahead_;                    ///< taken from the stream before it is due
+  Arrival ahead_is_ = Arrival::timed_out;  ///< what `ahead_` holds
+  nanoseconds due_{0};                     ///< when that comes
+  std::optional<nanoseconds> start_;       ///< when the first frame came
+  std::uint64_t first_sequence_ = 0;
+  double first_time_s_ = 0;
+};
+
+/// When what `ahead_` holds is due. At the end of a stream without a rate that is an earlier frame,
+/// whose time has passed.
+nanoseconds PacedStream::due_ahead() const {
+  constexpr double kLongest = 1e9;  // seconds; clocks of sensors may say anything
+  if (!pace_.rate_hz) {
+    const double after_s = std::clamp(ahead_.time_s - first_time_s_, 0.0, kLongest);
+    return *start_ + nanoseconds(std::llround(after_s * 1e9));
+  }
+  const auto frames = static_cast<double>(ahead_.sequence - first_sequence_);
+  return *start_ + nanoseconds(std::llround(std::min(frames * 1e9 / *pace_.rate_hz, 1e18)));
+}
+
+void PacedStream::sleep(nanoseconds now, nanoseconds timeout) {
+  const nanoseconds until = std::min(due_ - pace_.spin, now + timeout);
+  if (now < until) clock_->sleep_until(until);
+  // What is left is spun away by those who call next() again.
+}
+
+Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {
+  for (bool slept = false;;) {
+    if (ahead_is_ == Arrival::timed_out) {
+      ahead_is_ = stream_->next(ahead_, timeout);
+      if (ahead_is_ == Arrival::timed_out) return ahead_is_;
+      if (!start_) {
+        start_ = clock_->now();
+        first_sequence_ = ahead_.sequence;
+        first_time_s_ = ahead_.time_s;
+      }
+      due_ = due_ahead();
+    }
+    frame.sequence = ahead_.sequence;
+    const nanoseconds now = clock_->now();
+    if (now < due_) {
+      if (slept) return Arrival::timed_out;
+      sleep(now, timeout);
+      slept = true;
+    } else if (ahead_is_ == Arrival::ended) {
+      return Arrival::ended;
+    } else {
+      ahead_is_ = Arrival::timed_out;
+      if (pace_.drop_after && now - due_ > *pace_.drop_after) continue;
+      std::swap(frame, ahead_);
+      frame.arrived = due_;
+      return Arrival::arrived;
+    }
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream, const Pace& pace,
+                                          std::shared_ptr<Clock> clock) {
+  return std::make_unique<PacedStream>(std::move(stream), pace, std::move(clock));
+}
+
+std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream, const Pace& pace) {
+  return paced_stream(std::move(stream), pace, std::make_shared<MonotonicClock>());
+}
+
+}  // namespace pillarfield

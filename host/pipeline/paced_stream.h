@@ -1,0 +1,15 @@
+#pragma once
+
+#include <memory>
+
+#include "pillarfield/frame_stream.h"
+#include "pipeline/clock.h"
+
+namespace pillarfield {
+
+/// As the public function, by a clock that is given.
+[[nodiscard]] std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream,
+                                                        const Pace& pace,
+                                                        std::shared_ptr<Clock> clock);
+
+}  // namespace pillarfield

@@ -1,0 +1,380 @@
+// Streams through a pipeline against the same frames solved, tracked and written one by one.
+
+#include "pillarfield/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "pillarfield/contact_file.h"
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "tests/device/same_bits.h"
+#include "tests/device/test_device.h"
+#include "tests/io/sample_files.h"
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::has_all;
+using io_test::TemporaryDirectory;
+using std::chrono::milliseconds;
+using Nanoseconds = std::chrono::nanoseconds;
+
+constexpr Skin kSkin = [] {
+  Skin skin;
+  skin.rows = 24;
+  skin.cols = 40;
+  return skin;
+}();
+
+SolverPlan plan_of(Estimator estimator = Estimator::direct) {
+  SolverPlan plan;
+  plan.skin = kSkin;
+  plan.estimator = estimator;
+  plan.angles = true;
+  return plan;
+}
+
+double time_of(std::uint64_t frame) { return 0.125 * static_cast<double>(frame); }
+
+/// Two pressed rectangles that move towards each other, of uneven readings.
+void press(std::uint64_t index, FrameBuffer& frame) {
+  const std::uint64_t step = index % 14;
+  for (std::uint32_t row = 0; row < kSkin.rows; ++row) {
+    for (std::uint32_t col = 0; col < kSkin.cols; ++col) {
+      const bool first = row >= 3 && row < 11 && col >= step && col < step + 9;
+      const bool second = row >= 7 && row < 19 && col >= 30 - step && col < 37 - step;
+      const std::uint64_t place = std::uint64_t{row} * kSkin.cols + col;
+      const auto reading = static_cast<std::uint8_t>(40 + io_test::number_at(index, place) % 99);
+      frame.readings<std::uint8_t>()[place] = first || second ? reading : std::uint8_t{0};
+    }
+  }
+}
+
+/// Frames of press(), and what may happen to them on the way.
+class Presses final : public FrameStream {
+ public:
+  struct Options {
+    std::uint64_t frames = 20;
+    bool own_memory = false;                     ///< frames stay in memory of the stream
+    std::vector<std::uint64_t> sequence = {};    ///< of each frame and of the end; empty: 0, 1, ...
+    std::optional<std::uint64_t> fails_at = {};  ///< with the frame of this index
+    std::uint64_t waits_before = ~0ULL;          ///< times out once before this frame
+    std::uint32_t rows = kSkin.rows;             ///< of the frames that it gives
+  };
+  explicit Presses(const Options& options) : options_(options) {}
+
+  [[nodiscard]] const Skin& skin() const override { return kSkin; }
+  [[nodiscard]] SenselType sensel_type() const override { return SenselType::u8; }
+  [[nodiscard]] Arrival next(StreamedFrame& frame, Nanoseconds timeout) override {
+    frame.sequence = options_.sequence.empty() ? next_ : options_.sequence.at(next_);
+    if (options_.fails_at == next_) {
+      options_.fails_at.reset();
+      throw Error("a socket", "the other side is gone", "start it again");
+    }
+    if (next_ == options_.waits_before && !std::exchange(has_waited_, timeout > milliseconds(0))) {
+      return Arrival::timed_out;
+    }
+    if (next_ == options_.frames) return Arrival::ended;
+    if (options_.own_memory) {
+      memory_.push_back(std::make_unique<FrameBuffer>(SenselType::u8, kSkin.rows, kSkin.cols));
+    }
+    FrameBuffer& buffer = options_.own_memory ? *memory_.back() : frame.buffer;
+    press(next_, buffer);
+    frame.readings = buffer.view();
+    frame.readings.rows = options_.rows;
+    frame.time_s = time_of(next_);
+    frame.arrived = Nanoseconds(1000 + next_);
+    ++next_;
+    return Arrival::arrived;
+  }
+
+ private:
+  Options options_;
+  std::uint64_t next_ = 0;
+  bool has_waited_ = false;
+  std::vector<std::unique_ptr<FrameBuffer>> memory_;
+};
+
+/// Keeps what it is given.
+class Notebook final : public ForceSink {
+ public:
+  struct Frame {
+    ForceField forces;
+    std::vector<float> theta;
+    double time_s;
+    std::uint64_t sequence;
+    Nanoseconds arrived;
+    bool has_contacts;
+  };
+
+  void append(const SolvedFrame& frame) override {
+    if (before) before(frames.size());
+    const ForceFieldView& view = frame.forces;
+    Frame kept = {{view.rows, view.cols}, {view.theta.begin(), view.theta.end()},
+                  frame.time_s,           frame.sequence,
+                  frame.arrived,          frame.contacts != nullptr};
+    kept.forces.shear_x.assign(view.shear_x.begin(), view.shear_x.end());
+    kept.forces.shear_y.assign(view.shear_y.begin(), view.shear_y.end());
+    kept.forces.normal.assign(view.normal.begin(), view.normal.end());
+    kept.forces.status.assign(view.status.begin(), view.status.end());
+    frames.push_back(std::move(kept));
+  }
+
+  std::vector<Frame> frames;
+  std::function<void(std::size_t frames)> before;  ///< each is kept
+};
+
+/// The frames of press(), one after the other.
+void expect_presses(const Notebook& sink, std::size_t frames) {
+  Processor processor(test_device(), plan_of());
+  ASSERT_EQ(sink.frames.size(), frames);
+  FrameBuffer raw(SenselType::u8, kSkin.rows, kSkin.cols);
+  for (std::size_t index = 0; index < frames; ++index) {
+    const Notebook::Frame& frame = sink.frames[index];
+    press(index, raw);
+    processor.submit(raw.view());
+    const ForceFieldView expected = processor.receive();
+    expect_same_bits(frame.forces.view(), expected);
+    expect_same_bits(frame.theta, expected.theta, "theta");
+    EXPECT_EQ(frame.time_s, time_of(index));
+    EXPECT_EQ(frame.arrived, Nanoseconds(1000 + index));
+  }
+}
+
+TEST(Pipeline, GivesEveryFrameInOrderToEverySink) {
+  for (const auto memory : {Memory::shared, Memory::staged}) {
+    for (const int in_flight : {1, 2, 5}) {
+      for (const bool own_memory : {false, true}) {
+        for (const std::uint64_t count : {0U, 1U, 20U}) {
+          Presses stream({.frames = count, .own_memory = own_memory});
+          Processor processor(test_device(), plan_of(),
+                              {.memory = memory, .frames_in_flight = in_flight});
+          Notebook first;
+          Notebook second;
+          int most_in_flight = 0;
+          first.before = [&](std::size_t) {
+            most_in_flight = std::max(most_in_flight, processor.in_flight() + 1);
+          };
+          const PipelineStatistics done =
+              Pipeline(stream, processor, {&first, &second}, {.frames_in_flight = in_flight}).run();
+          EXPECT_EQ(done.frames, count);
+          EXPECT_EQ(done.lost, 0);
+          EXPECT_FALSE(done.stopped);
+          EXPECT_EQ(most_in_flight, std::min<int>(in_flight, static_cast<int>(count)));
+          expect_presses(first, count);
+          expect_presses(second, count);
+        }
+      }
+    }
+  }
+}
+
+TEST(Pipeline, CountsTheFramesThatTheSequenceLacks) {
+  // Three are lost in the middle, one before the end, none where the sensor counts anew.
+  Presses stream({.frames = 6, .sequence = {90, 91, 95, 96, 3, 4, 6}});
+  Processor processor(test_device(), plan_of());
+  Notebook sink;
+  const PipelineStatistics done = Pipeline(stream, processor, {&sink}).run();
+  EXPECT_EQ(done.frames, 6);
+  EXPECT_EQ(done.lost, 4);
+  std::vector<std::uint64_t> numbers;
+  for (const auto& frame : sink.frames) numbers.push_back(frame.sequence);
+  EXPECT_EQ(numbers, (std::vector<std::uint64_t>{90, 91, 95, 96, 3, 4}));
+}
+
+TEST(Pipeline, DeliversWhatIsInFlightBeforeItWaits) {
+  Presses stream({.frames = 9, .waits_before = 7});
+  Processor processor(test_device(), plan_of(), {.frames_in_flight = 5});
+  Notebook sink;
+  std::size_t delivered_before_the_wait = 0;
+  const auto note = [&] {
+    if (processor.in_flight() == 0)
+      delivered_before_the_wait =
+          std::max<std::size_t>(delivered_before_the_wait, sink.frames.size());
+    return false;
+  };
+  Pipeline(stream, processor, {&sink}, {.frames_in_flight = 5, .stop = note}).run();
+  EXPECT_EQ(delivered_before_the_wait, 7);
+  expect_presses(sink, 9);
+}
+
+TEST(Pipeline, EndsWhatIsInFlightWhereItIsStopped) {
+  Presses stream({.frames = 1000});
+  Processor processor(test_device(), plan_of(), {.frames_in_flight = 3});
+  Notebook sink;
+  Pipeline pipeline(stream, processor, {&sink},
+                    {.frames_in_flight = 3, .stop = [&] { return sink.frames.size() >= 5; }});
+  const PipelineStatistics done = pipeline.run();
+  EXPECT_TRUE(done.stopped);
+  EXPECT_EQ(done.frames, 7);  // two were in flight beside the fifth
+  EXPECT_EQ(processor.in_flight(), 0);
+  expect_presses(sink, 7);
+}
+
+TEST(Pipeline, GoesOnAfterAnError) {
+  Presses stream({.frames = 12, .fails_at = 6});
+  Processor processor(test_device(), plan_of(), {.frames_in_flight = 3});
+  Notebook sink;
+  Pipeline pipeline(stream, processor, {&sink}, {.frames_in_flight = 3});
+  EXPECT_TRUE(has_all(error_of([&] { pipeline.run(); }), {"a socket", "gone", "start it again"}));
+  EXPECT_EQ(processor.in_flight(), 0);
+  expect_presses(sink, 4);  // two were in flight
+  EXPECT_EQ(pipeline.run().frames, 6);
+  ASSERT_EQ(sink.frames.size(), 10);
+  EXPECT_EQ(sink.frames.back().sequence, 11);
+}
+
+TEST(Pipeline, EndsWithTheErrorOfASink) {
+  Presses stream({.frames = 12});
+  Processor processor(test_device(), plan_of());
+  Notebook healthy;
+  Notebook full;
+  full.before = [](std::size_t frames) {
+    if (frames == 4) throw Error("forces.csv", "No space left on device", "make room");
+  };
+  Pipeline pipeline(stream, processor, {&healthy, &full});
+  EXPECT_TRUE(has_all(error_of([&] { pipeline.run(); }), {"forces.csv", "No space left"}));
+  EXPECT_EQ(processor.in_flight(), 0);
+  expect_presses(healthy, 5);
+  expect_presses(full, 4);
+}
+
+TEST(Pipeline, RefusesFramesOfAnotherSizeAndNoFramesInFlight) {
+  Presses stream({.frames = 3, .rows = kSkin.rows - 2});
+  Processor processor(test_device(), plan_of());
+  Notebook sink;
+  EXPECT_FALSE(error_of([&] { Pipeline(stream, processor, {&sink}).run(); }).empty());
+  EXPECT_TRUE(sink.frames.empty());
+  EXPECT_TRUE(
+      has_all(error_of([&] { Pipeline(stream, processor, {&sink}, {.frames_in_flight = 0}); }),
+              {"pipeline", "0 frames in flight"}));
+}
+
+TEST(Pipeline, ASlowSinkLetsALiveStreamDropFrames) {
+  constexpr std::uint64_t kFrames = 60;
+  const auto stream = paced_stream(std::make_unique<Presses>(Presses::Options{.frames = kFrames}),
+                                   {.rate_hz = 1000, .drop_after = milliseconds(2)});
+  Processor processor(test_device(), plan_of());
+  Notebook sink;
+  sink.before = [](std::size_t) { std::this_thread::sleep_for(milliseconds(4)); };
+  const PipelineStatistics done = Pipeline(*stream, processor, {&sink}).run();
+  EXPECT_GT(done.lost, 0);
+  EXPECT_EQ(done.frames + done.lost, kFrames);
+  EXPECT_EQ(done.frames, sink.frames.size());
+  const auto sequence = [](const Notebook::Frame& frame) { return frame.sequence; };
+  EXPECT_TRUE(std::ranges::is_sorted(sink.frames, std::ranges::less_equal(), sequence));
+}
+
+/// Forces and contacts by a pipeline and by hand end in the same bytes.
+TEST(Pipeline, WritesWhatIsWrittenByHand) {
+  for (const Estimator estimator : {Estimator::direct, Estimator::contact}) {
+    const TemporaryDirectory directory;
+    RecordingWriter writer(directory / "r.h5", kSkin, SenselType::u8, {}, {});
+    FrameBuffer raw(SenselType::u8, kSkin.rows, kSkin.cols);
+    for (std::uint64_t index = 0; index < 30; ++index) {
+      press(index, raw);
+      writer.append(raw.view(), time_of(index));
+    }
+    writer.finish();
+    const auto source = open_frames(directory / "r.h5");
+    SolverPlan plan = plan_of(estimator);
+    plan.friction.given = 1.5;  // The tracker learns it from the processor alone.
+    const ContactOptions options = {.minimum_pillars = 2};
+    ForceFileInfo info;
+    info.rows = kSkin.rows / 2;
+    info.cols = kSkin.cols / 2;
+    info.pillar_pitch_mm = kSkin.pillar_pitch_mm();
+    info.angles = true;
+    ForceFileInfo with_contacts = info;
+    with_contacts.contacts = options;
+    const auto sinks_named = [&](const std::string& name) {
+      const ContactFileInfo contacts = {info.pillar_pitch_mm, "r.h5", options};
+      std::vector<std::unique_ptr<ForceSink>> sinks;
+      sinks.push_back(create_force_sink(directory / (name + "_forces.csv"), info));
+      sinks.push_back(create_force_sink(directory / (name + ".npy"), info));
+      sinks.push_back(create_force_sink(directory / (name + ".h5"), with_contacts));
+      sinks.push_back(create_contact_sink(directory / (name + ".csv"), contacts));
+      sinks.push_back(create_contact_sink(directory / (name + ".json"), contacts));
+      return sinks;
+    };
+
+    const auto sinks = sinks_named("pipeline");
+    std::vector<ForceSink*> all;
+    for (const auto& sink : sinks) all.push_back(sink.get());
+    Processor processor(test_device(), plan);
+    ContactTracker tracker(info.pillar_pitch_mm, options);
+    const auto stream = file_stream(*source);
+    const PipelineStatistics done = Pipeline(*stream, processor, all, {.contacts = &tracker}).run();
+    for (const auto& sink : sinks) sink->finish();
+    EXPECT_EQ(done.frames, 30);
+
+    const auto by_hand = sinks_named("hand");
+    Processor other(test_device(), plan);
+    ContactTracker follower(info.pillar_pitch_mm, options);
+    std::uint64_t most = 0;
+    std::uint64_t last_id = 0;
+    for (std::uint64_t index = 0; index < source->frames(); ++index) {
+      const double time_s = source->read(index, raw);
+      other.submit(raw.view());
+      const ForceFieldView forces = other.receive();
+      const FrameContacts& found = follower.update(forces, time_s, other.contacts());
+      most = std::max<std::uint64_t>(most, found.contacts.size());
+      for (const auto& contact : found.contacts) last_id = std::max(last_id, contact.id);
+      for (const auto& sink : by_hand) {
+        sink->append({.forces = forces, .contacts = &found, .time_s = time_s});
+      }
+    }
+    for (const auto& sink : by_hand) sink->finish();
+    EXPECT_EQ(done.most_contacts, most);
+    EXPECT_EQ(done.contacts, last_id);
+    EXPECT_EQ(most, 2);
+    EXPECT_GT(last_id, 2);  // they merge and part
+    for (const std::string ending : {"_forces.csv", ".npy", ".csv", ".json"}) {
+      const std::string bytes = bytes_of(directory / ("pipeline" + ending));
+      EXPECT_FALSE(bytes.empty());
+      EXPECT_TRUE(bytes == bytes_of(directory / ("hand" + ending))) << ending;
+    }
+    const ForceFileReader forces(directory / "pipeline.h5");
+    const ForceFileReader expected(directory / "hand.h5");
+    ASSERT_EQ(forces.frames(), 30);
+    ForceField a;
+    ForceField b;
+    for (std::uint64_t index = 0; index < 30; ++index) {
+      EXPECT_EQ(forces.read(index, a), expected.read(index, b));
+      expect_same_bits(a.view(), b.view());
+      EXPECT_EQ(forces.read_contacts(index).contacts.size(),
+                expected.read_contacts(index).contacts.size());
+    }
+  }
+}
+
+TEST(Pipeline, GivesTheStatusOfHalfPrecision) {
+  SolverPlan plan = plan_of();
+  plan.angles = false;
+  plan.half_output = true;
+  Presses stream({.frames = 4});
+  Processor processor(test_device(), plan);
+  Notebook sink;
+  EXPECT_EQ(Pipeline(stream, processor, {&sink}, {.half_output = true}).run().frames, 4);
+  Presses again({.frames = 4});
+  Processor single(test_device(), plan_of());
+  Notebook expected;
+  Pipeline(again, single, {&expected}).run();
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(sink.frames[i].forces.status, expected.frames[i].forces.status);
+    EXPECT_TRUE(sink.frames[i].forces.normal.empty());
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield
