@@ -139,10 +139,10 @@ PF_FUNCTION Real corrected_noise(Real noise, Counts raw, Correction at, Stages s
 /* What is solved of a pillar. */
 typedef struct {
   Force force;
-  Bits status;
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
   Direction direction;
 #endif
+  Bits status;
 #ifdef PF_UNCERTAINTY
   Force deviations;
   DirectionInterval interval;
