@@ -177,8 +177,7 @@ void pace(const PaceOptions& options) {
   report.frames_in_flight = options.frames_in_flight;
   Stopwatches stopwatches(report.schedule.frames);
   const Pipeline::Options run_options = {.frames_in_flight = options.frames_in_flight,
-                                         .stop = is_interrupted,
-                                         .half_output = options.half};
+                                         .stop = is_interrupted};
   warm_up(frames, processor, run_options, stopwatches);
   const auto stream = paced(frames, report.schedule);
   Pipeline pipeline(*stream, processor, {&stopwatches}, run_options);

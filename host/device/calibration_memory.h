@@ -4,7 +4,7 @@
 
 #include "device/large_pages.h"
 #include "device/opencl.h"
-#include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
 
 namespace pillarfield {
 

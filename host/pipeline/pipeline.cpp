@@ -50,11 +50,7 @@ struct Pipeline::State {
 void Pipeline::State::deliver() {
   const StreamedFrame& frame = frames[delivered % frames.size()];
   SolvedFrame solved;
-  if (options.half_output) {
-    solved.forces.status = processor.receive_half().status;
-  } else {
-    solved.forces = processor.receive();
-  }
+  solved.forces = processor.receive();
   ++delivered;
   solved.time_s = frame.time_s;
   solved.sequence = frame.sequence;
@@ -75,13 +71,7 @@ void Pipeline::State::deliver() {
 /// Waits until the device has left the frames in flight, whose memory may go then.
 void Pipeline::State::abandon() {
   try {
-    while (processor.in_flight() > 0) {
-      if (options.half_output) {
-        static_cast<void>(processor.receive_half());
-      } else {
-        static_cast<void>(processor.receive());
-      }
-    }
+    while (processor.in_flight() > 0) static_cast<void>(processor.receive());
   } catch (const Error&) {
     // The device failed; what is thrown says why.
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "contacts/estimator/contact_estimator.h"
+#include "pillarfield/tuning.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pillarfield/solver_plan.h"
+#include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 
 namespace pillarfield {

@@ -4,6 +4,7 @@
 
 #include "pillarfield/frame.h"
 #include "pillarfield/solver_plan.h"
+#include "pillarfield/tuning.h"
 #include "solve/pillar_maths.h"
 #include "solve/plan_constants.h"
 

@@ -102,7 +102,7 @@ PF_FUNCTION Solution solve_block(Block block, Input input) {
 /* Writes the results of `lanes` from pillar `index` on. */
 PF_FUNCTION void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
   global uchar* plane = output.planes;
-#define PF_STORE(name, unit, value)                                    \
+#define PF_STORE(name, unit, value)                                   \
   store_plane(solution.value, (global float*)(plane) + index, lanes); \
   plane += output.plane_bytes;
   PF_FORCE_PLANES(PF_STORE)

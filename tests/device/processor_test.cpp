@@ -103,8 +103,7 @@ class EveryPath : public testing::TestWithParam<Path> {
   /// Solves random frames of `plan` and expects the bits of the C++ loop.
   static void expect_host_bits(const SolverPlan& plan, std::size_t padding) {
     const Path& path = GetParam();
-    Processor processor(test_device(), plan, {.memory = path.memory},
-                        {.lanes = path.lanes, .paths = paths});
+    Processor processor(test_device(), plan, {.memory = path.memory}, {.lanes = path.lanes});
     for (std::uint32_t seed = 0; seed < 3; ++seed) {
       const RandomFrame frame(plan, padding, seed);
       processor.submit(frame.view());

@@ -358,23 +358,5 @@ TEST(Pipeline, WritesWhatIsWrittenByHand) {
   }
 }
 
-TEST(Pipeline, GivesTheStatusOfHalfPrecision) {
-  SolverPlan plan = plan_of();
-  plan.angles = false;
-  plan.half_output = true;
-  Presses stream({.frames = 4});
-  Processor processor(test_device(), plan);
-  Notebook sink;
-  EXPECT_EQ(Pipeline(stream, processor, {&sink}, {.half_output = true}).run().frames, 4);
-  Presses again({.frames = 4});
-  Processor single(test_device(), plan_of());
-  Notebook expected;
-  Pipeline(again, single, {&expected}).run();
-  for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_EQ(sink.frames[i].forces.status, expected.frames[i].forces.status);
-    EXPECT_TRUE(sink.frames[i].forces.normal.empty());
-  }
-}
-
 }  // namespace
 }  // namespace pillarfield

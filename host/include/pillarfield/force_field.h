@@ -53,8 +53,8 @@ class UncertaintyPlanes {
 /// under pressure. The status byte is described in status.h. Planes that the plan does not ask for
 /// are empty.
 struct ForceFieldView {
-  std::uint32_t rows = 0;  ///< pillar rows
-  std::uint32_t cols = 0;  ///< pillar columns
+  std::uint32_t rows = 0;          ///< pillar rows
+  std::uint32_t cols = 0;          ///< pillar columns
   std::span<const float> shear_x;  ///< N
   std::span<const float> shear_y;  ///< N
   std::span<const float> normal;   ///< N

@@ -40,7 +40,6 @@ class Pipeline {
     ContactTracker* contacts = nullptr;  ///< null: contacts are not tracked
     /// Asked before each frame, and ten times a second while none comes; true ends the run.
     std::function<bool()> stop = {};
-    bool half_output = false;  ///< as the plan's; sinks then get the status alone
   };
 
   /// Makes a place for each frame in flight. All arguments must outlive the pipeline; `processor`
