@@ -11,8 +11,8 @@ set(lint_all_stages -DPF_LARGEST_READING=1.0f -DPF_FULL_SCALE=1.0f -DPF_TARE -DP
   -DPF_MASK -DPF_PARITY_TOLERANCE=1.0f -DPF_ANGLES -DPF_UNCERTAINTY=1.0f -DPF_NOISE
   -DPF_TARE_PLANE=0 -DPF_GAIN_PLANE=1 -DPF_DEAD_ZONE_PLANE=2 -DPF_NOISE_PLANE=3 -DPF_MASK_PLANE=4
   -DPF_POWER_EXPONENT=1.0f -DPF_POWER_REFERENCE=1.0f -DPF_POWER_LARGEST=1.0f -DPF_BASELINE)
-set(lint_skipping -DPF_SKIP_SILENT -DPF_WAKE=1 -DPF_WAKE_THRESHOLD=1.0f -DPF_WAKE_STEP=1.0f
-  -DPF_WAKE_LOWEST=0.0f -DPF_WAKE_HIGHEST=1.0f -DPF_WAKE_NEVER=1.0f)
+set(lint_skipping -DPF_SKIP_IDLE -DPF_ACTIVATION=1 -DPF_ACTIVATION_CUT=1.0f -DPF_ACTIVATION_STEP=1.0f
+  -DPF_ACTIVATION_LOWEST=0.0f -DPF_ACTIVATION_HIGHEST=1.0f -DPF_ACTIVATION_NEVER=1.0f)
 
 set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
   -Xclang -finclude-default-header -fsyntax-only -Wall -Wextra -Wno-unused-parameter
@@ -21,16 +21,16 @@ set(lint_compile ${PILLARFIELD_CLANG} -x cl -cl-std=CL1.2 -target spir64
 set(lint_commands "")
 foreach(sensel uchar ushort float)
   foreach(lanes 1 2 4 8 16)
-    foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_WAKE_PLANE=5")
+    foreach(stages "" "-DPF_PAPER;-DPF_HALF" "-DPOCL_DEVICE_ADDRESS_BITS=64;-DPF_STREAM;${lint_skipping}" "${lint_all_stages};${lint_skipping};-DPF_ACTIVATION_PLANE=5")
       list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=${sensel} -DPF_LANES=${lanes}
-        -DPF_THRESHOLD=1.0f -DPF_DOUBT=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
+        -DPF_THRESHOLD=1.0f -DPF_MARGIN=1.0f -DPF_SEGMENT_POINT=0.875f ${stages} ${all_kernels})
     endforeach()
   endforeach()
 endforeach()
 foreach(lanes 2 4 8 16)
   foreach(stages "" "${lint_skipping};-DPF_FULL_SCALE=255;-DPF_PARITY_TOLERANCE=1")
     list(APPEND lint_commands COMMAND ${lint_compile} -DPF_SENSEL=uchar -DPF_LANES=${lanes}
-      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_DOUBT=1 -DPF_SEGMENT_POINT=3 ${stages} ${all_kernels})
+      -DPF_WHOLE=4 -DPF_THRESHOLD=1 -DPF_MARGIN=1 -DPF_SEGMENT_POINT=3 ${stages} ${all_kernels})
   endforeach()
 endforeach()
 set(lint_stamp "${CMAKE_CURRENT_BINARY_DIR}/kernels.linted")

@@ -7,7 +7,7 @@ Each mutant goes through `info` and `solve` (a scene through `simulate` as well,
 its sensor only); with --more also through `compare`, `calibrate` or the other outputs. A run is in order
 where it ends by itself within 5 s and 1 GB; with status 0, or with
 status 1 and one line "pillarfield: ..." on standard error; where no other line is printed than
-remarks on the file, none holds a control character; and where nothing is left: no output after a
+warnings on the file, none holds a control character; and where nothing is left: no output after a
 failure, no part after a success, no process. With --twice, each solve that works runs again with
 other bytes in fresh memory, and must write the same file: what is not in the file is not read.
 
@@ -135,7 +135,7 @@ def fault_of_text(run, file):
     if len(errors) != run.status:
         return f"{len(errors)} error lines with status {run.status}"
     if any(not line.startswith(("pillarfield: ", f"{file}: ")) and ": " not in line for line in lines):
-        return "prints lines that are neither errors nor remarks"
+        return "prints lines that are neither errors nor warnings"
     return None
 
 

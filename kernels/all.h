@@ -19,7 +19,7 @@
 #ifndef __cplusplus
 #include "frame/load_store.h"
 #include "frame/calibration_planes.h"
-#include "frame/silence.h"
+#include "frame/idle.h"
 #include "frame/solve_frame.cl"
 #include "frame/follow_baseline.cl"
 #endif

@@ -101,9 +101,9 @@ void run_headless(const Options& options) {
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
   const auto producer = open_producer(options.source, producer_options(options));
   const SourceInfo& source = producer->info();
-  for (const std::string& remark : source.remarks) {
+  for (const std::string& warning : source.warnings) {
     fmt::print(stderr, "pillarfield-viewer: {}\n",
-               printable(fmt::format("{}: {}", source.name, remark)));
+               printable(fmt::format("{}: {}", source.name, warning)));
   }
   const FrameRange span = frames_of(options, source);
   const Paths pictures = png_names(options, span, source.frames);

@@ -15,7 +15,7 @@ BareSolve bare_solve(const SolverPlan& plan) {
                 "take a plan without stages");
   }
   const ForceScale scale = force_scale(plan.skin.counts_per_newton);
-  return {static_cast<float>(plan.skin.threshold_counts), static_cast<float>(region_doubt(plan)),
+  return {static_cast<float>(plan.skin.threshold_counts), static_cast<float>(region_margin(plan)),
           static_cast<float>(scale.shear), static_cast<float>(scale.normal)};
 }
 

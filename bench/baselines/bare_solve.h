@@ -10,7 +10,7 @@ namespace pillarfield::bench {
 /// The constants of the bare direct solve of uint8 frames, in the precision of the kernels.
 struct BareSolve {
   float threshold = 0;     ///< counts
-  float doubt = 0;         ///< counts
+  float margin = 0;        ///< counts
   float shear_scale = 0;   ///< N per count
   float normal_scale = 0;  ///< N per count
 };

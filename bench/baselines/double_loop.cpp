@@ -11,9 +11,9 @@
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
-#include "skin/result_planes.h"
 #include "solve/pillar_maths.h"
 #include "solve/plan_constants.h"
+#include "solve/result_planes.h"
 
 namespace pillarfield::bench {
 namespace {

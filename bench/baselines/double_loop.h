@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/work_team.h"
+#include "base/thread_pool.h"
 #include "bench/frames.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/solver_plan.h"
@@ -36,7 +36,7 @@ class DoubleLoop {
   SolveRows solve_rows_;
   std::vector<Planes> results_;
   std::size_t solved_ = 0;
-  WorkTeam team_;
+  ThreadPool team_;
 };
 
 }  // namespace pillarfield::bench

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "base/work_team.h"
+#include "base/thread_pool.h"
 #include "bench/baselines/bare_solve.h"
 #include "bench/frames.h"
 #include "pillarfield/force_field.h"
@@ -46,7 +46,7 @@ class LoopSolver {
   std::vector<Result> results_;
   std::size_t solved_ = 0;
   std::size_t threads_;
-  WorkTeam team_;
+  ThreadPool team_;
 };
 
 }  // namespace pillarfield::bench

@@ -30,7 +30,7 @@ void solve_rows_plainly(const BareSolve& solve, const FrameView& frame, std::uin
       to.shear_y[index] = force.shear_y;
       to.normal[index] = force.normal;
       to.status[index] =
-          static_cast<std::uint8_t>(maths::direct_status(pillar, diagonals, sum, solve.doubt));
+          static_cast<std::uint8_t>(maths::direct_status(pillar, diagonals, sum, solve.margin));
     }
   }
 }

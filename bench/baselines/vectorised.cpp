@@ -45,7 +45,7 @@ constexpr std::size_t kBlock = 2 * kLanes;  ///< pillars: whole cache lines of e
 /// The constants of a solve in whole numbers, forces in eighths of a count.
 struct EighthCounts {
   std::int16_t threshold;  ///< counts
-  std::int16_t doubt;      ///< counts: whole ones above it are above -doubt of the solve
+  std::int16_t margin;     ///< counts: whole ones above it are above -margin of the solve
   float shear_scale;       ///< N per eighth of a count
   float normal_scale;      ///< N per eighth of a count
 };
@@ -70,11 +70,11 @@ HWY_INLINE Vector difference(Vector p, Vector q, Mask p_usable, Mask q_usable, V
   return hn::IfThenElse(p_usable, with_p, hn::IfThenElseZero(q_usable, by_q));
 }
 
-/// Whether a full diagonal of parity sum `sum` leaves more than -doubt for the inactive one of p,
+/// Whether a full diagonal of parity sum `sum` leaves more than -margin for the inactive one of p,
 /// q.
-HWY_INLINE Mask may_press(Mask one_usable, Vector p, Vector q, Vector sum, Vector doubt) {
+HWY_INLINE Mask may_press(Mask one_usable, Vector p, Vector q, Vector sum, Vector margin) {
   // The usable one of the two is the larger: it is above the threshold, at which the other stands.
-  return hn::And(one_usable, hn::Gt(hn::Sub(sum, hn::Max(p, q)), doubt));
+  return hn::And(one_usable, hn::Gt(hn::Sub(sum, hn::Max(p, q)), margin));
 }
 
 HWY_INLINE Vector bit_where(Mask mask, std::int16_t bit) {
@@ -110,7 +110,7 @@ HWY_INLINE Vector solve_vector(const Row& row, const EighthCounts& solve) {
   const auto bottom = hn::BitCast(kUnsigned, hn::LoadU(kBytes, row.bottom));
   const auto low_byte = hn::Set(kUnsigned, 0xff);
   const Vector threshold = hn::Set(kCounts, solve.threshold);
-  const Vector doubt = hn::Set(kCounts, solve.doubt);
+  const Vector margin = hn::Set(kCounts, solve.margin);
   const Vector r1 = hn::BitCast(kCounts, hn::ShiftRight<8>(top));
   const Vector r2 = hn::BitCast(kCounts, hn::And(top, low_byte));
   const Vector r3 = hn::BitCast(kCounts, hn::And(bottom, low_byte));
@@ -150,8 +150,8 @@ HWY_INLINE Vector solve_vector(const Row& row, const EighthCounts& solve) {
       hn::AndNot(hn::Or(rising_full, falling_full), hn::Gt(bound, hn::Zero(kCounts)));
   const Mask can_hide = hn::Gt(threshold, hn::Zero(kCounts));
   const Mask hidden = hn::And(
-      can_hide, hn::Or(may_press(hn::And(falling_full, hn::Xor(u1, u3)), v1, v3, falling, doubt),
-                       may_press(hn::And(rising_full, hn::Xor(u2, u4)), v2, v4, rising, doubt)));
+      can_hide, hn::Or(may_press(hn::And(falling_full, hn::Xor(u1, u3)), v1, v3, falling, margin),
+                       may_press(hn::And(rising_full, hn::Xor(u2, u4)), v2, v4, rising, margin)));
   const Mask opposite =
       hn::Or(hn::AndNot(falling_any, rising_full), hn::AndNot(rising_any, falling_full));
   const Vector usable = hn::Or(hn::Or(bit_where(u1, 1), bit_where(u2, 2)),
@@ -234,7 +234,7 @@ void solve_rows(const BareSolve& solve, const FrameView& frame, std::uint32_t fi
                 std::uint32_t last, const ForcePlanes& to) {
   const EighthCounts constants = {
       static_cast<std::int16_t>(solve.threshold),
-      static_cast<std::int16_t>(std::floor(std::max(-solve.doubt, -2000.0F))),
+      static_cast<std::int16_t>(std::floor(std::max(-solve.margin, -2000.0F))),
       solve.shear_scale / 8, solve.normal_scale / 8};
   const auto* const readings = static_cast<const std::uint8_t*>(frame.data);
   const std::size_t cols = frame.cols / 2;

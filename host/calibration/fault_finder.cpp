@@ -91,7 +91,7 @@ class FaultFinder::Verdict {
 
   void judge(const std::array<std::size_t, 4>& sensels) {
     for (const std::size_t i : sensels) {
-      if (found_.good(i) && tells_nothing(i)) found_.mask(i, SenselFault::not_a_number);
+      if (found_.good(i) && is_uninformative(i)) found_.mask(i, SenselFault::not_a_number);
     }
     std::array<bool, 4> moves{};
     std::uint32_t loaded_frames = 0;
@@ -105,7 +105,7 @@ class FaultFinder::Verdict {
     const auto moving = std::count(moves.begin(), moves.end(), true);
     moving_ += static_cast<std::size_t>(moving);
     for (std::size_t n = 0; n < sensels.size(); ++n) {
-      if (!moves.at(n) && found_.good(sensels.at(n))) judge_still(sensels.at(n), loaded, moving);
+      if (!moves.at(n) && found_.good(sensels.at(n))) classify_still(sensels.at(n), loaded, moving);
     }
   }
 
@@ -114,11 +114,11 @@ class FaultFinder::Verdict {
 
  private:
   /// A still one, of whose pillar so many others move.
-  void judge_still(std::size_t sensel, bool loaded, std::ptrdiff_t moving) {
+  void classify_still(std::size_t sensel, bool loaded, std::ptrdiff_t moving) {
     if (moving == 3 && should_move(sensel)) {
       found_.mask(sensel, fault_of(sensel));
     } else if (moving < 3 && loaded) {
-      found_.suspect(sensel, SenselFault::undecided);
+      found_.suspect(sensel, SenselFault::unknown);
     } else {
       const std::uint32_t cols = finder_.plan_.skin.cols;
       result_.untested.emplace_back(static_cast<std::uint32_t>(sensel / cols),
@@ -130,7 +130,7 @@ class FaultFinder::Verdict {
     return finder_.statistics_.sensels()[sensel];
   }
 
-  [[nodiscard]] bool tells_nothing(std::size_t sensel) const {
+  [[nodiscard]] bool is_uninformative(std::size_t sensel) const {
     return 2 * read(sensel).readings < finder_.statistics_.frames();
   }
 

@@ -16,10 +16,10 @@ const char* name_of(SenselFault fault) {
       return "silent";
     case SenselFault::unequal:
       return "unequal";
-    case SenselFault::undecided:
+    case SenselFault::unknown:
       break;
   }
-  return "undecided";
+  return "unknown";
 }
 
 }  // namespace pillarfield

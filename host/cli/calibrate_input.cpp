@@ -2,7 +2,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
-#include "cli/remarks.h"
+#include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 
@@ -34,7 +34,7 @@ void check_step_output(const std::vector<std::string>& files, const StepOptions&
 
 std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options) {
   std::unique_ptr<FrameSource> source = open_frames(file, options.read);
-  print_file_remarks(file, source->remarks());
+  print_file_warnings(file, source->warnings());
   return source;
 }
 

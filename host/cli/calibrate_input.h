@@ -16,7 +16,7 @@ namespace pillarfield::cli {
 void check_step_output(const std::vector<std::string>& files, const StepOptions& options,
                        OutputKind kind);
 
-/// Opens frames and tells their remarks on standard error.
+/// Opens frames and tells their warnings on standard error.
 std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options);
 
 /// The calibration that the options name, or a blank one for the skin of `source`; sensels that

@@ -8,7 +8,7 @@
 #include "cli/commands.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
-#include "cli/remarks.h"
+#include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -100,7 +100,7 @@ Json facts_of_frames(const std::string& file) {
   }
   facts["calibration"] = plane_names(source->calibration());
   facts["truth"] = source->has_truth();
-  facts["remarks"] = source->remarks();
+  facts["warnings"] = source->warnings();
   return facts;
 }
 
@@ -118,7 +118,7 @@ Json facts_of_forces(const std::string& file) {
                 {"angles", info.angles},
                 {"uncertainty", info.uncertainty},
                 {"contacts", info.contacts.has_value()},
-                {"remarks", reader.remarks()}};
+                {"warnings", reader.warnings()}};
   if (info.segment_point) facts["segment_point"] = *info.segment_point;
   return facts;
 }
@@ -171,7 +171,7 @@ Json facts_of_scene(const std::string& file) {
   }
   if (!scene.bodies.empty()) add_bodies(facts, scene);
   add_skin(facts, scene.skin);
-  facts["remarks"] = scene.remarks;
+  facts["warnings"] = scene.warnings;
   return facts;
 }
 

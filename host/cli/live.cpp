@@ -108,7 +108,7 @@ void warm_up(const LiveFrames& frames, Processor& processor, const Pipeline::Opt
   sink.latencies.clear();
 }
 
-std::string remark_on(const char* what, const std::string& refused) {
+std::string warning_of(const char* what, const std::string& refused) {
   return refused.empty() ? "" : fmt::format("pillarfield: {}: refused, {}\n", what, refused);
 }
 
@@ -116,8 +116,8 @@ std::string remark_on(const char* what, const std::string& refused) {
 void announce(const LiveReport& report, const PaceOptions& options) {
   if (report.realtime) {
     fmt::print(stderr, "{}{}",
-               remark_on("real-time scheduling", report.realtime->scheduling_refused),
-               remark_on("locked memory", report.realtime->memory_refused));
+               warning_of("real-time scheduling", report.realtime->scheduling_refused),
+               warning_of("locked memory", report.realtime->memory_refused));
   }
   if (report.frames_loaded < std::min(report.frames_in_source, report.schedule.frames)) {
     fmt::print(stderr, "{}: {} of {} frames fit into {} MiB; see --memory-limit\n",

@@ -7,7 +7,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/progress.h"
-#include "cli/remarks.h"
+#include "cli/warnings.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/simulator.h"
@@ -48,7 +48,7 @@ LiveFrames simulated(const std::string& file) {
 
 LiveFrames recorded(const std::string& file, const ReadOptions& options) {
   const std::shared_ptr<FrameSource> source = open_frames(file, options);
-  print_file_remarks(file, source->remarks());
+  print_file_warnings(file, source->warnings());
   if (source->frames() == 0) {
     throw Error(file, "it has no frames", "give a recording with one at least");
   }

@@ -26,7 +26,7 @@ struct LiveFrames {
 /// Whether a file is a scene, by its name.
 [[nodiscard]] bool is_scene(const std::string& file);
 
-/// Opens a scene, recording or Tekscan export; no frame is loaded yet. Remarks of the file go to
+/// Opens a scene, recording or Tekscan export; no frame is loaded yet. Warnings of the file go to
 /// standard error. Throws Error where it cannot be read or has no frames.
 [[nodiscard]] LiveFrames open_live_frames(const std::string& file, const ReadOptions& options);
 

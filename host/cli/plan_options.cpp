@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/remarks.h"
+#include "cli/warnings.h"
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
@@ -59,8 +59,8 @@ void ask_for_everything(SolverPlan& plan, std::optional<double>& baseline_time_s
   plan.uncertainty = true;
   if (!baseline_time_s) baseline_time_s = kBaselineTimeS;
   if (!plan.parity_tolerance_counts) {
-    // The residual is one of four readings, the doubt five deviations of three.
-    plan.parity_tolerance_counts = region_doubt(plan) * std::sqrt(4.0 / 3);
+    // The residual is one of four readings, the margin five deviations of three.
+    plan.parity_tolerance_counts = region_margin(plan) * std::sqrt(4.0 / 3);
   }
 }
 

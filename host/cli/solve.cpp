@@ -10,8 +10,8 @@
 #include "cli/number_text.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
-#include "cli/remarks.h"
 #include "cli/stopwatch.h"
+#include "cli/warnings.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/pipeline.h"
@@ -87,7 +87,7 @@ class Counter final : public ForceSink {
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
 
 void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
-                const SolveSummary& summary, const std::vector<std::string>& remarks) {
+                const SolveSummary& summary, const std::vector<std::string>& warnings) {
   nlohmann::ordered_json regions;
   for (const Region region :
        {Region::none, Region::one, Region::two, Region::three, Region::four, Region::opposite}) {
@@ -108,7 +108,7 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
                                  {"inconsistent", summary.regions.inconsistent},
                                  {"startup_seconds", summary.startup_seconds},
                                  {"seconds", summary.seconds},
-                                 {"remarks", remarks}};
+                                 {"warnings", warnings}};
   if (!options.contacts.file.empty()) {
     json["contacts_output"] = options.contacts.file;
     json["contacts"] = summary.done.contacts;
@@ -198,7 +198,7 @@ void solve(const SolveOptions& asked) {
   check(options.contacts, options.output);
   check_solve_outputs(options);
   const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
-  print_file_remarks(options.input, source->remarks());
+  print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
   take_friction(plan, options.contacts.contacts);
   const Device device = open_device(options.device.name);
@@ -224,7 +224,7 @@ void solve(const SolveOptions& asked) {
   summary.seconds = watch.seconds() - summary.startup_seconds;
   warn_of_tare(options, *source, plan, summary.regions);
   if (options.json) {
-    print_json(options, plan, processor, summary, source->remarks());
+    print_json(options, plan, processor, summary, source->warnings());
   } else if (!options.quiet) {
     print_text(options, plan, processor, summary);
   }

@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 
 namespace pillarfield {

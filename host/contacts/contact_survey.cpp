@@ -21,7 +21,7 @@ std::size_t threads_for(std::uint32_t wanted) {
 ContactSurvey::ContactSurvey(std::uint32_t threads) : threads_(threads_for(threads)) {}
 
 /// Cuts contacts into parts, and those into batches, none of which is much larger than a share.
-void ContactSurvey::cut(const ContactMap& map) {
+void ContactSurvey::cut(const ContactLabels& map) {
   parts_.clear();
   batches_.assign(1, 0);
   std::uint64_t batched = 0;
@@ -51,14 +51,14 @@ void ContactSurvey::share_out(const Work& work) {
     work(0, parts_.size(), 0);
     return;
   }
-  if (!team_) team_ = std::make_unique<WorkTeam>(threads_);
+  if (!team_) team_ = std::make_unique<ThreadPool>(threads_);
   team_->run(batches, [&](std::size_t batch, std::size_t member) {
     work(batches_[batch], batches_[batch + 1], member);
   });
 }
 
 const std::vector<ContactSum>& ContactSurvey::measure(const ForceFieldView& forces,
-                                                      const ContactMap& map,
+                                                      const ContactLabels& map,
                                                       const FrictionOf& friction_of) {
   cut(map);
   ratios_.assign(map.contacts(), {});

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "base/work_team.h"
+#include "base/thread_pool.h"
 #include "contacts/contact_sum.h"
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 
 namespace pillarfield {
@@ -28,7 +28,7 @@ class ContactSurvey {
 
   /// The sums of each contact of the map, with its slip where its friction is known; they stay
   /// until the next call.
-  const std::vector<ContactSum>& measure(const ForceFieldView& forces, const ContactMap& map,
+  const std::vector<ContactSum>& measure(const ForceFieldView& forces, const ContactLabels& map,
                                          const FrictionOf& friction_of);
 
   [[nodiscard]] std::size_t threads() const { return threads_; }
@@ -41,13 +41,13 @@ class ContactSurvey {
     ContactSum sum;
   };
 
-  void cut(const ContactMap& map);
+  void cut(const ContactLabels& map);
   /// Calls `work(first, end, member)` for batches of consecutive parts, until all are done.
   template <class Work>
   void share_out(const Work& work);
 
   std::size_t threads_;
-  std::unique_ptr<WorkTeam> team_;    ///< null as long as there was nothing to share
+  std::unique_ptr<ThreadPool> team_;  ///< null as long as there was nothing to share
   std::vector<Part> parts_;           ///< contact by contact
   std::vector<std::size_t> batches_;  ///< the first part of each, and one past the last
   std::vector<ContactSum> sums_;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "contacts/contact_identity.h"
+#include "contacts/contact_matching.h"
 #include "contacts/contact_measure.h"
 #include "contacts/contact_survey.h"
 #include "contacts/estimator/friction_estimator.h"
@@ -32,7 +32,7 @@ void require_whole(const ForceFieldView& forces) {
 }
 
 void require_inside(const FoundContacts& found, const ForceFieldView& forces) {
-  const ContactMap& map = *found.map;
+  const ContactLabels& map = *found.map;
   if (!found.friction.empty() && found.friction.size() != map.contacts()) {
     throw Error(kPlace,
                 fmt::format("{} frictions for {} contacts", found.friction.size(), map.contacts()),
@@ -43,7 +43,7 @@ void require_inside(const FoundContacts& found, const ForceFieldView& forces) {
     throw Error(kPlace,
                 fmt::format("contacts found in row {} up to column {} of {} x {} pillars", run.row,
                             run.end, forces.rows, forces.cols),
-                "give the ContactMap of the same frame");
+                "give the ContactLabels of the same frame");
   }
 }
 
@@ -103,7 +103,7 @@ struct ContactTracker::State {
   bool any_frame = false;
   double last_time_s = 0;
   std::uint64_t next_id = 1;
-  ContactMap map;
+  ContactLabels map;
   FrameContacts frame;
   std::vector<Known> known;  // of frame.contacts
   ContactSurvey survey;
@@ -244,6 +244,6 @@ const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double
   return state_->follow(forces, time_s, {});
 }
 
-const ContactMap& ContactTracker::map() const { return state_->map; }
+const ContactLabels& ContactTracker::map() const { return state_->map; }
 
 }  // namespace pillarfield

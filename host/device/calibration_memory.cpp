@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "device/slot_memory.h"
-#include "solve/wake_levels.h"
+#include "solve/activation_thresholds.h"
 
 namespace pillarfield {
 namespace {
@@ -16,7 +16,7 @@ void copy(const std::vector<Value>& plane, std::byte* to) {
 
 /// The levels as readings of the plan's type.
 void copy_wake_levels(const SolverPlan& plan, std::byte* to) {
-  const std::vector<float> levels = wake_levels(plan);
+  const std::vector<float> levels = activation_thresholds(plan);
   if (plan.sensel_type == SenselType::u8) {
     return copy(std::vector<std::uint8_t>(levels.begin(), levels.end()), to);
   }
@@ -49,7 +49,7 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
 
 const char* macro_of(CalibrationPlane plane) {
   static constexpr std::array kMacros = {"PF_TARE_PLANE",  "PF_GAIN_PLANE", "PF_DEAD_ZONE_PLANE",
-                                         "PF_NOISE_PLANE", "PF_MASK_PLANE", "PF_WAKE_PLANE"};
+                                         "PF_NOISE_PLANE", "PF_MASK_PLANE", "PF_ACTIVATION_PLANE"};
   return kMacros[static_cast<std::size_t>(plane)];
 }
 
@@ -64,7 +64,7 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   add(!calibration.dead_zone.empty(), CalibrationPlane::dead_zone);
   add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
   add(!calibration.mask.empty(), CalibrationPlane::mask);
-  add(paths.skip_silent && has_wake_plane(plan), CalibrationPlane::wake);
+  add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::wake);
   return planes;
 }
 

@@ -3,7 +3,7 @@
 #include "contacts/estimator/contact_estimator.h"
 #include "device/device_state.h"
 #include "device/slot_memory.h"
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 
 namespace pillarfield {
 

@@ -12,8 +12,8 @@
 #include "device/sensel_macro.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
+#include "solve/activation_thresholds.h"
 #include "solve/stages.h"
-#include "solve/wake_levels.h"
 
 namespace pillarfield {
 namespace {
@@ -109,20 +109,21 @@ Definitions definitions(const SolverPlan& plan, bool whole) {
   all["PF_NORMAL_SCALE"] = hex_float(scale.normal / units_per_count);
   all["PF_SEGMENT_POINT"] =
       whole ? fmt::format("{}", *whole_segment_point(plan)) : hex_float(plan.segment_point);
-  all["PF_DOUBT"] = counts.from(region_doubt(plan));
+  all["PF_MARGIN"] = counts.from(region_margin(plan));
   return all;
 }
 
 /// Adds what skipping idle blocks needs to know.
 void define_idle_range(const SolverPlan& plan, Definitions& all) {
-  const WakeRange range = wake_range(plan);
-  all["PF_SKIP_SILENT"] = "";
-  if (!has_wake_plane(plan)) all["PF_WAKE"] = hex_float(wake_levels(plan).front());
-  all["PF_WAKE_THRESHOLD"] = hex_float(range.threshold);
-  all["PF_WAKE_STEP"] = hex_float(range.step);
-  all["PF_WAKE_LOWEST"] = hex_float(range.lowest);
-  all["PF_WAKE_HIGHEST"] = hex_float(range.highest);
-  all["PF_WAKE_NEVER"] = hex_float(range.never);
+  const ActivationRange range = activation_range(plan);
+  all["PF_SKIP_IDLE"] = "";
+  if (!has_activation_plane(plan))
+    all["PF_ACTIVATION"] = hex_float(activation_thresholds(plan).front());
+  all["PF_ACTIVATION_CUT"] = hex_float(range.threshold);
+  all["PF_ACTIVATION_STEP"] = hex_float(range.step);
+  all["PF_ACTIVATION_LOWEST"] = hex_float(range.lowest);
+  all["PF_ACTIVATION_HIGHEST"] = hex_float(range.highest);
+  all["PF_ACTIVATION_NEVER"] = hex_float(range.never);
 }
 
 }  // namespace
@@ -135,14 +136,14 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
 
 std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& wanted) {
   SpeedPaths paths = wanted;
-  paths.skip_silent = paths.skip_silent && may_skip_idle(plan);
+  paths.skip_idle = paths.skip_idle && may_skip_idle(plan);
   const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
   // A lane of its own is 32 bits wide anyway.
   const bool whole = lanes > 1 && is_whole(plan);
   Definitions all = definitions(plan, whole);
   all["PF_LANES"] = fmt::format("{}", lanes);
   if (paths.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
-  if (paths.skip_silent) define_idle_range(plan, all);
+  if (paths.skip_idle) define_idle_range(plan, all);
   std::size_t place = 0;
   for (const CalibrationPlane plane : calibration_planes(plan, paths)) {
     all[macro_of(plane)] = fmt::format("{}", place++);

@@ -11,7 +11,7 @@
 #include "device/block_lanes.h"
 #include "device/late_call.h"
 #include "device/slot.h"
-#include "device/slot_turns.h"
+#include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "solve/stages.h"
@@ -47,7 +47,7 @@ bool decide_sharing(Memory memory, const Device& device) {
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
-  paths.skip_silent = paths.skip_silent && may_skip_idle(plan);
+  paths.skip_idle = paths.skip_idle && may_skip_idle(plan);
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
   const std::size_t bytes = ResultLayout(plan, 0).bytes;
@@ -68,14 +68,14 @@ std::string line_on_compiling(const DeviceInfo& device) {
                      device.kernels_not_kept);
 }
 
-[[noreturn]] void throw_no_slot(const SlotTurns& turns) {
-  if (turns.kept() == 0) {
+[[noreturn]] void throw_no_slot(const SlotScheduler& turns) {
+  if (turns.pinned() == 0) {
     throw Error("Processor::submit", fmt::format("all {} frames are in flight", turns.slots()),
                 "receive() one first, or ask for more frames_in_flight");
   }
   throw Error("Processor::submit",
-              fmt::format("of {} frames {} are in flight and {} are kept", turns.slots(),
-                          turns.in_flight(), turns.kept()),
+              fmt::format("of {} frames {} are in flight and {} are pinned", turns.slots(),
+                          turns.in_flight(), turns.pinned()),
               "receive() one or give one back first, or ask for more frames_in_flight");
 }
 
@@ -127,14 +127,14 @@ struct Processor::State {
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
   Baseline baseline;              ///< as well
   std::optional<ContactStage> contacts;      ///< where the estimator is that of contacts
-  std::vector<std::shared_ptr<Slot>> slots;  ///< one that is kept outlives the processor
-  SlotTurns turns;
+  std::vector<std::shared_ptr<Slot>> slots;  ///< one that is pinned outlives the processor
+  SlotScheduler turns;
   bool received = false;  ///< a frame, once
 };
 
-struct Processor::Kept::State {
-  State(std::shared_ptr<const Slot> kept, std::shared_ptr<ReturnedSlots> to, std::size_t index)
-      : slot(std::move(kept)), returned(std::move(to)), number(index) {}
+struct Processor::PinnedResult::State {
+  State(std::shared_ptr<const Slot> pinned, std::shared_ptr<ReturnedSlots> to, std::size_t index)
+      : slot(std::move(pinned)), returned(std::move(to)), number(index) {}
   ~State() { returned->give_back(number); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -144,12 +144,12 @@ struct Processor::Kept::State {
   std::size_t number;
 };
 
-Processor::Kept::Kept(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Processor::Kept::Kept(Kept&&) noexcept = default;
-Processor::Kept& Processor::Kept::operator=(Kept&&) noexcept = default;
-Processor::Kept::~Kept() = default;
+Processor::PinnedResult::PinnedResult(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Processor::PinnedResult::PinnedResult(PinnedResult&&) noexcept = default;
+Processor::PinnedResult& Processor::PinnedResult::operator=(PinnedResult&&) noexcept = default;
+Processor::PinnedResult::~PinnedResult() = default;
 
-std::span<const std::byte> Processor::Kept::pages() const { return state_->slot->pages(); }
+std::span<const std::byte> Processor::PinnedResult::pages() const { return state_->slot->pages(); }
 
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options,
                      const ProcessorTuning& tuning) {
@@ -201,13 +201,14 @@ ForceFieldView Processor::receive() {
   return slot.results();
 }
 
-Processor::Kept Processor::keep() {
-  const std::optional<std::size_t> slot = state_->turns.keep();
+Processor::PinnedResult Processor::pin() {
+  const std::optional<std::size_t> slot = state_->turns.pin();
   if (!slot) {
     throw Error("Processor::keep", "there is no frame to keep",
-                "keep() a frame once, after it was received and before its slot is used again");
+                "pin() a frame once, after it was received and before its slot is used again");
   }
-  return Kept(std::make_unique<Kept::State>(state_->slots[*slot], state_->turns.returned(), *slot));
+  return PinnedResult(
+      std::make_unique<PinnedResult::State>(state_->slots[*slot], state_->turns.returned(), *slot));
 }
 
 FoundContacts Processor::contacts() const {
@@ -217,7 +218,7 @@ FoundContacts Processor::contacts() const {
 
 int Processor::in_flight() const { return static_cast<int>(state_->turns.in_flight()); }
 
-int Processor::kept() const { return static_cast<int>(state_->turns.kept()); }
+int Processor::pinned() const { return static_cast<int>(state_->turns.pinned()); }
 
 std::vector<float> Processor::tare() const {
   return with_opencl_errors(state_->device.info().name, [&] {

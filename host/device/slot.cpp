@@ -53,7 +53,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
                       device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = launch.global;
   local_ = launch.local;
-  const ResultLayout results(plan, settings.paths.skip_silent ? settings.lanes : 0);
+  const ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
   memory_ = settings.shares_memory ? shared_memory(device.context, results)
                                    : staged_memory(device.context, queue_, plan, results);
   layout_ = layout_of(plan, results, calibration);

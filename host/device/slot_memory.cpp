@@ -16,7 +16,7 @@ ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
   marks = plan.skin.pillar_rows() * mark_stride;
 }
 
-SilentBlocks SlotMemory::idle_blocks() const {
+IdleBlocks SlotMemory::idle_blocks() const {
   if (!shares_marks_) return {};
   const auto* const marks = reinterpret_cast<const std::uint8_t*>(pages_ + layout_.bytes);
   return {{marks, layout_.marks}, layout_.mark_stride, layout_.lanes};

@@ -8,9 +8,9 @@
 #include "device/opencl.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/processor.h"
-#include "skin/result_planes.h"
+#include "solve/idle_blocks.h"
 #include "solve/pillar_maths.h"
-#include "solve/silent_blocks.h"
+#include "solve/result_planes.h"
 
 namespace pillarfield {
 
@@ -69,7 +69,7 @@ class SlotMemory {
   /// The block that the host's sides of all planes lie in: whole pages, always the same.
   [[nodiscard]] std::span<const std::byte> pages() const { return {pages_, layout_.bytes}; }
   /// The marks; none where they stay on the device.
-  [[nodiscard]] SilentBlocks idle_blocks() const;
+  [[nodiscard]] IdleBlocks idle_blocks() const;
 
  protected:
   explicit SlotMemory(ResultLayout layout) : layout_(layout) {}

@@ -115,7 +115,7 @@ double least_error(Force force, const Sensels& sensels) {
   const std::array<double, 4> v = readings_of(force, sensels[0]);
   std::array<Row, 3> sum{};
   for (std::size_t n = 0; n < 4; ++n) {
-    if (v[n] <= 0) continue;  // A lifted pillar tells nothing of how far.
+    if (v[n] <= 0) continue;  // A inactive pillar tells nothing of how far.
     const double noise = sensels[n].noise_counts;
     const double told = information((v[n] - sensels[n].threshold_counts) / noise);
     const double weight = told * (unit / noise) * (unit / noise);

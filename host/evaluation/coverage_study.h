@@ -24,7 +24,7 @@ struct Study {
 struct Parted {
   Coverage all;
   Coverage rightly_read;  ///< the usable sensels are those that would be without noise
-  Coverage by_luck;       ///< some are usable by luck: noise lifted them above the threshold
+  Coverage by_luck;       ///< some are usable by luck: noise inactive them above the threshold
   Coverage by_bad_luck;   ///< none is, but some are silent by bad luck
 };
 [[nodiscard]] Parted cover(const Scene& scene);

@@ -31,8 +31,8 @@ struct Direction {
   double phi;
 };
 
-/// Directions of which exactly the sensels in `lifted` do not read; none stands for region 1.
-std::vector<Direction> directions(std::size_t lifted) {
+/// Directions of which exactly the sensels in `inactive` do not read; none stands for region 1.
+std::vector<Direction> directions(std::size_t inactive) {
   std::vector<Direction> found;
   for (int i = 1; i < 16; ++i) {
     for (int j = -31; j < 31; ++j) {
@@ -40,7 +40,7 @@ std::vector<Direction> directions(std::size_t lifted) {
       const double phi = 0.1 * j;
       const Voltages v = voltages(theta, phi);
       bool in_region = true;
-      for (std::size_t n = 1; n <= 4; ++n) in_region = in_region && (v[n] > 0) == (n != lifted);
+      for (std::size_t n = 1; n <= 4; ++n) in_region = in_region && (v[n] > 0) == (n != inactive);
       if (in_region) found.push_back({theta, phi});
     }
   }
@@ -64,19 +64,19 @@ Deviation deviation(const std::vector<Direction>& directions, Error error) {
 
 using Equation = double (*)(const Voltages&);
 
-/// Measures an equation for tan(phi), the quadrant apart, where one sensel is lifted.
-std::function<Deviation()> tangent(std::size_t lifted, Equation equation) {
+/// Measures an equation for tan(phi), the quadrant apart, where one sensel is inactive.
+std::function<Deviation()> tangent(std::size_t inactive, Equation equation) {
   return [=] {
-    return deviation(directions(lifted), [=](const Direction& direction, const Voltages& v) {
+    return deviation(directions(inactive), [=](const Direction& direction, const Voltages& v) {
       return std::remainder(std::atan(equation(v)) - direction.phi, pi);
     });
   };
 }
 
 /// Measures an equation for phi.
-std::function<Deviation()> azimuth(std::size_t lifted, Equation equation) {
+std::function<Deviation()> azimuth(std::size_t inactive, Equation equation) {
   return [=] {
-    return deviation(directions(lifted), [=](const Direction& direction, const Voltages& v) {
+    return deviation(directions(inactive), [=](const Direction& direction, const Voltages& v) {
       return std::remainder(equation(v) - direction.phi, 2 * pi);
     });
   };

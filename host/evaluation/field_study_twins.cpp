@@ -23,7 +23,7 @@ Force twin_of(const Force& force, double normal_share) {
 }
 
 /// Sensels 2 and 3 lift.
-void check_lifted(const Force& force) {
+void check_inactive(const Force& force) {
   const auto v = double_precision::model_readings(force, kTwinCountsPerNewton);
   if (v.v2 <= 0 && v.v3 <= 0) return;
   throw Error("twin scene", "a pillar presses three sensels", "raise the friction");
@@ -49,8 +49,8 @@ Twins sliding_twins(const TwinScene& scene) {
                          loads.normal[i] * per_count};
     twins.first.push_back(force);
     twins.second.push_back(twin_of(force, scene.normal_share));
-    check_lifted(twins.first.back());
-    check_lifted(twins.second.back());
+    check_inactive(twins.first.back());
+    check_inactive(twins.second.back());
   }
   const auto largest =
       std::max_element(twins.second.begin(), twins.second.end(),

@@ -87,7 +87,7 @@ Force force_at_normal(const std::vector<Equation>& equations, Exact normal) {
   return {-from[0], -from[1], normal};
 }
 
-bool explains_silence(const SomeReadings& usable, const Force& force, Exact k, Exact hidden) {
+bool explains_zero(const SomeReadings& usable, const Force& force, Exact k, Exact hidden) {
   const Readings readings = readings_of(force, k);
   for (std::size_t n = 0; n < 4; ++n) {
     if (!usable[n] && readings[n] > hidden) return false;
@@ -155,7 +155,7 @@ Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden) {
   for (int step = 0; step < 115; ++step) {
     const Exact middle = (low + high) / 2;
     const Force force = force_at_normal(equations, middle);
-    (explains_silence(usable, force, k, hidden) ? low : high) = middle;
+    (explains_zero(usable, force, k, hidden) ? low : high) = middle;
   }
   return {force_at_normal(equations, 0), force_at_normal(equations, low)};
 }

@@ -15,7 +15,7 @@ std::size_t count_of(const SomeReadings& usable) {
       std::ranges::count_if(usable, [](const auto& reading) { return reading.has_value(); }));
 }
 
-std::size_t first_silent(const SomeReadings& usable) {
+std::size_t first_idle(const SomeReadings& usable) {
   std::size_t sensel = 0;
   while (sensel < 4 && usable[sensel]) ++sensel;
   return sensel;
@@ -28,7 +28,7 @@ Exact azimuth_from_four(const SomeReadings& v) {
 
 /// Equation (8), its denominator mended, for the sensels i, j, k that follow a silent one.
 Exact azimuth_from_three(const SomeReadings& v) {
-  const std::size_t silent = first_silent(v);
+  const std::size_t silent = first_idle(v);
   const std::size_t i = (silent + 1) % 4;
   const std::size_t j = (silent + 2) % 4;
   const std::size_t k = (silent + 3) % 4;
@@ -124,7 +124,7 @@ std::vector<PaperChoice> diagonals_along_shear(const SomeReadings& usable) {
 
 /// P2: the sensel opposite the silent one, and that of its neighbours which differs more from it.
 std::vector<PaperChoice> opposite_and_neighbour(const SomeReadings& usable) {
-  const std::size_t silent = first_silent(usable);
+  const std::size_t silent = first_idle(usable);
   const std::size_t opposite = (silent + 2) % 4;
   const auto difference = [&](std::size_t neighbour) {
     return exact::abs(*usable[opposite] - *usable[neighbour]);

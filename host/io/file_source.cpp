@@ -30,16 +30,16 @@ void FileSource::require_fitting(const FrameBuffer& frame) const {
               fmt::format("make it {} x {} {}", skin_.rows, skin_.cols, name_of(type_)));
 }
 
-void FileSource::remark_on_size() {
+void FileSource::warn_of_size() {
   if (skin_.rows % 2 != 0) {
-    remarks_.push_back(fmt::format(
+    warnings_.push_back(fmt::format(
         "No pillar stands on the last of the {} sensel rows; it is left out.", skin_.rows));
   }
   if (skin_.cols % 2 != 0) {
-    remarks_.push_back(fmt::format(
+    warnings_.push_back(fmt::format(
         "No pillar stands on the last of the {} sensel columns; it is left out.", skin_.cols));
   }
-  if (frames_ == 0) remarks_.push_back("The file holds no frames.");
+  if (frames_ == 0) warnings_.push_back("The file holds no frames.");
 }
 
 }  // namespace pillarfield

@@ -17,7 +17,7 @@ class FileSource : public FrameSource {
   [[nodiscard]] std::uint64_t frames() const override { return frames_; }
   [[nodiscard]] const Calibration& calibration() const override { return calibration_; }
   [[nodiscard]] bool has_truth() const override { return false; }
-  [[nodiscard]] const std::vector<std::string>& remarks() const override { return remarks_; }
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
   void read_truth(std::uint64_t index, ForceField& truth) override;
 
  protected:
@@ -26,8 +26,8 @@ class FileSource : public FrameSource {
   void require_frame(std::uint64_t index) const;
   void require_fitting(const FrameBuffer& frame) const;
 
-  /// Remarks what no pillar stands on, and that a file has no frame.
-  void remark_on_size();
+  /// Warnings what no pillar stands on, and that a file has no frame.
+  void warn_of_size();
 
   std::filesystem::path path_;
   std::string format_;
@@ -35,7 +35,7 @@ class FileSource : public FrameSource {
   SenselType type_ = SenselType::u8;
   std::uint64_t frames_ = 0;
   Calibration calibration_;
-  std::vector<std::string> remarks_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace pillarfield

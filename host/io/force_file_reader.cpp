@@ -36,7 +36,7 @@ struct OpenForces {
   std::optional<ContactTablesReader> contacts;
   ForceFileInfo info;
   std::uint64_t frames = 0;
-  std::vector<std::string> remarks;
+  std::vector<std::string> warnings;
 };
 
 /// The angles and the ends of components are not: they follow from the rest.
@@ -102,8 +102,8 @@ void OpenForces::read_info() {
   const auto pitch_mm = hdf5::read_number(file, root, force_format::kPillarPitch);
   if (!pitch_mm) {
     info.pillar_pitch_mm = Skin().pillar_pitch_mm();
-    remarks.push_back(fmt::format("The file gives no pillar pitch; {:.6g} mm are assumed.",
-                                  info.pillar_pitch_mm));
+    warnings.push_back(fmt::format("The file gives no pillar pitch; {:.6g} mm are assumed.",
+                                   info.pillar_pitch_mm));
     return;
   }
   if (!std::isfinite(*pitch_mm) || *pitch_mm <= 0) {
@@ -118,7 +118,7 @@ void OpenForces::count_frames() {
   for (const auto& plane : planes) frames = std::min(frames, plane.frames());
   if (contacts) frames = std::min(frames, contacts->frames());
   if (file.unclosed) {
-    remarks.push_back(fmt::format(
+    warnings.push_back(fmt::format(
         "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
         "are read.",
         frames));
@@ -150,7 +150,7 @@ ForceFileReader& ForceFileReader::operator=(ForceFileReader&&) noexcept = defaul
 
 const ForceFileInfo& ForceFileReader::info() const { return state_->info; }
 std::uint64_t ForceFileReader::frames() const { return state_->frames; }
-const std::vector<std::string>& ForceFileReader::remarks() const { return state_->remarks; }
+const std::vector<std::string>& ForceFileReader::warnings() const { return state_->warnings; }
 
 double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   const hdf5::QuietErrors quiet;

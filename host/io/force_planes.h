@@ -7,7 +7,7 @@
 
 #include "pillarfield/component_ends.h"
 #include "pillarfield/force_file.h"
-#include "skin/result_planes.h"
+#include "solve/result_planes.h"
 
 namespace pillarfield {
 

@@ -68,7 +68,7 @@ Recording::Recording(hdf5::File file) : FileSource(file.path, "recording"), file
   calibration_ = read_planes(file_, skin_, type_);
   open_truth();
   count_frames();
-  remark_on_size();
+  warn_of_size();
 }
 
 std::string Recording::place(const char* object) const {
@@ -93,7 +93,7 @@ void Recording::take_skin() {
     if (constant) {
       value = *constant;
     } else {
-      remarks_.push_back(fmt::format("The file gives no {}; {} is assumed.", name, value));
+      warnings_.push_back(fmt::format("The file gives no {}; {} is assumed.", name, value));
     }
   };
   take(recording_format::kPitch, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
@@ -124,12 +124,12 @@ void Recording::count_frames() {
     frames_ = std::min(frames_, plane.frames());
   }
   if (file_.unclosed) {
-    remarks_.push_back(fmt::format(
+    warnings_.push_back(fmt::format(
         "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
         "are read.",
         frames_));
   } else if (most != frames_) {
-    remarks_.push_back(
+    warnings_.push_back(
         fmt::format("The datasets of the file have {} to {} frames; the first {} are read.",
                     frames_, most, frames_));
   }

@@ -12,9 +12,9 @@ using double_precision::Readings;
 
 Readings ideal_readings(Force force, double counts_per_newton) {
   const Readings v = double_precision::model_readings(force, counts_per_newton);
-  const double doubt =
+  const double margin =
       1e-6 * std::max({std::abs(v.v1), std::abs(v.v2), std::abs(v.v3), std::abs(v.v4)});
-  const auto positive = [=](double reading) { return reading > doubt ? reading : 0.0; };
+  const auto positive = [=](double reading) { return reading > margin ? reading : 0.0; };
   return {positive(v.v1), positive(v.v2), positive(v.v3), positive(v.v4)};
 }
 

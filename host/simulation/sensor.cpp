@@ -107,7 +107,7 @@ void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> 
   respond(row, signal);
   if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
   if (model_.noise_counts > 0) add_noise(frame, row, signal);
-  if (!calibration_.mask.empty()) silence_dead(row, signal);
+  if (!calibration_.mask.empty()) clear_dead(row, signal);
   convert(row, signal, raw);
 }
 
@@ -143,7 +143,7 @@ void Sensor::add_noise(std::uint64_t frame, std::uint32_t row, std::span<double>
   for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += model_.noise_counts * noise[i];
 }
 
-void Sensor::silence_dead(std::uint32_t row, std::span<double> signal) const {
+void Sensor::clear_dead(std::uint32_t row, std::span<double> signal) const {
   const auto good = row_of(calibration_.mask, row, signal.size());
   for (std::size_t i = 0; i < signal.size(); ++i) signal[i] = good[i] != 0 ? signal[i] : 0;
 }

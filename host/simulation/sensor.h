@@ -33,7 +33,7 @@ class Sensor {
   void add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const;
   void convert(std::uint32_t row, std::span<const double> signal, FrameBuffer& raw) const;
-  void silence_dead(std::uint32_t row, std::span<double> signal) const;
+  void clear_dead(std::uint32_t row, std::span<double> signal) const;
 
   SensorModel model_;
   double full_scale_counts_;

@@ -48,7 +48,7 @@ typename PillarTypes<Real>::Stages pillar_stages(const PillarSensor& sensor) {
   stages.largest = static_cast<Real>(kMaxCounts);
   stages.full_scale = static_cast<Real>(sensor.full_scale_counts.value_or(0));
   stages.threshold = static_cast<Real>(sensor.threshold_counts);
-  stages.doubt = static_cast<Real>(region_doubt(sensor.noise_counts));
+  stages.margin = static_cast<Real>(region_margin(sensor.noise_counts));
   stages.scale = {static_cast<Real>(scale.shear), static_cast<Real>(scale.normal)};
   return stages;
 }

@@ -33,7 +33,7 @@ Stages plan_constants(const SolverPlan& plan) {
           .reference = real(power_law.reference_counts),
           .threshold = real(skin.threshold_counts),
           .segment_point = real(plan.segment_point),
-          .doubt = real(region_doubt(plan)),
+          .margin = real(region_margin(plan)),
           .parity_tolerance = real(plan.parity_tolerance_counts.value_or(0)),
           .scale = {real(scale.shear), real(scale.normal)}};
 }

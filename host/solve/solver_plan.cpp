@@ -130,12 +130,12 @@ double hidden_normal_n(const Skin& skin) {
   return force_scale(skin.counts_per_newton).normal * skin.threshold_counts;
 }
 
-double region_doubt(const SolverPlan& plan) {
+double region_margin(const SolverPlan& plan) {
   const std::optional<double> noise = known_noise(plan);
-  return noise ? region_doubt(*noise) : 0;
+  return noise ? region_margin(*noise) : 0;
 }
 
-double region_doubt(double noise_counts) {
+double region_margin(double noise_counts) {
   // Parity leaves V_p + V_q - V_r, three readings, each with its noise.
   return 5 * std::sqrt(3.0) * noise_counts;
 }

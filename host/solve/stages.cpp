@@ -15,7 +15,7 @@ constexpr bool is_paper(const Plan& plan) { return plan.estimator == Estimator::
 /// In the order of kernels/frame/stages.h.
 constexpr std::array kStages = {
     Stage{"load", "PF_SENSEL", is_always},
-    Stage{"reject_absurd", "PF_LARGEST_READING",
+    Stage{"reject_out_of_range", "PF_LARGEST_READING",
           [](const Plan& plan) { return plan.sensel_type == SenselType::f32; }},
     Stage{"mask", "PF_MASK", [](const Plan& plan) { return !plan.calibration.mask.empty(); }},
     Stage{"saturation", "PF_FULL_SCALE",

@@ -21,8 +21,8 @@ struct Stage {
   StagePlace place = StagePlace::pillar;
   bool needs_neighbours = false;  ///< other sensels or pillars than those of one pillar
   bool has_memory = false;        ///< of earlier frames, which then are solved one after the other
-  /// Whether wake_levels() and level_of() in kernels/frame/silence.h follow from it too, so that
-  /// idle blocks may be skipped.
+  /// Whether activation_thresholds() and level_of() in kernels/frame/idle.h follow from it too, so
+  /// that idle blocks may be skipped.
   bool may_skip_idle = true;
 };
 

@@ -25,13 +25,13 @@ double border_theta(int sensel, double phi_rad) {
     return brackets(theta, phi_rad).at(static_cast<std::size_t>(sensel - 1));
   };
   double usable = 0;
-  double lifted = kPi / 2;
-  if (reading(lifted) > 0) return lifted;
+  double inactive = kPi / 2;
+  if (reading(inactive) > 0) return inactive;
   for (int step = 0; step < 60; ++step) {
-    const double middle = (usable + lifted) / 2;
-    (reading(middle) > 0 ? usable : lifted) = middle;
+    const double middle = (usable + inactive) / 2;
+    (reading(middle) > 0 ? usable : inactive) = middle;
   }
-  return lifted;
+  return inactive;
 }
 
 std::vector<Angles> contour(double ratio, int points) {

@@ -28,9 +28,9 @@ PF_FUNCTION void follow_row(global const PF_SENSEL* raw, Calibration calibration
   tares.right = follow_tare(at.right.tare, validate_reading(readings.right, at.right.good, 0),
                             untouched, rate);
   store_pair(tares, (global float*)PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset, lanes);
-#ifdef PF_SKIP_SILENT
+#ifdef PF_SKIP_IDLE
   const RealPair levels = {level_of(tares.left, at.left), level_of(tares.right, at.right)};
-  store_readings(levels, (global PF_SENSEL*)wake_levels(calibration) + offset, lanes);
+  store_readings(levels, (global PF_SENSEL*)activation_thresholds(calibration) + offset, lanes);
 #endif
 }
 

@@ -18,15 +18,16 @@
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
  *   PF_SEGMENT_POINT                where on a segment the force is reported, in (0, 1]; with
  *                                   PF_WHOLE the number n of 1 - 1 / 2^n
- *   PF_DOUBT                        counts by which noise may shift what parity says
+ *   PF_MARGIN                        counts by which noise may shift what parity says
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
  *   PF_ANGLES                       stage: magnitude, theta and phi are written too
  *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: uncertainty is written
  *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from its plane instead
  *   PF_BASELINE                     stage: follow_baseline.cl
  *   PF_STREAM                       results go past the caches: load_store.h
- *   PF_SKIP_SILENT                  silent blocks are left as they are: silence.h
- *   PF_WAKE_PLANE or PF_WAKE        readings that wake a sensel, each its own or one for all
+ *   PF_SKIP_IDLE                  silent blocks are left as they are: silence.h
+ *   PF_ACTIVATION_PLANE or PF_ACTIVATION        readings that wake a sensel, each its own or one
+ * for all
  *
  * A stage that is not named leaves no trace. Constants are exact (hexadecimal); with PF_WHOLE those
  * in counts are whole numbers of its unit. */
@@ -134,7 +135,7 @@ typedef struct {
   global const PF_SENSEL* raw;  /* the first sensel */
   global const PF_SENSEL* wake; /* and its level */
   size_t row_stride;
-  size_t wake_stride;
+  size_t activation_stride;
   global uchar* idle; /* the mark of the first block */
   uint skew;          /* pillars by which the first block would begin before the row */
   uint last_col;      /* where the last block begins */
@@ -155,21 +156,21 @@ PF_FUNCTION void prefetch_readings(Row row, size_t sensel, bool silent) {
     PF_PREFETCH(row.raw + sensel + 2 * row.row_stride);
     PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
   }
-#ifdef PF_WAKE_PLANE
-  PF_PREFETCH_FAR(row.wake + sensel + 2 * row.wake_stride);
-  PF_PREFETCH_FAR(row.wake + sensel + 3 * row.wake_stride);
+#ifdef PF_ACTIVATION_PLANE
+  PF_PREFETCH_FAR(row.wake + sensel + 2 * row.activation_stride);
+  PF_PREFETCH_FAR(row.wake + sensel + 3 * row.activation_stride);
 #endif
 }
 
 /* Whether a block's results are those of silence already; if not, notes what they are now to be. */
 PF_FUNCTION bool may_skip(Row row, uint at, size_t sensel) {
-#ifdef PF_SKIP_SILENT
-  const bool was_silent = row.idle[at];
-  prefetch_readings(row, sensel, was_silent);
+#ifdef PF_SKIP_IDLE
+  const bool was_idle = row.idle[at];
+  prefetch_readings(row, sensel, was_idle);
   const bool silent =
-      is_silent(row.raw + sensel, row.row_stride, row.wake + sensel, row.wake_stride);
-  if (silent != was_silent) row.idle[at] = silent;
-  return silent && was_silent;
+      is_idle(row.raw + sensel, row.row_stride, row.wake + sensel, row.activation_stride);
+  if (silent != was_idle) row.idle[at] = silent;
+  return silent && was_idle;
 #else
   prefetch_readings(row, sensel, false);
   return false;
@@ -177,7 +178,7 @@ PF_FUNCTION bool may_skip(Row row, uint at, size_t sensel) {
 }
 
 /* The first block from `at` on, of this work-item's, that is to be solved. */
-PF_FUNCTION uint next_awake(Row row, uint at) {
+PF_FUNCTION uint next_active(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
   while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
   return at;
@@ -199,7 +200,7 @@ PF_FUNCTION void solve_row(Input input, Output output, uint at_row, uint pillar_
   const size_t first_offset = 2 * at_row * calibration.stride;
   const uint skew = (uint)(first_index % PF_LANES);
   const Row row = {input.raw + 2 * at_row * input.row_stride,
-                   wake_levels(calibration) + first_offset,
+                   activation_thresholds(calibration) + first_offset,
                    input.row_stride,
                    calibration.stride,
                    output.idle + (size_t)at_row * blocks_of_row(pillar_cols),
@@ -207,8 +208,8 @@ PF_FUNCTION void solve_row(Input input, Output output, uint at_row, uint pillar_
                    pillar_cols - PF_LANES,
                    (skew + pillar_cols + PF_LANES - 1) / PF_LANES};
   const uint step = (uint)get_global_size(0);
-  for (uint at = next_awake(row, (uint)get_global_id(0)); at < row.blocks;
-       at = next_awake(row, at + step)) {
+  for (uint at = next_active(row, (uint)get_global_id(0)); at < row.blocks;
+       at = next_active(row, at + step)) {
     const uint col = col_of_block(row, at);
     const size_t offset = first_offset + 2 * col;
     prefetch_planes(calibration, offset + 2 * calibration.stride);

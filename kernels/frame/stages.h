@@ -16,7 +16,7 @@
  *   that an entry point after solve_frame.cl brings up to date for the next one. Frames then wait
  *   for each other on the device.
  * Each says in the host's table which of these it is, and whether blocks may be skipped while they
- * are idle: whether wake_levels() and level_of() follow from it too. */
+ * are idle: whether activation_thresholds() and level_of() follow from it too. */
 
 #ifdef __cplusplus
 #define PF_NAMED(stage) stages.stage
@@ -34,7 +34,7 @@
 #define PF_NORMAL_SCALE stages.scale.normal
 #define PF_SEGMENT_POINT stages.segment_point
 #define PF_PAPER
-#define PF_DOUBT stages.doubt
+#define PF_MARGIN stages.margin
 #define PF_PARITY_TOLERANCE stages.parity_tolerance
 #define PF_ANGLES
 #define PF_UNCERTAINTY
@@ -58,7 +58,7 @@ typedef struct {
   Real reference;
   Real threshold;
   Real segment_point;
-  Real doubt;
+  Real margin;
   Real parity_tolerance;
   ForceScale scale;
 } Stages;
@@ -79,7 +79,7 @@ typedef struct {
 PF_FUNCTION Sensel validate_reading(Counts raw, Counts good, Stages stages) {
   Sensel sensel = raw_sensel(raw);
 #ifdef PF_LARGEST_READING
-  if (PF_NAMED(range)) sensel = reject_absurd(sensel, PF_CONSTANT(Real, PF_LARGEST_READING));
+  if (PF_NAMED(range)) sensel = reject_out_of_range(sensel, PF_CONSTANT(Real, PF_LARGEST_READING));
 #endif
 #ifdef PF_MASK
   if (PF_NAMED(mask)) sensel = apply_mask(sensel, good);
@@ -158,7 +158,7 @@ PF_FUNCTION Force estimate_force(Pillar pillar, Diagonals diagonals, ParitySum s
 }
 
 PF_FUNCTION Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stages stages) {
-  Bits status = direct_status(pillar, diagonals, sum, PF_CONSTANT(Counts, PF_DOUBT));
+  Bits status = direct_status(pillar, diagonals, sum, PF_CONSTANT(Counts, PF_MARGIN));
 #ifdef PF_PARITY_TOLERANCE
   if (PF_NAMED(parity_test)) {
     const Mask at_odds = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));

@@ -1,10 +1,10 @@
-/* The force on one pillar from its four sensels, for all patterns of usable, lifted, missing and
+/* The force on one pillar from its four sensels, for all patterns of usable, inactive, missing and
  * saturated ones, without division or trigonometry (docs/derivations/direct_solve.md).
  *
  * The two diagonals 1-3 and 2-4 of a pillar measure the same thing, 2 k normal: the parity sum S.
  * A diagonal with both readings gives S; one with a single reading follows from S; where no
  * diagonal has both, S is only known to lie in an interval. The force is linear in what remains,
- * and it always explains the readings: usable sensels read V, lifted ones hide theirs, saturated
+ * and it always explains the readings: usable sensels read V, inactive ones hide theirs, saturated
  * ones exceed. */
 
 /* The four sensels of a pillar, after `classify`. */
@@ -58,18 +58,18 @@ static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) && is
 
 /* Which sensels of a diagonal stand (D4): the usable; the saturated, whose reading is a lower
  * bound, unless the other diagonal has `more` and its parity sum leaves that for them; and on a
- * pillar in `contact` the lifted, whose reading is an upper bound, where only they tell how to
+ * pillar in `contact` the inactive, whose reading is an upper bound, where only they tell how to
  * share the sum. */
 static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
-  const Mask p_follows = p.saturated && more && (q.usable || is_lifted(q));
-  const Mask q_follows = q.saturated && more && (p.usable || is_lifted(p));
+  const Mask p_follows = p.saturated && more && (q.usable || is_inactive(q));
+  const Mask q_follows = q.saturated && more && (p.usable || is_inactive(p));
   const Mask p_answers = is_pressed(p) && !p_follows;
   const Mask q_answers = is_pressed(q) && !q_follows;
   Diagonal d;
   d.p = p.reading;
   d.q = q.reading;
-  d.p_stands = p_answers || (contact && is_lifted(p) && (q.missing || q_follows));
-  d.q_stands = q_answers || (contact && is_lifted(q) && (p.missing || p_follows));
+  d.p_stands = p_answers || (contact && is_inactive(p) && (q.missing || q_follows));
+  d.q_stands = q_answers || (contact && is_inactive(q) && (p.missing || p_follows));
   d.full = p_answers && q_answers && !(more && p.saturated && q.saturated);
   d.open = p.missing || q.missing;
   return d;
@@ -175,16 +175,16 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
 static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
 
 /* Whether the silent one of four sensels may press, where the three others are usable: its silence
- * hides something, and parity leaves it more than -`doubt` counts. That of a usable sensel reads
+ * hides something, and parity leaves it more than -`margin` counts. That of a usable sensel reads
  * above zero, so the least of all four is asked. (D9) */
-static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Counts sum, Counts doubt) {
+static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Counts sum, Counts margin) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Counts least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),
                                        least_of(filled_p(b, sum), filled_q(b, sum)));
   const Counts least_reading = least_of(least_of(pillar.s1.reading, pillar.s2.reading),
                                         least_of(pillar.s3.reading, pillar.s4.reading));
-  return (least_filled > -doubt) && (least_reading > PF_COUNTS(0));
+  return (least_filled > -margin) && (least_reading > PF_COUNTS(0));
 }
 
 /* The masks of a sensel as Bits. */
@@ -192,7 +192,7 @@ typedef struct {
   Bits usable;
   Bits saturated;
   Bits missing;
-  Bits lifted;
+  Bits inactive;
 } State;
 
 static inline State state_of(Sensel sensel) {
@@ -200,53 +200,54 @@ static inline State state_of(Sensel sensel) {
   state.usable = bits_of(sensel.usable);
   state.saturated = bits_of(sensel.saturated);
   state.missing = bits_of(sensel.missing);
-  state.lifted = ~(state.usable | state.saturated | state.missing);
+  state.inactive = ~(state.usable | state.saturated | state.missing);
   return state;
 }
 
-/* One of two opposite sensels is usable and the other lifted. */
-static inline Bits one_lifted_of(State p, State q) {
-  return (p.usable & q.lifted) | (p.lifted & q.usable);
+/* One of two opposite sensels is usable and the other inactive. */
+static inline Bits one_inactive_of(State p, State q) {
+  return (p.usable & q.inactive) | (p.inactive & q.usable);
 }
 
 /* The status byte, bits 0 to 6. Ambiguous are a force that is one of a segment, and a region that
- * is 1 or 2; what parity says of the latter is off by `doubt` counts at most. Two opposite sensels
- * usable while the other two are lifted contradict the model and are inconsistent. */
-static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts doubt) {
+ * is 1 or 2; what parity says of the latter is off by `margin` counts at most. Two opposite sensels
+ * usable while the other two are inactive contradict the model and are inconsistent. */
+static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts margin) {
   const State s1 = state_of(pillar.s1);
   const State s2 = state_of(pillar.s2);
   const State s3 = state_of(pillar.s3);
   const State s4 = state_of(pillar.s4);
   const Bits rising = s1.usable & s3.usable;
   const Bits falling = s2.usable & s4.usable;
-  const Bits three_usable = (rising & one_lifted_of(s2, s4)) | (falling & one_lifted_of(s1, s3));
+  const Bits three_usable =
+      (rising & one_inactive_of(s2, s4)) | (falling & one_inactive_of(s1, s3));
   const Bits one_or_two =
-      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.point, doubt));
+      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.point, margin));
   const Bits ambiguous = bits_of(sum.ambiguous) | one_or_two;
   const Bits saturated = s1.saturated | s2.saturated | s3.saturated | s4.saturated;
   const Bits missing = s1.missing | s2.missing | s3.missing | s4.missing;
-  const Bits at_odds = (rising & s2.lifted & s4.lifted) | (falling & s1.lifted & s3.lifted);
+  const Bits at_odds = (rising & s2.inactive & s4.inactive) | (falling & s1.inactive & s3.inactive);
   return (s1.usable & PF_BITS(PF_STATUS_SENSEL_1)) | (s2.usable & PF_BITS(PF_STATUS_SENSEL_2)) |
          (s3.usable & PF_BITS(PF_STATUS_SENSEL_3)) | (s4.usable & PF_BITS(PF_STATUS_SENSEL_4)) |
          (ambiguous & PF_BITS(PF_STATUS_AMBIGUOUS)) | (saturated & PF_BITS(PF_STATUS_SATURATED)) |
          ((missing | at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
 }
 
-/* Whether one of two opposite sensels is usable and the other lifted. */
-static inline Mask one_lifted(Sensel p, Sensel q) {
-  return (p.usable && is_lifted(q)) || (is_lifted(p) && q.usable);
+/* Whether one of two opposite sensels is usable and the other inactive. */
+static inline Mask one_inactive(Sensel p, Sensel q) {
+  return (p.usable && is_inactive(q)) || (is_inactive(p) && q.usable);
 }
 
 /* Whether a redundant reading disagrees by more than `tolerance` counts: with four usable, the
- * parity residual (D7); with three, what parity leaves for the lifted sensel beyond what its
+ * parity residual (D7); with three, what parity leaves for the inactive sensel beyond what its
  * silence can hide (D8). */
 static inline Mask fails_parity(Pillar pillar, ParitySum sum, Counts tolerance) {
   const Mask rising_usable = pillar.s1.usable && pillar.s3.usable;
   const Mask falling_usable = pillar.s2.usable && pillar.s4.usable;
   const Counts rising = pillar.s1.reading + pillar.s3.reading;
   const Counts falling = pillar.s2.reading + pillar.s4.reading;
-  const Mask rising_hides = falling_usable && one_lifted(pillar.s1, pillar.s3);
-  const Mask falling_hides = rising_usable && one_lifted(pillar.s2, pillar.s4);
+  const Mask rising_hides = falling_usable && one_inactive(pillar.s1, pillar.s3);
+  const Mask falling_hides = rising_usable && one_inactive(pillar.s2, pillar.s4);
   const Mask residual_fails = (rising - falling > tolerance) || (falling - rising > tolerance);
   return (rising_usable && falling_usable && residual_fails) ||
          (rising_hides && (sum.high - rising > tolerance)) ||

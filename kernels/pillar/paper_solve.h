@@ -69,7 +69,7 @@ static inline Angles paper_region_1(Ratios v) {
 }
 
 /* All but d: (9), then (5) with the sensel opposite d and that of its neighbours which differs more
- * from it (P2): the weaker one where d lifted, since b then reads most. Where d is missing the
+ * from it (P2): the weaker one where d inactive, since b then reads most. Where d is missing the
  * other one may read as much as b, and (5) is 0/0. */
 static inline Angles paper_region_2(Ratios v) {
   Angles angles;

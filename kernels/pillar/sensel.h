@@ -3,7 +3,7 @@
  * (docs/derivations/direct_solve.md, section 1). */
 
 /* A reading in counts and what it tells of the model's V. After `classify` at most one mask is set;
- * a sensel with none is lifted. */
+ * a sensel with none is inactive. */
 typedef struct {
   Counts reading;
   Mask usable;    /* V is the reading, which is above the threshold */
@@ -23,7 +23,7 @@ static inline Sensel raw_sensel(Counts raw) {
 
 #ifndef PF_WHOLE
 /* NaN, infinity and readings beyond `largest` count as missing; for float32 sensels. */
-static inline Sensel reject_absurd(Sensel sensel, Real largest) {
+static inline Sensel reject_out_of_range(Sensel sensel, Real largest) {
   sensel.missing = sensel.missing || !(fabs(sensel.reading) <= largest);
   return sensel;
 }
@@ -78,16 +78,16 @@ static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate)
 #endif
 
 /* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
- * others are lifted, and read the threshold, which is the most that their silence can hide; or
+ * others are inactive, and read the threshold, which is the most that their silence can hide; or
  * missing, and read zero. A saturated sensel that its calibration brings down to the threshold
  * tells nothing. */
 static inline Sensel classify(Sensel sensel, Counts threshold) {
   const Mask answers = (sensel.reading > threshold) && !sensel.missing;
-  const Mask tells_nothing = sensel.missing || (sensel.saturated && !answers);
-  sensel.missing = tells_nothing;
+  const Mask is_uninformative = sensel.missing || (sensel.saturated && !answers);
+  sensel.missing = is_uninformative;
   sensel.usable = answers && !sensel.saturated;
   sensel.saturated = answers && sensel.saturated;
-  sensel.reading = answers ? sensel.reading : (tells_nothing ? PF_COUNTS(0) : threshold);
+  sensel.reading = answers ? sensel.reading : (is_uninformative ? PF_COUNTS(0) : threshold);
   return sensel;
 }
 
@@ -95,23 +95,24 @@ static inline Sensel classify(Sensel sensel, Counts threshold) {
 /* A level such that every reading below it, in steps of `step` (1: whole readings, 0: any), is
  * silent after tare and gain: the highest but for rounding. It is found by the arithmetic of the
  * stages, which only rises with the reading. `lowest` where numbers are too large to tell. */
-static inline Real wake_level(Real tare, Real gain, Real threshold, Real step, Real lowest) {
+static inline Real activation_threshold(Real tare, Real gain, Real threshold, Real step,
+                                        Real lowest) {
   const Real silent = floor(tare + threshold / gain);
   const Real below = silent - PF_REAL(1.0);
-  const Mask is_silent = (silent - tare) * gain <= threshold;
-  const Mask is_silent_below = (below - tare) * gain <= threshold;
-  return is_silent ? silent + step : (is_silent_below ? below + step : lowest);
+  const Mask is_idle = (silent - tare) * gain <= threshold;
+  const Mask is_idle_below = (below - tare) * gain <= threshold;
+  return is_idle ? silent + step : (is_idle_below ? below + step : lowest);
 }
 #endif
 
 /* Gives back the `dead_zone` counts that a sensel swallows before it answers, and that the silence
- * of a lifted one can hide as well. */
+ * of a inactive one can hide as well. */
 static inline Sensel fill_dead_zone(Sensel sensel, Counts dead_zone) {
   sensel.reading = sensel.missing ? sensel.reading : sensel.reading + dead_zone;
   return sensel;
 }
 
 /* Silent and not missing: V is at most the reading, which is threshold and dead zone together. */
-static inline Mask is_lifted(Sensel sensel) {
+static inline Mask is_inactive(Sensel sensel) {
   return !(sensel.usable || sensel.saturated || sensel.missing);
 }

@@ -48,7 +48,7 @@ static inline DifferenceWeights difference_weights(Diagonal d) {
   return weights;
 }
 
-/* A lifted or missing sensel enters the estimate with a constant, which has no noise. */
+/* A inactive or missing sensel enters the estimate with a constant, which has no noise. */
 static inline Real variance_of(Sensel sensel, Real noise) {
   return is_pressed(sensel) ? noise * noise : PF_REAL(0.0);
 }
@@ -112,10 +112,10 @@ typedef struct {
   Real magnitude_high;
 } DirectionInterval;
 
-/* Whether both sensels are lifted, so that they share what parity leaves as they like. */
-static inline Mask is_loose(Sensel p, Sensel q) { return is_lifted(p) && is_lifted(q); }
+/* Whether both sensels are inactive, so that they share what parity leaves as they like. */
+static inline Mask is_loose(Sensel p, Sensel q) { return is_inactive(p) && is_inactive(q); }
 
-/* Whether both ends are the estimate: the parity sum is a point, and no two lifted sensels share
+/* Whether both ends are the estimate: the parity sum is a point, and no two inactive sensels share
  * it. */
 static inline Mask is_settled(Pillar pillar, ParitySum sum) {
   return !(sum.ambiguous || is_loose(pillar.s1, pillar.s3) || is_loose(pillar.s2, pillar.s4));
@@ -206,7 +206,7 @@ static inline Real size_at(DifferenceLine line, Real sum) {
 
 static inline Real signed_as(DifferenceLine line, Real size) { return line.turned ? -size : size; }
 
-/* The difference that two lifted sensels may have at most, either way (U5): zero, where the
+/* The difference that two inactive sensels may have at most, either way (U5): zero, where the
  * estimate is, lies between. */
 static inline Real most_difference(Real reading, Real sum) {
   return larger_of((reading + reading) - sum, PF_REAL(0.0));
@@ -224,7 +224,7 @@ static inline Real longest_shear(Evidence e, Real a_size, Real b_size) {
 
 /* The interval of a silent pillar about which nothing is known but how much it may hide (U8), or
  * that hides nothing. */
-static inline DirectionInterval silent_interval(Evidence e) {
+static inline DirectionInterval inactive_interval(Evidence e) {
   const Real zero = PF_REAL(0.0);
   const Mask hides = e.high > zero;
   const Real pi = hides ? PF_REAL(3.14159265358979323846) : zero;
@@ -260,7 +260,7 @@ static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real 
   return phi;
 }
 
-/* Between the ends of a line of forces, or of what two lifted sensels leave at the least sum. */
+/* Between the ends of a line of forces, or of what two inactive sensels leave at the least sum. */
 static inline PhiInterval phi_interval(Evidence e, Real a_flat, Real b_flat, Real a_steep,
                                        Real b_steep) {
   const Mask loose = e.a_loose || e.b_loose;
@@ -323,7 +323,7 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Evidence e = evidence_of(pillar, diagonals, sum, scale.normal);
   const Mask silent =
       e.a_loose && e.b_loose && (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
-  const DirectionInterval unless_open = either_interval(settled, point, silent_interval(e));
+  const DirectionInterval unless_open = either_interval(settled, point, inactive_interval(e));
   if (!any_lane(!(settled || silent))) return unless_open;
   return either_interval(settled || silent, unless_open, open_interval(e, estimate));
 }

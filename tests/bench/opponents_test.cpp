@@ -41,7 +41,7 @@ SolverPlan small_plan(std::uint32_t rows, std::uint32_t cols, double threshold) 
   return plan;
 }
 
-/// Bytes of which many are small, so that all patterns of usable and lifted sensels are there.
+/// Bytes of which many are small, so that all patterns of usable and inactive sensels are there.
 FrameBuffer random_frame(const Skin& skin, std::uint32_t seed) {
   std::mt19937 random(seed);
   FrameBuffer frame(SenselType::u8, skin.rows, skin.cols);
@@ -76,7 +76,7 @@ TEST_P(EveryOpponent, SolvesSkinsOfEveryWidth) {
   }
 }
 
-/// Of silent sensels under a threshold, and with what doubt, the status byte tells.
+/// Of silent sensels under a threshold, and with what margin, the status byte tells.
 TEST_P(EveryOpponent, SolvesWithThresholdAndNoise) {
   for (const double threshold : {1.0, 5.0, 11.0, 200.0, 254.0}) {
     for (const double noise : {-1.0, 0.0, 0.4, 3.0, 1000.0}) {

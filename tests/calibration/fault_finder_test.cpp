@@ -178,7 +178,7 @@ TEST(FaultFinder, TwoInAPillarAreSuspectedAndNotMasked) {
     for (const std::size_t sensel : {a, b}) {
       const SenselFinding* const finding = finding_at(result, sensel);
       ASSERT_NE(finding, nullptr);
-      EXPECT_EQ(finding->fault, SenselFault::undecided);
+      EXPECT_EQ(finding->fault, SenselFault::unknown);
       EXPECT_FALSE(finding->masked);
     }
     EXPECT_TRUE(result.calibration.planes.mask.empty());
@@ -201,7 +201,7 @@ TEST(FaultFinder, AStillSenselBesideAMissingOneIsSuspected) {
   }
   const FaultResult result = finder.result();
   ASSERT_EQ(result.findings.size(), 1U);
-  EXPECT_EQ(result.findings[0].fault, SenselFault::undecided);
+  EXPECT_EQ(result.findings[0].fault, SenselFault::unknown);
   EXPECT_EQ(result.calibration.planes.mask, calibration.planes.mask);
 }
 
@@ -229,7 +229,7 @@ TEST(FaultFinder, ConstantlyPressedAndIdleSenselsAreOnlyUntested) {
   EXPECT_FALSE(untested(29, 29)) << "under the ball";
 }
 
-/// A load that comes and goes, whose direction keeps sensels lifted all the time.
+/// A load that comes and goes, whose direction keeps sensels inactive all the time.
 TEST(FaultFinder, LegallyLiftedSenselsAreNeverMasked) {
   for (const double direction_deg : {0.0, 45.0, 100.0, 225.0, 290.0}) {
     for (const double friction : {0.9, 1.2, 3.0}) {

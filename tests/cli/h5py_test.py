@@ -10,7 +10,7 @@ from direct_oracle import sensels_of, solve
 
 
 def random_frames(random, frames, rows, cols, dtype):
-    """Readings of all regions: a third lifted; float32 also negative and missing ones."""
+    """Readings of all regions: a third inactive; float32 also negative and missing ones."""
     readings = random.uniform(0, 255, (frames, rows, cols))
     readings[random.random(readings.shape) < 0.33] = 0
     if dtype == np.float32:

@@ -299,7 +299,7 @@ TEST(ContactTracker, TakesContactsThatWereFound) {
     Patch patch(40, 60);
     patch.disc(10 + step, 12, 6).disc(25, 20 + 3 * step, 5).box(33, 40, 4, 9 - step);
     const FrameContacts& expected = finds.update(patch.view(), step);
-    ContactMap map;  // gone when the frame is taken
+    ContactLabels map;  // gone when the frame is taken
     map.find(patch.view().status, 40, 60);
     const FrameContacts& actual = takes.update(patch.view(), step, {&map, {}});
     map = {};
@@ -439,11 +439,11 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
   cut.normal = {};
   says([&] { tracker.update(cut, 1); }, "0 forces for 4 x 5 pillars");
   for (const auto& [rows, cols] : {std::pair{5U, 5U}, {4U, 6U}}) {
-    ContactMap map;
+    ContactLabels map;
     map.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
     says([&] { tracker.update(same.view(), 1, {&map, {}}); }, "of 4 x 5 pillars");
   }
-  const ContactMap none;
+  const ContactLabels none;
   const std::vector<ContactFriction> one(1);
   says([&] { tracker.update(same.view(), 1, {&none, one}); }, "1 frictions for 0 contacts");
 }

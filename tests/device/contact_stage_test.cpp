@@ -183,7 +183,7 @@ TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
     simulator.render(index, raw, truth);
     solver.submit(raw.view());
     const ForceFieldView forces = solver.receive();
-    ContactMap found;
+    ContactLabels found;
     found.find(forces.status, forces.rows, forces.cols);
     ASSERT_NE(solver.contacts().map, nullptr);
     EXPECT_GT(found.contacts(), 2U);

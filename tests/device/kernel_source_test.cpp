@@ -47,26 +47,30 @@ TEST(KernelSource, EveryWishOfAPlanIsAStage) {
   plan.uncertainty = true;
   plan.baseline_rate = 0.1;
   plan.skin.power_law = PowerLaw{0.9, 50};
-  const std::vector<std::string> expected = {
-      "load",        "reject_absurd", "mask",        "saturation", "tare",
-      "gain",        "power_law",     "classify",    "dead_zone",  "direct_solve",
-      "parity_test", "angles",        "uncertainty", "store",      "follow_baseline"};
+  const std::vector<std::string> expected = {"load",           "reject_out_of_range",
+                                             "mask",           "saturation",
+                                             "tare",           "gain",
+                                             "power_law",      "classify",
+                                             "dead_zone",      "direct_solve",
+                                             "parity_test",    "angles",
+                                             "uncertainty",    "store",
+                                             "follow_baseline"};
   EXPECT_EQ(kernel_stages(plan), expected);
 }
 
 TEST(KernelSource, TheDoubtIsFiveDeviationsOfThreeReadings) {
   SolverPlan plan = bare_plan(8, 8, SenselType::f32);
-  const auto doubt = [&] {
-    return std::strtof(macro(kernel_source(plan, 1), "PF_DOUBT").c_str(), nullptr);
+  const auto margin = [&] {
+    return std::strtof(macro(kernel_source(plan, 1), "PF_MARGIN").c_str(), nullptr);
   };
-  EXPECT_EQ(doubt(), 0) << "the noise is not known";
+  EXPECT_EQ(margin(), 0) << "the noise is not known";
   plan.noise_counts = 2;
-  EXPECT_FLOAT_EQ(doubt(), 5 * std::sqrt(3.0F) * 2);
+  EXPECT_FLOAT_EQ(margin(), 5 * std::sqrt(3.0F) * 2);
   plan.calibration.noise.assign(64, 4.0F);
-  EXPECT_FLOAT_EQ(doubt(), 5 * std::sqrt(3.0F) * 4);
+  EXPECT_FLOAT_EQ(margin(), 5 * std::sqrt(3.0F) * 4);
   plan.calibration.noise.clear();
   plan.sensel_type = SenselType::u8;
-  EXPECT_FLOAT_EQ(doubt(), 5 * std::sqrt(3.0F) * std::sqrt(4 + 1 / 12.0F));
+  EXPECT_FLOAT_EQ(margin(), 5 * std::sqrt(3.0F) * std::sqrt(4 + 1 / 12.0F));
 }
 
 TEST(KernelSource, ConstantsAreExact) {

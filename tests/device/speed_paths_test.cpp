@@ -91,7 +91,7 @@ void expect_all_bits(const ForceFieldView& actual, const ForceFieldView& expecte
   ASSERT_TRUE(std::ranges::equal(actual.status, expected.status)) << "status in frame " << frame;
 }
 
-constexpr SpeedPaths kPlain = {.skip_silent = false, .stores = Stores::cached};
+constexpr SpeedPaths kPlain = {.skip_idle = false, .stores = Stores::cached};
 
 /// Both ways through the same frames, two in flight, so that slots are used by turns.
 void expect_same(const Device& device, const SolverPlan& plan, int lanes, const SpeedPaths& paths,
@@ -132,18 +132,18 @@ class SpeedPathTest : public testing::TestWithParam<SpeedPath> {
 
 TEST_P(SpeedPathTest, SkippingSilentBlocksChangesNoBit) {
   expect_same(device_, quiet_plan(40, 2 * 53, GetParam().type), GetParam().lanes,
-              {.skip_silent = true, .stores = Stores::cached});
+              {.skip_idle = true, .stores = Stores::cached});
 }
 
 TEST_P(SpeedPathTest, StoresPastTheCachesChangeNoBit) {
   expect_same(device_, quiet_plan(40, 2 * 53, GetParam().type), GetParam().lanes,
-              {.skip_silent = false, .stores = Stores::streaming});
+              {.skip_idle = false, .stores = Stores::streaming});
 }
 
 TEST_P(SpeedPathTest, BothTogetherWithACopyOfTheResultsChangeNoBit) {
   SolverPlan plan = bare_plan(44, 2 * 39, GetParam().type);
   plan.skin.threshold_counts = 3;
-  expect_same(device_, plan, GetParam().lanes, {.skip_silent = true, .stores = Stores::streaming},
+  expect_same(device_, plan, GetParam().lanes, {.skip_idle = true, .stores = Stores::streaming},
               Memory::staged);
 }
 
@@ -153,7 +153,7 @@ TEST_P(SpeedPathTest, SilenceIsThatOfTheTareThatFollows) {
   plan.baseline_rate = 0.3;
   for (const int interval : {1, 3, 64}) {  // 64: more than there are rows
     plan.baseline_interval = interval;
-    expect_same(device_, plan, GetParam().lanes, {.skip_silent = true});
+    expect_same(device_, plan, GetParam().lanes, {.skip_idle = true});
   }
 }
 
@@ -173,7 +173,7 @@ TEST(SpeedPaths, ASilentBlockIsNotWrittenAgain) {
   SolverPlan plan = bare_plan(8, 2 * 64, SenselType::u8);
   plan.skin.threshold_counts = 3;
   for (const bool skip : {true, false}) {
-    Processor processor(device, plan, {.frames_in_flight = 1}, {.paths = {.skip_silent = skip}});
+    Processor processor(device, plan, {.frames_in_flight = 1}, {.paths = {.skip_idle = skip}});
     FrameBuffer frame(SenselType::u8, plan.skin.rows, plan.skin.cols);
     processor.submit(frame.view());
     const ForceFieldView forces = processor.receive();

@@ -127,7 +127,7 @@ TEST_F(WholeNumbers, EveryParityTolerance) {
   }
 }
 
-/// The doubt of 0.636 is a little more than 6 counts, by which readings 7, 7 and 20 differ.
+/// The margin of 0.636 is a little more than 6 counts, by which readings 7, 7 and 20 differ.
 TEST_F(WholeNumbers, EveryDoubt) {
   for (const double noise : {0.0, 0.1, 0.4, 0.636, 3.0, 20.0, 1e6}) {
     SCOPED_TRACE(noise);

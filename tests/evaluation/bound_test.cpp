@@ -36,9 +36,9 @@ double integrated_information(double deviations) {
     sum += kStep * (low + high) / 2;
   }
   const double spoken = sum / std::sqrt(2 * std::numbers::pi);
-  const auto log_silent = [](double d) { return std::log(std::erfc(d / std::numbers::sqrt2) / 2); };
-  const double slope = (log_silent(deviations + 1e-5) - log_silent(deviations - 1e-5)) / 2e-5;
-  return spoken + slope * slope * std::exp(log_silent(deviations));
+  const auto log_idle = [](double d) { return std::log(std::erfc(d / std::numbers::sqrt2) / 2); };
+  const double slope = (log_idle(deviations + 1e-5) - log_idle(deviations - 1e-5)) / 2e-5;
+  return spoken + slope * slope * std::exp(log_idle(deviations));
 }
 
 TEST(Information, IsTheExpectedSquareOfTheScore) {

@@ -161,14 +161,14 @@ TEST(FieldContacts, AreThoseOfTheSimulator) {
     const PillarLoads loads = loads_of(contact);
     const ForceField forces = simulated(contact, loads);
     // Of 100 counts; at the edge of a punch the pressure has no end.
-    const double doubt = std::map<Shape, double>{
+    const double margin = std::map<Shape, double>{
         {Shape::sphere, 0.03},
         {Shape::cylinder, 0.2},
         {Shape::punch, 2}}.at(shape);
     for (std::size_t i = 0; i < forces.pillars(); ++i) {
-      ASSERT_NEAR(loads.normal[i], forces.normal[i], doubt);
-      ASSERT_NEAR(loads.shear_x[i], forces.shear_x[i], doubt);
-      ASSERT_NEAR(loads.shear_y[i], forces.shear_y[i], doubt);
+      ASSERT_NEAR(loads.normal[i], forces.normal[i], margin);
+      ASSERT_NEAR(loads.shear_x[i], forces.shear_x[i], margin);
+      ASSERT_NEAR(loads.shear_y[i], forces.shear_y[i], margin);
     }
   }
 }

@@ -74,7 +74,7 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
       EXPECT_EQ(reader.info().segment_point, angles ? std::optional(0.75) : std::nullopt);
       EXPECT_EQ(reader.info().device, "a device \xc2\xb5");
       EXPECT_EQ(reader.info().source, "press.h5");
-      EXPECT_TRUE(reader.remarks().empty());
+      EXPECT_TRUE(reader.warnings().empty());
       ASSERT_EQ(reader.frames(), frames);
       ForceField read;
       for (std::uint64_t index = 0; index < frames; ++index) {

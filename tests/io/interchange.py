@@ -192,7 +192,7 @@ class Interchange(unittest.TestCase):
         subprocess.run([sys.executable, "-c", code], check=True, cwd=self.folder)
         lines = read(self.folder / "recording.h5")
         self.assertEqual(lines[0], ["recording", "8", "6", "uint8", "5"])
-        self.assertNotIn("remark", [line[0] for line in lines])
+        self.assertNotIn("warning", [line[0] for line in lines])
         with h5py.File(self.folder / "recording.h5", "r") as file:
             numpy.testing.assert_array_equal(values(lines, "raw"), file["frames/raw"][:].reshape(5, -1))
 
@@ -205,8 +205,8 @@ class Interchange(unittest.TestCase):
         command = re.search(r'python3 -c "(.*)"\n', FORMATS.read_text()).group(1)
         subprocess.run([sys.executable, "-c", command], check=True, cwd=self.folder)
         part, copy = (read(self.folder / name) for name in ("r.h5.part", "r.h5"))
-        self.assertEqual([line for line in part if line[0] != "remark"],
-                         [line for line in copy if line[0] != "remark"])
+        self.assertEqual([line for line in part if line[0] != "warning"],
+                         [line for line in copy if line[0] != "warning"])
         self.assertNotIn("not closed", str(copy))
 
 

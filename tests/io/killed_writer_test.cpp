@@ -128,8 +128,8 @@ TEST(KilledRecording, GivesEveryFlushedFrame) {
     EXPECT_EQ(directory.names(), Names{"r.h5.part"});
     const auto source = open_frames(directory / "r.h5.part");
     EXPECT_GE(source->frames(), flushed);
-    ASSERT_FALSE(source->remarks().empty());
-    EXPECT_TRUE(has_all(source->remarks()[0], {"not closed"}));
+    ASSERT_FALSE(source->warnings().empty());
+    EXPECT_TRUE(has_all(source->warnings()[0], {"not closed"}));
     expect_written_frames(*source);
   }
 }
@@ -199,7 +199,7 @@ TEST(KilledForces, GiveEveryFlushedFrame) {
                                                     16 + 32 * trial, number_at(trial, 1) % 3000);
     const ForceFileReader reader(directory / "f.h5.part");
     EXPECT_GE(reader.frames(), flushed);
-    ASSERT_EQ(reader.remarks().size(), 1u);
+    ASSERT_EQ(reader.warnings().size(), 1u);
     expect_written_frames(reader);
   }
 }

@@ -44,7 +44,7 @@ void print_header(const FrameSource& source) {
   print_values<float>("gain", calibration.gain);
   print_values<float>("dead_zone", calibration.dead_zone);
   print_values<std::uint8_t>("mask", calibration.mask);
-  for (const auto& remark : source.remarks()) std::printf("remark %s\n", remark.c_str());
+  for (const auto& warning : source.warnings()) std::printf("warning %s\n", warning.c_str());
 }
 
 void print_all(const char* path) {

@@ -333,8 +333,8 @@ TEST(RecordingDefaults, StandInForWhatIsMissingAndAreRemarked) {
   EXPECT_FALSE(source->skin().full_scale_counts.has_value());
   EXPECT_FALSE(source->has_truth());
   EXPECT_TRUE(source->calibration().empty());
-  ASSERT_EQ(source->remarks().size(), 3u);
-  EXPECT_TRUE(has_all(source->remarks()[1], {"counts_per_newton", "320"}));
+  ASSERT_EQ(source->warnings().size(), 3u);
+  EXPECT_TRUE(has_all(source->warnings()[1], {"counts_per_newton", "320"}));
 }
 
 TEST(RecordingLengths, TheSmallestCounts) {
@@ -349,8 +349,8 @@ TEST(RecordingLengths, TheSmallestCounts) {
   });
   const auto source = open_frames(path);
   EXPECT_EQ(source->frames(), 3u);
-  ASSERT_EQ(source->remarks().size(), 1u);
-  EXPECT_TRUE(has_all(source->remarks()[0], {"first 3"}));
+  ASSERT_EQ(source->warnings().size(), 1u);
+  EXPECT_TRUE(has_all(source->warnings()[0], {"first 3"}));
 }
 
 TEST(RecordingDamage, ATruncatedFileIsAnErrorAtEveryLength) {

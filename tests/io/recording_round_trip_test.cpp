@@ -171,10 +171,10 @@ TEST(RecordingRoundTrip, RemarksOnRowsAndColumnsWithoutPillars) {
   RecordingWriter writer(directory / "r.h5", skin_of(5, 7), SenselType::u8, {}, {});
   writer.append(FrameBuffer(SenselType::u8, 5, 7).view(), 0);
   writer.finish();
-  const auto remarks = open_frames(directory / "r.h5")->remarks();
-  ASSERT_EQ(remarks.size(), 2u);
-  EXPECT_TRUE(has_all(remarks[0], {"5", "row"}));
-  EXPECT_TRUE(has_all(remarks[1], {"7", "column"}));
+  const auto warnings = open_frames(directory / "r.h5")->warnings();
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_TRUE(has_all(warnings[0], {"5", "row"}));
+  EXPECT_TRUE(has_all(warnings[1], {"7", "column"}));
 }
 
 TEST(RecordingWriter, LeavesTheOldFileUntilItIsFinished) {

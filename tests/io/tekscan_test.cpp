@@ -104,9 +104,9 @@ class Tekscan : public testing::Test {
     return all;
   }
 
-  static bool remarks(const FrameSource& source, const std::string& part) {
-    return std::ranges::any_of(source.remarks(), [&](const std::string& remark) {
-      return remark.find(part) != std::string::npos;
+  static bool warnings(const FrameSource& source, const std::string& part) {
+    return std::ranges::any_of(source.warnings(), [&](const std::string& warning) {
+      return warning.find(part) != std::string::npos;
     });
   }
 
@@ -127,8 +127,8 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->skin().full_scale_counts, 255);
   EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
-  EXPECT_TRUE(remarks(*source, "counts a newton"));
-  EXPECT_TRUE(remarks(*source, "last of the 3 sensel rows"));
+  EXPECT_TRUE(warnings(*source, "counts a newton"));
+  EXPECT_TRUE(warnings(*source, "last of the 3 sensel rows"));
   EXPECT_FALSE(source->has_truth());
   EXPECT_TRUE(source->calibration().empty());
 }
@@ -170,7 +170,7 @@ TEST_F(Tekscan, MasksSenselsThatAnyFrameLacks) {
   EXPECT_EQ(source->calibration().mask, mask);
   written.frames[0][0] = written.frames[1][0] = written.frames[1][5] = 0;
   EXPECT_EQ(readings(*source), written.frames);
-  EXPECT_TRUE(remarks(*source, "2 of 12 places hold no sensel"));
+  EXPECT_TRUE(warnings(*source, "2 of 12 places hold no sensel"));
 }
 
 TEST_F(Tekscan, WidensToSixteenBitsAnywhere) {
@@ -220,7 +220,7 @@ TEST_F(Tekscan, RemarksOnUnequalSpacingAndKeepsTheArea) {
   written.set("ROW_SPACING", "ROW_SPACING 2 mm");
   const auto source = open(written.text());
   EXPECT_DOUBLE_EQ(source->skin().sensel_pitch_mm, 1);
-  EXPECT_TRUE(remarks(*source, "Rows are 2 mm apart and columns 0.5 mm"));
+  EXPECT_TRUE(warnings(*source, "Rows are 2 mm apart and columns 0.5 mm"));
 }
 
 TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
@@ -230,9 +230,9 @@ TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
     written.remove(key);
   }
   const auto source = open(written.text());
-  EXPECT_TRUE(remarks(*source, "no spacing"));
-  EXPECT_TRUE(remarks(*source, "no times"));
-  EXPECT_TRUE(remarks(*source, "no UNITS"));
+  EXPECT_TRUE(warnings(*source, "no spacing"));
+  EXPECT_TRUE(warnings(*source, "no times"));
+  EXPECT_TRUE(warnings(*source, "no UNITS"));
   EXPECT_EQ(source->skin().threshold_counts, 0);
   EXPECT_EQ(times(*source), (std::vector<double>{0, 1}));
 }
@@ -240,7 +240,7 @@ TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
 TEST_F(Tekscan, RemarksOnFramesThatAreAnnouncedAndNotThere) {
   Export written;
   written.set("END_FRAME", "END_FRAME 9");
-  EXPECT_TRUE(remarks(*open(written.text()), "announces 9 frames, and the file holds 2"));
+  EXPECT_TRUE(warnings(*open(written.text()), "announces 9 frames, and the file holds 2"));
 }
 
 TEST_F(Tekscan, PrefersTheTimesOfTheFrames) {

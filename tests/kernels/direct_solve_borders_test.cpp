@@ -43,11 +43,12 @@ TYPED_TEST(DirectSolveBorders, RegionOneToTwoAtEverySensel) {
   using Real = RealOf<TypeParam>;
   for (std::size_t lifting = 0; lifting < 4; ++lifting) {
     const auto pressed = TestFixture::turned({TestFixture::kLeast, 40, 100, 60}, lifting);
-    const auto lifted = TestFixture::turned({0, 40, 100, 60}, lifting);
+    const auto inactive = TestFixture::turned({0, 40, 100, 60}, lifting);
     const auto pulled = TestFixture::turned({-Real{1}, 40, 100, 60}, lifting);
-    EXPECT_LE(TestFixture::distance(TestFixture::force_of(pressed), TestFixture::force_of(lifted)),
-              1000 * TestFixture::kUlp);
-    EXPECT_EQ(TestFixture::distance(TestFixture::force_of(pulled), TestFixture::force_of(lifted)),
+    EXPECT_LE(
+        TestFixture::distance(TestFixture::force_of(pressed), TestFixture::force_of(inactive)),
+        1000 * TestFixture::kUlp);
+    EXPECT_EQ(TestFixture::distance(TestFixture::force_of(pulled), TestFixture::force_of(inactive)),
               0);
   }
 }
@@ -58,16 +59,16 @@ TYPED_TEST(DirectSolveBorders, RegionOneToTwoAtAThreshold) {
   for (std::size_t lifting = 0; lifting < 4; ++lifting) {
     const Real above = std::nextafter(threshold, Real{11});
     const auto usable = TestFixture::turned({above, 40, 90, 60}, lifting);
-    const auto lifted = TestFixture::turned({threshold, 40, 90, 60}, lifting);
+    const auto inactive = TestFixture::turned({threshold, 40, 90, 60}, lifting);
     EXPECT_LE(TestFixture::distance(TestFixture::force_of(usable, threshold),
-                                    TestFixture::force_of(lifted, threshold)),
+                                    TestFixture::force_of(inactive, threshold)),
               1000 * TestFixture::kUlp);
   }
 }
 
 TYPED_TEST(DirectSolveBorders, RegionTwoMeetsTheEndOfRegionThree) {
   for (std::size_t first = 0; first < 4; ++first) {
-    // Sensels 1 and 2 pressed, 4 lifted, 3 about to lift.
+    // Sensels 1 and 2 pressed, 4 inactive, 3 about to lift.
     const auto in_two = TestFixture::turned({70, 90, TestFixture::kLeast, 0}, first);
     const auto in_three = TestFixture::turned({70, 90, 0, 0}, first);
     const auto segment = solve<TypeParam>(pillar_of<TypeParam>(in_three), 1);

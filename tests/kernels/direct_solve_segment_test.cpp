@@ -91,7 +91,7 @@ double sum_of(const PillarOf<Precision>& pillar, double segment_point) {
 TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheMiddleElsewhere) {
   using Real = RealOf<TypeParam>;
   const auto usable = TypeParam::raw_sensel(40);
-  const auto lifted = TypeParam::raw_sensel(0);
+  const auto inactive = TypeParam::raw_sensel(0);
   const auto missing = apply_mask(TypeParam::raw_sensel(40), Real{0});
   const auto saturated = mark_saturated(TypeParam::raw_sensel(60), Real{60});
   const auto at = [&](auto one, auto two, auto three, auto four, double segment_point) {
@@ -101,20 +101,20 @@ TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheM
     return sum_of<TypeParam>(pillar, segment_point);
   };
   for (const double part : {0.25, 0.5, 0.875, 1.0}) {
-    EXPECT_EQ(at(usable, usable, lifted, lifted, part), part * 44);
-    EXPECT_EQ(at(saturated, saturated, lifted, lifted, part), part * 64);
-    EXPECT_EQ(at(usable, saturated, lifted, lifted, part), part * 44);
+    EXPECT_EQ(at(usable, usable, inactive, inactive, part), part * 44);
+    EXPECT_EQ(at(saturated, saturated, inactive, inactive, part), part * 64);
+    EXPECT_EQ(at(usable, saturated, inactive, inactive, part), part * 44);
     // One is missing: the other diagonal bounds the sum.
-    EXPECT_EQ(at(usable, usable, missing, lifted, part), part * 44);
-    EXPECT_EQ(at(usable, lifted, lifted, missing, part), part * 44);
+    EXPECT_EQ(at(usable, usable, missing, inactive, part), part * 44);
+    EXPECT_EQ(at(usable, inactive, inactive, missing, part), part * 44);
     // Thresholds alone, or the smallest force, set the end of the others.
-    EXPECT_EQ(at(usable, lifted, lifted, lifted, part), 4);
-    EXPECT_EQ(at(usable, lifted, missing, lifted, part), 4);
+    EXPECT_EQ(at(usable, inactive, inactive, inactive, part), 4);
+    EXPECT_EQ(at(usable, inactive, missing, inactive, part), 4);
     EXPECT_NEAR(at(usable, usable, missing, missing, part), 160 / 3.0, 1e-4);
     // The force is determined.
-    EXPECT_EQ(at(usable, usable, usable, lifted, part), 80);
-    EXPECT_EQ(at(usable, lifted, usable, lifted, part), 80);
-    EXPECT_EQ(at(lifted, lifted, lifted, lifted, part), 0);
+    EXPECT_EQ(at(usable, usable, usable, inactive, part), 80);
+    EXPECT_EQ(at(usable, inactive, usable, inactive, part), 80);
+    EXPECT_EQ(at(inactive, inactive, inactive, inactive, part), 0);
   }
 }
 

@@ -1,4 +1,4 @@
-// Every combination of usable, lifted, missing and saturated sensels has an answer and a status,
+// Every combination of usable, inactive, missing and saturated sensels has an answer and a status,
 // and the answer explains the readings.
 
 #include <gtest/gtest.h>
@@ -29,14 +29,14 @@ constexpr std::array<Pattern, 16> kPatterns = {{
     {"region 4, sensel 3", {0, 0, 1, 0}, 0},
     {"opposite, rising", {1, 0, 1, 0}, status::kInconsistent},
     {"region 3, left two", {0, 1, 1, 0}, status::kAmbiguous},
-    {"region 2, sensel 4 lifted", {1, 1, 1, 0}, 0},
+    {"region 2, sensel 4 inactive", {1, 1, 1, 0}, 0},
     {"region 4, sensel 4", {0, 0, 0, 1}, 0},
     {"region 3, right two", {1, 0, 0, 1}, status::kAmbiguous},
     {"opposite, falling", {0, 1, 0, 1}, status::kInconsistent},
-    {"region 2, sensel 3 lifted", {1, 1, 0, 1}, 0},
+    {"region 2, sensel 3 inactive", {1, 1, 0, 1}, 0},
     {"region 3, lower two", {0, 0, 1, 1}, status::kAmbiguous},
-    {"region 2, sensel 2 lifted", {1, 0, 1, 1}, 0},
-    {"region 2, sensel 1 lifted", {0, 1, 1, 1}, 0},
+    {"region 2, sensel 2 inactive", {1, 0, 1, 1}, 0},
+    {"region 2, sensel 1 inactive", {0, 1, 1, 1}, 0},
     {"region 1", {1, 1, 1, 1}, 0},
 }};
 
@@ -49,10 +49,10 @@ class DirectSolveStates : public testing::Test {
     return force.shear_x == 0 && force.shear_y == 0 && force.normal == 0;
   }
 
-  /// States that a pillar with these readings can have: lifted where they are not positive.
+  /// States that a pillar with these readings can have: inactive where they are not positive.
   static bool fit(const States& states, const FourReadings<Precision>& readings) {
     for (std::size_t n = 0; n < 4; ++n) {
-      if (states[n] != missing && (states[n] == lifted) != (readings[n] <= 0)) return false;
+      if (states[n] != missing && (states[n] == inactive) != (readings[n] <= 0)) return false;
     }
     return true;
   }
@@ -83,7 +83,7 @@ class DirectSolveStates : public testing::Test {
         case usable:
           EXPECT_NEAR(implies, readings[n], rounding);
           break;
-        case lifted:
+        case inactive:
           EXPECT_LE(implies, rounding);
           break;
         case saturated:
@@ -134,8 +134,8 @@ TYPED_TEST(DirectSolveStates, OneSenselAloneIsShearAlongItsDiagonal) {
 
 /// The status bits of a pillar in these states, but for the ambiguous one.
 int expected_status(const States& states) {
-  static constexpr States kRisingAlone = {usable, lifted, usable, lifted};
-  static constexpr States kFallingAlone = {lifted, usable, lifted, usable};
+  static constexpr States kRisingAlone = {usable, inactive, usable, inactive};
+  static constexpr States kFallingAlone = {inactive, usable, inactive, usable};
   int bits = 0;
   for (std::size_t n = 0; n < 4; ++n) {
     if (states[n] == usable) bits |= 1 << n;
@@ -186,18 +186,18 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
       TestFixture::expect_explained(solved.force, states, shown);
     }
   }
-  // A diagonal that is lifted at both ends has no parity sum above zero: no force has that.
+  // A diagonal that is inactive at both ends has no parity sum above zero: no force has that.
   for (std::size_t c = 0; c < seen.size(); ++c) {
     const States& states = all[c];
-    const bool impossible = (states[0] == lifted && states[2] == lifted) ||
-                            (states[1] == lifted && states[3] == lifted);
+    const bool impossible = (states[0] == inactive && states[2] == inactive) ||
+                            (states[1] == inactive && states[3] == inactive);
     EXPECT_EQ(seen[c] == 0, impossible) << name_of(states);
   }
 }
 
 TYPED_TEST(DirectSolveStates, ABoundedParitySumHoldsTheTruth) {
   const auto bounded = [](const States& states) {
-    const auto tells = [&](std::size_t n) { return states[n] == usable || states[n] == lifted; };
+    const auto tells = [&](std::size_t n) { return states[n] == usable || states[n] == inactive; };
     const bool measured = std::ranges::count(states, saturated) == 0;
     return measured && ((tells(0) && tells(2)) || (tells(1) && tells(3)));
   };
@@ -248,7 +248,7 @@ TYPED_TEST(DirectSolveStates, SaturatedSenselsNeverReadLessThanFullScale) {
     return solve<TypeParam>(pillar_in<TypeParam>(states, readings), 1).sum;
   };
   // A lone diagonal at full scale: the sum is at least its two readings.
-  EXPECT_EQ(at({saturated, lifted, usable, lifted}, {255, 0, 40, 0}).low, 295);
+  EXPECT_EQ(at({saturated, inactive, usable, inactive}, {255, 0, 40, 0}).low, 295);
   // Two on one side: the diagonal with more decides, and leaves more for the other.
   EXPECT_EQ(at({saturated, usable, usable, saturated}, {255, 140, 100, 255}).low, 395);
   // A saturated reading that equals what parity leaves changes nothing.
@@ -262,7 +262,7 @@ TYPED_TEST(DirectSolveStates, NothingBoundsTheSmallestForce) {
                       static_cast<double>(force.normal));
   };
   for (const States& states :
-       {States{usable, usable, missing, missing}, States{usable, lifted, missing, missing},
+       {States{usable, usable, missing, missing}, States{usable, inactive, missing, missing},
         States{missing, missing, usable, missing}}) {
     SCOPED_TRACE(name_of(states));
     const auto solved = solve<TypeParam>(pillar_in<TypeParam>(states, {90, 60, 30, 10}), 1);
@@ -279,7 +279,7 @@ TYPED_TEST(DirectSolveStates, NothingBoundsTheSmallestForce) {
 TYPED_TEST(DirectSolveStates, UnequalDeadZonesAloneAreNoContact) {
   using Real = RealOf<TypeParam>;
   const auto silent = [](Real dead_zone) {
-    return fill_dead_zone(sensel_in<TypeParam>(lifted, 0), dead_zone);
+    return fill_dead_zone(sensel_in<TypeParam>(inactive, 0), dead_zone);
   };
   const auto gone = sensel_in<TypeParam>(missing, 9);
   for (const auto& pillar : {PillarOf<TypeParam>{silent(1), silent(2), silent(3), silent(4)},
@@ -304,7 +304,8 @@ TYPED_TEST(DirectSolveStates, HostileReadingsAreMissingOrHarmless) {
                                         Limits::min(),
                                         static_cast<Real>(1e33)};
   const auto sensel = [](Real raw) {
-    return classify(reject_absurd(TypeParam::raw_sensel(raw), static_cast<Real>(1e33)), Real{0});
+    return classify(reject_out_of_range(TypeParam::raw_sensel(raw), static_cast<Real>(1e33)),
+                    Real{0});
   };
   for (std::size_t i = 0; i < 10'000; ++i) {
     const auto solved = solve<TypeParam>({sensel(hostile[i % 10]), sensel(hostile[i / 10 % 10]),

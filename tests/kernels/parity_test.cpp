@@ -1,4 +1,4 @@
-// The two tests of consistency: the parity residual, and the surplus of a lifted sensel.
+// The two tests of consistency: the parity residual, and the surplus of a inactive sensel.
 
 #include <gtest/gtest.h>
 
@@ -75,10 +75,10 @@ TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
 
 TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
   using Real = RealOf<TypeParam>;
-  const auto open = [](const PillarOf<TypeParam>& pillar, Real doubt) {
+  const auto open = [](const PillarOf<TypeParam>& pillar, Real margin) {
     const auto diagonals = pillar_diagonals(pillar);
     return (direct_status(pillar, diagonals,
-                          parity_sum(diagonals, static_cast<Real>(kSegmentPoint)), doubt) &
+                          parity_sum(diagonals, static_cast<Real>(kSegmentPoint)), margin) &
             status::kAmbiguous) != 0;
   };
   for (std::size_t turns = 0; turns < 4; ++turns) {
@@ -88,7 +88,7 @@ TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
     // Parity leaves 44 - 41 = 3 counts for sensel 1, then -3.
     EXPECT_TRUE(open(under(41, 5), 0));
     EXPECT_FALSE(open(under(47, 5), 0));
-    EXPECT_FALSE(open(under(47, 5), 3)) << "at the doubt, not within it";
+    EXPECT_FALSE(open(under(47, 5), 3)) << "at the margin, not within it";
     EXPECT_TRUE(open(under(47, 5), Real{3.25}));
     EXPECT_FALSE(open(under(41, 0), 9)) << "silence hides nothing here";
   }
@@ -101,8 +101,8 @@ TYPED_TEST(Parity, NothingRedundantNeverFails) {
   for (const States& states : all_states()) {
     const auto pillar = pillar_in<TypeParam>(states, {100, 1, 90, 2});
     const auto usable = std::ranges::count(states, State::usable);
-    const auto lifted = std::ranges::count(states, State::lifted);
-    const bool redundant = usable == 4 || (usable == 3 && lifted == 1);
+    const auto inactive = std::ranges::count(states, State::inactive);
+    const bool redundant = usable == 4 || (usable == 3 && inactive == 1);
     if (!redundant) {
       EXPECT_FALSE(TestFixture::fails(pillar, Real{0})) << name_of(states);
     }

@@ -11,9 +11,9 @@
 /// Pillars to test with: sensels in any state, solved, and random ones.
 namespace pillarfield {
 
-enum class State { usable, lifted, missing, saturated };
+enum class State { usable, inactive, missing, saturated };
 
-inline constexpr std::array<State, 4> kStates = {State::usable, State::lifted, State::missing,
+inline constexpr std::array<State, 4> kStates = {State::usable, State::inactive, State::missing,
                                                  State::saturated};
 
 using States = std::array<State, 4>;
@@ -27,9 +27,10 @@ inline std::array<States, 256> all_states() {
   return all;
 }
 
-/// "usable lifted missing saturated", say.
+/// "usable inactive missing saturated", say.
 inline std::string name_of(const States& states) {
-  static constexpr std::array<const char*, 4> kNames = {"usable", "lifted", "missing", "saturated"};
+  static constexpr std::array<const char*, 4> kNames = {"usable", "inactive", "missing",
+                                                        "saturated"};
   std::string name;
   for (const State state : states) {
     name += std::string(name.empty() ? "" : " ") + kNames[static_cast<std::size_t>(state)];
@@ -41,7 +42,7 @@ inline std::string name_of(const States& states) {
 template <class Precision>
 SenselOf<Precision> sensel_in(State state, RealOf<Precision> reading) {
   using Real = RealOf<Precision>;
-  const auto raw = Precision::raw_sensel(state == State::lifted ? Real{0} : reading);
+  const auto raw = Precision::raw_sensel(state == State::inactive ? Real{0} : reading);
   if (state == State::missing) return classify(apply_mask(raw, Real{0}), Real{0});
   if (state == State::saturated) return classify(mark_saturated(raw, reading), Real{0});
   return classify(raw, Real{0});
@@ -57,7 +58,7 @@ PillarOf<Precision> pillar_in(const States& states, const FourReadings<Precision
       sensel_in<Precision>(states[2], readings[2]), sensel_in<Precision>(states[3], readings[3])};
 }
 
-/// Readings above `threshold` are usable and the others lifted.
+/// Readings above `threshold` are usable and the others inactive.
 template <class Precision>
 PillarOf<Precision> pillar_of(const FourReadings<Precision>& readings,
                               RealOf<Precision> threshold = 0) {

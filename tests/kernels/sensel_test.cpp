@@ -21,23 +21,23 @@ class SenselStages : public testing::Test {
     return std::nextafter(x, -std::numeric_limits<RealOf<Precision>>::infinity());
   }
 
-  static void expect_lifted(const SenselOf<Precision>& sensel, RealOf<Precision> reading = 0) {
-    EXPECT_TRUE(is_lifted(sensel));
+  static void expect_inactive(const SenselOf<Precision>& sensel, RealOf<Precision> reading = 0) {
+    EXPECT_TRUE(is_inactive(sensel));
     EXPECT_EQ(sensel.reading, reading);
   }
   static void expect_missing(const SenselOf<Precision>& sensel) {
     EXPECT_TRUE(sensel.missing);
-    EXPECT_FALSE(sensel.usable | sensel.saturated | is_lifted(sensel));
+    EXPECT_FALSE(sensel.usable | sensel.saturated | is_inactive(sensel));
     EXPECT_EQ(sensel.reading, 0);
   }
   static void expect_usable(const SenselOf<Precision>& sensel, RealOf<Precision> reading) {
     EXPECT_TRUE(sensel.usable);
-    EXPECT_FALSE(sensel.missing | sensel.saturated | is_lifted(sensel));
+    EXPECT_FALSE(sensel.missing | sensel.saturated | is_inactive(sensel));
     EXPECT_EQ(sensel.reading, reading);
   }
   static void expect_saturated(const SenselOf<Precision>& sensel, RealOf<Precision> reading) {
     EXPECT_TRUE(sensel.saturated);
-    EXPECT_FALSE(sensel.missing | sensel.usable | is_lifted(sensel));
+    EXPECT_FALSE(sensel.missing | sensel.usable | is_inactive(sensel));
     EXPECT_EQ(sensel.reading, reading);
   }
 };
@@ -60,13 +60,13 @@ TYPED_TEST(SenselStages, AbsurdReadingsAreMissing) {
       Limits::max(),       -Limits::max(),       TestFixture::above(largest)};
   for (const Real raw : absurd) {
     TestFixture::expect_missing(
-        classify(reject_absurd(TypeParam::raw_sensel(raw), largest), Real{0}));
+        classify(reject_out_of_range(TypeParam::raw_sensel(raw), largest), Real{0}));
   }
   TestFixture::expect_usable(
-      classify(reject_absurd(TypeParam::raw_sensel(largest), largest), Real{0}), largest);
+      classify(reject_out_of_range(TypeParam::raw_sensel(largest), largest), Real{0}), largest);
   for (const Real raw : {-largest, Real{-1}, Real{0}, -Limits::denorm_min()}) {
-    TestFixture::expect_lifted(
-        classify(reject_absurd(TypeParam::raw_sensel(raw), largest), Real{0}));
+    TestFixture::expect_inactive(
+        classify(reject_out_of_range(TypeParam::raw_sensel(raw), largest), Real{0}));
   }
 }
 
@@ -74,8 +74,8 @@ TYPED_TEST(SenselStages, AThresholdIsNotAboveItselfAndHidesUnderSilence) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   for (const Real threshold : {Real{0}, Limits::denorm_min(), Real{3}, Real{250.5}}) {
-    TestFixture::expect_lifted(classify(TypeParam::raw_sensel(threshold), threshold), threshold);
-    TestFixture::expect_lifted(
+    TestFixture::expect_inactive(classify(TypeParam::raw_sensel(threshold), threshold), threshold);
+    TestFixture::expect_inactive(
         classify(TypeParam::raw_sensel(TestFixture::below(threshold)), threshold), threshold);
     const Real more = TestFixture::above(threshold);
     TestFixture::expect_usable(classify(TypeParam::raw_sensel(more), threshold), more);
@@ -97,7 +97,7 @@ TYPED_TEST(SenselStages, FullScaleAndMoreIsSaturated) {
   TestFixture::expect_saturated(sensel(full), full);
   TestFixture::expect_saturated(sensel(TestFixture::above(full)), TestFixture::above(full));
   TestFixture::expect_usable(sensel(TestFixture::below(full)), TestFixture::below(full));
-  TestFixture::expect_lifted(sensel(0));
+  TestFixture::expect_inactive(sensel(0));
 }
 
 TYPED_TEST(SenselStages, AMissingSenselIsNotSaturated) {
@@ -110,9 +110,9 @@ TYPED_TEST(SenselStages, TareAndGainApplyInTheirOrder) {
   using Real = RealOf<TypeParam>;
   const auto sensel = apply_gain(subtract_tare(TypeParam::raw_sensel(30), Real{10}), Real{1.5});
   TestFixture::expect_usable(classify(sensel, Real{29}), 30);
-  TestFixture::expect_lifted(classify(sensel, Real{30}), 30);
+  TestFixture::expect_inactive(classify(sensel, Real{30}), 30);
   const auto unloaded = subtract_tare(TypeParam::raw_sensel(8), Real{10});
-  TestFixture::expect_lifted(classify(unloaded, Real{0}));
+  TestFixture::expect_inactive(classify(unloaded, Real{0}));
 }
 
 TYPED_TEST(SenselStages, APowerLawStraightensToItsAccuracy) {
@@ -181,7 +181,7 @@ TYPED_TEST(SenselStages, ADeadZoneIsGivenBackAndHidesUnderSilence) {
   const auto filled = [](const Sensel& sensel) { return fill_dead_zone(sensel, Real{4}); };
   TestFixture::expect_usable(filled(classify(TypeParam::raw_sensel(3), Real{2})), 7);
   TestFixture::expect_saturated(filled(sensel_in<TypeParam>(State::saturated, 255)), 259);
-  TestFixture::expect_lifted(filled(classify(TypeParam::raw_sensel(2), Real{2})), 6);
+  TestFixture::expect_inactive(filled(classify(TypeParam::raw_sensel(2), Real{2})), 6);
   TestFixture::expect_missing(filled(sensel_in<TypeParam>(State::missing, 9)));
 }
 

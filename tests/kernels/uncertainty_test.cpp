@@ -274,7 +274,7 @@ Reached scan(const std::array<double, 4>& readings, const Ends<Double>& ends) {
 }
 
 TEST(DirectionIntervals, EndWhereTheExplanationsEnd) {
-  const std::array<std::array<double, 4>, 7> silent_somewhere = {{
+  const std::array<std::array<double, 4>, 7> idle_somewhere = {{
       {30, 40, 0, 0},
       {0, 50, 21, 0},
       {38, 0, 0, 38},
@@ -283,7 +283,7 @@ TEST(DirectionIntervals, EndWhereTheExplanationsEnd) {
       {0, 0, 0, 200},
       {0, 0, 0, 0},
   }};
-  for (const auto& readings : silent_somewhere) {
+  for (const auto& readings : idle_somewhere) {
     SCOPED_TRACE(testing::Message()
                  << readings[0] << ' ' << readings[1] << ' ' << readings[2] << ' ' << readings[3]);
     const Ends<Double> ends(hiding_pillar<Double>(readings));

@@ -9,6 +9,7 @@ LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simula
           "device", "io", "pipeline", "testbed", "cli"]
 # Public headers without a source file of their name.
 HEADER_MODULES = {"version": "base", "body": "simulation", "contact": "simulation", "scene": "simulation", "friction": "solve",
+                  "host_solve": "solve",
                   "read_options": "io", "recording": "io", "force_file": "io", "contact_file": "io"}
 
 

@@ -31,8 +31,8 @@ TEST(RegionLabels, StandInTheirRegions) {
   for (const RegionLabel& label : kRegionLabels) {
     const std::string_view name = label.name;
     for (int n = 1; n <= 4; ++n) {
-      const bool lifted = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
-      EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) <= 0, lifted) << name << ' ' << n;
+      const bool inactive = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
+      EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) <= 0, inactive) << name << ' ' << n;
     }
   }
 }
@@ -41,8 +41,9 @@ TEST(RegionLabels, CornersHaveOneReading) {
   for (const RegionLabel& label : kCornerLabels) {
     const std::string_view name = label.name;
     for (int n = 1; n <= 4; ++n) {
-      const bool lifted = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
-      EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) < 1e-9, lifted) << name << ' ' << n;
+      const bool inactive = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
+      EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) < 1e-9, inactive)
+          << name << ' ' << n;
     }
   }
 }

@@ -56,9 +56,9 @@ Opened open_source(const Options& options, double scale) {
     producer = open_producer(options.source, producer_options(options),
                              [&](double share) { progress.tell(share); });
   }
-  for (const std::string& remark : producer->info().remarks) {
+  for (const std::string& warning : producer->info().warnings) {
     fmt::print(stderr, "pillarfield-viewer: {}\n",
-               printable(fmt::format("{}: {}", producer->info().name, remark)));
+               printable(fmt::format("{}: {}", producer->info().name, warning)));
   }
   Opened opened;
   opened.look = first_look(options, *producer, scale);

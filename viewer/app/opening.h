@@ -17,7 +17,7 @@ struct Opened {
 /// terminal.
 [[nodiscard]] ProducerOptions producer_options(const Options& options);
 
-/// Opens the source of the options; on a terminal, tells how far a scene is simulated. Remarks of
+/// Opens the source of the options; on a terminal, tells how far a scene is simulated. Warnings of
 /// the source go to standard error. Throws Error.
 [[nodiscard]] Opened open_source(const Options& options, double scale);
 

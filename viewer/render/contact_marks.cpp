@@ -172,10 +172,10 @@ void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const S
   for (const ContactMark& mark : marks) brush.outline(mark);
   for (const ContactMark& mark : marks) brush.force(mark);
   write_words(brush, marks, plot, look.scale);
-  if (const std::string remark = contacts_left_out(contacts); !remark.empty()) {
+  if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     const double gap = 4 * look.scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
-    brush.words(brush.room_of(remark, corner, plot), remark);
+    brush.words(brush.room_of(warning, corner, plot), warning);
   }
   list.PopClipRect();
 }

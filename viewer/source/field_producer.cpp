@@ -56,12 +56,12 @@ std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptio
   std::uint64_t wanted = scene.frames;
   if (options.most_frames > 0) wanted = std::min(wanted, options.most_frames);
   if (fitting < wanted) {
-    info.remarks.push_back(
+    info.warnings.push_back(
         fmt::format("The first {} of {} frames are shown: more do not fit into "
                     "{} MiB.",
                     fitting, scene.frames, options.memory_bytes / kMiB));
   } else if (wanted < scene.frames) {
-    info.remarks.push_back(
+    info.warnings.push_back(
         fmt::format("The first {} of {} frames are shown, as asked.", wanted, scene.frames));
   }
   return std::min(wanted, fitting);
@@ -78,10 +78,10 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   info.rate_hz = scene.rate_hz;
   const std::uint64_t frames = frames_to_simulate(simulator, options, info);
   if (scene.baseline_time_s) {
-    info.remarks.emplace_back("The baseline is not followed: frames are solved in any order.");
+    info.warnings.emplace_back("The baseline is not followed: frames are solved in any order.");
   }
   if (remembers(scene.estimator, scene.friction)) {
-    info.remarks.emplace_back(
+    info.warnings.emplace_back(
         "Frames that are played know of the one before, one that is jumped to is solved by "
         "itself.");
   }
@@ -107,7 +107,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   SourceInfo info;
   info.name = path.filename().string();
   info.kind = source->format();
-  info.remarks = source->remarks();
+  info.warnings = source->warnings();
   SolverPlan plan;
   plan.skin = source->skin();
   plan.sensel_type = source->sensel_type();

@@ -29,8 +29,8 @@ struct SourceInfo {
   bool has_angles = false;    ///< magnitude, theta and phi; true of all sources there are
   bool has_uncertainty = false;
   std::string solver;  ///< "direct on NAME OF DEVICE, zero copy"; for a force file who solved it
-  ContactOptions contacts = {};      ///< what is known of contacts that are looked for
-  std::vector<std::string> remarks;  ///< what a user should know, one sentence each
+  ContactOptions contacts = {};       ///< what is known of contacts that are looked for
+  std::vector<std::string> warnings;  ///< what a user should know, one sentence each
 };
 
 /// Makes the fields of a source, one by one and in any order. For one thread.

@@ -38,7 +38,7 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   info.has_angles = true;
   info.has_uncertainty = file.uncertainty;
   info.solver = solver_of(file);
-  info.remarks = reader.remarks();
+  info.warnings = reader.warnings();
   return info;
 }
 

@@ -31,7 +31,7 @@ class ForceFileProducer final : public FieldProducer {
   SourceInfo info_;
   ForceField forces_;  ///< as read last
   LendingPool<PlaneBlock> blocks_;
-  ContactMap map_;
+  ContactLabels map_;
 };
 
 }  // namespace pillarfield::viewer

@@ -22,7 +22,7 @@ PillarRect extent_of(std::span<const ContactRun> runs) {
 
 }  // namespace
 
-ShownContacts with_extents(FrameContacts found, const ContactMap& map) {
+ShownContacts with_extents(FrameContacts found, const ContactLabels& map) {
   ShownContacts shown;
   shown.extents.reserve(found.contacts.size());
   for (const TrackedContact& contact : found.contacts) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/contact_tracker.h"
 #include "viewer/source/selection.h"
 
@@ -19,7 +19,7 @@ struct ShownContacts {
 
 /// Adds where the contacts of a field lie. `map` is that of the field's status, whose numbers
 /// `found` has. Throws Error where it lacks one of them.
-[[nodiscard]] ShownContacts with_extents(FrameContacts found, const ContactMap& map);
+[[nodiscard]] ShownContacts with_extents(FrameContacts found, const ContactLabels& map);
 
 /// Finds the contacts of field after field, as they are shown: frames may be left out, and one that
 /// comes before the last begins anew, with ids from 1.

@@ -12,7 +12,7 @@ namespace {
 
 /// What a field lies in, and what it came from.
 struct Held {
-  Processor::Kept result;
+  Processor::PinnedResult result;
   std::shared_ptr<const FrameBuffer> readings;  ///< goes first: a free slot has a free frame
 };
 
@@ -51,14 +51,14 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
     throw Error(info_.name, fmt::format("has no frame {}", index),
                 fmt::format("it has {} frames, counted from 0", info_.frames));
   }
-  if (processor_.kept() == kMostShown) throw_too_many_shown();
+  if (processor_.pinned() == kMostShown) throw_too_many_shown();
   SuppliedFrame frame = supply_->frame(index);
   if (silence_ && index != next_) forget_the_frame_before();
   const FrameView raw = frame.readings->view();
   processor_.submit(raw);
   const ForceFieldView forces = processor_.receive();
   next_ = index + 1;
-  const auto held = std::make_shared<Held>(Held{processor_.keep(), std::move(frame.readings)});
+  const auto held = std::make_shared<Held>(Held{processor_.pin(), std::move(frame.readings)});
   return {.forces = forces,
           .raw = raw,
           .time_s = frame.time_s,

@@ -60,11 +60,11 @@ ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
                 plan.friction, threads, parameters),
       rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
-      team_(std::make_unique<WorkTeam>(threads)) {}
+      team_(std::make_unique<ThreadPool>(threads)) {}
 
 void ContactEstimator::resolve(ForceField& field) { resolve(planes_of(field)); }
 
-void ContactEstimator::resolve(const FieldPlanes& field, const SilentBlocks& idle) {
+void ContactEstimator::resolve(const FieldPlanes& field, const IdleBlocks& idle) {
   const ForceFieldView forces = field.forces();
   map_.find(forces.status, rows_, cols_, idle);
   friction_.begin(map_);

@@ -4,14 +4,14 @@
 #include <memory>
 #include <span>
 
-#include "base/work_team.h"
+#include "base/thread_pool.h"
 #include "contacts/estimator/contact_parameters.h"
 #include "contacts/estimator/field_planes.h"
 #include "contacts/estimator/friction_estimator.h"
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/solver_plan.h"
-#include "solve/silent_blocks.h"
+#include "solve/idle_blocks.h"
 
 namespace pillarfield {
 
@@ -28,10 +28,10 @@ class ContactEstimator {
   void resolve(ForceField& field);
 
   /// The same of planes of the plan's size. Of idle blocks nothing is read.
-  void resolve(const FieldPlanes& field, const SilentBlocks& idle = {});
+  void resolve(const FieldPlanes& field, const IdleBlocks& idle = {});
 
   /// The contacts of the last frame, and what is believed of each.
-  [[nodiscard]] const ContactMap& contacts() const { return map_; }
+  [[nodiscard]] const ContactLabels& contacts() const { return map_; }
   [[nodiscard]] std::span<const ContactFriction> friction() const { return friction_.friction(); }
 
  private:
@@ -46,8 +46,8 @@ class ContactEstimator {
   FrictionEstimator friction_;
   std::uint32_t rows_;
   std::uint32_t cols_;
-  ContactMap map_;
-  std::unique_ptr<WorkTeam> team_;
+  ContactLabels map_;
+  std::unique_ptr<ThreadPool> team_;
 };
 
 }  // namespace pillarfield

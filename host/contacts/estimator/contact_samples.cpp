@@ -74,11 +74,11 @@ void ContactSamples::take(const ForceFieldView& forces, std::span<const ContactR
 }
 
 template <class Ask>
-void ContactSamples::for_each_asked(Ask ask_for) const {
+void ContactSamples::for_each_asked(Ask prefetch) const {
   std::uint32_t skip = 0;
   for (const ContactRun& run : runs_) {
     std::uint32_t col = run.first + skip;
-    for (; col < run.end; col += step_) ask_for(run.row, col);
+    for (; col < run.end; col += step_) prefetch(run.row, col);
     skip = col - run.end;
   }
 }

@@ -7,7 +7,7 @@
 #include "contacts/estimator/contact_parameters.h"
 #include "contacts/estimator/friction_evidence.h"
 #include "contacts/estimator/pressure_regression.h"
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 #include "solve/segment.h"
 
@@ -72,7 +72,7 @@ class ContactSamples {
   };
 
   template <class Ask>
-  void for_each_asked(Ask ask_for) const;
+  void for_each_asked(Ask prefetch) const;
   void ask(std::uint32_t row, std::uint32_t col, double noise_n,
            const ContactParameters& parameters);
   void add_edge(const Edge& edge, double weight);

@@ -46,7 +46,7 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
       remember_(knowledge.memory),
       workspaces_(members) {}
 
-void FrictionEstimator::begin(const ContactMap& map) {
+void FrictionEstimator::begin(const ContactLabels& map) {
   std::swap(beliefs_, beliefs_before_);
   std::swap(histories_, histories_before_);
   beliefs_.assign(map.contacts(), prior_);
@@ -81,7 +81,7 @@ void FrictionEstimator::begin(const ContactMap& map) {
   }
 }
 
-void FrictionEstimator::learn(const ForceFieldView& forces, const ContactMap& map,
+void FrictionEstimator::learn(const ForceFieldView& forces, const ContactLabels& map,
                               std::uint32_t contact, std::size_t member) {
   ContactModel& model = models_[contact];
   FrictionBelief& belief = beliefs_[contact];

@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "contacts/contact_identity.h"
+#include "contacts/contact_matching.h"
 #include "contacts/estimator/contact_parameters.h"
 #include "contacts/estimator/contact_samples.h"
 #include "contacts/estimator/friction_belief.h"
 #include "contacts/estimator/friction_evidence.h"
 #include "contacts/estimator/pressure_regression.h"
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/friction.h"
 
@@ -57,12 +57,12 @@ class FrictionEstimator {
                     const ContactParameters& parameters = {});
 
   /// Begins a frame: hands each contact of the map what was believed of the one that it was.
-  void begin(const ContactMap& map);
+  void begin(const ContactLabels& map);
 
   /// Brings what is believed of one contact up to date with the frame that was begun. Of any force
   /// on an ambiguous pillar's segment the same is learnt. For different contacts in any thread, at
   /// a time by one of each `member`.
-  void learn(const ForceFieldView& forces, const ContactMap& map, std::uint32_t contact,
+  void learn(const ForceFieldView& forces, const ContactLabels& map, std::uint32_t contact,
              std::size_t member);
 
   [[nodiscard]] std::span<const ContactFriction> friction() const { return friction_; }

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/contact_quantities.h"
 #include "pillarfield/force_field.h"
 
@@ -15,7 +15,7 @@ namespace pillarfield {
 /// A contact of a frame, with its identity.
 struct TrackedContact {
   std::uint64_t id = 0;                 ///< 1, 2, ...; never reused
-  std::uint32_t number = 0;             ///< its label in the frame's ContactMap
+  std::uint32_t number = 0;             ///< its label in the frame's ContactLabels
   std::optional<std::uint64_t> parent;  ///< id of the contact it split from
   double first_time_s = 0;              ///< time of its first frame
   double age_s = 0;                     ///< time since then
@@ -90,7 +90,7 @@ class ContactTracker {
                               const FoundContacts& found = {});
 
   /// The pillars of the contacts of the last frame, small contacts included.
-  [[nodiscard]] const ContactMap& map() const;
+  [[nodiscard]] const ContactLabels& map() const;
 
  private:
   struct State;

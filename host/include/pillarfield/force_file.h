@@ -69,7 +69,7 @@ class ForceFileReader {
   [[nodiscard]] const ForceFileInfo& info() const;
   [[nodiscard]] std::uint64_t frames() const;  ///< number of frames
   /// Warnings about the file, one sentence each.
-  [[nodiscard]] const std::vector<std::string>& remarks() const;
+  [[nodiscard]] const std::vector<std::string>& warnings() const;
 
   /// Reads a frame, with its uncertainty if the file has it, and returns its time, s.
   double read(std::uint64_t index, ForceField& forces) const;

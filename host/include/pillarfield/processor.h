@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/solver_plan.h"
@@ -78,12 +78,12 @@ struct ProcessorTuning;  // tuning.h
 ///
 /// A processor is a ring of `frames_in_flight` slots. submit() starts a frame and returns at once;
 /// receive() waits for the oldest frame in flight and returns a view of the slot's memory. Call
-/// keep() to hold a result beyond the ring's lifetime, as a display does that draws it in place.
+/// pin() to hold a result beyond the ring's lifetime, as a display does that draws it in place.
 ///
 /// Results are bit for bit those of solve_on_host(), save the power law and the estimator `paper`,
 /// which call library functions.
 ///
-/// Threads: one at a time. A Kept may be destroyed in any thread.
+/// Threads: one at a time. A PinnedResult may be destroyed in any thread.
 class Processor {
  public:
   struct Options {
@@ -95,12 +95,13 @@ class Processor {
   };
 
   /// A result that is held beyond the ring's lifetime. Its slot is withheld from the ring until the
-  /// Kept is destroyed; that may happen in any thread, and after the processor is destroyed.
-  class Kept {
+  /// PinnedResult is destroyed; that may happen in any thread, and after the processor is
+  /// destroyed.
+  class PinnedResult {
    public:
-    Kept(Kept&&) noexcept;
-    Kept& operator=(Kept&&) noexcept;
-    ~Kept();
+    PinnedResult(PinnedResult&&) noexcept;
+    PinnedResult& operator=(PinnedResult&&) noexcept;
+    ~PinnedResult();
 
     /// The memory block that holds all planes of the result. Its address and its size are multiples
     /// of 4096 bytes, and a slot always uses the same block.
@@ -109,7 +110,7 @@ class Processor {
    private:
     friend class Processor;
     struct State;
-    explicit Kept(std::unique_ptr<State> state);
+    explicit PinnedResult(std::unique_ptr<State> state);
     std::unique_ptr<State> state_;
   };
 
@@ -127,17 +128,17 @@ class Processor {
 
   /// Starts to solve a frame of the plan's size and type, with any row stride. With shared memory
   /// the caller must not change the frame until it is received; with staged memory it may change at
-  /// once. Throws Error if all slots are in flight or kept, or the frame does not fit the plan.
+  /// once. Throws Error if all slots are in flight or pinned, or the frame does not fit the plan.
   void submit(const FrameView& frame);
 
   /// Waits for the oldest frame in flight and returns its forces. The view stays valid until
   /// submit() reuses its slot, that is for as many further frames as there are slots that are not
-  /// kept, or for the life of a Kept. Throws Error if no frame is in flight.
+  /// pinned, or for the life of a PinnedResult. Throws Error if no frame is in flight.
   [[nodiscard]] ForceFieldView receive();
 
   /// Holds the result received last. Throws Error if there is none, it is held already, or a frame
   /// submitted since reuses its slot.
-  [[nodiscard]] Kept keep();
+  [[nodiscard]] PinnedResult pin();
 
   /// The contacts of the frame received last, with their friction as the estimator `contact` found
   /// it; pass them to ContactTracker::update(), which then need not find them again. They stay
@@ -151,7 +152,7 @@ class Processor {
   [[nodiscard]] std::vector<float> tare() const;
 
   [[nodiscard]] int in_flight() const;       ///< frames submitted and not yet received
-  [[nodiscard]] int kept() const;            ///< results held now
+  [[nodiscard]] int pinned() const;          ///< results held now
   [[nodiscard]] bool shares_memory() const;  ///< whether frames and results are not copied
   [[nodiscard]] const Device& device() const;
 

@@ -41,7 +41,7 @@ class FrameSource {
 
   /// Warnings about the file, one sentence each: a row or column without pillars, a file that was
   /// not closed, a constant that is assumed.
-  [[nodiscard]] virtual const std::vector<std::string>& remarks() const = 0;
+  [[nodiscard]] virtual const std::vector<std::string>& warnings() const = 0;
 };
 
 /// Opens a recording (HDF5) or a Tekscan ASCII export; the content decides, not the name. If its

@@ -52,7 +52,7 @@ struct Scene {
   bool angles = false;
   bool uncertainty = false;
   std::optional<double> baseline_time_s;  ///< time constant with which the tare follows drift
-  std::vector<std::string> remarks;       ///< warnings about its file, such as former names
+  std::vector<std::string> warnings;      ///< warnings about its file, such as former names
   std::variant<std::vector<Contact>, Chart> load;
   std::vector<Body> bodies;   ///< combined with contacts, not with a Chart
   double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies

@@ -13,7 +13,7 @@ enum class SenselFault : std::uint8_t {
   noisy,         ///< it varies far more than the others
   silent,        ///< it does not respond where the others do
   unequal,       ///< it responds far less or far more than the others
-  undecided,     ///< a second sensel of its pillar is suspect, so parity cannot decide
+  unknown,       ///< a second sensel of its pillar is suspect, so parity cannot decide
 };
 
 /// "not a number", "saturated", ...

@@ -21,7 +21,7 @@ enum class Stores : std::uint8_t {
 /// Optimisations. They change the speed, never a bit of the result.
 struct SpeedPaths {
   /// Skip blocks of idle pillars that were idle too when their slot was last written.
-  bool skip_silent = true;
+  bool skip_idle = true;
   Stores stores = Stores::automatic;
 };
 
@@ -53,9 +53,9 @@ struct ProcessorTuning {
 /// from the other three: a prediction below this margin leaves open whether that sensel is loaded.
 /// 0 if the noise is unknown. All pillars share one margin, from the root mean square of the noise
 /// of all sensels and gains of 1; in a pillar whose gains are g it amounts to 5 / g deviations.
-[[nodiscard]] double region_doubt(const SolverPlan& plan);
+[[nodiscard]] double region_margin(const SolverPlan& plan);
 
 /// The same margin for sensels that all have this standard deviation, counts.
-[[nodiscard]] double region_doubt(double noise_counts);
+[[nodiscard]] double region_margin(double noise_counts);
 
 }  // namespace pillarfield

@@ -25,7 +25,7 @@ class Tekscan final : public FileSource {
   void take_full_scale();
   void take_times(TekscanExport& data);
   void take_mask(TekscanExport& data);
-  void remark_on_header(const TekscanHeader& header);
+  void warn_of_header(const TekscanHeader& header);
 
   CompactReadings readings_;
   std::vector<double> times_s_;
@@ -43,15 +43,15 @@ Tekscan::Tekscan(const std::filesystem::path& path) : FileSource(path, "Tekscan 
   take_full_scale();
   take_times(data);
   take_mask(data);
-  remark_on_header(data.header);
-  remark_on_size();
+  warn_of_header(data.header);
+  warn_of_size();
   check(skin_, path.c_str());
 }
 
 /// A skin has one pitch; of two, the one that keeps the area of a sensel.
 void Tekscan::take_spacing(const TekscanHeader& header) {
   if (!header.row_spacing_mm && !header.col_spacing_mm) {
-    remarks_.push_back(fmt::format(
+    warnings_.push_back(fmt::format(
         "The export gives no spacing; a sensel pitch of {} mm is assumed.", skin_.sensel_pitch_mm));
     return;
   }
@@ -62,7 +62,7 @@ void Tekscan::take_spacing(const TekscanHeader& header) {
     return;
   }
   skin_.sensel_pitch_mm = std::sqrt(row_mm * col_mm);
-  remarks_.push_back(fmt::format(
+  warnings_.push_back(fmt::format(
       "Rows are {:.6g} mm apart and columns {:.6g} mm; a pitch of {:.6g} mm is taken for both.",
       row_mm, col_mm, skin_.sensel_pitch_mm));
 }
@@ -71,10 +71,10 @@ void Tekscan::take_full_scale() {
   if (type_ == SenselType::u8) {
     skin_.full_scale_counts = 255;
   } else {
-    remarks_.push_back(
+    warnings_.push_back(
         "Readings exceed 8 bits, so no full scale is known and saturation is not seen.");
   }
-  remarks_.push_back(fmt::format(
+  warnings_.push_back(fmt::format(
       "The export does not say how many counts a newton gives; {} are assumed, so forces are in "
       "proportion only.",
       skin_.counts_per_newton));
@@ -84,7 +84,7 @@ void Tekscan::take_times(TekscanExport& data) {
   times_s_ = std::move(data.times_s);
   if (!times_s_.empty()) return;
   if (!data.header.seconds_per_frame) {
-    remarks_.push_back("The export gives no times; frames are taken to be 1 s apart.");
+    warnings_.push_back("The export gives no times; frames are taken to be 1 s apart.");
   }
   const double period_s = data.header.seconds_per_frame.value_or(1);
   for (const std::uint64_t number : data.numbers) {
@@ -95,17 +95,18 @@ void Tekscan::take_times(TekscanExport& data) {
 void Tekscan::take_mask(TekscanExport& data) {
   const auto absent = std::count(data.mask.begin(), data.mask.end(), std::uint8_t{0});
   if (absent == 0) return;
-  remarks_.push_back(fmt::format("{} of {} places hold no sensel (B); they count as missing.",
-                                 absent, data.mask.size()));
+  warnings_.push_back(fmt::format("{} of {} places hold no sensel (B); they count as missing.",
+                                  absent, data.mask.size()));
   calibration_.mask = std::move(data.mask);
 }
 
-void Tekscan::remark_on_header(const TekscanHeader& header) {
-  if (!header.units_given) remarks_.push_back("The export gives no UNITS; raw counts are assumed.");
+void Tekscan::warn_of_header(const TekscanHeader& header) {
+  if (!header.units_given)
+    warnings_.push_back("The export gives no UNITS; raw counts are assumed.");
   if (!header.start_frame || !header.end_frame || *header.end_frame < *header.start_frame) return;
   const std::uint64_t announced = *header.end_frame - *header.start_frame + 1;
   if (announced == frames_) return;
-  remarks_.push_back(
+  warnings_.push_back(
       fmt::format("The header announces {} frames, and the file holds {}.", announced, frames_));
 }
 

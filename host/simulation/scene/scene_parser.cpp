@@ -103,7 +103,7 @@ void read_solver(TomlSection section, Scene& scene) {
   scene.baseline_time_s = section.number("baseline_time_s", kBaselineTimeS);
   scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
   if (section.text("estimator") == "field") {
-    scene.remarks.emplace_back(
+    scene.warnings.emplace_back(
         "estimator = \"field\" is now \"contact\"; the former name works in this release only");
   }
   scene.segment_point =

@@ -115,8 +115,8 @@ TEST_F(FramesInOrder, KnowOfTheOneBeforeWhereTheyArePlayed) {
 
 TEST_F(FramesInOrder, KnowNothingWhereTheyAreJumpedTo) {
   const auto producer = open_producer(path_, {});
-  ASSERT_EQ(producer->info().remarks.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().remarks[0], {"jumped to", "by itself"}));
+  ASSERT_EQ(producer->info().warnings.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().warnings[0], {"jumped to", "by itself"}));
   const ForceField alone = copy_of(producer->produce(3).forces);
   for (const std::uint64_t before : {0U, 4U, 3U}) {
     static_cast<void>(producer->produce(before));

@@ -95,8 +95,8 @@ TEST(SceneProducer, TellsWhatTheSceneIs) {
   EXPECT_EQ(info.rate_hz, 100);
   EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
   EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
-  ASSERT_EQ(info.remarks.size(), 1U);
-  EXPECT_TRUE(has_all(info.remarks[0], {"4 of 60 frames", "as asked"}));
+  ASSERT_EQ(info.warnings.size(), 1U);
+  EXPECT_TRUE(has_all(info.warnings[0], {"4 of 60 frames", "as asked"}));
   EXPECT_FALSE(producer->refresh());
   EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
                       {"demo.toml", "no frame 4", "4 frames"}));
@@ -106,8 +106,8 @@ TEST(SceneProducer, SimulatesNoMoreThanFits) {
   const std::uint64_t frame_bytes = load_scene(kDemo).skin.sensels();
   const auto producer = open_producer(kDemo, {.memory_bytes = 3 * frame_bytes + 1});
   EXPECT_EQ(producer->info().frames, 3U);
-  ASSERT_EQ(producer->info().remarks.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().remarks[0], {"3 of 60 frames", "do not fit"}));
+  ASSERT_EQ(producer->info().warnings.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().warnings[0], {"3 of 60 frames", "do not fit"}));
   const auto too_little = [&] {
     static_cast<void>(open_producer(kDemo, {.memory_bytes = frame_bytes - 1}));
   };
@@ -142,7 +142,7 @@ TEST(SceneProducer, WithoutNoiseThereIsNoUncertainty) {
   write_bytes(path, common + contact);
   const auto producer = open_producer(path, {});
   EXPECT_FALSE(producer->info().has_uncertainty);
-  EXPECT_TRUE(producer->info().remarks.empty());
+  EXPECT_TRUE(producer->info().warnings.empty());
   const ShownField field = producer->produce(1);
   EXPECT_TRUE(field.forces.uncertainty[Uncertainty::shear_x].empty());
   EXPECT_EQ(field.time_s, 0.02);
@@ -159,8 +159,8 @@ TEST(SceneProducer, TheBaselineStaysAndThePaperTellsNoUncertainty) {
               "position_mm = [0, 0]\nload_n = 5\n");
   const auto producer = open_producer(path, {});
   EXPECT_FALSE(producer->info().has_uncertainty);
-  ASSERT_EQ(producer->info().remarks.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().remarks[0], {"baseline is not followed"}));
+  ASSERT_EQ(producer->info().warnings.size(), 1U);
+  EXPECT_TRUE(has_all(producer->info().warnings[0], {"baseline is not followed"}));
   EXPECT_TRUE(has_all(producer->info().solver, {"paper on "}));
   const ForceField first = copy_of(producer->produce(2).forces);
   static_cast<void>(producer->produce(1));

@@ -44,7 +44,7 @@ TEST(ShownContacts, TheHeaviestComesFirst) {
 }
 
 TEST(ShownContacts, ANumberThatTheStatusLacksIsAnError) {
-  ContactMap map;
+  ContactLabels map;
   const ShownField field = touched_field(0, 20, 30, {{{1, 3, 1, 3}}});
   map.find(field.forces.status, 20, 30);
   FrameContacts found;

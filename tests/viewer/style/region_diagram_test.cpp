@@ -117,8 +117,8 @@ TEST(AmbiguityContour, ExplainsTheReadings) {
       EXPECT_NEAR(first * next_reading, second * reading, 1e-13 * (reading + next_reading))
           << "in their ratio";
       EXPECT_GT(first + second, 0);
-      EXPECT_LE(reading_under((sensel + 1) % 4 + 1, point), 1e-13) << "lifted";
-      EXPECT_LE(reading_under((sensel + 2) % 4 + 1, point), 1e-13) << "lifted";
+      EXPECT_LE(reading_under((sensel + 1) % 4 + 1, point), 1e-13) << "inactive";
+      EXPECT_LE(reading_under((sensel + 2) % 4 + 1, point), 1e-13) << "inactive";
     }
   }
 }

@@ -104,8 +104,8 @@ void contacts_panel(Session& session, const FieldPlace& place) {
     mark_contact(session, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
   }
-  if (const std::string remark = contacts_left_out(contacts); !remark.empty()) {
-    faint_words(ink, remark.c_str());
+  if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
+    faint_words(ink, warning.c_str());
   }
 }
 

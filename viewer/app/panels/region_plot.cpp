@@ -89,7 +89,7 @@ class Drawing {
     return mixed(ink_.ground, packed(region_colour(region, theme_)), share);
   }
   void strip(double left, double right, Span from, Span to, int usable) const;
-  void number(const char* words, Vec2 place, int lifted, Align align = Align::middle) const;
+  void number(const char* words, Vec2 place, int inactive, Align align = Align::middle) const;
 
   ImDrawList& list_;
   const PlotArea& area_;
@@ -140,9 +140,9 @@ void Drawing::draw_borders() const {
   }
 }
 
-void Drawing::number(const char* words, Vec2 place, int lifted, Align align) const {
+void Drawing::number(const char* words, Vec2 place, int inactive, Align align) const {
   const Vec2 pixel = area_.at(place);
-  const bool here = (status::kUsable & ~lifted) == usable_;
+  const bool here = (status::kUsable & ~inactive) == usable_;
   const Vec2 taken = area_.at(point_);
   if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * ink_.line) return;
   draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},

@@ -11,7 +11,7 @@ namespace pillarfield {
 /// A block is so many pillars whose places, counted row by row through the frame, begin at a
 /// multiple of that number; where a row ends, so does its last block, and the next row begins with
 /// the rest of it.
-struct SilentBlocks {
+struct IdleBlocks {
   /// [rows, stride], 1 for a block without a loaded pillar, else 0; of each row the first ones
   /// count, as many as it has blocks. Empty: nothing is known.
   std::span<const std::uint8_t> marks;

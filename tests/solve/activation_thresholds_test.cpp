@@ -1,6 +1,6 @@
 // Readings below a sensel's wake level must not matter, and those from it on should.
 
-#include "solve/wake_levels.h"
+#include "solve/activation_thresholds.h"
 
 #include <gtest/gtest.h>
 
@@ -37,8 +37,8 @@ FrameBuffer frame_of(const SolverPlan& plan, const std::vector<float>& readings)
   return frame;
 }
 
-/// Pillars whose sensels all have a level above zero: others are awake whatever they read.
-std::vector<std::uint8_t> can_be_silent(const SolverPlan& plan, const std::vector<float>& levels) {
+/// Pillars whose sensels all have a level above zero: others are active whatever they read.
+std::vector<std::uint8_t> can_be_idle(const SolverPlan& plan, const std::vector<float>& levels) {
   std::vector<std::uint8_t> can(plan.skin.pillars(), 1);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const std::size_t row = i / plan.skin.cols / 2;
@@ -50,8 +50,8 @@ std::vector<std::uint8_t> can_be_silent(const SolverPlan& plan, const std::vecto
 
 template <class Reading>
 void expect_lower_readings_do_not_matter(const SolverPlan& plan, int largest) {
-  const std::vector<float> levels = wake_levels(plan);
-  const std::vector<std::uint8_t> can = can_be_silent(plan, levels);
+  const std::vector<float> levels = activation_thresholds(plan);
+  const std::vector<std::uint8_t> can = can_be_idle(plan, levels);
   const std::vector<float> zero(levels.size());
   const ForceField silence = solve_on_host(plan, frame_of<Reading>(plan, zero).view());
   for (int reading = 0; reading <= largest; ++reading) {
@@ -69,7 +69,7 @@ void expect_lower_readings_do_not_matter(const SolverPlan& plan, int largest) {
   }
 }
 
-TEST(WakeLevels, LowerReadingsDoNotMatter) {
+TEST(ActivationThresholds, LowerReadingsDoNotMatter) {
   for (const std::uint32_t seed : {1U, 2U, 3U}) {
     SolverPlan plan = plan_of(SenselType::u8, seed);
     expect_lower_readings_do_not_matter<std::uint8_t>(plan, 255);
@@ -82,9 +82,9 @@ TEST(WakeLevels, LowerReadingsDoNotMatter) {
   }
 }
 
-TEST(WakeLevels, FractionsBelowThemDoNotMatter) {
+TEST(ActivationThresholds, FractionsBelowThemDoNotMatter) {
   const SolverPlan plan = plan_of(SenselType::f32, 4);
-  const std::vector<float> levels = wake_levels(plan);
+  const std::vector<float> levels = activation_thresholds(plan);
   std::vector<float> readings = levels;
   for (float& reading : readings) reading = std::nextafter(reading, -1e30F);
   const ForceField field = solve_on_host(plan, frame_of<float>(plan, readings).view());
@@ -93,39 +93,39 @@ TEST(WakeLevels, FractionsBelowThemDoNotMatter) {
   EXPECT_EQ(field.status, silence.status);
 }
 
-TEST(WakeLevels, OfWholeReadingsAreTheHighest) {
+TEST(ActivationThresholds, OfWholeReadingsAreTheHighest) {
   SolverPlan plan = plan_of(SenselType::u8, 5);
   plan.calibration.mask.clear();
-  const std::vector<float> levels = wake_levels(plan);
+  const std::vector<float> levels = activation_thresholds(plan);
   const ForceField field = solve_on_host(plan, frame_of<std::uint8_t>(plan, levels).view());
-  const std::vector<std::uint8_t> can = can_be_silent(plan, levels);
+  const std::vector<std::uint8_t> can = can_be_idle(plan, levels);
   for (std::size_t i = 0; i < field.pillars(); ++i) {
     if (can[i] == 0) continue;
     EXPECT_EQ(field.status[i] & 15, 15) << "pillar " << i;
   }
 }
 
-TEST(WakeLevels, OfMaskedSenselsAreNeverReached) {
+TEST(ActivationThresholds, OfMaskedSenselsAreNeverReached) {
   const SolverPlan plan = plan_of(SenselType::u8, 6);
-  const std::vector<float> levels = wake_levels(plan);
+  const std::vector<float> levels = activation_thresholds(plan);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     if (plan.calibration.mask[i] != 0) continue;
     EXPECT_EQ(levels[i], 255);
   }
 }
 
-TEST(WakeLevels, AreOneWhereSenselsAreAlike) {
+TEST(ActivationThresholds, AreOneWhereSenselsAreAlike) {
   SolverPlan plan;
   plan.skin.rows = 4;
   plan.skin.cols = 4;
   plan.skin.threshold_counts = 2.5;
-  EXPECT_EQ(wake_levels(plan), std::vector<float>{3});
+  EXPECT_EQ(activation_thresholds(plan), std::vector<float>{3});
   plan.skin.threshold_counts = 2;
-  EXPECT_EQ(wake_levels(plan), std::vector<float>{3});
+  EXPECT_EQ(activation_thresholds(plan), std::vector<float>{3});
   plan.skin.full_scale_counts = 2;
-  EXPECT_EQ(wake_levels(plan), std::vector<float>{2});
+  EXPECT_EQ(activation_thresholds(plan), std::vector<float>{2});
   plan.baseline_rate = 0.1;
-  EXPECT_EQ(wake_levels(plan).size(), plan.skin.sensels()) << "the tare will differ";
+  EXPECT_EQ(activation_thresholds(plan).size(), plan.skin.sensels()) << "the tare will differ";
 }
 
 }  // namespace

@@ -10,16 +10,16 @@
 namespace pillarfield {
 
 /// Threads that share the pieces of a task with the one that has it, and sleep otherwise.
-class WorkTeam {
+class ThreadPool {
  public:
   /// What is to be done of a piece, by which member: the caller is 0.
   using Work = std::function<void(std::size_t piece, std::size_t member)>;
 
   /// `members` is at least 1: the calling thread is one of them.
-  explicit WorkTeam(std::size_t members);
-  ~WorkTeam();
-  WorkTeam(const WorkTeam&) = delete;
-  WorkTeam& operator=(const WorkTeam&) = delete;
+  explicit ThreadPool(std::size_t members);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
 
   /// Calls `work` once for each piece from 0 to `pieces` - 1, in any thread, and waits until all
   /// are done. A single piece is the caller's, and wakes nobody; of several, no more members are

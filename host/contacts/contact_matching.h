@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 #include "pillarfield/contact_quantities.h"
 
 namespace pillarfield {

@@ -1,4 +1,4 @@
-#include "contacts/contact_identity.h"
+#include "contacts/contact_matching.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,14 +1,14 @@
-#include "base/work_team.h"
+#include "base/thread_pool.h"
 
 #include <algorithm>
 
 namespace pillarfield {
 
-WorkTeam::WorkTeam(std::size_t members) {
+ThreadPool::ThreadPool(std::size_t members) {
   for (std::size_t i = 1; i < members; ++i) helpers_.emplace_back([this, i] { help(i); });
 }
 
-WorkTeam::~WorkTeam() {
+ThreadPool::~ThreadPool() {
   {
     const std::scoped_lock lock(mutex_);
     leaving_ = true;
@@ -17,7 +17,7 @@ WorkTeam::~WorkTeam() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
-void WorkTeam::run(std::size_t pieces, const Work& work) {
+void ThreadPool::run(std::size_t pieces, const Work& work) {
   std::unique_lock lock(mutex_);
   work_ = &work;
   next_ = 0;
@@ -28,7 +28,7 @@ void WorkTeam::run(std::size_t pieces, const Work& work) {
   done_.wait(lock, [this] { return busy_ == 0; });
 }
 
-void WorkTeam::take_pieces(std::unique_lock<std::mutex>& lock, std::size_t member) {
+void ThreadPool::take_pieces(std::unique_lock<std::mutex>& lock, std::size_t member) {
   while (next_ < pieces_) {
     const std::size_t piece = next_++;
     ++busy_;
@@ -39,7 +39,7 @@ void WorkTeam::take_pieces(std::unique_lock<std::mutex>& lock, std::size_t membe
   }
 }
 
-void WorkTeam::help(std::size_t member) {
+void ThreadPool::help(std::size_t member) {
   std::unique_lock lock(mutex_);
   while (true) {
     wanted_.wait(lock, [this] { return leaving_ || next_ < pieces_; });

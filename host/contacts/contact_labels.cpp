@@ -1,4 +1,4 @@
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/status.h"
 #include "skin/status_word.h"
-#include "solve/silent_blocks.h"
+#include "solve/idle_blocks.h"
 
 namespace pillarfield {
 namespace {
@@ -47,7 +47,7 @@ unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
 /// So many bytes are looked at together where there is silence.
 constexpr std::size_t kStride = 4 * kWordBytes;
 
-bool is_silent(const std::uint8_t* bytes) {
+bool is_idle(const std::uint8_t* bytes) {
   // Not a loop: that would not be unrolled.
   const std::uint64_t any = word_at(bytes) | word_at(bytes + kWordBytes) |
                             word_at(bytes + 2 * kWordBytes) | word_at(bytes + 3 * kWordBytes);
@@ -56,12 +56,12 @@ bool is_silent(const std::uint8_t* bytes) {
 
 /// The row's end if all from `col` on is silent; else a column at or after it, a multiple of a word
 /// from it, before which all is silent.
-std::size_t skip_silence(std::span<const std::uint8_t> row, std::size_t col) {
+std::size_t skip_idle_bytes(std::span<const std::uint8_t> row, std::size_t col) {
   for (; col + kStride <= row.size(); col += kStride) {
-    if (!is_silent(row.data() + col)) return col;
+    if (!is_idle(row.data() + col)) return col;
   }
   // What is left is less than a stride: with what is before it, it makes one.
-  if (row.size() >= kStride && is_silent(row.data() + row.size() - kStride)) return row.size();
+  if (row.size() >= kStride && is_idle(row.data() + row.size() - kStride)) return row.size();
   return col;
 }
 
@@ -98,17 +98,17 @@ ContactRun run_of(std::size_t row, std::size_t first, std::size_t end) {
 }
 
 /// Appends the runs of loaded pillars within a stretch of a row.
-void append_runs(std::span<const std::uint8_t> row, const ContactRun& awake,
+void append_runs(std::span<const std::uint8_t> row, const ContactRun& active,
                  std::vector<ContactRun>& runs) {
-  const auto loaded = row.first(awake.end);
+  const auto loaded = row.first(active.end);
   for_each_run(
-      awake.first, loaded.size(), [&](std::size_t col) { return skip_silence(loaded, col); },
+      active.first, loaded.size(), [&](std::size_t col) { return skip_idle_bytes(loaded, col); },
       [&](std::size_t col) { return loaded_at(loaded, col); },
-      [&](std::size_t first, std::size_t end) { runs.push_back(run_of(awake.row, first, end)); });
+      [&](std::size_t first, std::size_t end) { runs.push_back(run_of(active.row, first, end)); });
 }
 
 /// Bit n says whether block n of eight, from `at` on, has no mark.
-unsigned awake_at(std::span<const std::uint8_t> marks, std::size_t at) {
+unsigned active_at(std::span<const std::uint8_t> marks, std::size_t at) {
   std::uint64_t word = kEachByte;  // past the last there is silence
   if (at + kWordBytes <= marks.size()) {
     word = word_at(marks.data() + at);
@@ -119,8 +119,8 @@ unsigned awake_at(std::span<const std::uint8_t> marks, std::size_t at) {
 }
 
 /// Appends the stretches of a row of `cols` pillars whose blocks have no marks.
-void append_awake(std::uint32_t row, std::uint32_t cols, const SilentBlocks& silent,
-                  std::vector<ContactRun>& stretches) {
+void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& silent,
+                   std::vector<ContactRun>& stretches) {
   const std::size_t size = silent.pillars;
   const std::size_t skew = std::size_t{row} * cols % size;  // of the first block, in the row above
   const std::size_t blocks = (skew + cols + size - 1) / size;
@@ -130,7 +130,7 @@ void append_awake(std::uint32_t row, std::uint32_t cols, const SilentBlocks& sil
     return at;
   };
   for_each_run(
-      0, blocks, skip, [&](std::size_t at) { return awake_at(marks, at); },
+      0, blocks, skip, [&](std::size_t at) { return active_at(marks, at); },
       [&](std::size_t first, std::size_t end) {
         stretches.push_back(run_of(row, std::max(first * size, skew) - skew,
                                    std::min<std::size_t>(end * size - skew, cols)));
@@ -138,8 +138,8 @@ void append_awake(std::uint32_t row, std::uint32_t cols, const SilentBlocks& sil
 }
 
 /// Asks for the status of stretches: they are too far apart for a processor to guess.
-void ask_for(std::span<const std::uint8_t> status, std::uint32_t cols,
-             std::span<const ContactRun> stretches) {
+void prefetch(std::span<const std::uint8_t> status, std::uint32_t cols,
+              std::span<const ContactRun> stretches) {
 #if defined(__GNUC__)
   constexpr std::uint32_t kLine = 64;
   for (const ContactRun& stretch : stretches) {
@@ -181,44 +181,44 @@ void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t 
 
 }  // namespace
 
-void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows,
-                      std::uint32_t cols) {
+void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t rows,
+                         std::uint32_t cols) {
   find(status, rows, cols, {});
 }
 
-void ContactMap::find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols,
-                      const SilentBlocks& silent) {
+void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t rows,
+                         std::uint32_t cols, const IdleBlocks& silent) {
   if (status.size() != std::size_t{rows} * cols) {
-    throw Error("ContactMap::find",
+    throw Error("ContactLabels::find",
                 fmt::format("{} status bytes for {} x {} pillars", status.size(), rows, cols),
                 "give one for each pillar");
   }
-  awake_.clear();
+  active_.clear();
   for (std::uint32_t row = 0; row < rows; ++row) {
     if (silent.marks.empty()) {
-      awake_.push_back({row, 0, cols, 0});
+      active_.push_back({row, 0, cols, 0});
     } else {
-      append_awake(row, cols, silent, awake_);
+      append_active(row, cols, silent, active_);
     }
   }
-  if (!silent.marks.empty()) ask_for(status, cols, awake_);
+  if (!silent.marks.empty()) prefetch(status, cols, active_);
   find_runs(status, cols);
   number_contacts();
   sort_runs();
 }
 
-/// Finds the runs in what is awake, and joins those that touch.
-void ContactMap::find_runs(std::span<const std::uint8_t> status, std::uint32_t cols) {
+/// Finds the runs in what is active, and joins those that touch.
+void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_t cols) {
   found_.clear();
   parents_.clear();
   std::size_t above = 0;  // where the runs of the row above begin
   std::uint32_t next_row = 0;
-  for (std::size_t stretch = 0; stretch < awake_.size();) {
-    const std::uint32_t row = awake_[stretch].row;
+  for (std::size_t stretch = 0; stretch < active_.size();) {
+    const std::uint32_t row = active_[stretch].row;
     const std::size_t begin = found_.size();
     if (row != next_row) above = begin;
-    for (; stretch < awake_.size() && awake_[stretch].row == row; ++stretch) {
-      append_runs(status.subspan(std::size_t{row} * cols, cols), awake_[stretch], found_);
+    for (; stretch < active_.size() && active_[stretch].row == row; ++stretch) {
+      append_runs(status.subspan(std::size_t{row} * cols, cols), active_[stretch], found_);
     }
     for (std::size_t run = begin; run < found_.size(); ++run) {
       parents_.push_back(static_cast<std::uint32_t>(run));
@@ -230,7 +230,7 @@ void ContactMap::find_runs(std::span<const std::uint8_t> status, std::uint32_t c
 }
 
 /// First runs come in the order of the contacts' numbers, and before the others of their contact.
-void ContactMap::number_contacts() {
+void ContactLabels::number_contacts() {
   starts_.assign(1, 0);
   for (std::size_t run = 0; run < found_.size(); ++run) {
     if (parents_[run] == run) {
@@ -243,7 +243,7 @@ void ContactMap::number_contacts() {
 }
 
 /// A counting sort, which keeps the order of runs within a contact.
-void ContactMap::sort_runs() {
+void ContactLabels::sort_runs() {
   for (const ContactRun& run : found_) ++starts_[run.contact + 1];
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
   next_.assign(starts_.begin(), starts_.end());

@@ -1,4 +1,4 @@
-// Results that are kept out of the ring while others are solved.
+// Results that are pinned out of the ring while others are solved.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 #include <thread>
 
-#include "device/slot_turns.h"
+#include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
@@ -40,7 +40,7 @@ void expect_within(std::span<const std::byte> pages, std::span<const Value> plan
   EXPECT_LE(bytes.data() + bytes.size(), pages.data() + pages.size());
 }
 
-class KeptFrames : public testing::TestWithParam<Memory> {
+class PinnedFrames : public testing::TestWithParam<Memory> {
  protected:
   void SetUp() override {
     if (GetParam() == Memory::shared && !test_device().info().shares_memory) {
@@ -53,7 +53,7 @@ class KeptFrames : public testing::TestWithParam<Memory> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Memories, KeptFrames, testing::Values(Memory::shared, Memory::staged),
+INSTANTIATE_TEST_SUITE_P(Memories, PinnedFrames, testing::Values(Memory::shared, Memory::staged),
                          [](const testing::TestParamInfo<Memory>& memory) {
                            return memory.param == Memory::shared ? "shared" : "staged";
                          });
@@ -64,13 +64,13 @@ std::vector<RandomFrame> frames_of(const SolverPlan& plan, std::uint32_t count) 
   return frames;
 }
 
-TEST_P(KeptFrames, StayAsTheyAreWhileOthersAreSolved) {
+TEST_P(PinnedFrames, StayAsTheyAreWhileOthersAreSolved) {
   const SolverPlan plan = bare_plan(64, 90, SenselType::u8);
   Processor ring = processor(plan, 3);
   const std::vector<RandomFrame> frames = frames_of(plan, 20);
   ring.submit(frames[0].view());
   const ForceFieldView kept_forces = ring.receive();
-  const Processor::Kept kept = ring.keep();
+  const Processor::PinnedResult pinned = ring.pin();
   for (std::size_t i = 1; i < frames.size(); ++i) {
     ring.submit(frames[i].view());
     const ForceFieldView forces = ring.receive();
@@ -80,7 +80,7 @@ TEST_P(KeptFrames, StayAsTheyAreWhileOthersAreSolved) {
   expect_solved(kept_forces, plan, frames[0]);
 }
 
-TEST_P(KeptFrames, PagesAreWholeAndHoldEveryPlane) {
+TEST_P(PinnedFrames, PagesAreWholeAndHoldEveryPlane) {
   SolverPlan plan = full_plan(34, 46, SenselType::u8, 3);
   plan.angles = true;
   plan.uncertainty = true;
@@ -88,8 +88,8 @@ TEST_P(KeptFrames, PagesAreWholeAndHoldEveryPlane) {
   const RandomFrame frame(plan, 0, 1);
   ring.submit(frame.view());
   const ForceFieldView forces = ring.receive();
-  const Processor::Kept kept = ring.keep();
-  const std::span<const std::byte> pages = kept.pages();
+  const Processor::PinnedResult pinned = ring.pin();
+  const std::span<const std::byte> pages = pinned.pages();
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(pages.data()) % 4096, 0U);
   EXPECT_EQ(pages.size() % 4096, 0U);
   EXPECT_EQ(pages.size(), (3 + 3 + kUncertaintyPlanes + 1) * 4096) << "small planes, a page each";
@@ -101,55 +101,55 @@ TEST_P(KeptFrames, PagesAreWholeAndHoldEveryPlane) {
   expect_within(pages, forces.status);
 }
 
-TEST_P(KeptFrames, GivingBackFreesTheSlot) {
+TEST_P(PinnedFrames, GivingBackFreesTheSlot) {
   const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
   Processor ring = processor(plan, 2);
   const std::vector<RandomFrame> frames = frames_of(plan, 8);
   for (const RandomFrame& frame : frames) {
     ring.submit(frame.view());
     expect_solved(ring.receive(), plan, frame);
-    const Processor::Kept first = ring.keep();
+    const Processor::PinnedResult first = ring.pin();
     ring.submit(frame.view());
     expect_solved(ring.receive(), plan, frame);
-    const Processor::Kept second = ring.keep();
-    EXPECT_EQ(ring.kept(), 2);
+    const Processor::PinnedResult second = ring.pin();
+    EXPECT_EQ(ring.pinned(), 2);
     EXPECT_NE(first.pages().data(), second.pages().data());
   }
-  EXPECT_EQ(ring.kept(), 0);
+  EXPECT_EQ(ring.pinned(), 0);
 }
 
-TEST_P(KeptFrames, ExhaustionIsOneClearLineAndCanBeMended) {
+TEST_P(PinnedFrames, ExhaustionIsOneClearLineAndCanBeMended) {
   const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
   Processor ring = processor(plan, 2);
   const std::vector<RandomFrame> frames = frames_of(plan, 2);
   ring.submit(frames[0].view());
   const ForceFieldView forces = ring.receive();
   ASSERT_FALSE(forces.normal.empty());
-  std::optional<Processor::Kept> kept = ring.keep();
+  std::optional<Processor::PinnedResult> pinned = ring.pin();
   ring.submit(frames[1].view());
   try {
     ring.submit(frames[1].view());
     FAIL() << "three frames have no place in two slots";
   } catch (const Error& error) {
     const std::string text = error.what();
-    EXPECT_NE(text.find("of 2 frames 1 are in flight and 1 are kept"), std::string::npos) << text;
+    EXPECT_NE(text.find("of 2 frames 1 are in flight and 1 are pinned"), std::string::npos) << text;
     EXPECT_EQ(text.find('\n'), std::string::npos);
   }
   EXPECT_EQ(ring.in_flight(), 1);
   expect_solved(forces, plan, frames[0]);
-  kept.reset();
+  pinned.reset();
   ring.submit(frames[0].view());
   expect_solved(ring.receive(), plan, frames[1]);
   expect_solved(ring.receive(), plan, frames[0]);
 }
 
-TEST_P(KeptFrames, SilentBlocksOfASlotAreSkippedRightly) {
+TEST_P(PinnedFrames, SilentBlocksOfASlotAreSkippedRightly) {
   const SolverPlan plan = bare_plan(32, 64, SenselType::u8);
   Processor ring = processor(plan, 3);
   FrameBuffer silent(SenselType::u8, 32, 64);
   const RandomFrame loud(plan, 0, 5);
   std::mt19937 random(7);
-  std::deque<Processor::Kept> kept;
+  std::deque<Processor::PinnedResult> pinned;
   std::deque<std::pair<ForceFieldView, bool>> seen;
   for (int i = 0; i < 60; ++i) {
     const bool is_loud = random() % 2 == 0;
@@ -158,33 +158,33 @@ TEST_P(KeptFrames, SilentBlocksOfASlotAreSkippedRightly) {
     EXPECT_EQ(std::ranges::count(forces.status, 0) == std::ssize(forces.status), !is_loud);
     if (is_loud) expect_solved(forces, plan, loud);
     seen.emplace_back(forces, is_loud);
-    kept.push_back(ring.keep());
+    pinned.push_back(ring.pin());
     const auto stays = static_cast<std::size_t>(random() % 3);
-    for (; kept.size() > stays; kept.pop_front(), seen.pop_front()) {
+    for (; pinned.size() > stays; pinned.pop_front(), seen.pop_front()) {
       const auto& [then, was_loud] = seen.front();
       EXPECT_EQ(std::ranges::count(then.status, 0) == std::ssize(then.status), !was_loud);
     }
   }
 }
 
-TEST_P(KeptFrames, OutliveTheProcessor) {
+TEST_P(PinnedFrames, OutliveTheProcessor) {
   const SolverPlan plan = bare_plan(64, 64, SenselType::u8);
   const RandomFrame frame(plan, 0, 4);
   const RandomFrame other(plan, 0, 5);
-  std::optional<Processor::Kept> kept;
+  std::optional<Processor::PinnedResult> pinned;
   ForceFieldView forces;
   {
     Processor ring = processor(plan, 2);
     ring.submit(frame.view());
     forces = ring.receive();
-    kept = ring.keep();
+    pinned = ring.pin();
     ring.submit(other.view());  // In flight when the processor goes.
   }
   expect_solved(forces, plan, frame);
-  std::jthread([&] { kept.reset(); }).join();
+  std::jthread([&] { pinned.reset(); }).join();
 }
 
-TEST_P(KeptFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
+TEST_P(PinnedFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
   const SolverPlan plan = bare_plan(32, 32, SenselType::u8);
   Processor ring = processor(plan, 4);
   const std::vector<RandomFrame> frames = frames_of(plan, 4);
@@ -192,7 +192,7 @@ TEST_P(KeptFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
   expected.reserve(frames.size());
   for (const RandomFrame& frame : frames) expected.push_back(solve_on_host(plan, frame.view()));
   struct Shown {
-    Processor::Kept kept;
+    Processor::PinnedResult pinned;
     ForceFieldView forces;
     std::size_t frame;
   };
@@ -213,7 +213,7 @@ TEST_P(KeptFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
     ring.submit(frames[frame].view());
     const ForceFieldView forces = ring.receive();
     std::optional<Shown> next;
-    next.emplace(Shown{ring.keep(), forces, frame});
+    next.emplace(Shown{ring.pin(), forces, frame});
     const std::scoped_lock lock(mutex);
     std::swap(waiting, next);
   }
@@ -222,28 +222,28 @@ TEST_P(KeptFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST_P(KeptFrames, OnlyTheLastReceivedCanBeKept) {
+TEST_P(PinnedFrames, OnlyTheLastReceivedCanBeKept) {
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   Processor ring = processor(plan, 2);
   const RandomFrame frame(plan, 0, 1);
-  EXPECT_THROW(static_cast<void>(ring.keep()), Error) << "nothing was received";
+  EXPECT_THROW(static_cast<void>(ring.pin()), Error) << "nothing was received";
   ring.submit(frame.view());
-  EXPECT_THROW(static_cast<void>(ring.keep()), Error) << "it is in flight";
+  EXPECT_THROW(static_cast<void>(ring.pin()), Error) << "it is in flight";
   static_cast<void>(ring.receive());
   ring.submit(frame.view());
-  const Processor::Kept kept = ring.keep();  // Its slot was not used since.
-  EXPECT_THROW(static_cast<void>(ring.keep()), Error) << "it is kept already";
+  const Processor::PinnedResult pinned = ring.pin();  // Its slot was not used since.
+  EXPECT_THROW(static_cast<void>(ring.pin()), Error) << "it is pinned already";
 }
 
-/// What Processor promises of results that are not kept.
-TEST(SlotTurns, ASlotIsUsedAgainAfterAsManyFramesAsAreNotKept) {
+/// What Processor promises of results that are not pinned.
+TEST(SlotScheduler, ASlotIsUsedAgainAfterAsManyFramesAsAreNotKept) {
   for (std::size_t slots = 1; slots <= 6; ++slots) {
-    for (std::size_t kept = 0; kept < slots; ++kept) {
-      SlotTurns turns(slots);
-      for (std::size_t i = 0; i < kept; ++i) {
+    for (std::size_t pinned = 0; pinned < slots; ++pinned) {
+      SlotScheduler turns(slots);
+      for (std::size_t i = 0; i < pinned; ++i) {
         turns.submit(turns.next().value());
         turns.receive();
-        ASSERT_TRUE(turns.keep());
+        ASSERT_TRUE(turns.pin());
       }
       std::deque<std::size_t> order;
       for (std::size_t i = 0; i < 40; ++i) {
@@ -251,12 +251,12 @@ TEST(SlotTurns, ASlotIsUsedAgainAfterAsManyFramesAsAreNotKept) {
         turns.submit(slot);
         turns.receive();
         const auto last = std::ranges::find(order, slot);
-        const bool full = order.size() == slots - kept;
+        const bool full = order.size() == slots - pinned;
         EXPECT_EQ(last, full ? order.begin() : order.end()) << "the oldest, once all were used";
         order.push_back(slot);
         if (full) order.pop_front();
       }
-      EXPECT_EQ(turns.kept(), kept);
+      EXPECT_EQ(turns.pinned(), pinned);
     }
   }
 }

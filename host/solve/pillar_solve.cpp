@@ -1,10 +1,10 @@
-#include "pillarfield/host_solve.h"
+#include "solve/pillar_solve.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "contacts/estimator/contact_estimator.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/tuning.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
@@ -81,15 +81,12 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
   }
 }
 
-ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
-  check(plan, "solve_on_host");
-  check(frame, plan.skin, plan.sensel_type, "solve_on_host");
+ForceField solve_pillars(const SolverPlan& plan, const FrameView& frame) {
   ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   PillarSolver solver(plan, frame, field);
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
   }
-  if (plan.estimator == Estimator::contact) ContactEstimator(plan).resolve(field);
   return field;
 }
 

@@ -1,4 +1,4 @@
-#include "base/work_team.h"
+#include "base/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 namespace pillarfield {
 namespace {
 
-TEST(WorkTeam, DoesEachPieceOnce) {
+TEST(ThreadPool, DoesEachPieceOnce) {
   for (const std::size_t members : {1U, 2U, 5U}) {
-    WorkTeam team(members);
+    ThreadPool team(members);
     for (std::size_t pieces = 0; pieces < 40; ++pieces) {
       std::vector<std::atomic<int>> done(pieces);
       team.run(pieces, [&](std::size_t piece, std::size_t) { ++done.at(piece); });
@@ -21,8 +21,8 @@ TEST(WorkTeam, DoesEachPieceOnce) {
   }
 }
 
-TEST(WorkTeam, SharesPieces) {
-  WorkTeam team(2);
+TEST(ThreadPool, SharesPieces) {
+  ThreadPool team(2);
   std::atomic<int> inside = 0;
   // Each piece waits until another thread has the other.
   team.run(2, [&](std::size_t, std::size_t) {
@@ -32,8 +32,8 @@ TEST(WorkTeam, SharesPieces) {
   EXPECT_EQ(inside, 2);
 }
 
-TEST(WorkTeam, TellsWhoDoesAPiece) {
-  WorkTeam team(3);
+TEST(ThreadPool, TellsWhoDoesAPiece) {
+  ThreadPool team(3);
   std::array<std::thread::id, 3> threads;
   std::mutex mutex;
   for (int turn = 0; turn < 200; ++turn) {
@@ -47,8 +47,8 @@ TEST(WorkTeam, TellsWhoDoesAPiece) {
   EXPECT_EQ(threads[0], std::this_thread::get_id());
 }
 
-TEST(WorkTeam, LeavesASinglePieceToTheCaller) {
-  WorkTeam team(4);
+TEST(ThreadPool, LeavesASinglePieceToTheCaller) {
+  ThreadPool team(4);
   for (int turn = 0; turn < 100; ++turn) {
     std::thread::id worker;
     team.run(1, [&](std::size_t, std::size_t) { worker = std::this_thread::get_id(); });
@@ -56,8 +56,8 @@ TEST(WorkTeam, LeavesASinglePieceToTheCaller) {
   }
 }
 
-TEST(WorkTeam, WaitsForWhatOthersDo) {
-  WorkTeam team(3);
+TEST(ThreadPool, WaitsForWhatOthersDo) {
+  ThreadPool team(3);
   for (int turn = 0; turn < 20; ++turn) {
     std::atomic<int> done = 0;
     team.run(3, [&](std::size_t piece, std::size_t) {

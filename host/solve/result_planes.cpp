@@ -1,4 +1,4 @@
-#include "skin/result_planes.h"
+#include "solve/result_planes.h"
 
 namespace pillarfield {
 

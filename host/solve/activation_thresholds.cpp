@@ -1,4 +1,4 @@
-#include "solve/wake_levels.h"
+#include "solve/activation_thresholds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,10 +33,10 @@ double largest_reading(SenselType type) {
 
 }  // namespace
 
-WakeRange wake_range(const SolverPlan& plan) {
+ActivationRange activation_range(const SolverPlan& plan) {
   const bool whole = plan.sensel_type != SenselType::f32;
   const double largest = largest_reading(plan.sensel_type);
-  WakeRange range{};
+  ActivationRange range{};
   range.threshold = threshold_before_power_law(plan);
   range.step = whole ? 1 : 0;
   range.lowest = whole ? 0 : -kMaxCounts;
@@ -46,24 +46,24 @@ WakeRange wake_range(const SolverPlan& plan) {
   return range;
 }
 
-bool has_wake_plane(const SolverPlan& plan) {
+bool has_activation_plane(const SolverPlan& plan) {
   const Calibration& calibration = plan.calibration;
   return !calibration.tare.empty() || !calibration.gain.empty() || !calibration.mask.empty() ||
          plan.baseline_rate.has_value();
 }
 
-std::vector<float> wake_levels(const SolverPlan& plan) {
+std::vector<float> activation_thresholds(const SolverPlan& plan) {
   const Calibration& calibration = plan.calibration;
-  const WakeRange range = wake_range(plan);
+  const ActivationRange range = activation_range(plan);
   const auto threshold = static_cast<float>(range.threshold);
   const auto lowest = static_cast<float>(range.lowest);
   const auto highest = static_cast<float>(range.highest);
-  std::vector<float> levels(has_wake_plane(plan) ? plan.skin.sensels() : 1);
+  std::vector<float> levels(has_activation_plane(plan) ? plan.skin.sensels() : 1);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const float tare = calibration.tare.empty() ? 0 : calibration.tare[i];
     const float gain = calibration.gain.empty() ? 1 : calibration.gain[i];
-    const float level =
-        single_precision::wake_level(tare, gain, threshold, static_cast<float>(range.step), lowest);
+    const float level = single_precision::activation_threshold(
+        tare, gain, threshold, static_cast<float>(range.step), lowest);
     levels[i] = std::min(std::max(level, lowest), highest);
     if (!calibration.mask.empty() && calibration.mask[i] == 0) {
       levels[i] = static_cast<float>(range.never);

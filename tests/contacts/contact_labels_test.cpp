@@ -1,4 +1,4 @@
-#include "pillarfield/contact_map.h"
+#include "pillarfield/contact_labels.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "pillarfield/status.h"
-#include "solve/silent_blocks.h"
+#include "solve/idle_blocks.h"
 #include "tests/base/message.h"
 
 namespace pillarfield {
@@ -76,7 +76,7 @@ std::vector<std::int64_t> flooded(const Mask& mask, std::int64_t& contacts) {
 }
 
 /// The contact of each pillar as the runs say; each must be listed once, and in order.
-std::vector<std::int64_t> mapped(const Mask& mask, const ContactMap& map) {
+std::vector<std::int64_t> mapped(const Mask& mask, const ContactLabels& map) {
   std::vector<std::int64_t> label(mask.status.size(), kNone);
   std::size_t listed = 0;
   for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
@@ -101,7 +101,7 @@ std::vector<std::int64_t> mapped(const Mask& mask, const ContactMap& map) {
 }
 
 /// Compares with the flood, which numbers in the documented order; returns how many there are.
-std::int64_t expect_as_flooded(const Mask& mask, ContactMap& map) {
+std::int64_t expect_as_flooded(const Mask& mask, ContactLabels& map) {
   map.find(mask.status, mask.rows, mask.cols);
   std::int64_t contacts = 0;
   const auto expected = flooded(mask, contacts);
@@ -111,7 +111,7 @@ std::int64_t expect_as_flooded(const Mask& mask, ContactMap& map) {
 }
 
 std::int64_t contacts_of(const Mask& mask) {
-  ContactMap map;
+  ContactLabels map;
   return expect_as_flooded(mask, map);
 }
 
@@ -141,8 +141,8 @@ Mask random_mask(std::uint32_t rows, std::uint32_t cols, unsigned percent, std::
   return mask;
 }
 
-TEST(ContactMap, IsThatOfAFloodOnRandomMasks) {
-  ContactMap map;  // one for all: what it keeps must not show
+TEST(ContactLabels, IsThatOfAFloodOnRandomMasks) {
+  ContactLabels map;  // one for all: what it keeps must not show
   std::uint64_t seed = 0;
   for (const unsigned percent : {1u, 5u, 15u, 30u, 40u, 50u, 60u, 75u, 90u, 99u}) {
     for (const auto& [rows, cols] : {std::pair<std::uint32_t, std::uint32_t>{1, 200},
@@ -160,8 +160,8 @@ TEST(ContactMap, IsThatOfAFloodOnRandomMasks) {
   }
 }
 
-TEST(ContactMap, IsThatOfAFloodOnManySmallMasks) {
-  ContactMap map;
+TEST(ContactLabels, IsThatOfAFloodOnManySmallMasks) {
+  ContactLabels map;
   for (unsigned bits = 0; bits < 1u << 12; ++bits) {
     Mask mask(3, 4);
     for (std::uint32_t place = 0; place < 12; ++place) {
@@ -172,12 +172,12 @@ TEST(ContactMap, IsThatOfAFloodOnManySmallMasks) {
   }
 }
 
-TEST(ContactMap, EveryStatusByteCountsByItsUsableBits) {
+TEST(ContactLabels, EveryStatusByteCountsByItsUsableBits) {
   for (unsigned status = 0; status < 256; ++status) {
     for (std::uint32_t col = 0; col < 19; ++col) {
       std::vector<std::uint8_t> bytes(19, 0xf0);
       bytes[col] = static_cast<std::uint8_t>(status);
-      ContactMap map;
+      ContactLabels map;
       map.find(bytes, 1, 19);
       ASSERT_EQ(map.contacts(), (status & 15u) != 0 ? 1 : 0) << status;
       for (const ContactRun& run : map.runs()) ASSERT_EQ(run.first, col);
@@ -200,14 +200,14 @@ struct Marks {
     }
   }
 
-  [[nodiscard]] SilentBlocks view() const { return {marks, stride, size}; }
+  [[nodiscard]] IdleBlocks view() const { return {marks, stride, size}; }
 
   std::size_t stride;
   std::uint32_t size;
   std::vector<std::uint8_t> marks;
 };
 
-TEST(ContactMap, IsTheSameWhereSilentBlocksAreKnown) {
+TEST(ContactLabels, IsTheSameWhereSilentBlocksAreKnown) {
   std::uint64_t random = 1;
   for (const std::uint32_t cols : {1U, 3U, 7U, 8U, 15U, 16U, 17U, 50U, 200U, 1100U}) {
     for (const std::uint32_t pillars : {1U, 2U, 8U, 16U}) {
@@ -219,9 +219,9 @@ TEST(ContactMap, IsTheSameWhereSilentBlocksAreKnown) {
             mask.set(row, col, (random >> 33) % one_in == 0);
           }
         }
-        ContactMap expected;
+        ContactLabels expected;
         expected.find(mask.status, mask.rows, mask.cols);
-        ContactMap actual;
+        ContactLabels actual;
         actual.find(mask.status, mask.rows, mask.cols, Marks(mask, pillars).view());
         ASSERT_EQ(actual.contacts(), expected.contacts()) << cols << " in blocks of " << pillars;
         ASSERT_TRUE(std::ranges::equal(actual.runs(), expected.runs(),
@@ -234,12 +234,12 @@ TEST(ContactMap, IsTheSameWhereSilentBlocksAreKnown) {
   }
 }
 
-TEST(ContactMap, DoesNotLookIntoSilentBlocks) {
+TEST(ContactLabels, DoesNotLookIntoSilentBlocks) {
   Mask mask(3, 40);
   Marks marks(mask, 16);
   for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);
   marks.marks[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
-  ContactMap map;
+  ContactLabels map;
   map.find(mask.status, 3, 40, marks.view());
   ASSERT_EQ(map.runs().size(), 1U);
   EXPECT_EQ(map.runs()[0].row, 1U);
@@ -247,22 +247,22 @@ TEST(ContactMap, DoesNotLookIntoSilentBlocks) {
   EXPECT_EQ(map.runs()[0].end, 24U);
 }
 
-TEST(ContactMap, OfNothingIsEmpty) {
-  EXPECT_EQ(ContactMap().contacts(), 0);
+TEST(ContactLabels, OfNothingIsEmpty) {
+  EXPECT_EQ(ContactLabels().contacts(), 0);
   EXPECT_EQ(contacts_of(Mask(0, 0)), 0);
   EXPECT_EQ(contacts_of(Mask(0, 5)), 0);
   EXPECT_EQ(contacts_of(Mask(5, 0)), 0);
   EXPECT_EQ(contacts_of(Mask(40, 70)), 0);
 }
 
-TEST(ContactMap, ForgetsTheFrameBefore) {
-  ContactMap map;
+TEST(ContactLabels, ForgetsTheFrameBefore) {
+  ContactLabels map;
   expect_as_flooded(random_mask(50, 50, 30, 1), map);
   EXPECT_EQ(expect_as_flooded(Mask(3, 90), map), 0);
   EXPECT_TRUE(map.runs().empty());
 }
 
-TEST(ContactMap, OnePillarAnywhere) {
+TEST(ContactLabels, OnePillarAnywhere) {
   for (std::uint32_t row = 0; row < 3; ++row) {
     for (std::uint32_t col = 0; col < 70; ++col) {
       Mask mask(3, 70);
@@ -272,13 +272,13 @@ TEST(ContactMap, OnePillarAnywhere) {
   }
 }
 
-TEST(ContactMap, WholePatchIsOne) {
+TEST(ContactLabels, WholePatchIsOne) {
   for (const std::uint32_t size : {1u, 7u, 8u, 9u, 64u, 65u}) {
     EXPECT_EQ(contacts_of(random_mask(size, size, 100, 1)), 1);
   }
 }
 
-TEST(ContactMap, CheckerboardHangsTogetherByItsCorners) {
+TEST(ContactLabels, CheckerboardHangsTogetherByItsCorners) {
   for (const std::uint32_t size : {2u, 3u, 64u, 101u}) {
     Mask mask(size, size);
     for (std::uint32_t place = 0; place < size * size; ++place) {
@@ -288,7 +288,7 @@ TEST(ContactMap, CheckerboardHangsTogetherByItsCorners) {
   }
 }
 
-TEST(ContactMap, DiagonalLinesAreOne) {
+TEST(ContactLabels, DiagonalLinesAreOne) {
   for (const bool falling : {false, true}) {
     Mask mask(90, 90);
     for (std::uint32_t i = 0; i < 90; ++i) mask.set(i, falling ? i : 89 - i, true);
@@ -297,7 +297,7 @@ TEST(ContactMap, DiagonalLinesAreOne) {
 }
 
 /// Teeth that only the last row joins, and such as only the first row does.
-TEST(ContactMap, CombIsOne) {
+TEST(ContactLabels, CombIsOne) {
   for (const std::uint32_t spine : {0u, 40u}) {
     Mask mask(41, 201);
     for (std::uint32_t row = 0; row < 41; ++row) {
@@ -308,7 +308,7 @@ TEST(ContactMap, CombIsOne) {
   }
 }
 
-TEST(ContactMap, SingleRowsAndColumns) {
+TEST(ContactLabels, SingleRowsAndColumns) {
   EXPECT_EQ(contacts_of(Mask({"##.#.....###################.#"})), 4);
   EXPECT_EQ(contacts_of(Mask({"#", "#", ".", "#", ".", ".", "#", "#"})), 3);
   EXPECT_EQ(contacts_of(Mask({"#"})), 1);
@@ -336,7 +336,7 @@ void add_spiral(Mask& mask, int windings, int sign) {
   }
 }
 
-TEST(ContactMap, SpiralIsOne) {
+TEST(ContactLabels, SpiralIsOne) {
   for (const int sign : {1, -1}) {
     Mask mask(101, 101);
     add_spiral(mask, 12, sign);
@@ -344,17 +344,17 @@ TEST(ContactMap, SpiralIsOne) {
   }
 }
 
-TEST(ContactMap, InterleavedSpiralsAreTwo) {
+TEST(ContactLabels, InterleavedSpiralsAreTwo) {
   Mask mask(101, 101);
   add_spiral(mask, 12, 1);
   add_spiral(mask, 12, -1);
   EXPECT_EQ(contacts_of(mask), 2);
 }
 
-TEST(ContactMap, NumbersFollowTheFirstPillarRowByRow) {
+TEST(ContactLabels, NumbersFollowTheFirstPillarRowByRow) {
   const Mask mask({"....##...#", "........#.", "#..#......", "#...#..###", "#.##......"});
   EXPECT_EQ(contacts_of(mask), 5);
-  ContactMap map;
+  ContactLabels map;
   map.find(mask.status, mask.rows, mask.cols);
   const auto first = [&](std::uint32_t contact) {
     return std::pair(map.runs(contact)[0].row, map.runs(contact)[0].first);
@@ -367,7 +367,7 @@ TEST(ContactMap, NumbersFollowTheFirstPillarRowByRow) {
   EXPECT_EQ(first(4), Place(3, 7));
 }
 
-TEST(ContactMap, TenThousandContacts) {
+TEST(ContactLabels, TenThousandContacts) {
   Mask mask(200, 200);
   for (std::uint32_t place = 0; place < 10000; ++place) {
     mask.set(place / 100 * 2, place % 100 * 2, true);
@@ -375,9 +375,9 @@ TEST(ContactMap, TenThousandContacts) {
   EXPECT_EQ(contacts_of(mask), 10000);
 }
 
-TEST(ContactMap, SizesMustAgree) {
+TEST(ContactLabels, SizesMustAgree) {
   const std::vector<std::uint8_t> status(12);
-  ContactMap map;
+  ContactLabels map;
   const std::string message = core_test::message_of([&] { map.find(status, 3, 5); });
   EXPECT_NE(message.find("12 status bytes for 3 x 5 pillars"), std::string::npos) << message;
 }

@@ -10,7 +10,7 @@
 namespace pillarfield {
 
 /// @cond internal
-struct SilentBlocks;  // solve/silent_blocks.h
+struct IdleBlocks;  // solve/idle_blocks.h
 /// @endcond
 
 /// A run of adjacent loaded pillars in one row.
@@ -26,7 +26,7 @@ struct ContactRun {
 ///
 /// Labels count from 0 in the order of first pillars, row by row, so they depend on the frame
 /// alone. Reuse the object from frame to frame: it keeps its memory.
-class ContactMap {
+class ContactLabels {
  public:
   /// Labels the contacts of a frame from its status bytes, [rows, cols], in time linear in pillars.
   /// Throws Error if `status` has another size.
@@ -35,7 +35,7 @@ class ContactMap {
   /// @cond internal
   /// The same, without reading the status of blocks known to be idle.
   void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols,
-            const SilentBlocks& silent);
+            const IdleBlocks& silent);
   /// @endcond
 
   /// The number of contacts.
@@ -57,7 +57,7 @@ class ContactMap {
   void number_contacts();
   void sort_runs();
 
-  std::vector<ContactRun> awake_;  ///< where there may be loaded pillars, row by row
+  std::vector<ContactRun> active_;  ///< where there may be loaded pillars, row by row
   std::vector<ContactRun> runs_;
   std::vector<std::size_t> starts_;     ///< first run of each contact, and one past the last
   std::vector<ContactRun> found_;       ///< row by row
@@ -67,7 +67,7 @@ class ContactMap {
 
 /// The contacts of a frame as a Processor found them, a view.
 struct FoundContacts {
-  const ContactMap* map = nullptr;            ///< null: none were looked for
+  const ContactLabels* map = nullptr;         ///< null: none were looked for
   std::span<const ContactFriction> friction;  ///< by label; empty if it was not estimated
 };
 

@@ -30,7 +30,7 @@ class SlotQueue {
   std::size_t count_ = 0;
 };
 
-/// Slots that were kept and given back, from any thread. What was read of a slot before
+/// Slots that were pinned and given back, from any thread. What was read of a slot before
 /// give_back() was read before whatever follows the take() that yields it.
 class ReturnedSlots {
  public:
@@ -44,15 +44,15 @@ class ReturnedSlots {
   std::atomic<std::uint64_t> bits_{0};
 };
 
-/// Which slot is whose: free, in flight, last received, or kept.
+/// Which slot is whose: free, in flight, last received, or pinned.
 ///
 /// A slot waits for its next frame in the order in which frames were received, so that results stay
 /// as long as they can; those given back were read already and come first.
-class SlotTurns {
+class SlotScheduler {
  public:
-  explicit SlotTurns(std::size_t slots);
+  explicit SlotScheduler(std::size_t slots);
 
-  /// A slot for the next frame; none where all are in flight or kept. Either submit() follows, or
+  /// A slot for the next frame; none where all are in flight or pinned. Either submit() follows, or
   /// the slot is given back.
   std::optional<std::size_t> next();
 
@@ -67,10 +67,10 @@ class SlotTurns {
 
   /// Takes the slot last received out of the turns, until returned()->give_back(); none where it is
   /// not there any more.
-  std::optional<std::size_t> keep();
+  std::optional<std::size_t> pin();
 
   [[nodiscard]] std::size_t in_flight() const { return in_flight_.size(); }
-  [[nodiscard]] std::size_t kept() const;
+  [[nodiscard]] std::size_t pinned() const;
   [[nodiscard]] std::size_t slots() const { return slots_; }
   [[nodiscard]] const std::shared_ptr<ReturnedSlots>& returned() const { return returned_; }
 

@@ -1,0 +1,15 @@
+#include "contacts/estimator/contact_estimator.h"
+#include "pillarfield/host_solve.h"
+#include "solve/pillar_solve.h"
+
+namespace pillarfield {
+
+ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame) {
+  check(plan, "solve_on_host");
+  check(frame, plan.skin, plan.sensel_type, "solve_on_host");
+  ForceField field = solve_pillars(plan, frame);
+  if (plan.estimator == Estimator::contact) ContactEstimator(plan).resolve(field);
+  return field;
+}
+
+}  // namespace pillarfield
