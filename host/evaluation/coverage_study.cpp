@@ -30,13 +30,13 @@ Scene real_sensor(double noise_counts, std::uint64_t seed) {
 
 Scene all_directions(double noise_counts, const std::vector<double>& magnitudes_n) {
   Scene scene = real_sensor(noise_counts, 31);
-  Chart chart;
-  chart.directions = 120;
-  chart.inclinations = 61;
-  chart.magnitudes_n = magnitudes_n;
-  scene.skin.rows = 2 * chart.inclinations * static_cast<std::uint32_t>(magnitudes_n.size());
-  scene.skin.cols = 2 * chart.directions;
-  scene.load = chart;
+  DirectionSweep sweep;
+  sweep.directions = 120;
+  sweep.inclinations = 61;
+  sweep.magnitudes_n = magnitudes_n;
+  scene.skin.rows = 2 * sweep.inclinations * static_cast<std::uint32_t>(magnitudes_n.size());
+  scene.skin.cols = 2 * sweep.directions;
+  scene.load = sweep;
   scene.frames = 12;
   return scene;
 }

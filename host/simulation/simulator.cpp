@@ -9,8 +9,8 @@
 
 #include "pillarfield/error.h"
 #include "simulation/body/body_history.h"
-#include "simulation/closed_form/chart.h"
 #include "simulation/closed_form/contact_traction.h"
+#include "simulation/closed_form/direction_sweep.h"
 #include "simulation/ideal_readings.h"
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
@@ -71,7 +71,8 @@ void read_pillars(std::uint32_t row, double counts_per_newton, ForceField& truth
 
 struct Simulator::State {
   explicit State(Scene given) : scene(checked(std::move(given))), sensor(scene) {
-    if (const Chart* chart = std::get_if<Chart>(&scene.load)) chart_truth = chart_forces(*chart);
+    if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load))
+      sweep_truth = direction_sweep_forces(*sweep);
     for (std::size_t number = 0; number < scene.bodies.size(); ++number) {
       bodies.push_back(std::make_unique<BodyHistory>(scene, number));
     }
@@ -79,8 +80,8 @@ struct Simulator::State {
 
   /// Fills the three planes of force, and clears the status bytes.
   void load(std::uint64_t index, ForceField& truth) const {
-    if (std::holds_alternative<Chart>(scene.load)) {
-      truth = chart_truth;
+    if (std::holds_alternative<DirectionSweep>(scene.load)) {
+      truth = sweep_truth;
       return;
     }
     clear(truth);
@@ -110,7 +111,7 @@ struct Simulator::State {
 
   Scene scene;
   Sensor sensor;
-  ForceField chart_truth;  ///< empty where the load is not a chart
+  ForceField sweep_truth;  ///< empty where the load is not a sweep
   std::vector<std::unique_ptr<BodyHistory>> bodies;
 };
 

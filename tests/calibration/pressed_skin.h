@@ -28,10 +28,10 @@ class PressedSkin {
   FrameStatistics press(double force_n, std::uint32_t frames) {
     Scene scene = scene_;
     if (force_n > 0) {
-      scene.load = Chart{.directions = scene.skin.pillar_cols(),
-                         .inclinations = scene.skin.pillar_rows(),
-                         .max_theta_deg = 0,
-                         .magnitudes_n = {force_n}};
+      scene.load = DirectionSweep{.directions = scene.skin.pillar_cols(),
+                                  .inclinations = scene.skin.pillar_rows(),
+                                  .max_theta_deg = 0,
+                                  .magnitudes_n = {force_n}};
     }
     return statistics_of(Simulator(scene), frames);
   }

@@ -81,7 +81,7 @@ class Calibrate(CommandTest):
     def pressed(self, newtons, **options):
         """All pillars carry so much each."""
         return self.record(f"pressed_{newtons}",
-                           f"[chart]\ndirections = {SIZE}\ninclinations = {SIZE}\n"
+                           f"[direction_sweep]\ndirections = {SIZE}\ninclinations = {SIZE}\n"
                            f"max_theta_deg = 0\nmagnitudes_n = [{newtons}]\n", **options)
 
     def pressure_kpa(self, newtons):

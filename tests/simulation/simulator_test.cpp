@@ -138,18 +138,18 @@ TEST(Simulator, ContactsAddUp) {
   for (std::size_t i = 0; i < both.size(); ++i) EXPECT_NEAR(both[i], first[i] + second[i], 1e-6F);
 }
 
-Scene chart_scene() {
+Scene sweep_scene() {
   Scene scene;
-  Chart chart;
-  chart.magnitudes_n = {0.3, 1e-3};
-  scene.load = chart;
+  DirectionSweep sweep;
+  sweep.magnitudes_n = {0.3, 1e-3};
+  scene.load = sweep;
   scene.skin.rows = 2 * 31 * 2;
   scene.skin.cols = 2 * 72;
   return scene;
 }
 
-TEST(Simulator, AChartHoldsEveryDirectionFromWhichAForceComes) {
-  const Rendered frame = render(Simulator(chart_scene()), 7);
+TEST(Simulator, ADirectionSweepHoldsEveryDirectionFromWhichAForceComes) {
+  const Rendered frame = render(Simulator(sweep_scene()), 7);
   using std::numbers::pi;
   for (std::size_t row = 0; row < 62; ++row) {
     for (std::size_t col = 0; col < 72; ++col) {
@@ -166,7 +166,7 @@ TEST(Simulator, AChartHoldsEveryDirectionFromWhichAForceComes) {
 
 /// Equation (2) of the paper, sensel by sensel, at the place in the frame that the design gives it.
 TEST(Simulator, ReadingsAreThePapersEquationAtTheirSensel) {
-  const Simulator simulator(chart_scene());
+  const Simulator simulator(sweep_scene());
   const Rendered frame = render(simulator, 0);
   const auto raw = frame.raw.readings<float>();
   using std::numbers::pi;
@@ -252,7 +252,7 @@ TEST(Simulator, RefusesScenesOutOfRange) {
       [&](Scene& s) { ball(s).path.push_back(ball(s).path.front()); },
       [&](Scene& s) { ball(s).path.front().x_mm = std::numeric_limits<double>::infinity(); },
       [&](Scene& s) { ball(s).motion = ContactMotion::roll; },
-      [](Scene& s) { s.load = Chart{}; },
+      [](Scene& s) { s.load = DirectionSweep{}; },
   };
   for (std::size_t i = 0; i < spoilers.size(); ++i) {
     Scene scene = noisy_scene(1);

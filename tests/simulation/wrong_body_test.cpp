@@ -143,7 +143,7 @@ TEST(WrongBody, IsRefusedInOneLine) {
   }
 }
 
-TEST(WrongBody, ALongPathAndAChartAreRefused) {
+TEST(WrongBody, ALongPathAndADirectionSweepAreRefused) {
   const std::string ball =
       "shape = \"sphere\"\nradius_mm = 9\nfriction = 1\nsubsteps = 5\n"
       "path = [{ time_s = 0, position_mm = [0, 0], load_n = 1 },\n"
@@ -154,10 +154,11 @@ TEST(WrongBody, ALongPathAndAChartAreRefused) {
             }),
             "folder/s.toml: body 1: it takes 25000 steps; its path may have 20000: fewer frames, "
             "substeps or seconds");
-  EXPECT_EQ(
-      core_test::message_of([&] { static_cast<void>(parsed_scene("[chart]\n[[body]]\n" + ball)); }),
-      "folder/s.toml:1: key 'chart' in the scene comes with [[body]]; allowed: one of the "
-      "two");
+  EXPECT_EQ(core_test::message_of(
+                [&] { static_cast<void>(parsed_scene("[direction_sweep]\n[[body]]\n" + ball)); }),
+            "folder/s.toml:1: key 'direction_sweep' in the scene comes with [[body]]; allowed: one "
+            "of the "
+            "two");
 }
 
 }  // namespace

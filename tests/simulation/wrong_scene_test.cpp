@@ -37,7 +37,7 @@ void expect_message(const std::string& text, const std::string& message) {
 TEST(WrongScene, SkinSensorTimeAndSolver) {
   const std::vector<WrongScene> table = {
       {"sise = 3",
-       "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, chart, "
+       "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, direction_sweep, "
        "contact, body, skin, sensor, time, solver"},
       {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
@@ -140,20 +140,21 @@ TEST(WrongScene, SizeOfTheSkin) {
       {"[skin]\npillars = [3, 3]\nsize_mm = [9, 9]",
        "s.toml:2: key 'pillars' in [skin] comes with "
        "size_mm; allowed: one of the two"},
-      {"[skin]\nsize_mm = [9, 9]\n[chart]",
-       "s.toml:2: key 'size_mm' in [skin] comes with [chart]; "
-       "allowed: no size, for the chart sets it"},
-      {"[chart]\ndirections = 0",
-       "s.toml:2: key 'directions' in [chart] is 0; allowed: a whole "
+      {"[skin]\nsize_mm = [9, 9]\n[direction_sweep]",
+       "s.toml:2: key 'size_mm' in [skin] comes with [direction_sweep]; "
+       "allowed: no size: the sweep sets it"},
+      {"[direction_sweep]\ndirections = 0",
+       "s.toml:2: key 'directions' in [direction_sweep] is 0; allowed: a whole "
        "number from 1 to 32767"},
-      {"[chart]\ninclinations = 30000\nmagnitudes_n = [1, 2]",
-       "s.toml:2: key 'inclinations' in [chart] means 60000 x 72 pillars; allowed: 1 to 32767 each "
+      {"[direction_sweep]\ninclinations = 30000\nmagnitudes_n = [1, 2]",
+       "s.toml:2: key 'inclinations' in [direction_sweep] means 60000 x 72 pillars; allowed: 1 to "
+       "32767 each "
        "way, 25000000 in all"},
-      {"[chart]\nmagnitudes_n = []",
-       "s.toml:2: key 'magnitudes_n' in [chart] is a list of 0; "
+      {"[direction_sweep]\nmagnitudes_n = []",
+       "s.toml:2: key 'magnitudes_n' in [direction_sweep] is a list of 0; "
        "allowed: a list, each a number in (0, 1000000]"},
-      {"[chart]\nmax_theta_deg = 91",
-       "s.toml:2: key 'max_theta_deg' in [chart] is 91; allowed: a "
+      {"[direction_sweep]\nmax_theta_deg = 91",
+       "s.toml:2: key 'max_theta_deg' in [direction_sweep] is 91; allowed: a "
        "number in [0, 90]"},
   };
   for (const auto& [text, message] : table) expect_message(text, message);
@@ -184,8 +185,8 @@ TEST(WrongScene, KeysThatDoNotGoTogether) {
        "load_n"},
       {"path = [{time_s = 0, position_mm = [0, 0], load_n = 1}]",
        "s.toml:6: key 'position_mm' in [[contact]] comes with path; allowed: one of the two"},
-      {"[chart]",
-       "s.toml:8: key 'chart' in the scene comes with [[contact]]; allowed: one of the "
+      {"[direction_sweep]",
+       "s.toml:8: key 'direction_sweep' in the scene comes with [[contact]]; allowed: one of the "
        "two"},
       {"radius = 5",
        "s.toml:8: key 'radius' in [[contact]] is unknown here; allowed: shape, "
@@ -300,9 +301,10 @@ TEST(WrongScene, DepthsThatAddUpAreNoDanger) {
 TEST(WrongScene, DotsThatAreNotInKeysAreAllowed) {
   const std::string dots(1000, '.');
   const std::string numbers = repeated(200, "0.5, ") + "0.5";
-  EXPECT_EQ(message_of("# " + dots + "\ntitle = \"" + dots + "\" # " + dots + "\n[chart]\n" +
-                       "directions = 2\nmagnitudes_n = [" + numbers + "]"),
-            "no error");
+  EXPECT_EQ(
+      message_of("# " + dots + "\ntitle = \"" + dots + "\" # " + dots + "\n[direction_sweep]\n" +
+                 "directions = 2\nmagnitudes_n = [" + numbers + "]"),
+      "no error");
   EXPECT_EQ(message_of(on_skin("") + "title = '''\n" + dots + "\n'''"), "no error");
 }
 

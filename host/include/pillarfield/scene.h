@@ -30,7 +30,7 @@ struct SensorModel {
 
 /// A frame that sweeps all directions of force: phi along rows, theta down columns, one block per
 /// magnitude.
-struct Chart {
+struct DirectionSweep {
   std::uint32_t directions = 72;    ///< columns: phi in equal steps over a circle
   std::uint32_t inclinations = 31;  ///< rows of a block: theta from 0 to max_theta_deg
   double max_theta_deg = 90;
@@ -53,8 +53,8 @@ struct Scene {
   bool uncertainty = false;
   std::optional<double> baseline_time_s;  ///< time constant with which the tare follows drift
   std::vector<std::string> warnings;      ///< warnings about its file, such as former names
-  std::variant<std::vector<Contact>, Chart> load;
-  std::vector<Body> bodies;   ///< combined with contacts, not with a Chart
+  std::variant<std::vector<Contact>, DirectionSweep> load;
+  std::vector<Body> bodies;   ///< combined with contacts, not with a DirectionSweep
   double modulus_kpa = 1000;  ///< Young's modulus of the skin under bodies
 };
 

@@ -8,7 +8,7 @@
 
 #include "pillarfield/error.h"
 #include "simulation/body/body_path.h"
-#include "simulation/closed_form/chart.h"
+#include "simulation/closed_form/direction_sweep.h"
 
 namespace pillarfield {
 namespace {
@@ -109,8 +109,8 @@ void check_bodies(const Scene& scene, const char* where) {
     throw Error(where, fmt::format("the scene has {} bodies", scene.bodies.size()),
                 fmt::format("it may have {}", kMaxBodies));
   }
-  if (!scene.bodies.empty() && std::holds_alternative<Chart>(scene.load)) {
-    throw Error(where, "the scene has bodies and a chart", "leave one of them out");
+  if (!scene.bodies.empty() && std::holds_alternative<DirectionSweep>(scene.load)) {
+    throw Error(where, "the scene has bodies and a direction sweep", "leave one of them out");
   }
   int number = 0;
   for (const Body& body : scene.bodies) {
@@ -118,17 +118,18 @@ void check_bodies(const Scene& scene, const char* where) {
   }
 }
 
-void check_chart(const Chart& chart, const Skin& skin, const std::string& where) {
-  check_range(where, "directions", chart.directions, {1, kMaxPillars});
-  check_range(where, "inclinations", chart.inclinations, {1, kMaxPillars});
-  check_range(where, "max_theta_deg", chart.max_theta_deg, kMaxThetaDeg);
-  for (const double magnitude : chart.magnitudes_n) {
+void check_direction_sweep(const DirectionSweep& sweep, const Skin& skin,
+                           const std::string& where) {
+  check_range(where, "directions", sweep.directions, {1, kMaxPillars});
+  check_range(where, "inclinations", sweep.inclinations, {1, kMaxPillars});
+  check_range(where, "max_theta_deg", sweep.max_theta_deg, kMaxThetaDeg);
+  for (const double magnitude : sweep.magnitudes_n) {
     check_range(where, "magnitudes_n", magnitude, kMagnitudeN);
   }
-  if (skin.pillar_rows() == pillar_rows(chart) && skin.pillar_cols() == chart.directions) return;
-  throw Error(where,
-              fmt::format("the skin has {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()),
-              fmt::format("its chart needs {} x {}", pillar_rows(chart), chart.directions));
+  if (skin.pillar_rows() == pillar_rows(sweep) && skin.pillar_cols() == sweep.directions) return;
+  throw Error(
+      where, fmt::format("the skin has {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()),
+      fmt::format("its direction sweep needs {} x {}", pillar_rows(sweep), sweep.directions));
 }
 
 }  // namespace
@@ -171,8 +172,8 @@ void check(const Scene& scene, const char* where) {
     check_range(where, "baseline_time_s", *scene.baseline_time_s, kBaselineTimeS);
   }
   check_bodies(scene, where);
-  if (const Chart* chart = std::get_if<Chart>(&scene.load)) {
-    check_chart(*chart, scene.skin, where);
+  if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load)) {
+    check_direction_sweep(*sweep, scene.skin, where);
     return;
   }
   int number = 0;

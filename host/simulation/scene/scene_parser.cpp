@@ -9,7 +9,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/scene.h"
-#include "simulation/closed_form/chart.h"
+#include "simulation/closed_form/direction_sweep.h"
 #include "simulation/scene/body_section.h"
 #include "simulation/scene/named_value.h"
 #include "simulation/scene/path_section.h"
@@ -161,35 +161,35 @@ void read_size(TomlSection& section, Skin& skin) {
   set_size(section, "pillars", counts, skin);
 }
 
-// [chart] and [skin]
+// [direction_sweep] and [skin]
 
-/// Reads a chart and gives the skin a pillar for each of its forces.
-Chart read_chart(TomlSection section, Skin& skin) {
-  Chart chart;
+/// Reads a direction sweep and sets the skin's size: one pillar per force.
+DirectionSweep read_direction_sweep(TomlSection section, Skin& skin) {
+  DirectionSweep sweep;
   if (const auto count = section.whole_number("directions", 1, kMaxPillars)) {
-    chart.directions = static_cast<std::uint32_t>(*count);
+    sweep.directions = static_cast<std::uint32_t>(*count);
   }
   if (const auto count = section.whole_number("inclinations", 1, kMaxPillars)) {
-    chart.inclinations = static_cast<std::uint32_t>(*count);
+    sweep.inclinations = static_cast<std::uint32_t>(*count);
   }
-  chart.max_theta_deg = section.number("max_theta_deg", kMaxThetaDeg).value_or(chart.max_theta_deg);
+  sweep.max_theta_deg = section.number("max_theta_deg", kMaxThetaDeg).value_or(sweep.max_theta_deg);
   if (const auto magnitudes = section.numbers("magnitudes_n", 0, kMagnitudeN)) {
-    chart.magnitudes_n = *magnitudes;
+    sweep.magnitudes_n = *magnitudes;
   }
   section.finish();
-  const PillarCounts counts = {static_cast<double>(pillar_rows(chart)),
-                               static_cast<double>(chart.directions)};
+  const PillarCounts counts = {static_cast<double>(pillar_rows(sweep)),
+                               static_cast<double>(sweep.directions)};
   set_size(section, "inclinations", counts, skin);
-  return chart;
+  return sweep;
 }
 
 void read_skin(TomlSection section, Scene& scene) {
   read_quantities(section, kSkinQuantities, scene.skin);
   scene.modulus_kpa = section.number("modulus_kpa", kModulusKpa).value_or(scene.modulus_kpa);
-  if (!std::holds_alternative<Chart>(scene.load)) read_size(section, scene.skin);
+  if (!std::holds_alternative<DirectionSweep>(scene.load)) read_size(section, scene.skin);
   for (const std::string_view key : {"size_mm", "pillars"}) {
-    if (!std::holds_alternative<Chart>(scene.load) || !section.has(key)) continue;
-    section.fail(key, "comes with [chart]", "no size, for the chart sets it");
+    if (!std::holds_alternative<DirectionSweep>(scene.load) || !section.has(key)) continue;
+    section.fail(key, "comes with [direction_sweep]", "no size: the sweep sets it");
   }
   section.finish();
 }
@@ -271,17 +271,21 @@ Contact read_contact(TomlSection& section) {
 
 // The whole
 
-/// What touches the skin: a chart, or contacts and bodies, of which there may be none. `folder` is
-/// where height maps are.
+/// Reads the load: a direction sweep, or any number of contacts and bodies. `folder` is the folder
+/// of relative height map paths.
 void read_load(TomlSection& root, const std::filesystem::path& folder, Scene& scene) {
-  TomlSection chart = root.table("chart");
+  const char* const key = root.has("chart") ? "chart" : "direction_sweep";
+  TomlSection sweep = root.table(key);
   auto contacts = root.tables("contact", "[[contact]]");
   auto bodies = root.tables("body", "[[body]]");
-  if (chart.is_present() && contacts)
-    root.fail("chart", "comes with [[contact]]", "one of the two");
-  if (chart.is_present() && bodies) root.fail("chart", "comes with [[body]]", "one of the two");
-  if (chart.is_present()) {
-    scene.load = read_chart(std::move(chart), scene.skin);
+  if (sweep.is_present() && contacts) root.fail(key, "comes with [[contact]]", "one of the two");
+  if (sweep.is_present() && bodies) root.fail(key, "comes with [[body]]", "one of the two");
+  if (root.has("chart")) {
+    scene.warnings.emplace_back(
+        "[chart] is now [direction_sweep]; the former name works in this release only");
+  }
+  if (sweep.is_present()) {
+    scene.load = read_direction_sweep(std::move(sweep), scene.skin);
     return;
   }
   std::vector<Contact> load;
