@@ -34,7 +34,7 @@ int main(int argc, char** argv) try {
     for (const auto& contact : tracker.update(forces, time_s, processor.contacts()).contacts) {
       const pf::ContactQuantities& q = contact.quantities;
       std::printf("%.3f,%llu,%.2f,%.2f,%.4f,%.4f,%.4f,%.3f,", time_s,
-                  static_cast<unsigned long long>(contact.id), q.centre_of_pressure.x_mm,
+                  static_cast<unsigned long long>(contact.track_id), q.centre_of_pressure.x_mm,
                   q.centre_of_pressure.y_mm, q.shear_x_n, q.shear_y_n, q.normal_n, q.torque_nmm);
       if (q.friction) std::printf("%.2f", *q.friction);
       std::printf(",%s\n", pf::name_of(q.slip));

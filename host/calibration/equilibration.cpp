@@ -47,7 +47,7 @@ std::vector<Response> fit_all(const ResponseFit& fit, const Skin& skin, const Fi
 
 SenselFault fault_of(Response::Kind kind) {
   if (kind == Response::Kind::saturated) return SenselFault::saturated;
-  return kind == Response::Kind::silent ? SenselFault::silent : SenselFault::unequal;
+  return kind == Response::Kind::unresponsive ? SenselFault::unresponsive : SenselFault::unequal;
 }
 
 void mask_those_that_do_not_answer(const std::vector<Response>& responses, const Skin& skin,

@@ -159,7 +159,7 @@ class FaultFinder::Verdict {
   [[nodiscard]] SenselFault fault_of(std::size_t sensel) const {
     if (2 * read(sensel).saturated > read(sensel).readings) return SenselFault::saturated;
     const bool answers = 2 * finder_.implied_[sensel].usable > finder_.statistics_.frames();
-    return answers ? SenselFault::stuck : SenselFault::silent;
+    return answers ? SenselFault::stuck : SenselFault::unresponsive;
   }
 
   const FaultFinder& finder_;

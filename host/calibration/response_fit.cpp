@@ -73,7 +73,7 @@ Response ResponseFit::operator()(std::size_t sensel) const {
     }
   }
   if (sums.saturated == presses_.size()) return {.kind = Response::Kind::saturated};
-  if (sums.presses == 0) return {.kind = Response::Kind::silent};
+  if (sums.presses == 0) return {.kind = Response::Kind::unresponsive};
   if (levels_ == 1) return ratio(sums, sensel);
   if (sums.most_n > sums.least_n) return line(sums);
   return {.kind = sums.saturated > 0 ? Response::Kind::saturated : Response::Kind::one_level};
@@ -92,7 +92,7 @@ Response ResponseFit::ratio(const Sums& sums, std::size_t sensel) const {
 Response ResponseFit::line(const Sums& sums) {
   const double mean_n = sums.n / sums.w;
   double slope = (sums.ny - sums.n * sums.y / sums.w) / (sums.nn - sums.n * mean_n);
-  if (slope <= 0) return {.kind = Response::Kind::silent};
+  if (slope <= 0) return {.kind = Response::Kind::unresponsive};
   double start_n = mean_n - sums.y / sums.w / slope;
   if (start_n < 0) {
     slope = sums.ny / sums.nn;

@@ -9,8 +9,8 @@ namespace pillarfield {
 /// How a sensel answered uniform pressure. Its gain is newtons_per_count · k − swallowed, for the k
 /// that all sensels share.
 struct Response {
-  enum class Kind : std::uint8_t { good, silent, one_level, saturated };
-  Kind kind = Kind::silent;
+  enum class Kind : std::uint8_t { good, unresponsive, one_level, saturated };
+  Kind kind = Kind::unresponsive;
   double newtons_per_count = 0;
   double swallowed = 0;    ///< gain that a known dead zone stands for
   double dead_zone_n = 0;  ///< force that it swallows, where the pressures tell

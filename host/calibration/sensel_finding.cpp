@@ -12,8 +12,8 @@ const char* name_of(SenselFault fault) {
       return "stuck";
     case SenselFault::noisy:
       return "noisy";
-    case SenselFault::silent:
-      return "silent";
+    case SenselFault::unresponsive:
+      return "unresponsive";
     case SenselFault::unequal:
       return "unequal";
     case SenselFault::unknown:

@@ -16,7 +16,7 @@ namespace pillarfield {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "words are taken apart from their low end");
+              "bit positions in words are those of little-endian bytes");
 
 std::uint64_t word_at(const std::uint8_t* bytes) {
   std::uint64_t word = 0;
@@ -24,7 +24,7 @@ std::uint64_t word_at(const std::uint8_t* bytes) {
   return word;
 }
 
-/// Bit n says whether pillar n of eight is loaded.
+/// Bit n is set if pillar n of eight is loaded.
 unsigned loaded_of(std::uint64_t word) {
   // A usable bit carries into bit 4 of its byte; the product gathers these eight in the top byte.
   const std::uint64_t usable = word & (kEachByte * status::kUsable);
@@ -32,7 +32,7 @@ unsigned loaded_of(std::uint64_t word) {
   return static_cast<unsigned>((carried * 0x0102040810204080u) >> 56);
 }
 
-/// Eight pillars from column `col`, those past the row's end not loaded.
+/// As loaded_of, for eight pillars from column `col`; pillars past the row's end are not loaded.
 unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
   if (col + kWordBytes <= row.size()) return loaded_of(word_at(row.data() + col));
   if (row.size() >= kWordBytes) {
@@ -44,7 +44,7 @@ unsigned loaded_at(std::span<const std::uint8_t> row, std::size_t col) {
   return loaded_of(word);
 }
 
-/// So many bytes are looked at together where there is silence.
+/// Status bytes that one is_idle() test covers.
 constexpr std::size_t kStride = 4 * kWordBytes;
 
 bool is_idle(const std::uint8_t* bytes) {
@@ -54,20 +54,20 @@ bool is_idle(const std::uint8_t* bytes) {
   return any == 0;
 }
 
-/// The row's end if all from `col` on is silent; else a column at or after it, a multiple of a word
-/// from it, before which all is silent.
+/// A column at or after `col` before which all status bytes are zero: the row's end, or a whole
+/// number of words from `col`.
 std::size_t skip_idle_bytes(std::span<const std::uint8_t> row, std::size_t col) {
   for (; col + kStride <= row.size(); col += kStride) {
     if (!is_idle(row.data() + col)) return col;
   }
-  // What is left is less than a stride: with what is before it, it makes one.
+  // Fewer than kStride bytes are left: test the last kStride bytes of the row.
   if (row.size() >= kStride && is_idle(row.data() + row.size() - kStride)) return row.size();
   return col;
 }
 
-/// Calls `use(first, end)` for each run of places that have what is looked for. `skip(at)` is a
-/// place at or after `at` before which none has, and `bits(at)` tells of the eight from there; past
-/// the last place none has.
+/// Calls `use(first, end)` for each run of set places in [first, places). `skip(at)` returns a
+/// place at or after `at` before which none is set; `bits(at)` returns the eight places from `at`
+/// as bits, zero past the last place.
 template <class Skip, class Bits, class Use>
 void for_each_run(std::size_t first, std::size_t places, const Skip& skip, const Bits& bits,
                   const Use& use) {
@@ -97,7 +97,7 @@ ContactRun run_of(std::size_t row, std::size_t first, std::size_t end) {
           static_cast<std::uint32_t>(end), 0};
 }
 
-/// Appends the runs of loaded pillars within a stretch of a row.
+/// Appends the runs of loaded pillars within the columns of `active`.
 void append_runs(std::span<const std::uint8_t> row, const ContactRun& active,
                  std::vector<ContactRun>& runs) {
   const auto loaded = row.first(active.end);
@@ -107,9 +107,9 @@ void append_runs(std::span<const std::uint8_t> row, const ContactRun& active,
       [&](std::size_t first, std::size_t end) { runs.push_back(run_of(active.row, first, end)); });
 }
 
-/// Bit n says whether block n of eight, from `at` on, has no mark.
+/// Bit n is set if block `at` + n is not idle.
 unsigned active_at(std::span<const std::uint8_t> marks, std::size_t at) {
-  std::uint64_t word = kEachByte;  // past the last there is silence
+  std::uint64_t word = kEachByte;  // blocks past the last are idle
   if (at + kWordBytes <= marks.size()) {
     word = word_at(marks.data() + at);
   } else {
@@ -118,13 +118,14 @@ unsigned active_at(std::span<const std::uint8_t> marks, std::size_t at) {
   return static_cast<unsigned>((~word & kEachByte) * 0x0102040810204080u >> 56);
 }
 
-/// Appends the stretches of a row of `cols` pillars whose blocks have no marks.
-void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& silent,
+/// Appends the column ranges of a row of `cols` pillars whose blocks are not idle.
+void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& idle,
                    std::vector<ContactRun>& stretches) {
-  const std::size_t size = silent.pillars;
-  const std::size_t skew = std::size_t{row} * cols % size;  // of the first block, in the row above
+  const std::size_t size = idle.pillars;
+  const std::size_t skew =
+      std::size_t{row} * cols % size;  // pillars of the first block in the row above
   const std::size_t blocks = (skew + cols + size - 1) / size;
-  const auto marks = silent.marks.subspan(row * silent.stride, blocks);
+  const auto marks = idle.marks.subspan(row * idle.stride, blocks);
   const auto skip = [&](std::size_t at) {
     while (at + kWordBytes <= blocks && word_at(marks.data() + at) == kEachByte) at += kWordBytes;
     return at;
@@ -137,7 +138,7 @@ void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& sile
       });
 }
 
-/// Asks for the status of stretches: they are too far apart for a processor to guess.
+/// Prefetches status bytes: stretches lie too far apart for hardware prefetching.
 void prefetch(std::span<const std::uint8_t> status, std::uint32_t cols,
               std::span<const ContactRun> stretches) {
 #if defined(__GNUC__)
@@ -151,7 +152,7 @@ void prefetch(std::span<const std::uint8_t> status, std::uint32_t cols,
 #endif
 }
 
-/// The first run of the set that `run` is in. Halves the way there for those who ask later.
+/// Union-find with path halving: the first run of the set that contains `run`.
 std::uint32_t first_of(std::vector<std::uint32_t>& parents, std::uint32_t run) {
   while (parents[run] != run) {
     parents[run] = parents[parents[run]];
@@ -160,15 +161,15 @@ std::uint32_t first_of(std::vector<std::uint32_t>& parents, std::uint32_t run) {
   return run;
 }
 
-/// Joins two sets. Every parent comes before its children, so the first run stands for its set.
+/// Joins two sets. A parent precedes its children, so the root is the first run of its set.
 void join(std::vector<std::uint32_t>& parents, std::uint32_t a, std::uint32_t b) {
   a = first_of(parents, a);
   b = first_of(parents, b);
   parents[std::max(a, b)] = std::min(a, b);
 }
 
-/// Joins the runs of one row, [begin, end), with those of the row above it, [above, begin), that
-/// they touch at a side or a corner.
+/// Joins the runs of one row, [begin, end), with touching runs of the row above, [above, begin);
+/// corners touch.
 void join_rows(std::span<const ContactRun> runs, std::size_t above, std::size_t begin,
                std::size_t end, std::vector<std::uint32_t>& parents) {
   for (std::size_t run = begin; run < end; ++run) {
@@ -187,7 +188,7 @@ void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t row
 }
 
 void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t rows,
-                         std::uint32_t cols, const IdleBlocks& silent) {
+                         std::uint32_t cols, const IdleBlocks& idle) {
   if (status.size() != std::size_t{rows} * cols) {
     throw Error("ContactLabels::find",
                 fmt::format("{} status bytes for {} x {} pillars", status.size(), rows, cols),
@@ -195,23 +196,23 @@ void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t row
   }
   active_.clear();
   for (std::uint32_t row = 0; row < rows; ++row) {
-    if (silent.marks.empty()) {
+    if (idle.marks.empty()) {
       active_.push_back({row, 0, cols, 0});
     } else {
-      append_active(row, cols, silent, active_);
+      append_active(row, cols, idle, active_);
     }
   }
-  if (!silent.marks.empty()) prefetch(status, cols, active_);
+  if (!idle.marks.empty()) prefetch(status, cols, active_);
   find_runs(status, cols);
-  number_contacts();
+  label_contacts();
   sort_runs();
 }
 
-/// Finds the runs in what is active, and joins those that touch.
+/// Finds the runs of loaded pillars in active_ and joins touching runs.
 void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_t cols) {
   found_.clear();
   parents_.clear();
-  std::size_t above = 0;  // where the runs of the row above begin
+  std::size_t above = 0;  // first run of the row above
   std::uint32_t next_row = 0;
   for (std::size_t stretch = 0; stretch < active_.size();) {
     const std::uint32_t row = active_[stretch].row;
@@ -229,8 +230,8 @@ void ContactLabels::find_runs(std::span<const std::uint8_t> status, std::uint32_
   }
 }
 
-/// First runs come in the order of the contacts' numbers, and before the others of their contact.
-void ContactLabels::number_contacts() {
+/// Labels contacts by their first runs, in order. A contact's first run precedes its others.
+void ContactLabels::label_contacts() {
   starts_.assign(1, 0);
   for (std::size_t run = 0; run < found_.size(); ++run) {
     if (parents_[run] == run) {
@@ -242,7 +243,7 @@ void ContactLabels::number_contacts() {
   }
 }
 
-/// A counting sort, which keeps the order of runs within a contact.
+/// Sorts the runs by label: a stable counting sort.
 void ContactLabels::sort_runs() {
   for (const ContactRun& run : found_) ++starts_[run.contact + 1];
   std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());

@@ -5,21 +5,21 @@
 namespace pillarfield {
 namespace {
 
-/// Bounds of SlipState, as shares of the load.
+/// Bounds of SlipState, as fractions of the normal force.
 constexpr double kFew = 0.1;
-constexpr double kMostOpen = 0.25;
+constexpr double kMostUndetermined = 0.25;
 
-/// From this share of the friction's ratio on a pillar slips.
+/// A pillar slips if shear / normal is at least this fraction of the friction coefficient.
 constexpr double kSlipRatio = 0.92;
 
 SlipState state_of(const ContactSum& sum) {
   const double all = sum.pressing;
   const double slipping = sum.slipping;
   const double sticking = sum.determined - sum.slipping;
-  const double open = all - sum.determined;
+  const double undetermined = all - sum.determined;
   if (sum.determined == 0) return SlipState::unknown;
-  if (slipping + open <= kFew * all) return SlipState::sticking;
-  if (sticking <= kFew * (slipping + sticking) && open <= kMostOpen * all) {
+  if (slipping + undetermined <= kFew * all) return SlipState::sticking;
+  if (sticking <= kFew * (slipping + sticking) && undetermined <= kMostUndetermined * all) {
     return SlipState::sliding;
   }
   const bool both = slipping > kFew * all && sticking > kFew * all;

@@ -7,17 +7,17 @@
 
 namespace pillarfield {
 
-/// What a contact's pillars exert, all but the slip.
+/// The quantities of a contact, except friction and slip.
 [[nodiscard]] ContactQuantities quantities_of(const ContactSum& sum, double pillar_pitch_mm);
 
-/// The shear / normal from which on a pillar slips.
+/// Ratio of shear to normal force above which a pillar counts as slipping.
 [[nodiscard]] std::optional<double> slip_ratio(std::optional<double> friction);
 
-/// The coefficient, where it is known well enough to be reported.
+/// The friction coefficient; unset if its source is the prior alone.
 [[nodiscard]] std::optional<double> known_friction(const ContactFriction& friction);
 
-/// Adds what is known of a contact's friction, and what that says of its slip. `sum` is
-/// that with its slip_ratio().
+/// Sets friction, slip state and slip margin. `sum` is computed with the slip_ratio() of
+/// `friction`.
 void set_slip(ContactQuantities& contact, const ContactFriction& friction, const ContactSum& sum);
 
 }  // namespace pillarfield

@@ -12,8 +12,8 @@
 namespace pillarfield {
 namespace {
 
-/// Four pillars side by side, a lane each. GNU vectors, because compilers make poor ones of loops
-/// over them. They are passed by reference: how they are returned depends on the processor.
+/// Four neighbouring pillars, one per lane. GNU vectors, since compilers vectorise the equivalent
+/// loops poorly. Passed by reference: the calling convention of returns depends on the processor.
 using Bytes [[gnu::vector_size(4)]] = std::uint8_t;
 using Floats [[gnu::vector_size(16)]] = float;
 using Ints [[gnu::vector_size(16)]] = std::int32_t;
@@ -21,11 +21,11 @@ using Doubles [[gnu::vector_size(32)]] = double;
 using Longs [[gnu::vector_size(32)]] = std::int64_t;
 constexpr std::uint32_t kLanes = 4;
 
-/// Status bits of a force that its pillar's own readings do not determine, although enough sensels
-/// are usable.
+/// Status bits of a force that the pillar's own readings do not determine although three or four
+/// sensels are usable.
 constexpr int kUndetermined = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
 
-/// Reads forces; NaN, infinity and lanes that are not `present` are zero.
+/// Loads four forces; NaN, infinity and lanes not `present` become zero.
 PF_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
   std::memcpy(&values, from, sizeof values);
   const Ints finite = values - values == 0;
@@ -39,7 +39,7 @@ PF_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& status)
   status = Ints{bytes[0], bytes[1], bytes[2], bytes[3]} & present;
 }
 
-/// Where four pillars lie in each plane.
+/// Addresses of four pillars in each plane.
 struct Place {
   const float* shear_x;
   const float* shear_y;
@@ -47,7 +47,7 @@ struct Place {
   const std::uint8_t* status;
 };
 
-/// The last pillars of a field that has fewer than four from there on.
+/// A padded copy of the last, fewer than four, pillars of a field.
 struct LastPillars {
   std::array<float, 3 * kLanes> forces{};
   std::array<std::uint8_t, kLanes> status{};
@@ -61,8 +61,8 @@ struct LastPillars {
   }
 };
 
-PF_INLINE void keep(const Doubles& values, const Longs& mask, Doubles& kept) {
-  kept = __builtin_bit_cast(Doubles, __builtin_bit_cast(Longs, values) & mask);
+PF_INLINE void select(const Doubles& values, const Longs& mask, Doubles& selected) {
+  selected = __builtin_bit_cast(Doubles, __builtin_bit_cast(Longs, values) & mask);
 }
 
 template <class Vector>
@@ -70,7 +70,7 @@ auto total_of(const Vector& lanes) {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
-/// Sums, a lane for every fourth pillar of a run.
+/// Partial sums: lane i holds every fourth pillar of a run, from the i-th.
 struct Lanes {
   Doubles shear_x{};
   Doubles shear_y{};
@@ -91,13 +91,13 @@ struct Lanes {
     const Ints known = ((inactive & (inactive - 1)) | (status & kUndetermined)) == 0;
     const Doubles least = least_ratio * n;
     Doubles presses;
-    Doubles told;
+    Doubles certain;
     Doubles slips;
-    keep(n, n > 0, presses);
-    keep(presses, Longs{known[0], known[1], known[2], known[3]}, told);
-    keep(told, x * x + y * y >= least * least, slips);
+    select(n, n > 0, presses);
+    select(presses, Longs{known[0], known[1], known[2], known[3]}, certain);
+    select(certain, x * x + y * y >= least * least, slips);
     pressing += presses;
-    determined += told;
+    determined += certain;
     slipping += slips;
   }
 
@@ -117,8 +117,8 @@ struct Lanes {
   }
 };
 
-/// Prefetches what the run four ahead needs of a plane, at the first run all up to there: rows are
-/// too far apart for a processor to guess.
+/// Prefetches the run four ahead in one plane; at the first run, all runs up to that one. Rows lie
+/// too far apart for hardware prefetching.
 template <class Value>
 PF_INLINE void prefetch(std::span<const Value> plane, const ForceFieldView& forces,
                         std::span<const ContactRun> runs, std::size_t run) {
@@ -138,7 +138,7 @@ std::int64_t place_x(const ForceFieldView& forces, std::uint32_t col) {
   return 2 * std::int64_t{col} + 1 - forces.cols;
 }
 
-/// Adds the pillars of a run, whose y is given, and returns their largest normal force.
+/// Adds the pillars of a run at height `y`. Returns their largest normal force.
 PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, double y,
                         std::optional<double> least_ratio, Lanes& lanes) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
@@ -169,7 +169,7 @@ PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, dou
     sum_n += normal;
     lanes.normal_x += normal * x;
     lanes.shear_y_x += shear_y * x;
-    // A lane that is true is -1.
+    // A true lane is -1.
     lanes.ambiguous -= (status & (status::kAmbiguous | status::kFromNeighbours)) != 0;
     lanes.resolved -= (status & status::kFromNeighbours) != 0;
     if (least_ratio) lanes.add_slip(shear_x, shear_y, normal, status, *least_ratio);

@@ -8,8 +8,8 @@
 
 #include "contacts/contact_matching.h"
 #include "contacts/contact_measure.h"
-#include "contacts/contact_survey.h"
 #include "contacts/estimator/friction_estimator.h"
+#include "contacts/parallel_contact_moments.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -20,7 +20,7 @@ constexpr double kMostNoiseN = 1e6;
 constexpr double kMostReachMm = 1000;
 constexpr std::uint32_t kMostThreads = 1024;
 
-void require_whole(const ForceFieldView& forces) {
+void require_planes(const ForceFieldView& forces) {
   const std::size_t pillars = std::size_t{forces.rows} * forces.cols;
   for (const std::span<const float> plane : {forces.shear_x, forces.shear_y, forces.normal}) {
     if (plane.size() == pillars) continue;
@@ -31,17 +31,18 @@ void require_whole(const ForceFieldView& forces) {
   }
 }
 
-void require_inside(const FoundContacts& found, const ForceFieldView& forces) {
-  const ContactLabels& map = *found.map;
-  if (!found.friction.empty() && found.friction.size() != map.contacts()) {
+void require_valid(const FoundContacts& found, const ForceFieldView& forces) {
+  const ContactLabels& labels = *found.labels;
+  if (!found.friction.empty() && found.friction.size() != labels.contacts()) {
     throw Error(kPlace,
-                fmt::format("{} frictions for {} contacts", found.friction.size(), map.contacts()),
+                fmt::format("{} friction coefficients for {} contacts", found.friction.size(),
+                            labels.contacts()),
                 "give one for each, or none");
   }
-  for (const ContactRun& run : map.runs()) {
+  for (const ContactRun& run : labels.runs()) {
     if (run.row < forces.rows && run.end <= forces.cols) continue;
     throw Error(kPlace,
-                fmt::format("contacts found in row {} up to column {} of {} x {} pillars", run.row,
+                fmt::format("a contact in row {} up to column {} of {} x {} pillars", run.row,
                             run.end, forces.rows, forces.cols),
                 "give the ContactLabels of the same frame");
   }
@@ -59,8 +60,8 @@ FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& optio
           .segment_end = {.hidden_n = static_cast<float>(options.hidden_n)}};
 }
 
-/// What identifies a contact from frame to frame, besides its id.
-struct Known {
+/// State of a tracked contact besides its track_id.
+struct Track {
   std::optional<std::uint64_t> parent;
   double first_time_s = 0;
 };
@@ -78,7 +79,7 @@ void check(const ContactOptions& options, const std::string& where) {
                 fmt::format("it must be 0 to {}", kMostNoiseN));
   }
   if (!(options.reach_mm >= 0 && options.reach_mm <= kMostReachMm)) {
-    throw Error(where, fmt::format("contacts that jump by {} mm", options.reach_mm),
+    throw Error(where, fmt::format("a reach of {} mm", options.reach_mm),
                 fmt::format("it must be 0 to {}", kMostReachMm));
   }
   if (options.threads > kMostThreads) {
@@ -91,8 +92,8 @@ struct ContactTracker::State {
   State(double pillar_pitch_mm, const ContactOptions& contact_options);
 
   void require_size(const ForceFieldView& forces);
-  const FrameContacts& follow(const ForceFieldView& forces, double time_s,
-                              std::span<const ContactFriction> friction);
+  const FrameContacts& track(const ForceFieldView& forces, double time_s,
+                             std::span<const ContactFriction> friction);
   void measure(const ForceFieldView& forces, std::span<const ContactFriction> friction);
   void identify(double time_s);
 
@@ -102,122 +103,123 @@ struct ContactTracker::State {
   std::uint32_t cols = 0;
   bool any_frame = false;
   double last_time_s = 0;
-  std::uint64_t next_id = 1;
-  ContactLabels map;
+  std::uint64_t next_track_id = 1;
+  ContactLabels labels;
   FrameContacts frame;
-  std::vector<Known> known;  // of frame.contacts
-  ContactSurvey survey;
+  std::vector<Track> tracks;  // of frame.contacts
+  ParallelContactMoments moments;
   FrictionEstimator friction_estimator;
-  std::vector<std::uint32_t> indices;  // of the map's contacts, the place in frame.contacts
-  ContactTraces traces;
-  ContactTraces traces_before;
+  std::vector<std::uint32_t> indices;  // in frame.contacts, by label
+  ContactSnapshot snapshot;
+  ContactSnapshot earlier_snapshot;
 };
 
 ContactTracker::State::State(double pillar_pitch_mm, const ContactOptions& contact_options)
     : pitch_mm(pillar_pitch_mm),
       options(checked(contact_options)),
-      survey(options.threads),
-      friction_estimator(sensor_of(pitch_mm, options), options.friction, survey.threads()) {
+      moments(options.threads),
+      friction_estimator(sensor_of(pitch_mm, options), options.friction, moments.threads()) {
   if (!std::isfinite(pitch_mm) || pitch_mm <= 0) {
     throw Error(kPlace, fmt::format("a pillar pitch of {} mm", pitch_mm), "it must be above zero");
   }
 }
 
 void ContactTracker::State::require_size(const ForceFieldView& forces) {
-  require_whole(forces);
+  require_planes(forces);
   if (any_frame && (forces.rows != rows || forces.cols != cols)) {
     throw Error(kPlace,
-                fmt::format("a frame of {} x {} pillars after such of {} x {}", forces.rows,
+                fmt::format("a frame of {} x {} pillars after frames of {} x {}", forces.rows,
                             forces.cols, rows, cols),
-                "follow them with another tracker");
+                "use one tracker per field size");
   }
   rows = forces.rows;
   cols = forces.cols;
 }
 
-/// Lists the contacts that are large enough and what they exert, and the patch. Their friction is
-/// learnt where none is given.
+/// Measures the total and the contacts of at least minimum_pillars. Estimates the friction of each
+/// contact, unless `friction` holds it.
 void ContactTracker::State::measure(const ForceFieldView& forces,
                                     std::span<const ContactFriction> friction) {
-  const bool learns = friction.empty() && map.contacts() > 0;
-  if (learns) {
-    friction_estimator.begin(map);
+  const bool estimates = friction.empty() && labels.contacts() > 0;
+  if (estimates) {
+    friction_estimator.begin(labels);
     friction = friction_estimator.friction();
   }
   const auto friction_of = [&](std::uint32_t contact, std::size_t member) {
-    if (learns) friction_estimator.learn(forces, map, contact, member);
+    if (estimates) friction_estimator.update(forces, labels, contact, member);
     return known_friction(friction[contact]);
   };
-  const std::vector<ContactSum>& sums = survey.measure(forces, map, friction_of);
+  const std::vector<ContactSum>& sums = moments.measure(forces, labels, friction_of);
   indices.clear();
   frame.contacts.clear();
-  ContactSum patch;
-  for (std::uint32_t number = 0; number < map.contacts(); ++number) {
-    const ContactSum& sum = sums[number];
-    patch.add(sum);
+  ContactSum total;
+  for (std::uint32_t label = 0; label < labels.contacts(); ++label) {
+    const ContactSum& sum = sums[label];
+    total.add(sum);
     indices.push_back(kNoContact);
     if (static_cast<std::uint64_t>(sum.pillars) < options.minimum_pillars) continue;
     indices.back() = static_cast<std::uint32_t>(frame.contacts.size());
     TrackedContact contact;
-    contact.number = number;
+    contact.label = label;
     contact.quantities = quantities_of(sum, pitch_mm);
-    set_slip(contact.quantities, friction[number], sum);
+    set_slip(contact.quantities, friction[label], sum);
     frame.contacts.push_back(contact);
   }
-  frame.patch = quantities_of(patch, pitch_mm);
-  if (!options.friction.given || frame.patch.pillars == 0) return;
-  set_slip(frame.patch, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
-           patch);
+  frame.total = quantities_of(total, pitch_mm);
+  if (!options.friction.given || frame.total.pillars == 0) return;
+  set_slip(frame.total, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
+           total);
 }
 
-/// Gives each contact of the frame its id, and tells which of the frame before have ended.
+/// Assigns a track_id to each contact of the frame and lists the contacts that have ended.
 void ContactTracker::State::identify(double time_s) {
-  std::swap(traces, traces_before);
-  traces.runs.assign(map.runs_by_row().begin(), map.runs_by_row().end());
-  for (ContactRun& run : traces.runs) run.contact = indices[run.contact];
-  traces.ids.clear();
-  traces.centres.clear();
+  std::swap(snapshot, earlier_snapshot);
+  snapshot.runs.assign(labels.runs_by_row().begin(), labels.runs_by_row().end());
+  for (ContactRun& run : snapshot.runs) run.contact = indices[run.contact];
+  snapshot.track_ids.clear();
+  snapshot.centres.clear();
   for (const TrackedContact& contact : frame.contacts) {
-    traces.centres.push_back(contact.quantities.centre);
+    snapshot.centres.push_back(contact.quantities.centre);
   }
-  const ContactMatches matches = match_contacts(traces_before, traces, options.reach_mm);
+  const ContactAssignment assignment = match_contacts(earlier_snapshot, snapshot, options.reach_mm);
 
-  std::vector<bool> lives(traces_before.ids.size());
-  const std::vector<Known> known_before = std::exchange(known, {});
+  std::vector<bool> lives(earlier_snapshot.track_ids.size());
+  const std::vector<Track> earlier_tracks = std::exchange(tracks, {});
   for (std::size_t i = 0; i < frame.contacts.size(); ++i) {
     TrackedContact& contact = frame.contacts[i];
-    const std::uint32_t earlier = matches.earlier[i];
+    const std::uint32_t earlier = assignment.earlier[i];
     if (earlier != kNoContact) {
       lives[earlier] = true;
-      contact.id = traces_before.ids[earlier];
-      known.push_back(known_before[earlier]);
+      contact.track_id = earlier_snapshot.track_ids[earlier];
+      tracks.push_back(earlier_tracks[earlier]);
     } else {
-      contact.id = next_id++;
-      const std::uint32_t parent = matches.parents[i];
-      known.push_back({std::nullopt, time_s});
-      if (parent != kNoContact) known.back().parent = traces_before.ids[parent];
+      contact.track_id = next_track_id++;
+      const std::uint32_t parent = assignment.parents[i];
+      tracks.push_back({std::nullopt, time_s});
+      if (parent != kNoContact) tracks.back().parent = earlier_snapshot.track_ids[parent];
     }
-    contact.parent = known.back().parent;
-    contact.first_time_s = known.back().first_time_s;
+    contact.parent = tracks.back().parent;
+    contact.first_time_s = tracks.back().first_time_s;
     contact.age_s = time_s - contact.first_time_s;
-    traces.ids.push_back(contact.id);
+    snapshot.track_ids.push_back(contact.track_id);
   }
 
   frame.ended.clear();
   for (std::size_t i = 0; i < lives.size(); ++i) {
     if (lives[i]) continue;
-    const std::uint32_t merged = matches.merged[i];
-    EndedContact ended = {traces_before.ids[i], {}, known_before[i].first_time_s, last_time_s};
-    if (merged != kNoContact) ended.merged_into = traces.ids[merged];
+    const std::uint32_t merged = assignment.merged[i];
+    EndedContact ended = {
+        earlier_snapshot.track_ids[i], {}, earlier_tracks[i].first_time_s, last_time_s};
+    if (merged != kNoContact) ended.merged_into = snapshot.track_ids[merged];
     frame.ended.push_back(ended);
   }
   std::sort(frame.ended.begin(), frame.ended.end(),
-            [](const EndedContact& a, const EndedContact& b) { return a.id < b.id; });
+            [](const EndedContact& a, const EndedContact& b) { return a.track_id < b.track_id; });
 }
 
-/// Takes a frame whose contacts are found.
-const FrameContacts& ContactTracker::State::follow(const ForceFieldView& forces, double time_s,
-                                                   std::span<const ContactFriction> friction) {
+/// Processes a frame whose labels are set.
+const FrameContacts& ContactTracker::State::track(const ForceFieldView& forces, double time_s,
+                                                  std::span<const ContactFriction> friction) {
   frame.time_s = time_s;
   measure(forces, friction);
   identify(time_s);
@@ -235,15 +237,15 @@ ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;
 const FrameContacts& ContactTracker::update(const ForceFieldView& forces, double time_s,
                                             const FoundContacts& found) {
   state_->require_size(forces);
-  if (found.map != nullptr) {
-    require_inside(found, forces);
-    state_->map = *found.map;
-    return state_->follow(forces, time_s, found.friction);
+  if (found.labels != nullptr) {
+    require_valid(found, forces);
+    state_->labels = *found.labels;
+    return state_->track(forces, time_s, found.friction);
   }
-  state_->map.find(forces.status, forces.rows, forces.cols);
-  return state_->follow(forces, time_s, {});
+  state_->labels.find(forces.status, forces.rows, forces.cols);
+  return state_->track(forces, time_s, {});
 }
 
-const ContactLabels& ContactTracker::map() const { return state_->map; }
+const ContactLabels& ContactTracker::labels() const { return state_->labels; }
 
 }  // namespace pillarfield

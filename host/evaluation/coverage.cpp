@@ -37,10 +37,11 @@ class Stated {
     const double y = (*this)[Uncertainty::shear_y];
     const double normal = (*this)[Uncertainty::normal];
     const std::uint8_t bits = field_.status[pillar_];
-    const bool open = (bits & status::kAmbiguous) != 0 && (bits & status::kFromNeighbours) == 0;
-    if (open && region_of(bits) == Region::three) return kNoiseOfSegment * std::min(x, y);
+    const bool ambiguous =
+        (bits & status::kAmbiguous) != 0 && (bits & status::kFromNeighbours) == 0;
+    if (ambiguous && region_of(bits) == Region::three) return kNoiseOfSegment * std::min(x, y);
     // The normal force of region 4 has no noise, and the shear half of its variance each way.
-    if (open && region_of(bits) == Region::four) {
+    if (ambiguous && region_of(bits) == Region::four) {
       return std::sqrt(std::max(0.0, x * x + y * y - normal * normal));
     }
     return std::hypot(x, y, normal);

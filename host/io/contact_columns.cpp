@@ -49,13 +49,13 @@ using Ended = EndedContact;
 using enum ColumnKind;
 
 constexpr std::array<ContactColumn<Contact>, 5> kIdentity = {{
-    {"id", "", identity, [](const Contact& c) { return static_cast<double>(c.id); },
-     [](Contact& c, double v) { c.id = as_count(v); }},
+    {"id", "", identity, [](const Contact& c) { return static_cast<double>(c.track_id); },
+     [](Contact& c, double v) { c.track_id = as_count(v); }},
     {"parent", "", identity,
      [](const Contact& c) { return static_cast<double>(c.parent.value_or(0)); },
      [](Contact& c, double v) { c.parent = as_identity(v); }},
-    {"number", "", count, [](const Contact& c) { return static_cast<double>(c.number); },
-     [](Contact& c, double v) { c.number = static_cast<std::uint32_t>(as_count(v)); }},
+    {"number", "", count, [](const Contact& c) { return static_cast<double>(c.label); },
+     [](Contact& c, double v) { c.label = static_cast<std::uint32_t>(as_count(v)); }},
     {"first_time_s", "s", number, [](const Contact& c) { return c.first_time_s; },
      [](Contact& c, double v) { c.first_time_s = v; }},
     {"age_s", "s", number, [](const Contact& c) { return c.age_s; },
@@ -63,8 +63,8 @@ constexpr std::array<ContactColumn<Contact>, 5> kIdentity = {{
 }};
 
 constexpr std::array<ContactColumn<Ended>, 4> kEnded = {{
-    {"id", "", identity, [](const Ended& c) { return static_cast<double>(c.id); },
-     [](Ended& c, double v) { c.id = as_count(v); }},
+    {"id", "", identity, [](const Ended& c) { return static_cast<double>(c.track_id); },
+     [](Ended& c, double v) { c.track_id = as_count(v); }},
     {"merged_into", "", identity,
      [](const Ended& c) { return static_cast<double>(c.merged_into.value_or(0)); },
      [](Ended& c, double v) { c.merged_into = as_identity(v); }},

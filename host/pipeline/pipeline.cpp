@@ -61,7 +61,7 @@ void Pipeline::State::deliver() {
     solved.contacts = &found;
     done.most_contacts = std::max(done.most_contacts, found.contacts.size());
     for (const TrackedContact& contact : found.contacts) {
-      done.contacts = std::max(done.contacts, contact.id);
+      done.contacts = std::max(done.contacts, contact.track_id);
     }
   }
   for (ForceSink* const sink : sinks) sink->append(solved);

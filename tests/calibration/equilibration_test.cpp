@@ -157,7 +157,7 @@ TEST(Equilibration, DeadAndSaturatedSenselsAreMasked) {
   EXPECT_EQ(result.findings.size(),
             static_cast<std::size_t>(std::ranges::count(truth.mask, std::uint8_t{0})));
   for (const SenselFinding& finding : result.findings) {
-    EXPECT_EQ(finding.fault, SenselFault::silent);
+    EXPECT_EQ(finding.fault, SenselFault::unresponsive);
     EXPECT_TRUE(finding.masked);
   }
 }

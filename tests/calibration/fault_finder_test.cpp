@@ -109,8 +109,8 @@ TEST(FaultFinder, DeadStuckAndSaturatedSenselsAreMasked) {
   };
   const FaultResult result = faults_in(swaying_ball(), spoil);
   EXPECT_EQ(result.findings.size(), 4U);
-  const std::pair<std::size_t, SenselFault> expected[] = {{dead, SenselFault::silent},
-                                                          {off, SenselFault::silent},
+  const std::pair<std::size_t, SenselFault> expected[] = {{dead, SenselFault::unresponsive},
+                                                          {off, SenselFault::unresponsive},
                                                           {stuck, SenselFault::stuck},
                                                           {saturated, SenselFault::saturated}};
   for (const auto& [sensel, fault] : expected) {

@@ -187,7 +187,7 @@ class Chain(Calibrate):
         result = run_json("calibrate", "faults", ball, "--calibration", tared, "-o", tested)
         found = {(finding["row"], finding["col"]): (finding["fault"], finding["masked"])
                  for finding in result["findings"]}
-        self.assertEqual(found, {(20, 20): ("silent", True), (24, 31): ("stuck", True),
+        self.assertEqual(found, {(20, 20): ("unresponsive", True), (24, 31): ("stuck", True),
                                  (30, 30): ("unknown", False), (30, 31): ("unknown", False)})
         self.assertEqual(result["masked"], 2)
         self.assertNotIn([10, 10], result["untested"])
@@ -196,7 +196,7 @@ class Chain(Calibrate):
                              [(20, 20), (24, 31)])
         text = run("calibrate", "faults", ball, "--calibration", tared, "-o", tested,
                    "--overwrite").stdout
-        for words in ("row 20, column 20: silent", "row 30, column 31: unknown", "not masked"):
+        for words in ("row 20, column 20: unresponsive", "row 30, column 31: unknown", "not masked"):
             self.assertIn(words, text)
 
 

@@ -76,11 +76,11 @@ std::vector<std::int64_t> flooded(const Mask& mask, std::int64_t& contacts) {
 }
 
 /// The contact of each pillar as the runs say; each must be listed once, and in order.
-std::vector<std::int64_t> mapped(const Mask& mask, const ContactLabels& map) {
+std::vector<std::int64_t> mapped(const Mask& mask, const ContactLabels& labels) {
   std::vector<std::int64_t> label(mask.status.size(), kNone);
   std::size_t listed = 0;
-  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
-    const auto runs = map.runs(contact);
+  for (std::uint32_t contact = 0; contact < labels.contacts(); ++contact) {
+    const auto runs = labels.runs(contact);
     EXPECT_FALSE(runs.empty());
     listed += runs.size();
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -96,23 +96,23 @@ std::vector<std::int64_t> mapped(const Mask& mask, const ContactLabels& map) {
       }
     }
   }
-  EXPECT_EQ(listed, map.runs().size());
+  EXPECT_EQ(listed, labels.runs().size());
   return label;
 }
 
 /// Compares with the flood, which numbers in the documented order; returns how many there are.
-std::int64_t expect_as_flooded(const Mask& mask, ContactLabels& map) {
-  map.find(mask.status, mask.rows, mask.cols);
+std::int64_t expect_as_flooded(const Mask& mask, ContactLabels& labels) {
+  labels.find(mask.status, mask.rows, mask.cols);
   std::int64_t contacts = 0;
   const auto expected = flooded(mask, contacts);
-  EXPECT_EQ(map.contacts(), contacts);
-  EXPECT_TRUE(mapped(mask, map) == expected) << mask.rows << " x " << mask.cols;
+  EXPECT_EQ(labels.contacts(), contacts);
+  EXPECT_TRUE(mapped(mask, labels) == expected) << mask.rows << " x " << mask.cols;
   return contacts;
 }
 
 std::int64_t contacts_of(const Mask& mask) {
-  ContactLabels map;
-  return expect_as_flooded(mask, map);
+  ContactLabels labels;
+  return expect_as_flooded(mask, labels);
 }
 
 /// A reproducible stream of numbers (splitmix64).
@@ -142,7 +142,7 @@ Mask random_mask(std::uint32_t rows, std::uint32_t cols, unsigned percent, std::
 }
 
 TEST(ContactLabels, IsThatOfAFloodOnRandomMasks) {
-  ContactLabels map;  // one for all: what it keeps must not show
+  ContactLabels labels;  // one for all: what it keeps must not show
   std::uint64_t seed = 0;
   for (const unsigned percent : {1u, 5u, 15u, 30u, 40u, 50u, 60u, 75u, 90u, 99u}) {
     for (const auto& [rows, cols] : {std::pair<std::uint32_t, std::uint32_t>{1, 200},
@@ -154,20 +154,20 @@ TEST(ContactLabels, IsThatOfAFloodOnRandomMasks) {
                                      {64, 64},
                                      {50, 131},
                                      {120, 97}}) {
-      expect_as_flooded(random_mask(rows, cols, percent, ++seed), map);
+      expect_as_flooded(random_mask(rows, cols, percent, ++seed), labels);
       if (HasFailure()) FAIL() << percent << " % of " << rows << " x " << cols;
     }
   }
 }
 
 TEST(ContactLabels, IsThatOfAFloodOnManySmallMasks) {
-  ContactLabels map;
+  ContactLabels labels;
   for (unsigned bits = 0; bits < 1u << 12; ++bits) {
     Mask mask(3, 4);
     for (std::uint32_t place = 0; place < 12; ++place) {
       mask.set(place / 4, place % 4, (bits >> place & 1u) != 0);
     }
-    expect_as_flooded(mask, map);
+    expect_as_flooded(mask, labels);
     if (HasFailure()) FAIL() << bits;
   }
 }
@@ -177,10 +177,10 @@ TEST(ContactLabels, EveryStatusByteCountsByItsUsableBits) {
     for (std::uint32_t col = 0; col < 19; ++col) {
       std::vector<std::uint8_t> bytes(19, 0xf0);
       bytes[col] = static_cast<std::uint8_t>(status);
-      ContactLabels map;
-      map.find(bytes, 1, 19);
-      ASSERT_EQ(map.contacts(), (status & 15u) != 0 ? 1 : 0) << status;
-      for (const ContactRun& run : map.runs()) ASSERT_EQ(run.first, col);
+      ContactLabels labels;
+      labels.find(bytes, 1, 19);
+      ASSERT_EQ(labels.contacts(), (status & 15u) != 0 ? 1 : 0) << status;
+      for (const ContactRun& run : labels.runs()) ASSERT_EQ(run.first, col);
     }
   }
 }
@@ -239,12 +239,12 @@ TEST(ContactLabels, DoesNotLookIntoSilentBlocks) {
   Marks marks(mask, 16);
   for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);
   marks.marks[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
-  ContactLabels map;
-  map.find(mask.status, 3, 40, marks.view());
-  ASSERT_EQ(map.runs().size(), 1U);
-  EXPECT_EQ(map.runs()[0].row, 1U);
-  EXPECT_EQ(map.runs()[0].first, 8U);
-  EXPECT_EQ(map.runs()[0].end, 24U);
+  ContactLabels labels;
+  labels.find(mask.status, 3, 40, marks.view());
+  ASSERT_EQ(labels.runs().size(), 1U);
+  EXPECT_EQ(labels.runs()[0].row, 1U);
+  EXPECT_EQ(labels.runs()[0].first, 8U);
+  EXPECT_EQ(labels.runs()[0].end, 24U);
 }
 
 TEST(ContactLabels, OfNothingIsEmpty) {
@@ -256,10 +256,10 @@ TEST(ContactLabels, OfNothingIsEmpty) {
 }
 
 TEST(ContactLabels, ForgetsTheFrameBefore) {
-  ContactLabels map;
-  expect_as_flooded(random_mask(50, 50, 30, 1), map);
-  EXPECT_EQ(expect_as_flooded(Mask(3, 90), map), 0);
-  EXPECT_TRUE(map.runs().empty());
+  ContactLabels labels;
+  expect_as_flooded(random_mask(50, 50, 30, 1), labels);
+  EXPECT_EQ(expect_as_flooded(Mask(3, 90), labels), 0);
+  EXPECT_TRUE(labels.runs().empty());
 }
 
 TEST(ContactLabels, OnePillarAnywhere) {
@@ -354,10 +354,10 @@ TEST(ContactLabels, InterleavedSpiralsAreTwo) {
 TEST(ContactLabels, NumbersFollowTheFirstPillarRowByRow) {
   const Mask mask({"....##...#", "........#.", "#..#......", "#...#..###", "#.##......"});
   EXPECT_EQ(contacts_of(mask), 5);
-  ContactLabels map;
-  map.find(mask.status, mask.rows, mask.cols);
+  ContactLabels labels;
+  labels.find(mask.status, mask.rows, mask.cols);
   const auto first = [&](std::uint32_t contact) {
-    return std::pair(map.runs(contact)[0].row, map.runs(contact)[0].first);
+    return std::pair(labels.runs(contact)[0].row, labels.runs(contact)[0].first);
   };
   using Place = std::pair<std::uint32_t, std::uint32_t>;
   EXPECT_EQ(first(0), Place(0, 4));
@@ -377,8 +377,8 @@ TEST(ContactLabels, TenThousandContacts) {
 
 TEST(ContactLabels, SizesMustAgree) {
   const std::vector<std::uint8_t> status(12);
-  ContactLabels map;
-  const std::string message = core_test::message_of([&] { map.find(status, 3, 5); });
+  ContactLabels labels;
+  const std::string message = core_test::message_of([&] { labels.find(status, 3, 5); });
   EXPECT_NE(message.find("12 status bytes for 3 x 5 pillars"), std::string::npos) << message;
 }
 

@@ -115,9 +115,9 @@ TEST(ContactQuantities, TakeAnyForce) {
     ContactTracker tracker(kPitchMm, {.friction = {.given = friction}});
     for (int i = 0; i < 2; ++i) {
       const FrameContacts& frame = tracker.update(field.view(), i);
-      EXPECT_TRUE(std::isfinite(frame.patch.normal_n));
-      EXPECT_TRUE(std::isfinite(frame.patch.torque_nmm));
-      EXPECT_TRUE(std::isfinite(frame.patch.centre_of_pressure.x_mm));
+      EXPECT_TRUE(std::isfinite(frame.total.normal_n));
+      EXPECT_TRUE(std::isfinite(frame.total.torque_nmm));
+      EXPECT_TRUE(std::isfinite(frame.total.centre_of_pressure.x_mm));
     }
   }
 }
@@ -130,10 +130,10 @@ TEST(ContactQuantities, PatchHasWhatSmallContactsBear) {
   const FrameContacts& frame = tracker.update(field.view(), 0);
   ASSERT_EQ(frame.contacts.size(), 1);
   EXPECT_EQ(frame.contacts[0].quantities.normal_n, 3);
-  EXPECT_EQ(frame.contacts[0].number, 1);
-  EXPECT_EQ(frame.patch.normal_n, 6);
-  EXPECT_EQ(frame.patch.pillars, 4);
-  EXPECT_EQ(tracker.map().contacts(), 2);
+  EXPECT_EQ(frame.contacts[0].label, 1);
+  EXPECT_EQ(frame.total.normal_n, 6);
+  EXPECT_EQ(frame.total.pillars, 4);
+  EXPECT_EQ(tracker.labels().contacts(), 2);
 }
 
 /// A band of pillars, of which the first `slipping` have the ratio 0.5 and the others 0.1; `open`
@@ -393,9 +393,9 @@ TEST(Scenes, PressedBallBearsItsLoad) {
     const FrameContacts& frame = scene.frame(index);
     ASSERT_EQ(frame.contacts.size(), 1);
     const ContactQuantities& contact = frame.contacts[0].quantities;
-    EXPECT_EQ(frame.contacts[0].id, 1);
+    EXPECT_EQ(frame.contacts[0].track_id, 1);
     EXPECT_NEAR(contact.normal_n, scene.key(0, frame.time_s).load_n, 1e-4);
-    EXPECT_NEAR(frame.patch.normal_n, contact.normal_n, 1e-9);
+    EXPECT_NEAR(frame.total.normal_n, contact.normal_n, 1e-9);
     EXPECT_NEAR(std::hypot(contact.shear_x_n, contact.shear_y_n), 0, 1e-4);
     EXPECT_NEAR(std::hypot(contact.centre_of_pressure.x_mm, contact.centre_of_pressure.y_mm), 0,
                 1e-4);
@@ -412,7 +412,7 @@ TEST(Scenes, SeveralContactsBearTheirLoads) {
     ASSERT_EQ(frame.contacts.size(), 3) << index;
     double sum_n = 0;
     for (const TrackedContact& tracked : frame.contacts) {
-      ids.insert(tracked.id);
+      ids.insert(tracked.track_id);
       const ContactQuantities& contact = tracked.quantities;
       const PatchPlace& at = contact.centre_of_pressure;
       const std::size_t which = at.y_mm > 0 ? 0 : at.x_mm < 0 ? 1 : 2;
@@ -432,7 +432,7 @@ TEST(Scenes, SeveralContactsBearTheirLoads) {
       EXPECT_NEAR(*contact.slip_margin, 1 - share[which], 0.05);
       EXPECT_EQ(contact.slip, which == 1 ? SlipState::partial : SlipState::sliding) << index;
     }
-    EXPECT_NEAR(frame.patch.normal_n, sum_n, 0.01 * sum_n);
+    EXPECT_NEAR(frame.total.normal_n, sum_n, 0.01 * sum_n);
   }
   EXPECT_EQ(ids.size(), 3);
 }

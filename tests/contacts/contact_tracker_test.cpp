@@ -55,19 +55,19 @@ class Patch {
 
 Ids ids_of(const FrameContacts& frame) {
   Ids ids;
-  for (const TrackedContact& contact : frame.contacts) ids.push_back(contact.id);
+  for (const TrackedContact& contact : frame.contacts) ids.push_back(contact.track_id);
   return ids;
 }
 
 Ids ended_ids(const FrameContacts& frame) {
   Ids ids;
-  for (const EndedContact& contact : frame.ended) ids.push_back(contact.id);
+  for (const EndedContact& contact : frame.ended) ids.push_back(contact.track_id);
   return ids;
 }
 
 const TrackedContact& by_id(const FrameContacts& frame, std::uint64_t id) {
   for (const TrackedContact& contact : frame.contacts) {
-    if (contact.id == id) return contact;
+    if (contact.track_id == id) return contact;
   }
   static const TrackedContact none;
   ADD_FAILURE() << "no contact " << id;
@@ -178,7 +178,7 @@ TEST(ContactTracker, WhatVanishesAndReturnsIsNew) {
   EXPECT_EQ(ended_ids(gone), Ids{1});
   EXPECT_EQ(gone.ended[0].first_time_s, 1);
   EXPECT_EQ(gone.ended[0].last_time_s, 1);
-  EXPECT_EQ(gone.patch.pillars, 0);
+  EXPECT_EQ(gone.total.pillars, 0);
   const FrameContacts& back = tracker.update(pressed.view(), 3);
   EXPECT_EQ(ids_of(back), Ids{2});
   EXPECT_EQ(back.contacts[0].first_time_s, 3);
@@ -224,7 +224,7 @@ TEST(ContactTracker, SmallContactsAreNotFollowed) {
   const FrameContacts& frame = tracker.update(Patch(9, 9).box(1, 1, 1, 3).view(), 2);
   EXPECT_EQ(ended_ids(frame), Ids{1});
   EXPECT_FALSE(frame.ended[0].merged_into);
-  EXPECT_EQ(frame.patch.pillars, 3);
+  EXPECT_EQ(frame.total.pillars, 3);
 }
 
 TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
@@ -239,7 +239,7 @@ TEST(ContactTracker, OneIntoManyAndManyIntoOne) {
   for (const EndedContact& ended : merged.ended) EXPECT_EQ(ended.merged_into, 1);
   const FrameContacts& split = tracker.update(teeth.view(), 2);
   EXPECT_EQ(split.contacts.size(), 21);
-  EXPECT_EQ(split.contacts[0].id, 1);
+  EXPECT_EQ(split.contacts[0].track_id, 1);
   for (std::size_t i = 1; i < 21; ++i) EXPECT_EQ(split.contacts[i].parent, 1);
 }
 
@@ -269,8 +269,8 @@ TEST(ContactTracker, ThousandsWithinReach) {
       patch.box(contact / 50 * 4 + i, contact % 50 * 4, 1, 1);
     }
     const FrameContacts& frame = tracker.update(patch.view(), i);
-    EXPECT_EQ(frame.contacts.front().id, 1);
-    EXPECT_EQ(frame.contacts.back().id, 2500);
+    EXPECT_EQ(frame.contacts.front().track_id, 1);
+    EXPECT_EQ(frame.contacts.back().track_id, 2500);
   }
 }
 
@@ -285,7 +285,7 @@ TEST(ContactTracker, IdsAreNeverGivenTwice) {
     std::sort(ids.begin(), ids.end());
     EXPECT_TRUE(std::adjacent_find(ids.begin(), ids.end()) == ids.end());
     for (const EndedContact& contact : frame.ended) {
-      EXPECT_TRUE(ended.emplace(contact.id, i).second);
+      EXPECT_TRUE(ended.emplace(contact.track_id, i).second);
       EXPECT_EQ(contact.last_time_s, i - 1);
     }
     for (const std::uint64_t id : ids) EXPECT_FALSE(ended.contains(id));
@@ -299,16 +299,16 @@ TEST(ContactTracker, TakesContactsThatWereFound) {
     Patch patch(40, 60);
     patch.disc(10 + step, 12, 6).disc(25, 20 + 3 * step, 5).box(33, 40, 4, 9 - step);
     const FrameContacts& expected = finds.update(patch.view(), step);
-    ContactLabels map;  // gone when the frame is taken
-    map.find(patch.view().status, 40, 60);
-    const FrameContacts& actual = takes.update(patch.view(), step, {&map, {}});
-    map = {};
+    ContactLabels labels;  // gone when the frame is taken
+    labels.find(patch.view().status, 40, 60);
+    const FrameContacts& actual = takes.update(patch.view(), step, {&labels, {}});
+    labels = {};
     EXPECT_EQ(ids_of(actual), ids_of(expected));
     EXPECT_EQ(ended_ids(actual), ended_ids(expected));
-    EXPECT_EQ(actual.patch.pillars, expected.patch.pillars);
-    EXPECT_EQ(actual.patch.torque_nmm, expected.patch.torque_nmm);
-    ASSERT_EQ(takes.map().runs().size(), finds.map().runs().size());
-    EXPECT_EQ(takes.map().contacts(), finds.map().contacts());
+    EXPECT_EQ(actual.total.pillars, expected.total.pillars);
+    EXPECT_EQ(actual.total.torque_nmm, expected.total.torque_nmm);
+    ASSERT_EQ(takes.labels().runs().size(), finds.labels().runs().size());
+    EXPECT_EQ(takes.labels().contacts(), finds.labels().contacts());
   }
 }
 
@@ -384,7 +384,7 @@ TEST(ContactTracker, FindsTheSameWithAnyNumberOfThreads) {
         for (std::size_t i = 0; i < expected.contacts.size(); ++i) {
           expect_same_bits(actual.contacts[i].quantities, expected.contacts[i].quantities);
         }
-        expect_same_bits(actual.patch, expected.patch);
+        expect_same_bits(actual.total, expected.total);
         const FrictionSource source = expected.contacts[0].quantities.friction_source;
         carried_over = carried_over || source == FrictionSource::carried_over;
       }
@@ -439,13 +439,17 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
   cut.normal = {};
   says([&] { tracker.update(cut, 1); }, "0 forces for 4 x 5 pillars");
   for (const auto& [rows, cols] : {std::pair{5U, 5U}, {4U, 6U}}) {
-    ContactLabels map;
-    map.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
-    says([&] { tracker.update(same.view(), 1, {&map, {}}); }, "of 4 x 5 pillars");
+    ContactLabels labels;
+    labels.find(std::vector<std::uint8_t>(std::size_t{rows} * cols, status::kUsable), rows, cols);
+    says([&] { tracker.update(same.view(), 1, {&labels, {}}); }, "of 4 x 5 pillars");
   }
   const ContactLabels none;
   const std::vector<ContactFriction> one(1);
-  says([&] { tracker.update(same.view(), 1, {&none, one}); }, "1 frictions for 0 contacts");
+  says(
+      [&] {
+        tracker.update(same.view(), 1, {&none, one});
+      },
+      "1 friction coefficients for 0 contacts");
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
   const Simulator simulator(parse_scene(kScene, "scene"));
   const SolverPlan plan = plan_of(simulator);
   Processor solver = processor(plan);
-  EXPECT_EQ(solver.contacts().map, nullptr);
+  EXPECT_EQ(solver.contacts().labels, nullptr);
   FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   ForceField truth(plan.skin.pillar_rows(), plan.skin.pillar_cols());
   for (std::uint64_t index = 0; index < 2; ++index) {
@@ -185,9 +185,9 @@ TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
     const ForceFieldView forces = solver.receive();
     ContactLabels found;
     found.find(forces.status, forces.rows, forces.cols);
-    ASSERT_NE(solver.contacts().map, nullptr);
+    ASSERT_NE(solver.contacts().labels, nullptr);
     EXPECT_GT(found.contacts(), 2U);
-    expect_same_runs(solver.contacts().map->runs(), found.runs());
+    expect_same_runs(solver.contacts().labels->runs(), found.runs());
     EXPECT_EQ(solver.contacts().friction.size(), found.contacts());
   }
 }
@@ -239,7 +239,7 @@ TEST(ContactStage, OfOthersNoContactsAreLent) {
   const FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   solver.submit(raw.view());
   (void)solver.receive();
-  EXPECT_EQ(solver.contacts().map, nullptr);
+  EXPECT_EQ(solver.contacts().labels, nullptr);
 }
 
 TEST(ContactStage, IsNamedAmongTheStages) {

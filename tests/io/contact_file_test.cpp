@@ -109,19 +109,19 @@ TEST(ContactCsv, HasALineForThePatchAndForEachContact) {
     std::ostringstream start;
     start << index << "," << frame.time_s << ",";
     EXPECT_EQ(lines.at(line++),
-              "patch," + start.str() + ",,,," + cells_of(quantity_columns(), frame.patch, ""));
+              "patch," + start.str() + ",,,," + cells_of(quantity_columns(), frame.total, ""));
     for (const TrackedContact& contact : frame.contacts) {
       const std::string parent = contact.parent ? std::to_string(*contact.parent) : "";
       const std::string begin =
-          "contact," + start.str() + std::to_string(contact.id) + "," + parent + ",,";
+          "contact," + start.str() + std::to_string(contact.track_id) + "," + parent + ",,";
       EXPECT_TRUE(lines.at(line).starts_with(begin)) << lines[line];
       EXPECT_TRUE(lines[line].ends_with(cells_of(quantity_columns(), contact.quantities, "")));
       ++line;
     }
     for (const EndedContact& contact : frame.ended) {
       const std::string merged = contact.merged_into ? std::to_string(*contact.merged_into) : "";
-      EXPECT_TRUE(lines.at(line).starts_with("ended," + start.str() + std::to_string(contact.id) +
-                                             ",," + merged + ","));
+      EXPECT_TRUE(lines.at(line).starts_with(
+          "ended," + start.str() + std::to_string(contact.track_id) + ",," + merged + ","));
       ++line;
     }
   }
@@ -288,7 +288,7 @@ TEST(ContactTables, WithoutTheFrictionsDeviationAreRead) {
   remove_link(path, "/contacts/friction_deviation");
   remove_link(path, "/contacts/patch/friction_deviation");
   FrameContacts expected = sample_contacts(1);
-  expected.patch.friction_deviation.reset();
+  expected.total.friction_deviation.reset();
   for (TrackedContact& contact : expected.contacts) contact.quantities.friction_deviation.reset();
   EXPECT_EQ(written_out(ForceFileReader(path).read_contacts(1)), written_out(expected));
 }

@@ -41,11 +41,11 @@ inline ContactQuantities sample_quantities(std::uint64_t place) {
 inline FrameContacts sample_contacts(std::uint64_t index) {
   FrameContacts frame;
   frame.time_s = 0.25 * static_cast<double>(index);
-  frame.patch = sample_quantities(1000 * index);
+  frame.total = sample_quantities(1000 * index);
   for (std::uint64_t i = 0; i < index % 4; ++i) {
     TrackedContact contact;
-    contact.id = 10 * index + i + 1;
-    contact.number = static_cast<std::uint32_t>(2 * i);
+    contact.track_id = 10 * index + i + 1;
+    contact.label = static_cast<std::uint32_t>(2 * i);
     if (i == 1) contact.parent = index + 1;
     contact.first_time_s = static_cast<double>(index) / 7;
     contact.age_s = static_cast<double>(i) / 3;
@@ -70,7 +70,7 @@ std::string cells_of(std::span<const ContactColumn<Row>> columns, const Row& row
 
 inline std::string written_out(const FrameContacts& frame) {
   std::string text =
-      std::to_string(frame.time_s) + "\npatch" + cells_of(quantity_columns(), frame.patch);
+      std::to_string(frame.time_s) + "\npatch" + cells_of(quantity_columns(), frame.total);
   for (const TrackedContact& contact : frame.contacts) {
     text += "\ncontact" + cells_of(identity_columns(), contact) +
             cells_of(quantity_columns(), contact.quantities);

@@ -329,7 +329,7 @@ TEST(Pipeline, WritesWhatIsWrittenByHand) {
       const ForceFieldView forces = other.receive();
       const FrameContacts& found = follower.update(forces, time_s, other.contacts());
       most = std::max<std::uint64_t>(most, found.contacts.size());
-      for (const auto& contact : found.contacts) last_id = std::max(last_id, contact.id);
+      for (const auto& contact : found.contacts) last_id = std::max(last_id, contact.track_id);
       for (const auto& sink : by_hand) {
         sink->append({.forces = forces, .contacts = &found, .time_s = time_s});
       }

@@ -19,10 +19,10 @@
 #include <utility>
 #include <vector>
 
-#include "evaluation/field_study.h"
-#include "evaluation/field_study_histories.h"
-#include "evaluation/field_study_scenes.h"
-#include "evaluation/field_study_twins.h"
+#include "evaluation/contact_study.h"
+#include "evaluation/contact_study_histories.h"
+#include "evaluation/contact_study_scenes.h"
+#include "evaluation/contact_study_twins.h"
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/scene.h"
@@ -32,11 +32,11 @@
 namespace pillarfield::report {
 namespace {
 
-using field_study::ClosedForm;
-using field_study::Evaluation;
-using field_study::History;
-using field_study::Recording;
-using field_study::Score;
+using contact_study::ClosedForm;
+using contact_study::Evaluation;
+using contact_study::History;
+using contact_study::Recording;
+using contact_study::Score;
 using Json = nlohmann::ordered_json;
 
 // --- Methods ---
@@ -57,7 +57,7 @@ struct Method {
     plan.friction = friction;
     if (friction_given) plan.friction.given = recording.friction;
     if (bound_over_friction > 0) plan.friction.bound = bound_over_friction * recording.friction;
-    return field_study::solve(recording, plan);
+    return contact_study::solve(recording, plan);
   }
 };
 
@@ -93,7 +93,7 @@ std::vector<Method> all_methods() {
 
 Json json_of(const Score& score) {
   return {{"loaded", score.loaded},
-          {"ambiguous", score.open},
+          {"ambiguous", score.ambiguous},
           {"squares", score.squares},
           {"held", score.held},
           {"held_with_noise", score.held_with_noise},
@@ -114,7 +114,7 @@ Json scores_of(const Recording& recording, const std::vector<Method>& methods) {
 
 Json learnt_json(const Recording& recording) {
   Json contacts = Json::array();
-  for (const auto& learnt : field_study::learnt_friction(recording)) {
+  for (const auto& learnt : contact_study::friction_estimates(recording)) {
     contacts.push_back({{"pillars", learnt.pillars},
                         {"median", learnt.median},
                         {"spread", learnt.spread},
@@ -125,12 +125,12 @@ Json learnt_json(const Recording& recording) {
 }
 
 Json histories_json(const std::filesystem::path& scenes) {
-  const auto& histories = field_study::histories();
+  const auto& histories = contact_study::histories();
   const std::vector<Method> methods = all_methods();
   std::vector<Json> results(histories.size());
-  field_study::for_each_index(results.size(), [&](std::size_t i) {
+  contact_study::for_each_index(results.size(), [&](std::size_t i) {
     const History& history = histories[i];
-    const Recording recording = field_study::record(history, scenes);
+    const Recording recording = contact_study::record(history, scenes);
     results[i] = {{"name", history.name()},
                   {"indenter", name_of(history.indenter)},
                   {"loading", name_of(history.loading)},
@@ -144,14 +144,14 @@ Json histories_json(const std::filesystem::path& scenes) {
 
 Json closed_forms_json() {
   const std::vector<Method> methods = basic_methods();
-  std::vector<ClosedForm> scenes = field_study::closed_forms();
-  field_study::integrate(scenes);
+  std::vector<ClosedForm> scenes = contact_study::closed_forms();
+  contact_study::integrate(scenes);
   std::vector<Json> results(scenes.size());
-  field_study::for_each_index(results.size(), [&](std::size_t i) {
-    const bool is_cylinder = scenes[i].contact.body.shape == field_study::Shape::cylinder;
+  contact_study::for_each_index(results.size(), [&](std::size_t i) {
+    const bool is_cylinder = scenes[i].contact.body.shape == contact_study::Shape::cylinder;
     results[i] = {{"family", is_cylinder ? "cylinder" : name_of(scenes[i].family())},
                   {"motion", name_of(scenes[i].motion())},
-                  {"scores", scores_of(field_study::record(scenes[i]), methods)}};
+                  {"scores", scores_of(contact_study::record(scenes[i]), methods)}};
   });
   return results;
 }
@@ -160,15 +160,15 @@ Json closed_forms_json() {
 
 /// A finger that is dragged until it slides.
 bool is_shown(const History& history) {
-  return history.indenter == field_study::Indenter::fingertip &&
-         history.loading == field_study::Loading::slide && history.friction == 1.6;
+  return history.indenter == contact_study::Indenter::fingertip &&
+         history.loading == contact_study::Loading::slide && history.friction == 1.6;
 }
 
 /// The mean normal force of a frame's ambiguous pillars, and forces of the pillars of the last
 /// frame; counts.
 Json shown_history_json(const std::filesystem::path& scenes) {
-  const auto& all = field_study::histories();
-  const Recording recording = field_study::record(*std::ranges::find_if(all, is_shown), scenes);
+  const auto& all = contact_study::histories();
+  const Recording recording = contact_study::record(*std::ranges::find_if(all, is_shown), scenes);
   const Evaluation evaluation(recording);
   const double counts = recording.plan.skin.counts_per_newton;
   const auto contact = kContact.solve(recording);
@@ -176,21 +176,21 @@ Json shown_history_json(const std::filesystem::path& scenes) {
   const auto paper = kPaper.solve(recording);
   Json frames = Json::array();
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
-    const auto& open = evaluation.open(frame);
+    const auto& ambiguous = evaluation.ambiguous(frame);
     const auto mean = [&](const ForceField& field) {
       double sum = 0;
-      for (const std::size_t i : open) sum += field.normal[i];
-      return counts * sum / static_cast<double>(open.size());
+      for (const std::size_t i : ambiguous) sum += field.normal[i];
+      return counts * sum / static_cast<double>(ambiguous.size());
     };
     frames.push_back({{"frame", frame},
-                      {"ambiguous", open.size()},
+                      {"ambiguous", ambiguous.size()},
                       {"truth", mean(recording.truth[frame])},
                       {"contact", mean(contact[frame])},
                       {"direct", mean(direct[frame])},
                       {"paper", mean(paper[frame])}});
   }
   Json pillars = Json::array();
-  for (const std::size_t i : evaluation.open(recording.frames.size() - 1)) {
+  for (const std::size_t i : evaluation.ambiguous(recording.frames.size() - 1)) {
     pillars.push_back(
         {{"truth", counts * recording.truth.back().normal[i]},
          {"contact", counts * contact.back().normal[i]},
@@ -210,11 +210,11 @@ double rms(const std::vector<std::size_t>& pillars, DistanceOf distance_of) {
 }
 
 /// Readings of twins that differ in single precision.
-std::size_t different_readings(const field_study::Twins& twins) {
+std::size_t different_readings(const contact_study::Twins& twins) {
   std::size_t different = 0;
   for (std::size_t i = 0; i < twins.first.size(); ++i) {
-    const auto a = field_study::readings_counts(twins.first[i]);
-    const auto b = field_study::readings_counts(twins.second[i]);
+    const auto a = contact_study::readings_counts(twins.first[i]);
+    const auto b = contact_study::readings_counts(twins.second[i]);
     for (std::size_t n = 0; n < a.size(); ++n) {
       if (static_cast<float>(a[n]) != static_cast<float>(b[n])) ++different;
     }
@@ -222,42 +222,43 @@ std::size_t different_readings(const field_study::Twins& twins) {
   return different;
 }
 
-ClosedForm first_of(const field_study::TwinScene& twin_scene) {
+ClosedForm first_of(const contact_study::TwinScene& twin_scene) {
   ClosedForm scene;
-  scene.contact = field_study::contact_of(twin_scene);
+  scene.contact = contact_study::contact_of(twin_scene);
   scene.contact_name = "twin";
   scene.friction = twin_scene.friction;
   scene.seed = 700'001;
-  scene.loads = std::make_shared<field_study::PillarLoads>(field_study::loads_of(scene.contact));
+  scene.loads =
+      std::make_shared<contact_study::PillarLoads>(contact_study::loads_of(scene.contact));
   return scene;
 }
 
 Json twins_json() {
-  field_study::TwinScene scene;
-  const Recording recording = field_study::record(first_of(scene));
+  contact_study::TwinScene scene;
+  const Recording recording = contact_study::record(first_of(scene));
   const Evaluation evaluation(recording);
-  const auto& open = evaluation.open(0);
+  const auto& ambiguous = evaluation.ambiguous(0);
   const ForceField contact = kContact.solve(recording).front();
   const ForceField paper = kPaper.solve(recording).front();
   std::size_t different = 0;
   Json rows = Json::array();
   for (const double share : {0.5, 0.7, 0.9}) {
     scene.normal_share = share;
-    const field_study::Twins twins = field_study::sliding_twins(scene);
+    const contact_study::Twins twins = contact_study::sliding_twins(scene);
     different += different_readings(twins);
     const auto error = [&](const ForceField& solved, const auto& truth) {
-      return rms(open, [&](std::size_t i) {
-        return field_study::distance_counts(
+      return rms(ambiguous, [&](std::size_t i) {
+        return contact_study::distance_counts(
             {solved.shear_x[i], solved.shear_y[i], solved.normal[i]}, truth[i]);
       });
     };
     rows.push_back({{"normal_share", share},
                     {"friction", twins.second_friction},
                     {"direction_deg", twins.second_direction_deg},
-                    {"distance", rms(open,
+                    {"distance", rms(ambiguous,
                                      [&](std::size_t i) {
-                                       return field_study::distance_counts(twins.first[i],
-                                                                           twins.second[i]);
+                                       return contact_study::distance_counts(twins.first[i],
+                                                                             twins.second[i]);
                                      })},
                     {"contact", {error(contact, twins.first), error(contact, twins.second)}},
                     {"paper", {error(paper, twins.first), error(paper, twins.second)}}});

@@ -152,7 +152,7 @@ std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Sour
     const auto centre = seen(source, look, plot, quantities.centre_of_pressure, 0, 0);
     if (!centre) continue;
     marks.push_back({std::move(outline), *centre, tip_of(quantities, source, look, plot),
-                     fmt::format("{}  {} N", contact.id, three_digits(quantities.normal_n))});
+                     fmt::format("{}  {} N", contact.track_id, three_digits(quantities.normal_n))});
   }
   return marks;
 }

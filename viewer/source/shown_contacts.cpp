@@ -26,13 +26,13 @@ ShownContacts with_extents(FrameContacts found, const ContactLabels& map) {
   ShownContacts shown;
   shown.extents.reserve(found.contacts.size());
   for (const TrackedContact& contact : found.contacts) {
-    if (contact.number >= map.contacts()) {
+    if (contact.label >= map.contacts()) {
       throw Error("contacts",
                   fmt::format("number {} is not among the {} that the status tells of",
-                              contact.number, map.contacts()),
+                              contact.label, map.contacts()),
                   "write the file of forces anew");
     }
-    shown.extents.push_back(extent_of(map.runs(contact.number)));
+    shown.extents.push_back(extent_of(map.runs(contact.label)));
   }
   shown.heaviest.resize(found.contacts.size());
   std::iota(shown.heaviest.begin(), shown.heaviest.end(), std::size_t{0});
@@ -49,7 +49,7 @@ ShownContacts ContactWatch::contacts_of(const ShownField& field) {
   }
   last_index_ = field.index;
   const FrameContacts& found = tracker_->update(field.forces, field.time_s);
-  return with_extents(found, tracker_->map());
+  return with_extents(found, tracker_->labels());
 }
 
 }  // namespace pillarfield::viewer

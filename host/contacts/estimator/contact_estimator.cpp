@@ -32,8 +32,8 @@ void write_force(const FieldPlanes& field, std::uint32_t index, const maths::For
   field.phi[index] = direction.phi;
 }
 
-/// The ends of what a force may be, which lie on one segment: theta and magnitude fall along it as
-/// the normal force grows, phi goes one way (F5).
+/// Writes the ends of angles and magnitude for forces between two points of a segment: theta and
+/// magnitude fall with the normal force, phi is monotonic (F5).
 void write_ends(const FieldPlanes& field, std::uint32_t index, const maths::Force& least,
                 const maths::Force& most) {
   const maths::Direction flat = maths::direction_of(least);
@@ -60,18 +60,18 @@ ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
                 plan.friction, threads, parameters),
       rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
-      team_(std::make_unique<ThreadPool>(threads)) {}
+      pool_(std::make_unique<ThreadPool>(threads)) {}
 
 void ContactEstimator::resolve(ForceField& field) { resolve(planes_of(field)); }
 
 void ContactEstimator::resolve(const FieldPlanes& field, const IdleBlocks& idle) {
   const ForceFieldView forces = field.forces();
-  map_.find(forces.status, rows_, cols_, idle);
-  friction_.begin(map_);
-  team_->run(map_.contacts(), [&](std::size_t contact, std::size_t member) {
-    const auto number = static_cast<std::uint32_t>(contact);
-    friction_.learn(forces, map_, number, member);
-    if (friction_.model(number).any_ambiguous) estimate(field, number);
+  labels_.find(forces.status, rows_, cols_, idle);
+  friction_.begin(labels_);
+  pool_->run(labels_.contacts(), [&](std::size_t contact, std::size_t member) {
+    const auto label = static_cast<std::uint32_t>(contact);
+    friction_.update(forces, labels_, label, member);
+    if (friction_.model(label).any_ambiguous) estimate(field, label);
   });
 }
 
@@ -80,8 +80,8 @@ namespace {
 constexpr std::size_t kBatchPillars = 32;
 using Values = std::array<float, kBatchPillars>;
 
-/// Mean and mean square of normal forces over frictions of equal probability, at which pillars slip
-/// or, with a probability, stick (C8).
+/// Mean and mean square of the normal force over equally probable frictions `nodes`; a pillar
+/// sticks with probability `sticks`, else it slips (C8).
 PF_WIDE void average(const Values& fixed, const Values& moving, const Values& high,
                      std::span<const float> nodes, float sticks, Values& mean, Values& square) {
   constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
@@ -105,18 +105,18 @@ PF_WIDE void average(const Values& fixed, const Values& moving, const Values& hi
 
 }  // namespace
 
-/// Some ambiguous pillars of a contact: their segments, and the normal forces on them.
+/// A batch of ambiguous pillars of a contact: segments and estimated normal forces.
 struct ContactEstimator::Batch {
   std::array<std::uint32_t, kBatchPillars> index{};
   Values fixed{};  ///< as in Segment, N
   Values moving{};
   Values high{};
   Values mean{};    ///< of the normal force, N
-  Values square{};  ///< its mean square, N²
+  Values square{};  ///< mean square of the normal force, N²
   std::size_t pillars = 0;
 };
 
-/// Estimates the ambiguous pillars of a contact, some at a time.
+/// Estimates the ambiguous pillars of a contact in batches.
 void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact) const {
   const ContactModel& model = friction_.model(contact);
   Batch batch;
@@ -140,10 +140,10 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     batch.high[batch.pillars] = segment.high;
     if (++batch.pillars == kBatchPillars) finish();
   };
-  for (const ContactRun& run : map_.runs(contact)) {
+  for (const ContactRun& run : labels_.runs(contact)) {
     std::uint32_t index = run.row * cols_ + run.first;
     const std::uint32_t end = run.row * cols_ + run.end;
-    // Most pillars are not ambiguous: eight are passed over at a time.
+    // Skips eight pillars at a time: most are not ambiguous.
     for (; index + kWordBytes <= end; index += kWordBytes) {
       std::uint64_t word = 0;
       std::memcpy(&word, field.status + index, kWordBytes);
@@ -155,7 +155,7 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
   if (batch.pillars > 0) finish();
 }
 
-/// The posterior mean of one ambiguous pillar's normal force, and its deviation (C9).
+/// Writes the posterior mean and standard deviation of one pillar's normal force (C9).
 void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model,
                              const Batch& batch, std::size_t i) const {
   const std::uint32_t index = batch.index[i];
@@ -164,7 +164,7 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
   const double noise_n = model.noise_n;
   const double high = batch.high[i];
   double mean = batch.mean[i];
-  const double own = parameters_.ratio_deviation * mean;  // a pillar is not quite at the friction
+  const double own = parameters_.ratio_deviation * mean;  // model error of a slipping pillar
   double variance =
       std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n * noise_n + own * own;
   const std::uint32_t row = index / cols_;

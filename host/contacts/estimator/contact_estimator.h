@@ -15,23 +15,22 @@
 
 namespace pillarfield {
 
-/// The estimator `contact`: for each contact a posterior over its friction, carried from frame to
-/// frame, and from it the normal forces of the pillars that readings leave ambiguous
-/// (docs/derivations/contact.md). It runs on the host's threads, after the direct solve, and gives
-/// the same bits with any number of them.
+/// The estimator `contact` (docs/derivations/contact.md): a posterior over the friction of each
+/// contact, carried over from frame to frame, and from it the normal forces of ambiguous pillars.
+/// Runs after the direct solve on host threads; the bits do not depend on their number.
 class ContactEstimator {
  public:
   explicit ContactEstimator(const SolverPlan& plan, std::size_t threads = 1,
                             const ContactParameters& parameters = {});
 
-  /// Estimates the ambiguous pillars of the next frame, which the direct solve of the plan left.
+  /// Estimates the ambiguous pillars of the next frame, a direct solve of the plan.
   void resolve(ForceField& field);
 
-  /// The same of planes of the plan's size. Of idle blocks nothing is read.
+  /// As above, for planes of the plan's size. Idle blocks are not read.
   void resolve(const FieldPlanes& field, const IdleBlocks& idle = {});
 
-  /// The contacts of the last frame, and what is believed of each.
-  [[nodiscard]] const ContactLabels& contacts() const { return map_; }
+  /// The contacts of the last frame, and the friction of each.
+  [[nodiscard]] const ContactLabels& contacts() const { return labels_; }
   [[nodiscard]] std::span<const ContactFriction> friction() const { return friction_.friction(); }
 
  private:
@@ -46,8 +45,8 @@ class ContactEstimator {
   FrictionEstimator friction_;
   std::uint32_t rows_;
   std::uint32_t cols_;
-  ContactLabels map_;
-  std::unique_ptr<ThreadPool> team_;
+  ContactLabels labels_;
+  std::unique_ptr<ThreadPool> pool_;
 };
 
 }  // namespace pillarfield

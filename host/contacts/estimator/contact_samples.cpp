@@ -8,15 +8,15 @@
 namespace pillarfield {
 namespace {
 
-/// The edge of a contact lies so far beyond the centre of its outermost pillars, in pillars.
+/// Distance of a contact's edge from the centres of its outermost pillars, in pillars.
 constexpr double kEdge = 0.25;
 
-/// The largest ratio of shear to normal force at which a pillar that is sheared in this direction
-/// has three usable sensels and so a determined force (C4).
+/// Largest ratio of shear to normal force at which a pillar sheared in this direction has three
+/// usable sensels, and so a determined force (C4).
 double ceiling_of(double shear_x, double shear_y) {
   const double least = std::min(std::abs(shear_x + shear_y), std::abs(shear_y - shear_x));
   const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y);
-  return least > 0 ? std::numbers::sqrt2 * shear / least : ShownRatio::kNoCeiling;
+  return least > 0 ? std::numbers::sqrt2 * shear / least : ObservedRatio::kNoCeiling;
 }
 
 void prefetch([[maybe_unused]] const void* from) {
@@ -47,9 +47,9 @@ ContactBox ContactBox::about(std::span<const ContactRun> runs) {
   return box;
 }
 
-void ContactSamples::take(const ForceFieldView& forces, std::span<const ContactRun> runs,
-                          double noise_n, const SegmentEnd& end,
-                          const ContactParameters& parameters) {
+void ContactSamples::sample(const ForceFieldView& forces, std::span<const ContactRun> runs,
+                            double noise_n, const SegmentEnd& end,
+                            const ContactParameters& parameters) {
   forces_ = forces;
   end_ = end;
   runs_ = runs;
@@ -62,30 +62,31 @@ void ContactSamples::take(const ForceFieldView& forces, std::span<const ContactR
   edge_loads_ = 0;
   edges_ = 0;
   step_ = (box_.pillars + kMostPillars - 1) / kMostPillars;
-  // They lie far apart: all are on their way before the first is needed.
-  for_each_asked([&](std::uint32_t row, std::uint32_t col) {
+  // Samples lie far apart: prefetch all before the first is used.
+  for_each_sampled([&](std::uint32_t row, std::uint32_t col) {
     const std::size_t index = std::size_t{row} * forces.cols + col;
     prefetch(&forces.status[index]);
     prefetch(&forces.normal[index]);
     prefetch(&forces.shear_x[index]);
     prefetch(&forces.shear_y[index]);
   });
-  for_each_asked([&](std::uint32_t row, std::uint32_t col) { ask(row, col, noise_n, parameters); });
+  for_each_sampled(
+      [&](std::uint32_t row, std::uint32_t col) { sample_pillar(row, col, noise_n, parameters); });
 }
 
-template <class Ask>
-void ContactSamples::for_each_asked(Ask prefetch) const {
+template <class Use>
+void ContactSamples::for_each_sampled(Use use) const {
   std::uint32_t skip = 0;
   for (const ContactRun& run : runs_) {
     std::uint32_t col = run.first + skip;
-    for (; col < run.end; col += step_) prefetch(run.row, col);
+    for (; col < run.end; col += step_) use(run.row, col);
     skip = col - run.end;
   }
 }
 
-/// Collects what one pillar shows.
-void ContactSamples::ask(std::uint32_t row, std::uint32_t col, double noise_n,
-                         const ContactParameters& parameters) {
+/// Adds the samples of one pillar.
+void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double noise_n,
+                                   const ContactParameters& parameters) {
   const std::uint32_t index = row * forces_.cols + col;
   const std::uint8_t status = forces_.status[index];
   const double normal = forces_.normal[index];
@@ -110,15 +111,15 @@ void ContactSamples::ask(std::uint32_t row, std::uint32_t col, double noise_n,
   }
 }
 
-/// The normal force that a pillar has or may have at most, N.
+/// Normal force of a determined pillar, or upper bound of an ambiguous one, N.
 double ContactSamples::most_normal(std::uint32_t index) const {
   const std::uint8_t status = forces_.status[index];
   if (is_determined(status)) return std::max(double{forces_.normal[index]}, 0.0);
   return is_ambiguous(status) ? segment_at(forces_, index, end_).high : 0;
 }
 
-/// The normal force vanishes at a contact's edge, unless its outermost pillars bear much (C7). The
-/// edge lies `down` or `right` (1, 0 or -1) of the pillar.
+/// Adds a sample of zero normal force at an edge, weighted by how little the outermost pillars bear
+/// (C7).
 void ContactSamples::add_edge(const Edge& edge, double weight) {
   double most = most_normal(edge.row * forces_.cols + edge.col);
   const std::int64_t inner_row = std::int64_t{edge.row} - edge.down;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "contacts/estimator/contact_parameters.h"
-#include "contacts/estimator/friction_evidence.h"
+#include "contacts/estimator/friction_likelihood.h"
 #include "contacts/estimator/pressure_regression.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
@@ -13,7 +13,7 @@
 
 namespace pillarfield {
 
-/// The box about a contact, in pillars.
+/// Bounding box of a contact, in pillars.
 struct ContactBox {
   std::uint32_t first_row = 0;
   std::uint32_t first_col = 0;
@@ -23,7 +23,7 @@ struct ContactBox {
 
   [[nodiscard]] static ContactBox about(std::span<const ContactRun> runs);
 
-  /// Places in the regression: from the box's middle, about 1 at its farther edges.
+  /// Coordinates of the regression: from the centre of the box, about 1 at its farther edges.
   [[nodiscard]] double x_of(double col) const {
     return (col - first_col - 0.5 * (cols - 1)) / scale();
   }
@@ -33,37 +33,37 @@ struct ContactBox {
   [[nodiscard]] double scale() const { return 0.5 * (rows > cols ? rows : cols) + 1; }
 };
 
-/// What sampled pillars of a contact show (docs/derivations/contact.md, section 3). Memory is kept
-/// from contact to contact.
+/// Samples of a contact for likelihood and regression (docs/derivations/contact.md, section 3).
+/// Memory is reused from contact to contact.
 class ContactSamples {
  public:
-  /// Of a contact so many pillars are asked at most, evenly spread, and so many rows and columns
-  /// for its edge: what they tell is the same, and large contacts take no longer.
+  /// Largest number of sampled pillars, evenly spread, and of rows or columns sampled at the edge.
+  /// Bounds the cost of large contacts.
   static constexpr std::uint32_t kMostPillars = 96;
   static constexpr std::uint32_t kMostEdges = 16;
 
-  /// `noise_n`: of a reading, N.
-  void take(const ForceFieldView& forces, std::span<const ContactRun> runs, double noise_n,
-            const SegmentEnd& end, const ContactParameters& parameters);
-  /// Adds the contact's edge, at which the normal force vanishes, to the regression's samples.
+  /// Samples the pillars of a contact. `noise_n` is the noise of a reading as a force, N.
+  void sample(const ForceFieldView& forces, std::span<const ContactRun> runs, double noise_n,
+              const SegmentEnd& end, const ContactParameters& parameters);
+  /// Adds samples of zero normal force at the contact's edge to the regression's samples.
   void add_edges();
 
   [[nodiscard]] const ContactBox& box() const { return box_; }
-  /// Ratios of determined pillars, and lower bounds of those of ambiguous ones.
-  [[nodiscard]] const std::vector<ShownRatio>& ratios() const { return ratios_; }
-  [[nodiscard]] const std::vector<ShownRatio>& bounds() const { return bounds_; }
+  /// Ratios of determined pillars, and lower bounds of the ratios of ambiguous pillars.
+  [[nodiscard]] const std::vector<ObservedRatio>& ratios() const { return ratios_; }
+  [[nodiscard]] const std::vector<ObservedRatio>& bounds() const { return bounds_; }
   [[nodiscard]] const std::vector<PressureRegression::Sample>& pressure() const {
     return pressure_;
   }
-  /// Ambiguous pillars, by index in the frame.
+  /// Sampled ambiguous pillars, by index in the frame.
   [[nodiscard]] const std::vector<std::uint32_t>& ambiguous() const { return ambiguous_; }
-  [[nodiscard]] bool any_passed_over() const { return step_ > 1; }
+  [[nodiscard]] bool is_subsampled() const { return step_ > 1; }
   [[nodiscard]] bool has_edges() const { return edges_ > 0; }
-  /// What the outermost pillars bear, in the mean, over what the heaviest may; after add_edges().
+  /// Mean normal force of the outermost pillars over the largest possible one; after add_edges().
   [[nodiscard]] double edge_load() const { return edges_ > 0 ? edge_loads_ / edges_ : 0; }
 
  private:
-  /// A side at which a contact ends: next to which pillar, and where from there (1, 0 or -1).
+  /// An edge of the contact, `down` or `right` (1, 0 or -1) of a pillar.
   struct Edge {
     std::uint32_t row;
     std::uint32_t col;
@@ -71,10 +71,10 @@ class ContactSamples {
     int right;
   };
 
-  template <class Ask>
-  void for_each_asked(Ask prefetch) const;
-  void ask(std::uint32_t row, std::uint32_t col, double noise_n,
-           const ContactParameters& parameters);
+  template <class Use>
+  void for_each_sampled(Use use) const;
+  void sample_pillar(std::uint32_t row, std::uint32_t col, double noise_n,
+                     const ContactParameters& parameters);
   void add_edge(const Edge& edge, double weight);
   void add_ends_of_rows();
   void add_ends_of_columns();
@@ -84,16 +84,16 @@ class ContactSamples {
   std::span<const ContactRun> runs_;
   SegmentEnd end_;
   ContactBox box_;
-  std::uint32_t step_ = 1;  ///< from one pillar that is asked to the next
-  double peak_n_ = 0;       ///< the largest normal force that an asked pillar may have
+  std::uint32_t step_ = 1;  ///< pillars from one sample to the next
+  double peak_n_ = 0;       ///< largest possible normal force of a sampled pillar
   double edge_loads_ = 0;
   double edges_ = 0;
-  std::vector<ShownRatio> ratios_;
-  std::vector<ShownRatio> bounds_;
+  std::vector<ObservedRatio> ratios_;
+  std::vector<ObservedRatio> bounds_;
   std::vector<PressureRegression::Sample> pressure_;
   std::vector<std::uint32_t> ambiguous_;
   std::vector<std::uint32_t> top_;     ///< first row of the contact in each sampled column
-  std::vector<std::uint32_t> bottom_;  ///< and its last
+  std::vector<std::uint32_t> bottom_;  ///< last row, likewise
 };
 
 /// The force of a pillar.
@@ -112,7 +112,7 @@ class ContactSamples {
 [[nodiscard]] double deviation_of_ratio(double normal, double noise_n,
                                         const ContactParameters& parameters);
 
-/// Larger normal forces, N, are none; their squares would not be numbers.
+/// Normal forces above this, N, are ignored: their squares would overflow.
 inline constexpr double kMostNormalN = 1e15;
 
 }  // namespace pillarfield

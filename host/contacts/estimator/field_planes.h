@@ -8,16 +8,16 @@
 
 namespace pillarfield {
 
-/// The planes of a result that an estimator goes over once more, [rows, cols] each.
+/// Pointers to the planes of a result that an estimator updates in place, [rows, cols] each.
 struct FieldPlanes {
   float* shear_x = nullptr;
   float* shear_y = nullptr;
   float* normal = nullptr;
   std::uint8_t* status = nullptr;
-  float* magnitude = nullptr;  ///< null, as theta and phi, where angles are not asked for
+  float* magnitude = nullptr;  ///< null, like theta and phi, without angles
   float* theta = nullptr;
   float* phi = nullptr;
-  UncertaintyPlanes<float*> uncertainty{};  ///< null where it is not asked for
+  UncertaintyPlanes<float*> uncertainty{};  ///< null without uncertainty
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMostPredicted = 16;
 
-/// Where the noise is not known, the largest force of a contact is taken to be so many times it.
+/// Assumed ratio of a contact's largest normal force to the noise, if the noise is unknown.
 constexpr double kPeakOverNoise = 64;
 
 double largest_normal(const ForceFieldView& forces, std::span<const ContactRun> runs) {
@@ -43,57 +43,57 @@ FrictionEstimator::FrictionEstimator(const Sensor& sensor, const FrictionKnowled
       likelihood_(parameters),
       prior_(knowledge),
       given_(knowledge.given),
-      remember_(knowledge.memory),
+      carries_over_(knowledge.memory),
       workspaces_(members) {}
 
-void FrictionEstimator::begin(const ContactLabels& map) {
-  std::swap(beliefs_, beliefs_before_);
-  std::swap(histories_, histories_before_);
-  beliefs_.assign(map.contacts(), prior_);
-  histories_.assign(map.contacts(), {});
-  models_.assign(map.contacts(), {});
-  friction_.assign(map.contacts(), {});
-  if (!remember_) return;
-  std::swap(traces_, traces_before_);
-  traces_.runs.assign(map.runs_by_row().begin(), map.runs_by_row().end());
-  traces_.ids.assign(map.contacts(), 0);
-  traces_.centres.clear();
-  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
+void FrictionEstimator::begin(const ContactLabels& labels) {
+  std::swap(posteriors_, earlier_posteriors_);
+  std::swap(histories_, earlier_histories_);
+  posteriors_.assign(labels.contacts(), prior_);
+  histories_.assign(labels.contacts(), {});
+  models_.assign(labels.contacts(), {});
+  friction_.assign(labels.contacts(), {});
+  if (!carries_over_) return;
+  std::swap(snapshot_, earlier_snapshot_);
+  snapshot_.runs.assign(labels.runs_by_row().begin(), labels.runs_by_row().end());
+  snapshot_.track_ids.assign(labels.contacts(), 0);
+  snapshot_.centres.clear();
+  for (std::uint32_t contact = 0; contact < labels.contacts(); ++contact) {
     double pillars = 0;
     double row = 0;
     double col = 0;
-    for (const ContactRun& run : map.runs(contact)) {
+    for (const ContactRun& run : labels.runs(contact)) {
       const double length = run.end - run.first;
       pillars += length;
       row += length * run.row;
       col += length * 0.5 * (run.first + run.end - 1.0);
     }
-    traces_.centres.push_back(
+    snapshot_.centres.push_back(
         {sensor_.pitch_mm * col / pillars, -sensor_.pitch_mm * row / pillars});
   }
-  const ContactMatches matches = match_contacts(traces_before_, traces_, sensor_.reach_mm);
-  for (std::uint32_t contact = 0; contact < map.contacts(); ++contact) {
+  const ContactAssignment matches = match_contacts(earlier_snapshot_, snapshot_, sensor_.reach_mm);
+  for (std::uint32_t contact = 0; contact < labels.contacts(); ++contact) {
     const std::uint32_t before = matches.earlier[contact] != kNoContact ? matches.earlier[contact]
                                                                         : matches.parents[contact];
     if (before == kNoContact) continue;
-    beliefs_[contact] = beliefs_before_[before].carried(prior_, parameters_.forgetting);
-    histories_[contact] = histories_before_[before];
+    posteriors_[contact] = earlier_posteriors_[before].carried(prior_, parameters_.forgetting);
+    histories_[contact] = earlier_histories_[before];
   }
 }
 
-void FrictionEstimator::learn(const ForceFieldView& forces, const ContactLabels& map,
-                              std::uint32_t contact, std::size_t member) {
+void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels& labels,
+                               std::uint32_t contact, std::size_t member) {
   ContactModel& model = models_[contact];
-  FrictionBelief& belief = beliefs_[contact];
+  FrictionPosterior& posterior = posteriors_[contact];
   Workspace& work = workspaces_[member];
   ContactSamples& samples = work.samples;
-  const auto runs = map.runs(contact);
+  const auto runs = labels.runs(contact);
   model.noise_n =
       sensor_.noise_n ? *sensor_.noise_n : largest_normal(forces, runs) / kPeakOverNoise;
-  samples.take(forces, runs, model.noise_n, sensor_.segment_end, parameters_);
+  samples.sample(forces, runs, model.noise_n, sensor_.segment_end, parameters_);
   model.box = samples.box();
-  // Those that were passed over may still be ambiguous.
-  model.any_ambiguous = !samples.ambiguous().empty() || samples.any_passed_over();
+  // Pillars that were not sampled may be ambiguous.
+  model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
 
   FrictionCurve log_likelihood{};
   likelihood_.add_slip_or_stick(samples.ratios(), parameters_.effective_pillars, log_likelihood);
@@ -106,19 +106,19 @@ void FrictionEstimator::learn(const ForceFieldView& forces, const ContactLabels&
     likelihood_.add_slip_or_stick(work.predicted, parameters_.effective_predictions,
                                   log_likelihood);
   }
-  if (!samples.ratios().empty() || !samples.bounds().empty()) belief.update(log_likelihood);
+  if (!samples.ratios().empty() || !samples.bounds().empty()) posterior.update(log_likelihood);
   for (std::size_t i = 0; model.any_ambiguous && i < ContactModel::kNodes; ++i) {
-    model.frictions[i] =
-        static_cast<float>(belief.quantile((static_cast<double>(i) + 0.5) / ContactModel::kNodes));
+    model.frictions[i] = static_cast<float>(
+        posterior.quantile((static_cast<double>(i) + 0.5) / ContactModel::kNodes));
   }
   friction_[contact] = reported(contact, log_likelihood, work);
 }
 
-/// What is predicted of ambiguous pillars tells of the friction, too.
+/// Collects the ratios of ambiguous pillars at their predicted normal forces.
 void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel& model,
                                 Workspace& work) const {
-  constexpr double kMostDeviation = 0.35;  // relative, of a prediction that is used
-  constexpr double kStep = 0.02;           // relative, of the derivative of the ratio
+  constexpr double kMostDeviation = 0.35;  // largest relative deviation of a prediction
+  constexpr double kStep = 0.02;           // relative step of the ratio's derivative
   const std::vector<std::uint32_t>& ambiguous = work.samples.ambiguous();
   const std::size_t step = (ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
   for (std::size_t i = 0; i < ambiguous.size(); i += step) {
@@ -135,27 +135,28 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
                                                segment.ratio_at(normal * (1 - kStep)))) /
                              (2 * kStep);
     const double own = deviation_of_ratio(normal, model.noise_n, parameters_);
-    work.predicted.push_back(
-        {segment.ratio_at(normal), std::hypot(deviation * steepness, own), ShownRatio::kNoCeiling});
+    work.predicted.push_back({segment.ratio_at(normal), std::hypot(deviation * steepness, own),
+                              ObservedRatio::kNoCeiling});
   }
 }
 
-/// Whether a contact bears as much at its edge as elsewhere: under such a face all pillars may
-/// stick and still show nearly one ratio of shear to normal force (section 5).
+/// Whether a contact may be a flat face: its edge bears nearly as much as its middle, so all
+/// pillars may stick and still share one ratio (section 5).
 bool FrictionEstimator::is_face(Workspace& work) const {
   if (!work.samples.has_edges()) work.samples.add_edges();
   return work.samples.edge_load() > parameters_.face_load;
 }
 
-/// Whether a ratio that pillars share stayed when what the contact bears changed. What sticks does
-/// not: its ratios grow together. `observed`: this frame shows it.
+/// Whether the friction stayed while the mean ratio of the pillars changed; under sticking both
+/// change together. `observed`: this frame alone determines the friction.
 bool FrictionEstimator::stays(double friction, bool observed, const Workspace& work,
                               History& history) const {
   if (std::abs(friction - history.friction) > parameters_.same_friction * friction) history = {};
-  const std::vector<ShownRatio>& ratios = work.samples.ratios();
+  const std::vector<ObservedRatio>& ratios = work.samples.ratios();
   if (!observed || ratios.empty()) return history.stayed;
   double mean = 0;
-  for (const ShownRatio& pillar : ratios) mean += pillar.ratio / static_cast<double>(ratios.size());
+  for (const ObservedRatio& pillar : ratios)
+    mean += pillar.ratio / static_cast<double>(ratios.size());
   if (history.friction == 0) {
     history = {friction, mean, false};
   } else if (std::abs(mean / history.mean_ratio - 1) > parameters_.other_load) {
@@ -164,14 +165,14 @@ bool FrictionEstimator::stays(double friction, bool observed, const Workspace& w
   return history.stayed;
 }
 
-/// What is reported of a belief, and how it was learnt.
+/// The friction to report, and its source.
 ContactFriction FrictionEstimator::reported(std::uint32_t contact,
                                             const FrictionCurve& log_likelihood, Workspace& work) {
-  const FrictionBelief& belief = beliefs_[contact];
-  ContactFriction friction{belief.quantile(0.5), belief.spread(), FrictionSource::prior};
+  const FrictionPosterior& posterior = posteriors_[contact];
+  ContactFriction friction{posterior.quantile(0.5), posterior.spread(), FrictionSource::prior};
   if (given_) return {*given_, friction.spread, FrictionSource::given};
   if (friction.spread > parameters_.reported_spread) return friction;
-  FrictionBelief alone = prior_;
+  FrictionPosterior alone = prior_;
   alone.update(log_likelihood);
   const bool observed =
       alone.spread() <= parameters_.reported_spread &&

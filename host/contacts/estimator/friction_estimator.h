@@ -9,8 +9,8 @@
 #include "contacts/contact_matching.h"
 #include "contacts/estimator/contact_parameters.h"
 #include "contacts/estimator/contact_samples.h"
-#include "contacts/estimator/friction_belief.h"
-#include "contacts/estimator/friction_evidence.h"
+#include "contacts/estimator/friction_likelihood.h"
+#include "contacts/estimator/friction_posterior.h"
 #include "contacts/estimator/pressure_regression.h"
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/force_field.h"
@@ -18,7 +18,7 @@
 
 namespace pillarfield {
 
-/// What the ambiguous pillars of a contact are estimated with.
+/// The model from which the ambiguous pillars of a contact are estimated.
 struct ContactModel {
   static constexpr std::size_t kNodes = 6;
 
@@ -32,54 +32,54 @@ struct ContactModel {
   std::array<float, kNodes> frictions{};  ///< of equal probability
   std::optional<PressureRegression> pressure;
   double noise_n = 0;
-  bool any_ambiguous = false;  ///< or may be
+  bool any_ambiguous = false;  ///< false only if no pillar is ambiguous
 
-  /// What the regression of the pressure predicts of a pillar (C6); no more than the end `high` of
-  /// its segment, N.
+  /// The regression's estimate of a pillar's normal force (C6), limited to the end `high` of its
+  /// segment, N, plus noise.
   [[nodiscard]] std::optional<Estimate> predicted(std::uint32_t row, std::uint32_t col, double high,
                                                   const ContactParameters& parameters) const;
 };
 
-/// Learns the friction of each contact from frame to frame: a posterior over the coefficient,
-/// carried by the contact's identity (docs/derivations/contact.md, sections 2 and 3).
+/// Estimates the friction of each contact from frame to frame: a posterior over the coefficient,
+/// carried over along contact tracks (docs/derivations/contact.md, sections 2 and 3).
 class FrictionEstimator {
  public:
   struct Sensor {
     double pitch_mm = 0;
-    double reach_mm = 10;  ///< how far a contact may jump from frame to frame and be the same
-    /// Of a reading, N; unset: a sixty-fourth of the largest force of each contact.
+    double reach_mm = 10;  ///< largest movement of a contact between frames
+    /// Noise of a reading as a force, N; unset: 1/64 of the largest force of each contact.
     std::optional<double> noise_n;
     SegmentEnd segment_end = {};
   };
 
-  /// `members`: threads that may call learn() at the same time.
+  /// `members`: number of threads that may call update() concurrently.
   FrictionEstimator(const Sensor& sensor, const FrictionKnowledge& knowledge, std::size_t members,
                     const ContactParameters& parameters = {});
 
-  /// Begins a frame: hands each contact of the map what was believed of the one that it was.
-  void begin(const ContactLabels& map);
+  /// Begins a frame: each contact takes over the posterior of the earlier contact it continues.
+  void begin(const ContactLabels& labels);
 
-  /// Brings what is believed of one contact up to date with the frame that was begun. Of any force
-  /// on an ambiguous pillar's segment the same is learnt. For different contacts in any thread, at
-  /// a time by one of each `member`.
-  void learn(const ForceFieldView& forces, const ContactLabels& map, std::uint32_t contact,
-             std::size_t member);
+  /// Updates the posterior of one contact with the frame begun. The result does not depend on where
+  /// the force of an ambiguous pillar lies on its segment. Thread-safe for different contacts with
+  /// different `member`.
+  void update(const ForceFieldView& forces, const ContactLabels& labels, std::uint32_t contact,
+              std::size_t member);
 
   [[nodiscard]] std::span<const ContactFriction> friction() const { return friction_; }
   [[nodiscard]] const ContactModel& model(std::uint32_t contact) const { return models_[contact]; }
 
  private:
-  /// Memory of one member.
+  /// Memory of one thread.
   struct Workspace {
     ContactSamples samples;
-    std::vector<ShownRatio> predicted;
+    std::vector<ObservedRatio> predicted;
   };
 
-  /// Since when a contact has shown a friction.
+  /// Evidence that a contact's friction does not change with its load.
   struct History {
     double friction = 0;
-    double mean_ratio = 0;  ///< of its pillars, then
-    bool stayed = false;    ///< while that changed
+    double mean_ratio = 0;  ///< of its pillars when `friction` was first observed
+    bool stayed = false;    ///< `friction` stayed while the mean ratio changed
   };
 
   void predict(const ForceFieldView& forces, const ContactModel& model, Workspace& work) const;
@@ -91,15 +91,15 @@ class FrictionEstimator {
   Sensor sensor_;
   ContactParameters parameters_;
   FrictionLikelihood likelihood_;
-  FrictionBelief prior_;
+  FrictionPosterior prior_;
   std::optional<double> given_;
-  bool remember_;
-  ContactTraces traces_;
-  ContactTraces traces_before_;
-  std::vector<FrictionBelief> beliefs_;
-  std::vector<FrictionBelief> beliefs_before_;
+  bool carries_over_;
+  ContactSnapshot snapshot_;
+  ContactSnapshot earlier_snapshot_;
+  std::vector<FrictionPosterior> posteriors_;
+  std::vector<FrictionPosterior> earlier_posteriors_;
   std::vector<History> histories_;
-  std::vector<History> histories_before_;
+  std::vector<History> earlier_histories_;
   std::vector<ContactModel> models_;
   std::vector<ContactFriction> friction_;
   std::vector<Workspace> workspaces_;

@@ -8,9 +8,10 @@ namespace {
 
 constexpr std::size_t kLeastSamples = 12;
 constexpr int kRounds = 3;  ///< of reweighting
-/// A residual of so many standard deviations has half its weight.
+/// Residual, in standard deviations, that halves a sample's weight.
 constexpr double kHalfWeight = 2;
-/// A pivot of Cholesky's factorisation below this share of the diagonal: the samples lie on a line.
+/// Least pivot of the Cholesky factorisation as a fraction of the diagonal; below it the fit is
+/// singular.
 constexpr double kLeastPivot = 1e-9;
 
 }  // namespace

@@ -7,12 +7,12 @@
 
 namespace pillarfield {
 
-/// A robust regression of the squared normal force of a contact's pillars, which is a polynomial of
-/// degree 2 in the place under a smooth body (Hertz; docs/derivations/contact.md, C6).
+/// Robust regression of the squared normal force of a contact's pillars on a polynomial of degree 2
+/// in the place, exact under Hertz's pressure (docs/derivations/contact.md, C6).
 class PressureRegression {
  public:
   struct Sample {
-    double x;  ///< place, of about 1 in size
+    double x;  ///< place, magnitude about 1
     double y;
     double square;  ///< N²
     double weight;  ///< 0 or more
@@ -22,7 +22,7 @@ class PressureRegression {
     double variance;  ///< N⁴
   };
 
-  /// Fits; unset where there are too few samples, or they lie on a line.
+  /// Fits the polynomial; unset for fewer than 12 samples or samples on a conic or line.
   static std::optional<PressureRegression> fit(const std::vector<Sample>& samples);
 
   [[nodiscard]] Prediction at(double x, double y) const;
@@ -39,7 +39,7 @@ class PressureRegression {
 
   Terms coefficients_{};
   Matrix factor_{};         ///< Cholesky's, lower triangle
-  double mean_square_ = 0;  ///< of the residual
+  double mean_square_ = 0;  ///< mean square of the residuals
 };
 
 }  // namespace pillarfield

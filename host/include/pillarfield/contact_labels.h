@@ -54,7 +54,7 @@ class ContactLabels {
 
  private:
   void find_runs(std::span<const std::uint8_t> status, std::uint32_t cols);
-  void number_contacts();
+  void label_contacts();
   void sort_runs();
 
   std::vector<ContactRun> active_;  ///< where there may be loaded pillars, row by row
@@ -67,7 +67,7 @@ class ContactLabels {
 
 /// The contacts of a frame as a Processor found them, a view.
 struct FoundContacts {
-  const ContactLabels* map = nullptr;         ///< null: none were looked for
+  const ContactLabels* labels = nullptr;      ///< null: the plan finds no contacts
   std::span<const ContactFriction> friction;  ///< by label; empty if it was not estimated
 };
 

@@ -14,9 +14,9 @@ namespace pillarfield {
 
 /// A contact of a frame, with its identity.
 struct TrackedContact {
-  std::uint64_t id = 0;                 ///< 1, 2, ...; never reused
-  std::uint32_t number = 0;             ///< its label in the frame's ContactLabels
-  std::optional<std::uint64_t> parent;  ///< id of the contact it split from
+  std::uint64_t track_id = 0;           ///< 1, 2, ...; never reused
+  std::uint32_t label = 0;              ///< in the frame's ContactLabels
+  std::optional<std::uint64_t> parent;  ///< track_id of the contact it split from
   double first_time_s = 0;              ///< time of its first frame
   double age_s = 0;                     ///< time since then
   ContactQuantities quantities;
@@ -24,7 +24,7 @@ struct TrackedContact {
 
 /// A contact of the previous frame that this frame no longer has.
 struct EndedContact {
-  std::uint64_t id = 0;
+  std::uint64_t track_id = 0;
   std::optional<std::uint64_t> merged_into;  ///< unset if it left the skin
   double first_time_s = 0;
   double last_time_s = 0;  ///< time of its last frame
@@ -34,10 +34,10 @@ struct EndedContact {
 struct FrameContacts {
   double time_s = 0;
   std::vector<TrackedContact> contacts;
-  std::vector<EndedContact> ended;  ///< by id
+  std::vector<EndedContact> ended;  ///< by track_id
   /// The total over all loaded pillars of the patch, contacts below minimum_pillars included. Its
   /// friction is FrictionKnowledge::given, since contacts may differ in friction.
-  ContactQuantities patch;
+  ContactQuantities total;
 };
 
 /// How contacts are found and tracked.
@@ -66,12 +66,13 @@ void check(const ContactOptions& options, const std::string& where);
 ///     const FrameContacts& contacts = tracker.update(processor.receive(), time_s);
 ///
 /// Matching, in order: (1) the pair of contacts that shares most pillars, each contact once; ties
-/// go to the lower id, then the lower label. (2) An unmatched contact that shares pillars with an
-/// earlier one has split from it; an unmatched earlier one that shares pillars with a contact has
-/// merged into it. (3) The rest by distance of centres, nearest first, up to reach_mm, among the
-/// eight nearest of each. What remains is new or has ended. An ended id does not return.
+/// go to the lower track_id, then the lower label. (2) An unmatched contact that shares pillars
+/// with an earlier one has split from it; an unmatched earlier one that shares pillars with a
+/// contact has merged into it. (3) The rest by distance of centres, nearest first, up to reach_mm,
+/// among the eight nearest of each. What remains is new or has ended. The track_id of an ended
+/// contact does not return.
 ///
-/// Thus the larger part of a contact that splits keeps its id, as does the contact with most
+/// Thus the larger part of a contact that splits keeps its track_id, as does the contact with most
 /// pillars of those that merge.
 class ContactTracker {
  public:
@@ -90,7 +91,7 @@ class ContactTracker {
                               const FoundContacts& found = {});
 
   /// The pillars of the contacts of the last frame, small contacts included.
-  [[nodiscard]] const ContactLabels& map() const;
+  [[nodiscard]] const ContactLabels& labels() const;
 
  private:
   struct State;

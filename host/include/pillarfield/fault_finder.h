@@ -23,7 +23,7 @@ struct FaultOptions {
 /// The result of FaultFinder.
 struct FaultResult {
   SkinCalibration calibration;
-  /// Masked: not_a_number, saturated, silent, stuck. Not masked: unknown.
+  /// Masked: not_a_number, saturated, unresponsive, stuck. Not masked: unknown.
   std::vector<SenselFinding> findings;
   /// [row, col] of sensels that no frame tests: parity never predicts them to change.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> untested;

@@ -11,7 +11,7 @@ enum class SenselFault : std::uint8_t {
   saturated,     ///< at full scale, unlike the others
   stuck,         ///< its reading is constant and out of place
   noisy,         ///< it varies far more than the others
-  silent,        ///< it does not respond where the others do
+  unresponsive,  ///< it does not respond where the others do
   unequal,       ///< it responds far less or far more than the others
   unknown,       ///< a second sensel of its pillar is suspect, so parity cannot decide
 };

@@ -139,7 +139,7 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   std::vector<ContactQuantities> patch(1);
   read_columns(quantity_columns(), patch_.columns.data() + std::size(force_format::kPatchRows),
                index, patch, itself);
-  frame.patch = patch[0];
+  frame.total = patch[0];
   return frame;
 }
 

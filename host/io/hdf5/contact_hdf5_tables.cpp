@@ -100,7 +100,7 @@ void ContactTables::append(const FrameContacts& frame) {
   patch_.put(static_cast<double>(frame.contacts.size()));
   patch_.put(static_cast<double>(ended_.rows()));
   patch_.put(static_cast<double>(frame.ended.size()));
-  put_row(quantity_columns(), frame.patch, patch_);
+  put_row(quantity_columns(), frame.total, patch_);
   for (const TrackedContact& contact : frame.contacts) {
     contacts_.put(index);
     put_row(identity_columns(), contact, contacts_);

@@ -46,14 +46,14 @@ void ContactCsvSink::add_quantities(const ContactQuantities& quantities) {
 
 void ContactCsvSink::add_contact(const TrackedContact& contact) {
   const std::string parent = contact.parent ? fmt::format("{}", *contact.parent) : "";
-  file_.write(fmt::format("contact,{}{},{},,{},{}", frame_cells_, contact.id, parent,
+  file_.write(fmt::format("contact,{}{},{},,{},{}", frame_cells_, contact.track_id, parent,
                           contact.first_time_s, contact.age_s));
   add_quantities(contact.quantities);
 }
 
 void ContactCsvSink::add_ended(const EndedContact& contact) {
   const std::string merged = contact.merged_into ? fmt::format("{}", *contact.merged_into) : "";
-  file_.write(fmt::format("ended,{}{},,{},{},{}", frame_cells_, contact.id, merged,
+  file_.write(fmt::format("ended,{}{},,{},{},{}", frame_cells_, contact.track_id, merged,
                           contact.first_time_s, contact.last_time_s - contact.first_time_s));
   file_.write(std::string(quantity_columns().size(), ',') + "\n");
 }
@@ -63,7 +63,7 @@ void ContactCsvSink::append(const SolvedFrame& frame) {
   const FrameContacts& found = contacts_of(frame, path_.string());
   frame_cells_ = fmt::format("{},{},", frames_, frame.time_s);
   file_.write(fmt::format("patch,{},,,,", frame_cells_));
-  add_quantities(found.patch);
+  add_quantities(found.total);
   for (const TrackedContact& contact : found.contacts) add_contact(contact);
   for (const EndedContact& contact : found.ended) add_ended(contact);
   ++frames_;

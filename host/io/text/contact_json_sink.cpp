@@ -78,7 +78,7 @@ void JsonSink::append(const SolvedFrame& frame) {
   const FrameContacts& found = contacts_of(frame, path_.string());
   file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
                           frames_ == 0 ? "" : ",", frames_, frame.time_s,
-                          members_of(quantity_columns(), found.patch)));
+                          members_of(quantity_columns(), found.total)));
   const char* separator = "";
   for (const TrackedContact& contact : found.contacts) {
     file_.write(fmt::format("{}{{{},{}}}", separator, members_of(identity_columns(), contact),

@@ -347,7 +347,7 @@ void write_passing(const std::filesystem::path& path, bool with_contacts) {
 
 std::vector<std::uint64_t> ids_of(const ShownContacts& contacts) {
   std::vector<std::uint64_t> ids;
-  for (const auto& contact : contacts.found.contacts) ids.push_back(contact.id);
+  for (const auto& contact : contacts.found.contacts) ids.push_back(contact.track_id);
   return ids;
 }
 

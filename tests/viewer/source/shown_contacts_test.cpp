@@ -21,7 +21,7 @@ void expect_rect(const PillarRect& rect, const PillarRect& expected) {
 
 std::vector<std::uint64_t> shown_ids_of(const ShownContacts& contacts) {
   std::vector<std::uint64_t> ids;
-  for (const TrackedContact& contact : contacts.found.contacts) ids.push_back(contact.id);
+  for (const TrackedContact& contact : contacts.found.contacts) ids.push_back(contact.track_id);
   return ids;
 }
 
@@ -40,7 +40,7 @@ TEST(ShownContacts, TheHeaviestComesFirst) {
       0, 20, 30, {{{1, 3, 1, 3}, 1}, {{5, 7, 5, 7}, 3}, {{9, 11, 9, 11}, 2}, {{15, 17, 2, 4}, 3}});
   const ShownContacts contacts = ContactWatch(kContactPitch).contacts_of(field);
   EXPECT_EQ(contacts.heaviest, (std::vector<std::size_t>{1, 3, 2, 0}));
-  EXPECT_DOUBLE_EQ(contacts.found.patch.normal_n, 4 * (1 + 3 + 2 + 3));
+  EXPECT_DOUBLE_EQ(contacts.found.total.normal_n, 4 * (1 + 3 + 2 + 3));
 }
 
 TEST(ShownContacts, ANumberThatTheStatusLacksIsAnError) {
@@ -48,7 +48,7 @@ TEST(ShownContacts, ANumberThatTheStatusLacksIsAnError) {
   const ShownField field = touched_field(0, 20, 30, {{{1, 3, 1, 3}}});
   map.find(field.forces.status, 20, 30);
   FrameContacts found;
-  found.contacts.emplace_back().number = 1;
+  found.contacts.emplace_back().label = 1;
   EXPECT_THROW(static_cast<void>(with_extents(found, map)), Error);
 }
 

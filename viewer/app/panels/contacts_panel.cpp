@@ -67,7 +67,7 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const std::size_t place = contacts.heaviest[static_cast<std::size_t>(row)];
       const TrackedContact& contact = contacts.found.contacts[place];
-      if (write_row(std::to_string(contact.id), contact.quantities)) clicked = place;
+      if (write_row(std::to_string(contact.track_id), contact.quantities)) clicked = place;
     }
   }
   return clicked;
@@ -85,7 +85,7 @@ std::optional<std::size_t> contact_table(const PanelInk& ink, const ShownContact
   ImGui::TableSetupScrollFreeze(1, 2);
   set_columns();
   write_head();
-  write_row("all", contacts.found.patch);
+  write_row("all", contacts.found.total);
   const auto clicked = contact_rows(contacts);
   ImGui::EndTable();
   return clicked;

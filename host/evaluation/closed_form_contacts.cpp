@@ -1,4 +1,4 @@
-#include "evaluation/field_contacts.h"
+#include "evaluation/closed_form_contacts.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
@@ -95,7 +95,7 @@ std::array<double, 2> turned(const Body& body, double x, double y) {
 }
 
 /// The direction of the shear on the skin, in the frame of the skin.
-std::array<double, 2> direction_at(const FieldContact& contact, double x, double y) {
+std::array<double, 2> direction_at(const StudyContact& contact, double x, double y) {
   const Drive& drive = contact.drive;
   switch (drive.motion) {
     case Motion::spin:
@@ -114,7 +114,7 @@ std::array<double, 2> direction_at(const FieldContact& contact, double x, double
   }
 }
 
-double shear_at(const FieldContact& contact, double x, double y, double pressure) {
+double shear_at(const StudyContact& contact, double x, double y, double pressure) {
   const Body& body = contact.body;
   const Drive& drive = contact.drive;
   switch (drive.motion) {
@@ -165,7 +165,7 @@ double difference(const Traction& a, const Traction& b) {
 /// Integrates the tractions of a contact over squares.
 class Cubature {
  public:
-  explicit Cubature(const FieldContact& contact)
+  explicit Cubature(const StudyContact& contact)
       : contact_(contact),
         cos_(std::cos(angle_of(contact.body))),
         sin_(std::sin(angle_of(contact.body))) {}
@@ -230,7 +230,7 @@ class Cubature {
     return sum;
   }
 
-  const FieldContact& contact_;
+  const StudyContact& contact_;
   double cos_;
   double sin_;
 };
@@ -331,7 +331,7 @@ double stuck_size(const Body& body, double load_ratio) {
   }
 }
 
-Traction traction_at(const FieldContact& contact, double x, double y) {
+Traction traction_at(const StudyContact& contact, double x, double y) {
   const double pressure = pressure_at(contact.body, x, y);
   if (pressure <= 0) return {};
   const double shear = shear_at(contact, x, y, pressure);
@@ -339,7 +339,7 @@ Traction traction_at(const FieldContact& contact, double x, double y) {
   return {shear * direction[0], shear * direction[1], pressure};
 }
 
-PillarLoads loads_of(const FieldContact& contact) {
+PillarLoads loads_of(const StudyContact& contact) {
   constexpr int kMargin = 4;
   const int half = static_cast<int>(std::ceil(reach(contact.body) * contact.body.radius)) + kMargin;
   const Cubature cubature(contact);
@@ -369,4 +369,4 @@ ForceField truth_of(const PillarLoads& loads, double friction, double counts_per
   return truth;
 }
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

@@ -14,9 +14,9 @@
 #include "pillarfield/solver_plan.h"
 
 /// How well the forces of ambiguous pillars are estimated: recordings with their truth, and the
-/// errors of estimates. field_study_histories.h and
-/// field_study_scenes.h make the recordings.
-namespace pillarfield::field_study {
+/// errors of estimates. contact_study_histories.h and
+/// contact_study_scenes.h make the recordings.
+namespace pillarfield::contact_study {
 
 /// Frames of one sensor and the forces that caused them.
 struct Recording {
@@ -38,7 +38,7 @@ struct Recording {
 [[nodiscard]] std::vector<ForceField> solve(const Recording& recording, const SolverPlan& plan);
 
 /// What `Estimator::contact` has learnt of a contact's friction up to a frame.
-struct LearntFriction {
+struct FrictionEstimate {
   std::uint64_t pillars = 0;  ///< of the contact
   double median = 0;
   double spread = 0;  ///< standard deviation of its logarithm
@@ -50,7 +50,7 @@ struct LearntFriction {
 };
 
 /// One entry for each contact of each frame, with the default prior.
-[[nodiscard]] std::vector<LearntFriction> learnt_friction(const Recording& recording);
+[[nodiscard]] std::vector<FrictionEstimate> friction_estimates(const Recording& recording);
 
 /// All forces that the readings of a pillar of region 3 leave: normal forces in [0, normal_high],
 /// and shear of which one component is fixed and the other changes with the normal force
@@ -88,9 +88,9 @@ inline constexpr std::size_t kFirstEnds = 3;  ///< from here on intervals are lo
 
 /// Errors over the pillars of region 3, and of the total normal force of frames.
 struct Score {
-  std::size_t loaded = 0;  ///< pillars with a usable sensel
-  std::size_t open = 0;    ///< of these in region 3 by their status, and truly loaded
-  double squares = 0;      ///< sum of |error|² of the force vector, counts²
+  std::size_t loaded = 0;     ///< pillars with a usable sensel
+  std::size_t ambiguous = 0;  ///< of these in region 3 by their status, and truly loaded
+  double squares = 0;         ///< sum of |error|² of the force vector, counts²
   std::array<std::size_t, kIntervals> held{};             ///< intervals that hold the truth
   std::array<std::size_t, kIntervals> held_with_noise{};  ///< where widened by that of a reading
   std::size_t frames = 0;                                 ///< that are truly loaded
@@ -98,7 +98,7 @@ struct Score {
   double total_squares = 0;                               ///< and of its square
 
   [[nodiscard]] double rms_counts() const;
-  [[nodiscard]] double coverage(std::size_t interval) const;  ///< 1 where nothing is open
+  [[nodiscard]] double coverage(std::size_t interval) const;  ///< 1 where nothing is ambiguous
   [[nodiscard]] double total_bias() const;
   [[nodiscard]] double total_rms() const;
   Score& operator+=(const Score& other);
@@ -111,8 +111,8 @@ class Evaluation {
 
   [[nodiscard]] const std::vector<ForceField>& direct() const { return direct_; }
   /// The pillars of region 3 of a frame.
-  [[nodiscard]] const std::vector<std::size_t>& open(std::size_t frame) const {
-    return open_[frame];
+  [[nodiscard]] const std::vector<std::size_t>& ambiguous(std::size_t frame) const {
+    return ambiguous_[frame];
   }
   /// The force on the line of each segment that is nearest to the truth: the error that noise
   /// leaves to whatever explains the readings.
@@ -122,10 +122,10 @@ class Evaluation {
  private:
   const Recording& recording_;
   std::vector<ForceField> direct_;
-  std::vector<std::vector<std::size_t>> open_;
+  std::vector<std::vector<std::size_t>> ambiguous_;
 };
 
 /// Calls `work(i)` for 0 <= i < count on all cores, and throws what one of the calls threw.
 void for_each_index(std::size_t count, const std::function<void(std::size_t)>& work);
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

@@ -9,7 +9,7 @@
 ///
 /// Lengths in the frame of a body are in radii of its contact, on the skin in pillar pitches;
 /// forces are in counts, k times newtons. Tractions are integrated over each pillar's square cell.
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 
 /// What presses, by its pressure p, r from the centre in radii. All but the wavy body and the two
 /// spheres are solutions of contact mechanics.
@@ -70,7 +70,7 @@ struct Drive {
   double pivot_y = 0;
 };
 
-struct FieldContact {
+struct StudyContact {
   Body body;
   Drive drive;
   double peak_counts = 100;  ///< the largest normal force of a pillar
@@ -91,7 +91,7 @@ struct Traction {
 [[nodiscard]] double stuck_size(const Body& body, double load_ratio);
 
 /// The tractions at a point of the body's frame for friction 1, their directions those of the skin.
-[[nodiscard]] Traction traction_at(const FieldContact& contact, double x, double y);
+[[nodiscard]] Traction traction_at(const StudyContact& contact, double x, double y);
 
 /// What each pillar bears at friction 1, row by row from the top left; the skin is as large as the
 /// contact and four pillars all round.
@@ -107,10 +107,10 @@ struct PillarLoads {
 /// Gauss and Legendre's rule, 4 x 4 points, on quarters of cells, of quarters and so on, until
 /// quartering changes nothing; 4096 points and more where an edge crosses. Some 20 ms for 60
 /// pillars across.
-[[nodiscard]] PillarLoads loads_of(const FieldContact& contact);
+[[nodiscard]] PillarLoads loads_of(const StudyContact& contact);
 
 /// The forces at a friction, N.
 [[nodiscard]] ForceField truth_of(const PillarLoads& loads, double friction,
                                   double counts_per_newton);
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

@@ -1,4 +1,4 @@
-#include "evaluation/field_study.h"
+#include "evaluation/contact_study.h"
 
 #include <gtest/gtest.h>
 
@@ -13,14 +13,14 @@
 #include <string>
 #include <utility>
 
-#include "evaluation/field_study_histories.h"
-#include "evaluation/field_study_scenes.h"
-#include "evaluation/field_study_twins.h"
+#include "evaluation/contact_study_histories.h"
+#include "evaluation/contact_study_scenes.h"
+#include "evaluation/contact_study_twins.h"
 #include "pillarfield/status.h"
 #include "simulation/closed_form/contact_traction.h"
 #include "solve/pillar_maths.h"
 
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 namespace {
 
 double sum(const std::vector<double>& values) {
@@ -28,8 +28,8 @@ double sum(const std::vector<double>& values) {
 }
 
 /// Shapes at a radius at which a pillar is not small, off the centre of the skin.
-FieldContact contact_of(Shape shape) {
-  FieldContact contact;
+StudyContact contact_of(Shape shape) {
+  StudyContact contact;
   contact.body.shape = shape;
   contact.body.radius = 14;
   contact.body.second = 0.5;
@@ -72,7 +72,7 @@ double closed_load(Shape shape) {
 class OfEachShape : public testing::TestWithParam<Shape> {};
 
 TEST_P(OfEachShape, ForcesSumToTheLoad) {
-  const FieldContact contact = contact_of(GetParam());
+  const StudyContact contact = contact_of(GetParam());
   const PillarLoads loads = loads_of(contact);
   const double radius = contact.body.radius;
   const double load = closed_load(GetParam()) * radius * radius * loads.counts_per_pressure;
@@ -83,7 +83,7 @@ TEST_P(OfEachShape, ForcesSumToTheLoad) {
 TEST_P(OfEachShape, NoTractionExceedsFriction) {
   for (const Motion motion : {Motion::partial_slip, Motion::slide, Motion::spin, Motion::turn,
                               Motion::partial_turn, Motion::roll}) {
-    FieldContact contact = contact_of(GetParam());
+    StudyContact contact = contact_of(GetParam());
     contact.body.second = 0.3;
     contact.drive = {.motion = motion, .load_ratio = 0.7, .pivot_x = 0.2};
     const bool rolls = family_of(GetParam()) == Family::rounded &&
@@ -110,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(FieldContacts, OfEachShape,
 TEST(FieldContacts, DragByTheirLoadRatio) {
   for (const Shape shape : {Shape::sphere, Shape::ellipse, Shape::paraboloid, Shape::cylinder,
                             Shape::cone, Shape::truncated_cone, Shape::rounded_punch}) {
-    FieldContact contact = contact_of(shape);
+    StudyContact contact = contact_of(shape);
     contact.body.second = 0.3;
     contact.drive = {.motion = Motion::partial_slip, .direction_deg = 20, .load_ratio = 0.8};
     const PillarLoads loads = loads_of(contact);
@@ -121,7 +121,7 @@ TEST(FieldContacts, DragByTheirLoadRatio) {
 
 /// What the simulator makes of the same contact, in counts and for friction 1: other mathematics,
 /// corner functions instead of points.
-ForceField simulated(const FieldContact& contact, const PillarLoads& loads) {
+ForceField simulated(const StudyContact& contact, const PillarLoads& loads) {
   const std::map<Motion, ContactMotion> motions = {
       {Motion::press, ContactMotion::press},
       {Motion::slide, ContactMotion::slide},
@@ -155,7 +155,7 @@ TEST(FieldContacts, AreThoseOfTheSimulator) {
       {Shape::punch, Motion::slide},    {Shape::punch, Motion::spin}};
   for (const auto& [shape, motion] : cases) {
     SCOPED_TRACE(std::string(name_of(shape)) + ", " + name_of(motion));
-    FieldContact contact = contact_of(shape);
+    StudyContact contact = contact_of(shape);
     if (shape != Shape::cylinder) contact.body.angle_deg = 0;
     contact.drive = {.motion = motion, .direction_deg = 70, .load_ratio = 0.6};
     const PillarLoads loads = loads_of(contact);
@@ -174,7 +174,7 @@ TEST(FieldContacts, AreThoseOfTheSimulator) {
 }
 
 TEST(FieldContacts, SphereBearsItsPressureInTheMiddle) {
-  FieldContact contact = contact_of(Shape::sphere);
+  StudyContact contact = contact_of(Shape::sphere);
   contact.drive = {.motion = Motion::slide, .direction_deg = 90};
   const PillarLoads loads = loads_of(contact);
   const std::size_t middle = std::size_t{loads.rows / 2} * loads.cols + loads.cols / 2;
@@ -203,8 +203,8 @@ TEST(FieldStudy, SegmentsExplainTheReadings) {
     const ForceField& direct = evaluation.direct().front();
     const auto raw = recording.frames.front().readings<float>();
     const std::size_t width = 2 * std::size_t{direct.cols};
-    ASSERT_GT(evaluation.open(0).size(), 30);
-    for (const std::size_t i : evaluation.open(0)) {
+    ASSERT_GT(evaluation.ambiguous(0).size(), 30);
+    for (const std::size_t i : evaluation.ambiguous(0)) {
       const Segment segment = segment_of(direct, i, recording.plan.segment_point);
       const std::size_t top = 2 * (i / direct.cols) * width;
       const std::size_t left = 2 * (i % direct.cols);
@@ -231,7 +231,7 @@ TEST(FieldStudy, NearestIsNearest) {
     EXPECT_LT(nearest, 2 * *recording.plan.noise_counts);
     for (const double step_n : {-1e-4, 1e-4}) {
       std::vector<ForceField> beside = evaluation.nearest();
-      for (const std::size_t i : evaluation.open(0)) {
+      for (const std::size_t i : evaluation.ambiguous(0)) {
         const Segment segment = segment_of(evaluation.direct()[0], i, recording.plan.segment_point);
         const double normal = beside[0].normal[i] + step_n;
         beside[0].shear_x[i] = static_cast<float>(segment.shear_x(normal));
@@ -250,7 +250,7 @@ std::vector<ForceField> stated(const Recording& recording, const Evaluation& eva
   ForceField field = recording.truth[0];
   for (auto& plane : field.uncertainty) plane.assign(field.pillars(), 1e-3F);
   auto& ends = field.uncertainty;
-  for (const std::size_t i : evaluation.open(0)) {
+  for (const std::size_t i : evaluation.ambiguous(0)) {
     const double shear = std::hypot(field.shear_x[i], field.shear_y[i]);
     const double theta = std::atan2(shear, field.normal[i]);
     const double phi = std::atan2(-field.shear_y[i], -field.shear_x[i]);
@@ -350,7 +350,7 @@ TEST(Histories, TellWhichPillarsSlip) {
     return history.name() == "fingertip 5, slide at 98°, mu 2.2";
   });
   ASSERT_NE(found, all.end());
-  const auto learnt = learnt_friction(record(*found, PILLARFIELD_SCENES));
+  const auto learnt = friction_estimates(record(*found, PILLARFIELD_SCENES));
   ASSERT_EQ(learnt.size(), 10);  // one contact in each frame
   EXPECT_EQ(learnt.front().slipping, 0);
   EXPECT_GT(learnt.back().slipping, 0.95);
@@ -388,7 +388,7 @@ TEST_P(SmallHistories, AreAsLargeAndAsAmbiguousAsTheySay) {
   EXPECT_LE(recording.frames.size(), 12);
   std::uint8_t peak = 0;
   double most_pillars = 0;
-  std::size_t open = 0;
+  std::size_t ambiguous = 0;
   for (std::size_t i = 0; i < recording.frames.size(); ++i) {
     const auto readings = recording.frames[i].readings<std::uint8_t>();
     peak = std::max(peak, *std::max_element(readings.begin(), readings.end()));
@@ -396,14 +396,14 @@ TEST_P(SmallHistories, AreAsLargeAndAsAmbiguousAsTheySay) {
     const auto loaded =
         std::count_if(normal.begin(), normal.end(), [](float force_n) { return force_n > 0; });
     most_pillars = std::max(most_pillars, static_cast<double>(loaded));
-    open += evaluation.open(i).size();
+    ambiguous += evaluation.ambiguous(i).size();
   }
   EXPECT_GE(peak, 145);
   EXPECT_LE(peak, 155);
   const double bodies = history().indenter == Indenter::two_fingers ? 2 : 1;
   // Pillars that are loaded in part count as well.
   EXPECT_NEAR(std::sqrt(most_pillars / bodies / std::numbers::pi), history().radius_pillars, 0.8);
-  EXPECT_GE(open, 50);
+  EXPECT_GE(ambiguous, 50);
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachIndenter, SmallHistories,
@@ -431,4 +431,4 @@ TEST(FieldTwins, ReadTheSame) {
 }
 
 }  // namespace
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

@@ -6,16 +6,16 @@
 #include <string_view>
 #include <vector>
 
-#include "evaluation/field_contacts.h"
-#include "evaluation/field_study.h"
+#include "evaluation/closed_form_contacts.h"
+#include "evaluation/contact_study.h"
 
 /// Single frames of contacts whose pressure and shear are closed forms.
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 
 /// A contact at a friction, seen through noise.
 struct ClosedForm {
   std::string contact_name;  ///< "sphere 30, partial slip 0.7 at 94°"
-  FieldContact contact;
+  StudyContact contact;
   double friction = 1;
   double noise_counts = 0.5;  ///< normal, standard deviation; the threshold is four times that
   std::uint64_t seed = 1;
@@ -36,4 +36,4 @@ void integrate(std::vector<ClosedForm>& scenes);
 /// One frame of float32 readings, 320 counts per newton, of a scene that has its loads.
 [[nodiscard]] Recording record(const ClosedForm& scene);
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

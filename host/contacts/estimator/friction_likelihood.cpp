@@ -1,4 +1,4 @@
-#include "contacts/estimator/friction_evidence.h"
+#include "contacts/estimator/friction_likelihood.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::size_t kPoints = FrictionGrid::kPoints;
 
-/// Ratios from which likelihoods are densities: a pillar that follows no rule has one of these.
+/// Range of ratios over which an outlier's density is uniform.
 constexpr double kOutlierRange = 6;
 
-/// So many factors, which are 1e-4 at least and 100 at most, have a product that a double holds.
+/// Number of factors in [1e-4, 100] whose product a double holds.
 constexpr std::size_t kFactors = 64;
 
 using Factors = std::array<double, kPoints>;
@@ -24,7 +24,7 @@ double normal_cumulative(double deviations) {
   return 0.5 * std::erfc(-deviations / std::numbers::sqrt2);
 }
 
-/// Multiplies likelihoods point by point and sums their logarithms now and then.
+/// Product of likelihoods per grid point; sums logarithms every kFactors factors.
 class LogProduct {
  public:
   LogProduct() { product_.fill(1); }
@@ -53,7 +53,7 @@ class LogProduct {
   std::size_t factors_ = 0;
 };
 
-/// One pillar's likelihood of slipping at a point's friction or sticking below it (C3).
+/// Terms of one pillar's likelihood of slipping at a friction or sticking below it (C3).
 struct SlipOrStick {
   const float* density;
   const float* cumulative;
@@ -112,18 +112,18 @@ FrictionLikelihood::FrictionLikelihood(const ContactParameters& parameters)
 
 const FrictionLikelihood::Width& FrictionLikelihood::width_of(double deviation) const {
   for (const Width& width : widths_) {
-    if (deviation <= width.deviation * 1.19) return width;  // Nearer than the next, 1.41 as wide.
+    if (deviation <= width.deviation * 1.19) return width;  // The next is 1.41 as wide.
   }
   return widths_.back();
 }
 
-void FrictionLikelihood::add_slip_or_stick(const std::vector<ShownRatio>& pillars, double effective,
-                                           FrictionCurve& log_likelihood) const {
+void FrictionLikelihood::add_slip_or_stick(const std::vector<ObservedRatio>& pillars,
+                                           double effective, FrictionCurve& log_likelihood) const {
   if (pillars.empty()) return;
   const double slips = parameters_.slip_probability * (1 - parameters_.outliers);
   const double sticks = (1 - parameters_.slip_probability) * (1 - parameters_.outliers);
   LogProduct product;
-  for (const ShownRatio& pillar : pillars) {
+  for (const ObservedRatio& pillar : pillars) {
     const Width& width = width_of(pillar.deviation);
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
     const std::size_t at_ceiling = kPoints - FrictionGrid::nearest(pillar.ceiling);
@@ -138,11 +138,11 @@ void FrictionLikelihood::add_slip_or_stick(const std::vector<ShownRatio>& pillar
   product.add_to(log_likelihood, weight_of(pillars.size(), effective));
 }
 
-void FrictionLikelihood::add_lower_bounds(const std::vector<ShownRatio>& pillars, double effective,
-                                          FrictionCurve& log_likelihood) const {
+void FrictionLikelihood::add_lower_bounds(const std::vector<ObservedRatio>& pillars,
+                                          double effective, FrictionCurve& log_likelihood) const {
   if (pillars.empty()) return;
   LogProduct product;
-  for (const ShownRatio& pillar : pillars) {
+  for (const ObservedRatio& pillar : pillars) {
     const std::size_t at = kPoints - FrictionGrid::nearest(pillar.ratio);
     multiply(product.next(), width_of(pillar.deviation).cumulative.data() + at,
              static_cast<float>(parameters_.outliers));

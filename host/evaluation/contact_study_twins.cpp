@@ -1,4 +1,4 @@
-#include "evaluation/field_study_twins.h"
+#include "evaluation/contact_study_twins.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "pillarfield/error.h"
 #include "simulation/ideal_readings.h"
 
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 namespace {
 
 using double_precision::Force;
@@ -31,8 +31,8 @@ void check_inactive(const Force& force) {
 
 }  // namespace
 
-FieldContact contact_of(const TwinScene& scene) {
-  FieldContact contact;
+StudyContact contact_of(const TwinScene& scene) {
+  StudyContact contact;
   contact.body.radius = scene.radius;
   contact.drive = {.motion = Motion::slide, .direction_deg = scene.direction_deg};
   contact.peak_counts = scene.peak_counts;
@@ -72,4 +72,4 @@ double distance_counts(const Force& a, const Force& b) {
          std::hypot(a.shear_x - b.shear_x, a.shear_y - b.shear_y, a.normal - b.normal);
 }
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

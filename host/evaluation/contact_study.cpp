@@ -1,4 +1,4 @@
-#include "evaluation/field_study.h"
+#include "evaluation/contact_study.h"
 
 #include <algorithm>
 #include <atomic>
@@ -20,7 +20,7 @@
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
 
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 namespace {
 
 constexpr double kNormal95 = 1.96;  // standard deviations of a normal error hold 95 %
@@ -50,12 +50,12 @@ FrameBuffer read_frame(const Scene& scene, const Sensor& sensor, const ForceFiel
   return raw;
 }
 
-std::vector<std::size_t> open_pillars(const ForceField& direct, const ForceField& truth) {
-  std::vector<std::size_t> open;
+std::vector<std::size_t> ambiguous_pillars(const ForceField& direct, const ForceField& truth) {
+  std::vector<std::size_t> ambiguous;
   for (std::size_t i = 0; i < direct.pillars(); ++i) {
-    if (region_of(direct.status[i]) == Region::three && truth.normal[i] > 0) open.push_back(i);
+    if (region_of(direct.status[i]) == Region::three && truth.normal[i] > 0) ambiguous.push_back(i);
   }
-  return open;
+  return ambiguous;
 }
 
 double squared_error(const ForceField& solved, const ForceField& truth, std::size_t i) {
@@ -106,10 +106,10 @@ bool is_on_arc(const ForceField& solved, std::size_t i, double phi, double margi
 }
 
 /// How much of a friction of 1 the pillars of a contact use, and how many slip.
-LearntFriction usage_of(std::span<const ContactRun> runs, const ForceField& solved,
-                        const ForceField& truth, double friction) {
+FrictionEstimate usage_of(std::span<const ContactRun> runs, const ForceField& solved,
+                          const ForceField& truth, double friction) {
   constexpr double kSlipping = 0.9;
-  LearntFriction usage;
+  FrictionEstimate usage;
   double shear = 0;
   double normal = 0;
   double slipping = 0;
@@ -172,18 +172,18 @@ std::vector<ForceField> solve(const Recording& recording, const SolverPlan& plan
   return solved;
 }
 
-std::vector<LearntFriction> learnt_friction(const Recording& recording) {
+std::vector<FrictionEstimate> friction_estimates(const Recording& recording) {
   SolverPlan plan = recording.plan;
   plan.estimator = Estimator::contact;
   ContactEstimator estimator(plan);
-  std::vector<LearntFriction> learnt;
+  std::vector<FrictionEstimate> learnt;
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
     ForceField solved = solve_on_host(recording.plan, recording.frames[frame].view());
     estimator.resolve(solved);
     for (std::uint32_t contact = 0; contact < estimator.contacts().contacts(); ++contact) {
       const ContactFriction& friction = estimator.friction()[contact];
-      LearntFriction one = usage_of(estimator.contacts().runs(contact), solved,
-                                    recording.truth[frame], recording.friction);
+      FrictionEstimate one = usage_of(estimator.contacts().runs(contact), solved,
+                                      recording.truth[frame], recording.friction);
       one.median = friction.median;
       one.spread = friction.spread;
       one.used /= friction.median;
@@ -258,11 +258,12 @@ const std::array<Interval, kIntervals>& intervals() {
 }
 
 double Score::rms_counts() const {
-  return open == 0 ? 0 : std::sqrt(squares / static_cast<double>(open));
+  return ambiguous == 0 ? 0 : std::sqrt(squares / static_cast<double>(ambiguous));
 }
 
 double Score::coverage(std::size_t interval) const {
-  return open == 0 ? 1 : static_cast<double>(held.at(interval)) / static_cast<double>(open);
+  return ambiguous == 0 ? 1
+                        : static_cast<double>(held.at(interval)) / static_cast<double>(ambiguous);
 }
 
 double Score::total_bias() const {
@@ -275,7 +276,7 @@ double Score::total_rms() const {
 
 Score& Score::operator+=(const Score& other) {
   loaded += other.loaded;
-  open += other.open;
+  ambiguous += other.ambiguous;
   squares += other.squares;
   for (std::size_t k = 0; k < kIntervals; ++k) {
     held[k] += other.held[k];
@@ -290,7 +291,7 @@ Score& Score::operator+=(const Score& other) {
 Evaluation::Evaluation(const Recording& recording)
     : recording_(recording), direct_(solve(recording, recording.plan)) {
   for (std::size_t frame = 0; frame < direct_.size(); ++frame) {
-    open_.push_back(open_pillars(direct_[frame], recording.truth[frame]));
+    ambiguous_.push_back(ambiguous_pillars(direct_[frame], recording.truth[frame]));
   }
 }
 
@@ -298,7 +299,7 @@ std::vector<ForceField> Evaluation::nearest() const {
   std::vector<ForceField> nearest = direct_;
   for (std::size_t frame = 0; frame < nearest.size(); ++frame) {
     const ForceField& truth = recording_.truth[frame];
-    for (const std::size_t i : open_[frame]) {
+    for (const std::size_t i : ambiguous_[frame]) {
       const Segment segment = segment_of(direct_[frame], i, recording_.plan.segment_point);
       const double normal = segment.nearest(truth.shear_x[i], truth.shear_y[i], truth.normal[i]);
       nearest[frame].shear_x[i] = static_cast<float>(segment.shear_x(normal));
@@ -318,9 +319,9 @@ Score Evaluation::score(const std::vector<ForceField>& solved) const {
     score.loaded += static_cast<std::size_t>(
         std::count_if(direct_[frame].status.begin(), direct_[frame].status.end(),
                       [](std::uint8_t bits) { return (bits & status::kUsable) != 0; }));
-    score.open += open_[frame].size();
+    score.ambiguous += ambiguous_[frame].size();
     const bool states = !solved[frame].uncertainty[Uncertainty::normal].empty();
-    for (const std::size_t i : open_[frame]) {
+    for (const std::size_t i : ambiguous_[frame]) {
       score.squares +=
           counts_per_newton * counts_per_newton * squared_error(solved[frame], truth, i);
       for (std::size_t k = 0; states && k < kIntervals; ++k) {
@@ -359,4 +360,4 @@ void for_each_index(std::size_t count, const std::function<void(std::size_t)>& w
   if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

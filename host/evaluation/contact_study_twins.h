@@ -3,11 +3,11 @@
 #include <array>
 #include <vector>
 
-#include "evaluation/field_contacts.h"
+#include "evaluation/closed_form_contacts.h"
 #include "solve/pillar_maths.h"
 
 /// Two bodies that no estimator can tell from each other.
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 
 struct TwinScene {
   double radius = 30;  ///< of a sphere's contact, pitches
@@ -18,7 +18,7 @@ struct TwinScene {
 };
 
 /// The first body.
-[[nodiscard]] FieldContact contact_of(const TwinScene& scene);
+[[nodiscard]] StudyContact contact_of(const TwinScene& scene);
 
 /// Forces of both bodies on every pillar; they slide all over.
 struct Twins {
@@ -41,4 +41,4 @@ struct Twins {
 [[nodiscard]] double distance_counts(const double_precision::Force& a,
                                      const double_precision::Force& b);
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

@@ -1,4 +1,4 @@
-#include "contacts/estimator/friction_belief.h"
+#include "contacts/estimator/friction_posterior.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace pillarfield {
 namespace {
 
-/// A probability that a single frame of evidence can still raise.
+/// Smallest prior probability that one frame can still raise.
 constexpr double kLeastProbability = 1e-30;
 
 }  // namespace
@@ -21,7 +21,7 @@ std::size_t FrictionGrid::nearest(double ratio) {
 
 double FrictionGrid::at(double point) { return kLeast * std::exp(point * kStep); }
 
-FrictionBelief::FrictionBelief(const FrictionKnowledge& knowledge) {
+FrictionPosterior::FrictionPosterior(const FrictionKnowledge& knowledge) {
   const double centre = std::log(knowledge.given.value_or(knowledge.median));
   const double spread = knowledge.given ? kGivenFrictionSpread : knowledge.spread;
   for (std::size_t i = 0; i < probability_.size(); ++i) {
@@ -30,20 +30,21 @@ FrictionBelief::FrictionBelief(const FrictionKnowledge& knowledge) {
     const bool allowed = !knowledge.bound || friction <= *knowledge.bound;
     probability_[i] = allowed ? std::exp(-0.5 * deviations * deviations) : 0;
   }
-  // Whatever the bound, its own point stays possible.
+  // The bound's own grid point stays possible.
   if (knowledge.bound) probability_[FrictionGrid::nearest(*knowledge.bound)] += kLeastProbability;
   normalise();
 }
 
-FrictionBelief FrictionBelief::carried(const FrictionBelief& prior, double forgetting) const {
-  FrictionBelief later;
+FrictionPosterior FrictionPosterior::carried(const FrictionPosterior& prior,
+                                             double forgetting) const {
+  FrictionPosterior later;
   for (std::size_t i = 0; i < probability_.size(); ++i) {
     later.probability_[i] = (1 - forgetting) * probability_[i] + forgetting * prior.probability_[i];
   }
   return later;
 }
 
-void FrictionBelief::update(const FrictionCurve& log_likelihood) {
+void FrictionPosterior::update(const FrictionCurve& log_likelihood) {
   const double best = *std::max_element(log_likelihood.begin(), log_likelihood.end());
   FrictionCurve logarithm{};
   for (std::size_t i = 0; i < probability_.size(); ++i) {
@@ -57,23 +58,25 @@ void FrictionBelief::update(const FrictionCurve& log_likelihood) {
   normalise();
 }
 
-void FrictionBelief::normalise() {
+void FrictionPosterior::normalise() {
   const double sum = std::accumulate(probability_.begin(), probability_.end(), 0.0);
   for (double& each : probability_) each /= sum;
 }
 
-double FrictionBelief::quantile(double share) const {
+double FrictionPosterior::quantile(double fraction) const {
   double below = 0;
   for (std::size_t i = 0; i < probability_.size(); ++i) {
     const double with = below + probability_[i];
-    if (with >= share && probability_[i] > 0) {
-      return FrictionGrid::at(static_cast<double>(i) - 0.5 + (share - below) / probability_[i]);
+    if (with >= fraction && probability_[i] > 0) {
+      return FrictionGrid::at(static_cast<double>(i) - 0.5 + (fraction - below) / probability_[i]);
     }
     below = with;
   }
   return FrictionGrid::at(static_cast<double>(probability_.size() - 1));
 }
 
-double FrictionBelief::spread() const { return 0.5 * std::log(quantile(0.841) / quantile(0.159)); }
+double FrictionPosterior::spread() const {
+  return 0.5 * std::log(quantile(0.841) / quantile(0.159));
+}
 
 }  // namespace pillarfield

@@ -1,6 +1,6 @@
 // Contacts of closed form, each seen at several frictions and noises.
 
-#include "evaluation/field_study_scenes.h"
+#include "evaluation/contact_study_scenes.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <map>
 #include <utility>
 
-#include "evaluation/field_study.h"
+#include "evaluation/contact_study.h"
 
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 namespace {
 
 constexpr double kCountsPerNewton = 320;
@@ -59,7 +59,7 @@ class Contacts {
   explicit Contacts(Set set) : set_(std::move(set)) {}
 
   void add(const Body& body, double peak_counts, const Drive& drive) {
-    FieldContact contact{body, drive, peak_counts};
+    StudyContact contact{body, drive, peak_counts};
     const double number = set_.first_offset + static_cast<double>(contacts_.size());
     contact.body.x = std::fmod(0.6180339887 * number, 1.0) - 0.5;
     contact.body.y = std::fmod(0.7548776662 * number, 1.0) - 0.5;
@@ -123,13 +123,13 @@ class Contacts {
   }
 
   Set set_;
-  std::vector<FieldContact> contacts_;
+  std::vector<StudyContact> contacts_;
   int slides_ = 0;
   int drags_ = 0;
 };
 
 /// The scenes of a contact: all frictions, which do not matter without shear, and all noises.
-void append_scenes(const FieldContact& contact, const std::vector<double>& frictions,
+void append_scenes(const StudyContact& contact, const std::vector<double>& frictions,
                    std::uint64_t& seed, std::vector<ClosedForm>& scenes) {
   ClosedForm scene;
   scene.contact = contact;
@@ -148,7 +148,7 @@ void append_scenes(const FieldContact& contact, const std::vector<double>& frict
 std::vector<ClosedForm> Contacts::scenes(std::string_view filter) const {
   std::vector<ClosedForm> all;
   std::uint64_t seed = set_.first_seed;
-  for (const FieldContact& contact : contacts_) append_scenes(contact, set_.frictions, seed, all);
+  for (const StudyContact& contact : contacts_) append_scenes(contact, set_.frictions, seed, all);
   std::erase_if(
       all, [&](const ClosedForm& scene) { return scene.name().find(filter) == std::string::npos; });
   return all;
@@ -246,4 +246,4 @@ Recording record(const ClosedForm& scene) {
   return recording;
 }
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

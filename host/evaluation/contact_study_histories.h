@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/field_study.h"
+#include "evaluation/contact_study.h"
 
 /// Loading histories of bodies as small as a fingertip, solved by the simulator's boundary-element
 /// solver. They chose nothing: no parameter of an estimator may be tuned on them.
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 
 /// The body that touches.
 enum class Indenter : std::uint8_t {
@@ -59,4 +59,4 @@ struct History {
 /// the threshold 2. `scenes` is the folder with key.png. Seconds for the largest. Throws Error.
 [[nodiscard]] Recording record(const History& history, const std::filesystem::path& scenes);
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

@@ -1,4 +1,4 @@
-#include "evaluation/field_study_histories.h"
+#include "evaluation/contact_study_histories.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 
-namespace pillarfield::field_study {
+namespace pillarfield::contact_study {
 namespace {
 
 constexpr double kModulusMpa = 1;  // of Young; loads go with it
@@ -321,4 +321,4 @@ Recording record(const History& history, const std::filesystem::path& scenes) {
   return recording;
 }
 
-}  // namespace pillarfield::field_study
+}  // namespace pillarfield::contact_study

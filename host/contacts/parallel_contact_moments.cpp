@@ -1,0 +1,83 @@
+#include "contacts/parallel_contact_moments.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "contacts/contact_measure.h"
+
+namespace pillarfield {
+namespace {
+
+/// Least number of pillars of a part that is split off, and of a batch: a few microseconds of work,
+/// below which waking a thread does not pay.
+constexpr std::uint64_t kBatchPillars = 2048;
+
+std::size_t threads_for(std::uint32_t wanted) {
+  return wanted != 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
+}
+
+}  // namespace
+
+ParallelContactMoments::ParallelContactMoments(std::uint32_t threads)
+    : threads_(threads_for(threads)) {}
+
+/// Splits contacts into parts and groups parts into batches of about kBatchPillars.
+void ParallelContactMoments::split(const ContactLabels& labels) {
+  parts_.clear();
+  batches_.assign(1, 0);
+  std::uint64_t batched = 0;
+  for (std::uint32_t contact = 0; contact < labels.contacts(); ++contact) {
+    const std::span<const ContactRun> runs = labels.runs(contact);
+    std::size_t first = 0;
+    std::uint64_t pillars = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      pillars += runs[i].end - runs[i].first;
+      if (pillars < kBatchPillars && i + 1 < runs.size()) continue;
+      parts_.push_back({contact, runs.subspan(first, i + 1 - first), {}});
+      first = i + 1;
+      batched += pillars;
+      pillars = 0;
+      if (batched < kBatchPillars) continue;
+      batches_.push_back(parts_.size());
+      batched = 0;
+    }
+  }
+  if (batches_.back() < parts_.size()) batches_.push_back(parts_.size());
+}
+
+template <class Work>
+void ParallelContactMoments::for_each_batch(const Work& work) {
+  const std::size_t batches = batches_.size() - 1;
+  if (threads_ == 1 || batches < 2) {
+    work(0, parts_.size(), 0);
+    return;
+  }
+  if (!pool_) pool_ = std::make_unique<ThreadPool>(threads_);
+  pool_->run(batches, [&](std::size_t batch, std::size_t member) {
+    work(batches_[batch], batches_[batch + 1], member);
+  });
+}
+
+const std::vector<ContactSum>& ParallelContactMoments::measure(const ForceFieldView& forces,
+                                                               const ContactLabels& labels,
+                                                               const FrictionOf& friction_of) {
+  split(labels);
+  ratios_.assign(labels.contacts(), {});
+  for_each_batch([&](std::size_t first, std::size_t end, std::size_t member) {
+    for (std::size_t i = first; i < end; ++i) {
+      const std::uint32_t contact = parts_[i].contact;
+      if (i > 0 && parts_[i - 1].contact == contact) continue;  // Done at its first part.
+      ratios_[contact] = slip_ratio(friction_of(contact, member));
+    }
+  });
+  for_each_batch([&](std::size_t first, std::size_t end, std::size_t) {
+    for (std::size_t i = first; i < end; ++i) {
+      parts_[i].sum = sum_of(forces, parts_[i].runs, ratios_[parts_[i].contact]);
+    }
+  });
+  sums_.assign(labels.contacts(), {});
+  for (const Part& part : parts_) sums_[part.contact].add(part.sum);
+  return sums_;
+}
+
+}  // namespace pillarfield
