@@ -15,9 +15,9 @@
 namespace pillarfield {
 namespace {
 
-/// Where more than this share of the sensels fails in one way, the press is at fault.
-constexpr double kFailingShare = 0.2;
-/// A sensel that answers so many times less or more than its fellows is not one of them.
+/// Largest fraction of sensels that may fail in one way before the press is refused.
+constexpr double kFailingFraction = 0.2;
+/// Factor from the median response beyond which a sensel is masked as unequal.
 constexpr double kUnequal = 10;
 
 void require_presses(const SkinCalibration& before, std::span<const UniformPress> presses) {
@@ -34,7 +34,7 @@ void require_presses(const SkinCalibration& before, std::span<const UniformPress
   }
 }
 
-/// The responses of all sensels; those of no pillar, and those not good, stay silent.
+/// The responses of all sensels; unresponsive for masked sensels and sensels outside pillars.
 std::vector<Response> fit_all(const ResponseFit& fit, const Skin& skin, const FindingList& found) {
   std::vector<Response> responses(skin.sensels());
   for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
@@ -50,8 +50,8 @@ SenselFault fault_of(Response::Kind kind) {
   return kind == Response::Kind::unresponsive ? SenselFault::unresponsive : SenselFault::unequal;
 }
 
-void mask_those_that_do_not_answer(const std::vector<Response>& responses, const Skin& skin,
-                                   FindingList& found) {
+void mask_unresponsive(const std::vector<Response>& responses, const Skin& skin,
+                       FindingList& found) {
   for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
     for (const std::size_t i : sensels) {
       if (!found.good(i) || responses[i].kind == Response::Kind::good) continue;
@@ -60,26 +60,26 @@ void mask_those_that_do_not_answer(const std::vector<Response>& responses, const
   });
 }
 
-void require_answers(const FindingList& found, std::size_t asked, const std::string& name) {
+void require_responses(const FindingList& found, std::size_t tested, const std::string& name) {
   std::size_t saturated = 0;
   for (const SenselFinding& finding : found.findings()) {
     saturated += finding.fault == SenselFault::saturated ? 1 : 0;
   }
-  const std::size_t silent = found.findings().size() - saturated;
-  const double limit = kFailingShare * static_cast<double>(asked);
+  const std::size_t unresponsive = found.findings().size() - saturated;
+  const double limit = kFailingFraction * static_cast<double>(tested);
   if (static_cast<double>(saturated) > limit) {
-    throw Error(name, fmt::format("{} of {} sensels are at full scale", saturated, asked),
+    throw Error(name, fmt::format("{} of {} sensels are at full scale", saturated, tested),
                 "press less");
   }
-  if (asked > 0 && static_cast<double>(silent) <= limit) return;
-  throw Error(name, fmt::format("{} of {} sensels do not answer", silent, asked),
+  if (tested > 0 && static_cast<double>(unresponsive) <= limit) return;
+  throw Error(name, fmt::format("{} of {} sensels do not respond", unresponsive, tested),
               "press the whole skin evenly, and harder than its dead zone and noise");
 }
 
-/// What all good sensels have in common.
-class Consensus {
+/// Statistics over the responses of all good sensels.
+class ResponseSummary {
  public:
-  Consensus(const std::vector<Response>& responses, const FindingList& found)
+  ResponseSummary(const std::vector<Response>& responses, const FindingList& found)
       : responses_(responses), found_(found) {}
 
   [[nodiscard]] double median_newtons_per_count() const {
@@ -88,24 +88,24 @@ class Consensus {
     return median(values);
   }
 
-  /// k for which the gains have the mean 1.
+  /// Counts per newton for which the mean gain is 1.
   [[nodiscard]] double counts_per_newton() const {
     double newtons_per_count = 0;
-    double swallowed = 0;
+    double dead_zone_gain = 0;
     double count = 0;
     for_good([&](const Response& r) {
       newtons_per_count += r.newtons_per_count;
-      swallowed += r.swallowed;
+      dead_zone_gain += r.dead_zone_gain;
       ++count;
     });
-    return (count + swallowed) / newtons_per_count;
+    return (count + dead_zone_gain) / newtons_per_count;
   }
 
   [[nodiscard]] double gain_spread(double k) const {
     double squares = 0;
     double count = 0;
     for_good([&](const Response& r) {
-      const double gain = k * r.newtons_per_count - r.swallowed;
+      const double gain = k * r.newtons_per_count - r.dead_zone_gain;
       squares += (gain - 1) * (gain - 1);
       ++count;
     });
@@ -114,12 +114,12 @@ class Consensus {
 
   [[nodiscard]] double nonlinearity() const {
     double misfit = 0;
-    double answered = 0;
+    double responded = 0;
     for_good([&](const Response& r) {
       misfit += r.misfit;
-      answered += r.answered;
+      responded += r.responded;
     });
-    return answered > 0 ? std::sqrt(misfit / answered) : 0;
+    return responded > 0 ? std::sqrt(misfit / responded) : 0;
   }
 
   [[nodiscard]] double median_dead_zone(double k) const {
@@ -148,8 +148,8 @@ void mask_unequal(const std::vector<Response>& responses, double typical, Findin
   }
 }
 
-/// Whether whole pillars differ by more than their own four sensels explain, by an analysis of
-/// variance of the logarithms over pillars with four good sensels: the part that the four share.
+/// Standard deviation of the log response between pillars that the four sensels of a pillar do not
+/// explain: one-way analysis of variance over pillars with four good sensels.
 double unevenness_of(const std::vector<Response>& responses, const Skin& skin,
                      const FindingList& found) {
   double pillars = 0;
@@ -161,9 +161,9 @@ double unevenness_of(const std::vector<Response>& responses, const Skin& skin,
     double squares = 0;
     for (const std::size_t i : sensels) {
       if (!found.good(i)) return;
-      const double answer = std::log(responses[i].newtons_per_count);
-      mean += answer / 4;
-      squares += answer * answer;
+      const double response = std::log(responses[i].newtons_per_count);
+      mean += response / 4;
+      squares += response * response;
     }
     ++pillars;
     sum += mean;
@@ -176,23 +176,22 @@ double unevenness_of(const std::vector<Response>& responses, const Skin& skin,
   return std::sqrt(std::max(0.0, (mean_square_between - mean_square_within) / 4));
 }
 
-/// The mean shear over the mean normal force, from pillars with four good sensels. Sensels differ
-/// at random, shear presses the same side of every pillar: by D1, with V = kN (1 + c), the shear is
-/// √2 times the mean contrast of the sides.
+/// Ratio of mean shear to mean normal force over pillars with four good sensels. By D1 with
+/// V = kN (1 + c) it is √2 times the mean contrast c of the sides; random differences cancel.
 double shear_of(const std::vector<Response>& responses, const Skin& skin,
                 const FindingList& found) {
   double pillars = 0;
   double right = 0;
   double up = 0;
   for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
-    std::array<double, 4> answers{};
+    std::array<double, 4> log_responses{};
     for (std::size_t n = 0; n < sensels.size(); ++n) {
       if (!found.good(sensels.at(n))) return;
-      answers.at(n) = -std::log(responses[sensels.at(n)].newtons_per_count);
+      log_responses.at(n) = -std::log(responses[sensels.at(n)].newtons_per_count);
     }
     ++pillars;
-    right += (answers[0] + answers[3] - answers[1] - answers[2]) / 4;
-    up += (answers[0] + answers[1] - answers[2] - answers[3]) / 4;
+    right += (log_responses[0] + log_responses[3] - log_responses[1] - log_responses[2]) / 4;
+    up += (log_responses[0] + log_responses[1] - log_responses[2] - log_responses[3]) / 4;
   });
   return pillars == 0 ? 0 : std::numbers::sqrt2 * std::hypot(right, up) / pillars;
 }
@@ -200,12 +199,12 @@ double shear_of(const std::vector<Response>& responses, const Skin& skin,
 void require_even(double unevenness, double most, const std::string& name) {
   if (unevenness <= most) return;
   throw Error(name,
-              fmt::format("from pillar to pillar the pressure varies by {:.1f} %, beyond {:.1f} %",
+              fmt::format("the pressure varies by {:.1f} % between pillars, more than {:.1f} %",
                           100 * unevenness, 100 * most),
               "press evenly, as with an inflated membrane, or allow more unevenness");
 }
 
-/// Gains, and dead zones where several pressures told them; sensels that are not good have 1 and 0.
+/// Fills gains, and dead zones if there are several pressures; masked sensels get 1 and 0.
 void fill_planes(const std::vector<Response>& responses, double k, bool several,
                  const FindingList& found, Calibration& planes) {
   planes.gain.assign(responses.size(), 1);
@@ -213,7 +212,7 @@ void fill_planes(const std::vector<Response>& responses, double k, bool several,
   for (std::size_t i = 0; i < responses.size(); ++i) {
     const Response& response = responses[i];
     if (!found.good(i) || response.kind != Response::Kind::good) continue;
-    planes.gain[i] = static_cast<float>(k * response.newtons_per_count - response.swallowed);
+    planes.gain[i] = static_cast<float>(k * response.newtons_per_count - response.dead_zone_gain);
     if (several) planes.dead_zone[i] = static_cast<float>(k * response.dead_zone_n);
   }
   planes.mask = found.mask_plane();
@@ -231,23 +230,23 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   FindingList found(before.planes.mask, last);
   const std::size_t masked_before = skin.sensels() - found.count_good();
   const std::vector<Response> responses = fit_all(fit, skin, found);
-  mask_those_that_do_not_answer(responses, skin, found);
-  require_answers(found, 4 * skin.pillars() - std::min(4 * skin.pillars(), masked_before),
-                  last.name());
-  const Consensus consensus(responses, found);
-  mask_unequal(responses, consensus.median_newtons_per_count(), found);
+  mask_unresponsive(responses, skin, found);
+  require_responses(found, 4 * skin.pillars() - std::min(4 * skin.pillars(), masked_before),
+                    last.name());
+  const ResponseSummary summary(responses, found);
+  mask_unequal(responses, summary.median_newtons_per_count(), found);
 
   EquilibrationResult result;
-  const double k = consensus.counts_per_newton();
+  const double k = summary.counts_per_newton();
   result.levels = fit.levels();
   result.unevenness = unevenness_of(responses, skin, found);
   require_even(result.unevenness, options.most_unevenness, last.name());
   result.shear = shear_of(responses, skin, found);
-  result.gain_spread = consensus.gain_spread(k);
-  result.nonlinearity = fit.levels() > 2 ? consensus.nonlinearity() : 0;
+  result.gain_spread = summary.gain_spread(k);
+  result.nonlinearity = fit.levels() > 2 ? summary.nonlinearity() : 0;
   result.calibration = before;
   fill_planes(responses, k, fit.levels() > 1, found, result.calibration.planes);
-  result.dead_zone_counts = consensus.median_dead_zone(k);
+  result.dead_zone_counts = summary.median_dead_zone(k);
   result.calibration.counts_per_newton = k;
   if (before.threshold_factor) set_threshold(result.calibration, *before.threshold_factor);
   result.findings = found.findings();

@@ -20,7 +20,7 @@ namespace {
 
 namespace maths = single_precision;
 
-/// The other three of a pillar as seen from sensel n: its neighbours, and the one opposite.
+/// The other three sensels of a pillar, for each sensel: two neighbours and the opposite one.
 struct Others {
   std::size_t neighbour;
   std::size_t other_neighbour;
@@ -35,7 +35,7 @@ FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
     : statistics_(std::move(name), skin, type),
       calibration_(calibration),
       options_(options),
-      implied_(skin.sensels()) {
+      predictions_(skin.sensels()) {
   require_fitting(calibration, skin, statistics_.name());
   plan_.skin = skin;
   plan_.sensel_type = type;
@@ -44,33 +44,33 @@ FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
 
 void FaultFinder::add(const FrameView& frame) {
   statistics_.add(frame);
-  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) { imply(row, col, frame); });
+  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) { predict(row, col, frame); });
 }
 
-void FaultFinder::imply(std::size_t row, std::size_t col, const FrameView& frame) {
+void FaultFinder::predict(std::size_t row, std::size_t col, const FrameView& frame) {
   const maths::Pillar pillar = SenselReader(plan_, frame).pillar(row, col);
   const std::array sensels = {pillar.s1, pillar.s2, pillar.s3, pillar.s4};
   const auto places = pillar_sensels(plan_.skin, row, col);
   for (std::size_t n = 0; n < sensels.size(); ++n) {
-    Implied& implied = implied_[places.at(n)];
-    if (sensels.at(n).usable != 0) ++implied.usable;
+    Prediction& prediction = predictions_[places.at(n)];
+    if (sensels.at(n).usable != 0) ++prediction.usable;
     const auto& [a, b, opposite] = kOthers.at(n);
     const maths::Sensel& p = sensels.at(a);
     const maths::Sensel& q = sensels.at(b);
     const maths::Sensel& r = sensels.at(opposite);
     if ((p.usable & q.usable & r.usable) == 0) continue;
-    const Sight sight = sight_of(places.at(n));
+    const Range range = range_of(places.at(n));
     const double left =
-        std::clamp(double{p.reading} + q.reading - r.reading, sight.least, sight.most);
-    ++implied.frames;
-    const double step = left - implied.mean;
-    implied.mean += step / implied.frames;
-    implied.squares += step * (left - implied.mean);
+        std::clamp(double{p.reading} + q.reading - r.reading, range.least, range.most);
+    ++prediction.frames;
+    const double step = left - prediction.mean;
+    prediction.mean += step / prediction.frames;
+    prediction.squares += step * (left - prediction.mean);
   }
 }
 
-/// What V a sensel can tell apart: more than silence hides, less than its full scale.
-FaultFinder::Sight FaultFinder::sight_of(std::size_t sensel) const {
+/// Range of V that a sensel can show: from threshold plus dead zone to full scale.
+FaultFinder::Range FaultFinder::range_of(std::size_t sensel) const {
   const Skin& skin = plan_.skin;
   const Calibration& planes = plan_.calibration;
   const double dead_zone = planes.dead_zone.empty() ? 0 : planes.dead_zone[sensel];
@@ -83,13 +83,13 @@ FaultFinder::Sight FaultFinder::sight_of(std::size_t sensel) const {
   return {least, std::max(least, most + dead_zone)};
 }
 
-/// Judges the sensels of one pillar by what all frames told.
-class FaultFinder::Verdict {
+/// Classifies sensels, pillar by pillar, from the statistics of all frames.
+class FaultFinder::Classifier {
  public:
-  Verdict(const FaultFinder& finder, FindingList& found, FaultResult& result)
+  Classifier(const FaultFinder& finder, FindingList& found, FaultResult& result)
       : finder_(finder), found_(found), result_(result) {}
 
-  void judge(const std::array<std::size_t, 4>& sensels) {
+  void classify(const std::array<std::size_t, 4>& sensels) {
     for (const std::size_t i : sensels) {
       if (found_.good(i) && is_uninformative(i)) found_.mask(i, SenselFault::not_a_number);
     }
@@ -98,7 +98,7 @@ class FaultFinder::Verdict {
     for (std::size_t n = 0; n < sensels.size(); ++n) {
       moves.at(n) = found_.good(sensels.at(n)) && !is_still(sensels.at(n));
       if (moves.at(n)) {
-        loaded_frames = std::max(loaded_frames, finder_.implied_[sensels.at(n)].usable);
+        loaded_frames = std::max(loaded_frames, finder_.predictions_[sensels.at(n)].usable);
       }
     }
     const bool loaded = loaded_frames >= finder_.options_.least_frames;
@@ -109,11 +109,11 @@ class FaultFinder::Verdict {
     }
   }
 
-  /// Sensels that moved, in all pillars judged so far.
+  /// Number of moving sensels in the pillars classified so far.
   [[nodiscard]] std::size_t moving() const { return moving_; }
 
  private:
-  /// A still one, of whose pillar so many others move.
+  /// Classifies a still sensel; `moving` is the number of moving sensels of its pillar.
   void classify_still(std::size_t sensel, bool loaded, std::ptrdiff_t moving) {
     if (moving == 3 && should_move(sensel)) {
       found_.mask(sensel, fault_of(sensel));
@@ -134,32 +134,32 @@ class FaultFinder::Verdict {
     return 2 * read(sensel).readings < finder_.statistics_.frames();
   }
 
-  /// Of a raw reading.
+  /// Noise of a raw reading, counts.
   [[nodiscard]] double noise(std::size_t sensel) const {
     const Calibration& planes = finder_.plan_.calibration;
     return planes.noise.empty() ? reading_noise(finder_.plan_) : planes.noise[sensel];
   }
 
   [[nodiscard]] bool is_still(std::size_t sensel) const {
-    const double range = double{read(sensel).highest} - read(sensel).lowest;
-    return range <= finder_.options_.still_factor * noise(sensel);
+    const double spread = double{read(sensel).highest} - read(sensel).lowest;
+    return spread <= finder_.options_.still_factor * noise(sensel);
   }
 
-  /// Whether parity asked the sensel to move, by more than the noise of three readings explains.
+  /// Whether the prediction of parity moves by more than the noise of three readings.
   [[nodiscard]] bool should_move(std::size_t sensel) const {
-    const Implied& implied = finder_.implied_[sensel];
-    if (implied.frames < std::max(2U, finder_.options_.least_frames)) return false;
+    const Prediction& prediction = finder_.predictions_[sensel];
+    if (prediction.frames < std::max(2U, finder_.options_.least_frames)) return false;
     const Calibration& planes = finder_.plan_.calibration;
     const double gain = planes.gain.empty() ? 1 : planes.gain[sensel];
-    const double deviation = std::sqrt(implied.squares / (implied.frames - 1));
+    const double deviation = std::sqrt(prediction.squares / (prediction.frames - 1));
     return deviation > 0 &&
            deviation >= finder_.options_.moving_factor * std::sqrt(3.0) * gain * noise(sensel);
   }
 
   [[nodiscard]] SenselFault fault_of(std::size_t sensel) const {
     if (2 * read(sensel).saturated > read(sensel).readings) return SenselFault::saturated;
-    const bool answers = 2 * finder_.implied_[sensel].usable > finder_.statistics_.frames();
-    return answers ? SenselFault::stuck : SenselFault::unresponsive;
+    const bool responds = 2 * finder_.predictions_[sensel].usable > finder_.statistics_.frames();
+    return responds ? SenselFault::stuck : SenselFault::unresponsive;
   }
 
   const FaultFinder& finder_;
@@ -172,12 +172,13 @@ FaultResult FaultFinder::result() const {
   require_frames(statistics_, options_.least_frames);
   FaultResult result;
   FindingList found(plan_.calibration.mask, statistics_);
-  Verdict verdict(*this, found, result);
-  for_each_pillar(plan_.skin, [&](auto, auto, const auto& sensels) { verdict.judge(sensels); });
-  if (verdict.moving() == 0) {
+  Classifier classifier(*this, found, result);
+  for_each_pillar(plan_.skin,
+                  [&](auto, auto, const auto& sensels) { classifier.classify(sensels); });
+  if (classifier.moving() == 0) {
     throw Error(statistics_.name(),
                 fmt::format("no sensel moved in its {} frames", statistics_.frames()),
-                "press the skin here and there, as with a rolling ball, while it is recorded");
+                "record while pressing all over the skin, for example with a rolling ball");
   }
   result.calibration = calibration_;
   result.calibration.planes.mask = found.mask_plane();

@@ -8,25 +8,25 @@
 
 namespace pillarfield {
 
-/// The sensels that a step finds to be at fault, and the mask that follows from it.
+/// The sensels that a calibration step finds faulty, and the resulting mask.
 class FindingList {
  public:
-  /// `mask` is that of Calibration, so far; `statistics` tell what the sensels read.
+  /// `mask` is Calibration::mask before the step; `statistics` are those of the step's frames.
   FindingList(std::vector<std::uint8_t> mask, const FrameStatistics& statistics);
 
-  /// Whether the sensel is neither masked before nor found since.
+  /// Whether the sensel is not masked, neither before nor by the step.
   [[nodiscard]] bool good(std::size_t sensel) const { return mask_[sensel] != 0; }
   [[nodiscard]] std::size_t count_good() const;
 
-  /// Notes the sensel, which from now on is not good.
+  /// Adds a finding and masks the sensel.
   void mask(std::size_t sensel, SenselFault fault) { note(sensel, fault, true); }
 
-  /// Notes the sensel, which stays good.
+  /// Adds a finding without masking the sensel.
   void suspect(std::size_t sensel, SenselFault fault) { note(sensel, fault, false); }
 
   [[nodiscard]] const std::vector<SenselFinding>& findings() const { return findings_; }
 
-  /// As Calibration::mask: empty where all are good.
+  /// The mask as in Calibration::mask: empty if all sensels are good.
   [[nodiscard]] std::vector<std::uint8_t> mask_plane() const;
 
  private:

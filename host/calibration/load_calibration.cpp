@@ -14,15 +14,15 @@
 namespace pillarfield {
 namespace {
 
-/// A load of which more than this share of the touched pillars is saturated tells nothing.
-constexpr double kSaturatedShare = 0.2;
-/// Loads that tell an exponent differ at least by this factor.
+/// Largest fraction of touched pillars of a load that may be saturated.
+constexpr double kSaturatedFraction = 0.2;
+/// Least ratio of the largest to the smallest load for fitting an exponent.
 constexpr double kDifferent = 1.1;
 constexpr double kExponentAccuracy = 1e-5;
-/// Loads that come out worse than this, root mean square, belong to other readings.
+/// Largest root-mean-square relative error of the solved loads.
 constexpr double kMostMisfit = 0.5;
 
-/// The mean of the frames as one frame; a sensel that was ever at full scale is.
+/// The mean frame; a sensel at full scale in any frame is at full scale.
 FrameBuffer mean_frame(const FrameStatistics& frames) {
   const Skin& skin = frames.skin();
   FrameBuffer mean(SenselType::f32, skin.rows, skin.cols);
@@ -35,7 +35,7 @@ FrameBuffer mean_frame(const FrameStatistics& frames) {
   return mean;
 }
 
-/// The frames of a load, averaged, and their solution in counts: with k = 1.
+/// The mean frame of a load, and its solution in counts (k = 1).
 class Press {
  public:
   Press(const KnownLoad& load, const SkinCalibration& calibration)
@@ -48,7 +48,7 @@ class Press {
   [[nodiscard]] double load_n() const { return load_n_; }
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// By a calibration that differs from that of the constructor in its constants only.
+  /// Solves with a calibration whose planes equal those of the constructor's.
   [[nodiscard]] ForceField solve(const SkinCalibration& calibration,
                                  double segment_point = kSegmentPoint) const {
     SolverPlan plan = plan_;
@@ -66,16 +66,16 @@ class Press {
   SolverPlan plan_;
 };
 
-/// The normal force of a field, in the units of its planes.
+/// Sum of normal force over a field, in the units of its planes.
 struct NormalSum {
   double all = 0;
-  double open = 0;  ///< of pillars whose parity sum is only known to lie in an interval from 0
+  double ambiguous = 0;  ///< part of pillars whose parity sum is ambiguous
   std::uint64_t touched = 0;
   std::uint64_t saturated = 0;
 };
 
-/// Whether neither diagonal has both its sensels, so that parity does not give the sum.
-bool is_open(std::uint8_t bits) {
+/// Whether neither diagonal has two usable sensels, so that parity does not determine the sum.
+bool has_ambiguous_sum(std::uint8_t bits) {
   constexpr std::uint8_t kRising = status::kSensel1 | status::kSensel3;
   constexpr std::uint8_t kFalling = status::kSensel2 | status::kSensel4;
   return (bits & status::kAmbiguous) != 0 && (bits & kRising) != kRising &&
@@ -89,7 +89,7 @@ NormalSum sum_normal(const ForceField& field) {
     if (bits == 0) continue;
     ++sum.touched;
     sum.all += field.normal[i];
-    if (is_open(bits)) sum.open += field.normal[i];
+    if (has_ambiguous_sum(bits)) sum.ambiguous += field.normal[i];
     if ((bits & status::kSaturated) != 0) ++sum.saturated;
   }
   return sum;
@@ -107,17 +107,17 @@ void require_loads(std::span<const KnownLoad> loads, const SkinCalibration& befo
 
 void require_contact(const Press& press, const NormalSum& sum) {
   if (!(sum.all > 0)) {
-    throw Error(press.name(), fmt::format("shows no contact, and a load of {} N", press.load_n()),
+    throw Error(press.name(), fmt::format("has no contact under a load of {} N", press.load_n()),
                 "check the calibration's tare and threshold, or give the frames with the load on");
   }
-  const double limit = kSaturatedShare * static_cast<double>(sum.touched);
+  const double limit = kSaturatedFraction * static_cast<double>(sum.touched);
   if (static_cast<double>(sum.saturated) <= limit) return;
   throw Error(press.name(),
               fmt::format("{} of {} touched pillars are saturated", sum.saturated, sum.touched),
               "press less, or on a larger area");
 }
 
-/// Natural logarithm of counts per newton by each load.
+/// Natural logarithm of the counts per newton of each load.
 std::vector<double> log_ratios(const std::vector<Press>& presses,
                                const SkinCalibration& calibration) {
   std::vector<double> ratios;
@@ -142,7 +142,7 @@ double variance_of(const std::vector<double>& values) {
   return squares / static_cast<double>(values.size());
 }
 
-/// Where a function that falls and then rises is least.
+/// Argument of the minimum of a unimodal function, by golden-section search.
 template <class Function>
 double least_of(Function function, double low, double high, double accuracy) {
   const double section = (std::sqrt(5.0) - 1) / 2;
@@ -166,8 +166,8 @@ double least_of(Function function, double low, double high, double accuracy) {
   return (low + high) / 2;
 }
 
-/// The reading at which the power law changes nothing: geometric mean over the loads of the mean
-/// reading of a pillar, each weighted with itself.
+/// Reference reading of the power law: geometric mean over the loads of the force-weighted mean
+/// normal force of a pillar, counts.
 double typical_reading(const std::vector<Press>& presses, const SkinCalibration& linear) {
   std::vector<double> logs;
   for (const Press& press : presses) {
@@ -189,8 +189,8 @@ void require_different(std::span<const KnownLoad> loads) {
   if (most->load_n >= kDifferent * least->load_n) return;
   throw Error(
       "load",
-      fmt::format("loads of {} to {} N do not tell a power law", least->load_n, most->load_n),
-      "give loads that differ, at best several times");
+      fmt::format("loads of {} to {} N do not determine a power law", least->load_n, most->load_n),
+      "give loads that differ by a factor of several");
 }
 
 PowerLaw fit_power_law(const std::vector<Press>& presses, const SkinCalibration& linear) {
@@ -223,11 +223,11 @@ LoadResult result_of(const std::vector<Press>& presses, SkinCalibration calibrat
     const NormalSum sum = sum_normal(press.solve(calibration));
     const double relative = sum.all / (k * press.load_n()) - 1;
     squares += relative * relative;
-    log_least += std::log(std::max(0.0, sum.all - sum.open) / press.load_n());
-    // With all intervals at their middle, twice that is the upper end.
+    log_least += std::log(std::max(0.0, sum.all - sum.ambiguous) / press.load_n());
+    // With the segment point at 0.5, twice the ambiguous sum is its upper end.
     const NormalSum middle = sum_normal(press.solve(calibration, 0.5));
-    log_most += std::log((middle.all + middle.open) / press.load_n());
-    result.loads.push_back({press.load_n(), sum.all / k, sum.open / sum.all, sum.saturated});
+    log_most += std::log((middle.all + middle.ambiguous) / press.load_n());
+    result.loads.push_back({press.load_n(), sum.all / k, sum.ambiguous / sum.all, sum.saturated});
   }
   const auto count = static_cast<double>(presses.size());
   result.misfit = std::sqrt(squares / count);
@@ -245,7 +245,7 @@ void require_fit(const std::vector<Press>& presses, const LoadResult& result) {
   const auto worst = std::ranges::max_element(result.loads, {}, error);
   const auto index = static_cast<std::size_t>(worst - result.loads.begin());
   throw Error(presses[index].name(),
-              fmt::format("its load of {} N comes out as {:.4g} N", worst->load_n, worst->solved_n),
+              fmt::format("its load of {} N is solved as {:.4g} N", worst->load_n, worst->solved_n),
               "check which load belongs to which file");
 }
 

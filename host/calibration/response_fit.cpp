@@ -6,7 +6,7 @@
 namespace pillarfield {
 namespace {
 
-/// Smallest signal-to-noise ratio at which a sensel counts as responding.
+/// Least signal-to-noise ratio of a sensel that responds.
 constexpr double kLeastSignalToNoise = 4;
 
 constexpr double kNewtonsPerKpaMm2 = 1e-3;
@@ -19,7 +19,7 @@ std::size_t count_levels(std::span<const UniformPress> presses) {
 
 }  // namespace
 
-/// Weighted sums over the presses that a sensel answered: force N, answer y, weight w.
+/// Weighted sums over the presses to which a sensel responds: force n, response y, weight w.
 struct ResponseFit::Sums {
   double w = 0;
   double n = 0;
@@ -32,16 +32,16 @@ struct ResponseFit::Sums {
   std::size_t presses = 0;
   std::size_t saturated = 0;
 
-  void add(double force_n, double answer, double weight) {
+  void add(double force_n, double response, double weight) {
     least_n = presses == 0 ? force_n : std::min(least_n, force_n);
     most_n = presses == 0 ? force_n : std::max(most_n, force_n);
     ++presses;
     w += weight;
     n += weight * force_n;
-    y += weight * answer;
+    y += weight * response;
     nn += weight * force_n * force_n;
-    ny += weight * force_n * answer;
-    yy += weight * answer * answer;
+    ny += weight * force_n * response;
+    yy += weight * response * response;
   }
 };
 
@@ -52,13 +52,13 @@ ResponseFit::ResponseFit(std::span<const UniformPress> presses, const Calibratio
                 presses.front().frames.skin().pillar_pitch_mm()),
       levels_(count_levels(presses)) {}
 
-double ResponseFit::answer(const SenselStatistics& pressed, std::size_t sensel) const {
+double ResponseFit::response(const SenselStatistics& pressed, std::size_t sensel) const {
   return pressed.mean - planes_.tare[sensel];
 }
 
-bool ResponseFit::answers(const SenselStatistics& pressed, std::size_t sensel) const {
+bool ResponseFit::responds(const SenselStatistics& pressed, std::size_t sensel) const {
   const double noise = planes_.noise.empty() ? pressed.deviation() : planes_.noise[sensel];
-  return answer(pressed, sensel) > kLeastSignalToNoise * noise;
+  return response(pressed, sensel) > kLeastSignalToNoise * noise;
 }
 
 Response ResponseFit::operator()(std::size_t sensel) const {
@@ -67,8 +67,8 @@ Response ResponseFit::operator()(std::size_t sensel) const {
     const SenselStatistics& pressed = press.frames.sensels()[sensel];
     if (pressed.saturated > 0) {
       ++sums.saturated;
-    } else if (2 * pressed.readings > press.frames.frames() && answers(pressed, sensel)) {
-      sums.add(press.pressure_kpa * area_mm2_ * kNewtonsPerKpaMm2, answer(pressed, sensel),
+    } else if (2 * pressed.readings > press.frames.frames() && responds(pressed, sensel)) {
+      sums.add(press.pressure_kpa * area_mm2_ * kNewtonsPerKpaMm2, response(pressed, sensel),
                pressed.readings);
     }
   }
@@ -79,16 +79,16 @@ Response ResponseFit::operator()(std::size_t sensel) const {
   return {.kind = sums.saturated > 0 ? Response::Kind::saturated : Response::Kind::one_level};
 }
 
-/// One pressure: kN − z counts are answered by y, with the dead zone z as it is known.
+/// One pressure: k n − z = gain · y with the given dead zone z.
 Response ResponseFit::ratio(const Sums& sums, std::size_t sensel) const {
-  const double mean_answer = sums.y / sums.w;
+  const double mean_response = sums.y / sums.w;
   const double dead_zone = planes_.dead_zone.empty() ? 0 : planes_.dead_zone[sensel];
   return {.kind = Response::Kind::good,
-          .newtons_per_count = sums.n / sums.w / mean_answer,
-          .swallowed = dead_zone / mean_answer};
+          .newtons_per_count = sums.n / sums.w / mean_response,
+          .dead_zone_gain = dead_zone / mean_response};
 }
 
-/// Several pressures: least squares of y = s (N − n0) under n0 >= 0.
+/// Several pressures: least squares of y = s (n − n0) under n0 >= 0.
 Response ResponseFit::line(const Sums& sums) {
   const double mean_n = sums.n / sums.w;
   double slope = (sums.ny - sums.n * sums.y / sums.w) / (sums.nn - sums.n * mean_n);
@@ -98,7 +98,7 @@ Response ResponseFit::line(const Sums& sums) {
     slope = sums.ny / sums.nn;
     start_n = 0;
   }
-  // Of y − s N + s n0, squared and summed.
+  // Sum of (y − s n + s n0)².
   const double rest = sums.yy + slope * slope * (sums.nn - 2 * start_n * sums.n) +
                       slope * start_n * (slope * start_n * sums.w + 2 * sums.y) -
                       2 * slope * sums.ny;
@@ -106,7 +106,7 @@ Response ResponseFit::line(const Sums& sums) {
           .newtons_per_count = 1 / slope,
           .dead_zone_n = start_n,
           .misfit = std::max(0.0, rest),
-          .answered = sums.yy};
+          .responded = sums.yy};
 }
 
 }  // namespace pillarfield

@@ -6,33 +6,33 @@
 
 namespace pillarfield {
 
-/// How a sensel answered uniform pressure. Its gain is newtons_per_count · k − swallowed, for the k
-/// that all sensels share.
+/// Response of a sensel to uniform pressure: gain = k · newtons_per_count − dead_zone_gain, k being
+/// the counts per newton of the skin.
 struct Response {
   enum class Kind : std::uint8_t { good, unresponsive, one_level, saturated };
   Kind kind = Kind::unresponsive;
   double newtons_per_count = 0;
-  double swallowed = 0;    ///< gain that a known dead zone stands for
-  double dead_zone_n = 0;  ///< force that it swallows, where the pressures tell
-  double misfit = 0;       ///< sum of the squared residuals of the line, by weight
-  double answered = 0;     ///< sum of the squared answers, by weight
+  double dead_zone_gain = 0;  ///< dead zone over response; one pressure
+  double dead_zone_n = 0;     ///< dead zone as a force; several pressures
+  double misfit = 0;          ///< weighted sum of squared residuals
+  double responded = 0;       ///< weighted sum of squared responses
 };
 
-/// Fits the responses of single sensels to several presses.
+/// Fits the response of each sensel to one or more presses.
 class ResponseFit {
  public:
-  /// Both must outlive it. Needs the tare plane.
+  /// `presses` and `planes` must outlive the object; `planes` must have a tare.
   ResponseFit(std::span<const UniformPress> presses, const Calibration& planes);
 
-  /// The number of different pressures.
+  /// Number of different pressures.
   [[nodiscard]] std::size_t levels() const { return levels_; }
 
   [[nodiscard]] Response operator()(std::size_t sensel) const;
 
  private:
   struct Sums;
-  [[nodiscard]] bool answers(const SenselStatistics& pressed, std::size_t sensel) const;
-  [[nodiscard]] double answer(const SenselStatistics& pressed, std::size_t sensel) const;
+  [[nodiscard]] bool responds(const SenselStatistics& pressed, std::size_t sensel) const;
+  [[nodiscard]] double response(const SenselStatistics& pressed, std::size_t sensel) const;
   [[nodiscard]] Response ratio(const Sums& sums, std::size_t sensel) const;
   [[nodiscard]] static Response line(const Sums& sums);
 

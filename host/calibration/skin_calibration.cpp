@@ -13,10 +13,10 @@
 namespace pillarfield {
 namespace {
 
-/// The share of the good sensels whose noise the threshold is made for.
+/// Fraction of good sensels whose noise the threshold covers.
 constexpr double kQuietShare = 0.99;
 
-/// A skin of its size with the constants that it has, and defaults for the others.
+/// A skin of the calibration's size and constants, with defaults for missing ones.
 Skin skin_of(const SkinCalibration& calibration) {
   Skin skin;
   skin.rows = calibration.rows;
@@ -27,7 +27,7 @@ Skin skin_of(const SkinCalibration& calibration) {
   return skin;
 }
 
-/// Of two masks, either of which may be empty: missing in one is missing.
+/// Combines two masks, either of which may be empty (all good).
 std::vector<std::uint8_t> both_good(const std::vector<std::uint8_t>& a,
                                     std::vector<std::uint8_t> b) {
   if (a.empty()) return b;
@@ -36,7 +36,7 @@ std::vector<std::uint8_t> both_good(const std::vector<std::uint8_t>& a,
   return b;
 }
 
-/// The noise of each good sensel in counts of its corrected reading.
+/// Noise of each good sensel's corrected reading, counts.
 std::vector<double> corrected_noise(const Calibration& planes) {
   std::vector<double> noise;
   noise.reserve(planes.noise.size());
@@ -88,9 +88,9 @@ void check(const SkinCalibration& calibration, std::string_view where) {
 void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where) {
   if (calibration.rows == skin.rows && calibration.cols == skin.cols) return;
   throw Error(where,
-              fmt::format("has {} x {} sensels, and the calibration is one of {} x {}", skin.rows,
-                          skin.cols, calibration.rows, calibration.cols),
-              "give the calibration of this very skin");
+              fmt::format("has {} x {} sensels, the calibration {} x {}", skin.rows, skin.cols,
+                          calibration.rows, calibration.cols),
+              "give the calibration of this skin");
 }
 
 void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) {
@@ -99,7 +99,7 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) 
   planes = calibration.planes;
   planes.mask = std::move(mask);
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
-  // A power law and the counts per newton are known together.
+  // A power law applies only with the counts per newton fitted with it.
   if (!calibration.counts_per_newton) return;
   skin.counts_per_newton = *calibration.counts_per_newton;
   skin.power_law = calibration.power_law;

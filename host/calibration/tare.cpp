@@ -14,23 +14,23 @@
 namespace pillarfield {
 namespace {
 
-/// A reading this many spreads from the median of its fellows is far from them.
+/// Distance from the median tare, in spreads, beyond which a tare is an outlier.
 constexpr double kFar = 6;
-/// Noise this many times the median of its fellows' is no noise.
+/// Multiple of the median noise above which a sensel is noisy.
 constexpr double kNoisy = 10;
-/// Of so many pillars that stand out as a whole, each having at least so many sensels that tell, it
-/// is said that something touches them.
+/// Least number of outlying pillars, each of at least kTestedSensels sensels, for which the skin
+/// counts as touched.
 constexpr std::size_t kTouchedPillars = 2;
-constexpr int kTellingSensels = 3;
+constexpr int kTestedSensels = 3;
 
-/// What the sensels that can be right have in common.
+/// Medians over sensels with a tare.
 struct Typical {
   double tare = 0;
-  double spread = 0;  ///< of the tares, as a standard deviation
+  double spread = 0;  ///< robust standard deviation of the tares
   double noise = 0;
 };
 
-/// The least standard deviation that a reading has: whole counts are rounded.
+/// Least standard deviation of a reading: that of rounding to whole counts.
 double least_noise(SenselType type) { return type == SenselType::f32 ? 0 : 1 / std::sqrt(12.0); }
 
 double noise_of(const SenselStatistics& sensel, SenselType type) {
@@ -48,7 +48,7 @@ Typical typical_of(const FrameStatistics& unloaded, const FindingList& found) {
     noises.push_back(noise_of(unloaded.sensels()[i], unloaded.type()));
   }
   if (tares.empty()) {
-    throw Error(unloaded.name(), "no sensel gives readings that could be those of unloaded skin",
+    throw Error(unloaded.name(), "no sensel has a valid tare",
                 "check the sensor, its full scale and its mask");
   }
   Typical typical;
@@ -60,7 +60,7 @@ Typical typical_of(const FrameStatistics& unloaded, const FindingList& found) {
   return typical;
 }
 
-void mask_those_without_tare(const FrameStatistics& unloaded, FindingList& found) {
+void mask_without_tare(const FrameStatistics& unloaded, FindingList& found) {
   for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
     const SenselStatistics& sensel = unloaded.sensels()[i];
     if (!found.good(i)) continue;
@@ -72,10 +72,10 @@ void mask_those_without_tare(const FrameStatistics& unloaded, FindingList& found
   }
 }
 
-/// Tells sensels that can be right from those that cannot, by their fellows.
-class Judge {
+/// Tests sensels against the medians of the skin.
+class OutlierTest {
  public:
-  Judge(const FrameStatistics& unloaded, const Typical& typical)
+  OutlierTest(const FrameStatistics& unloaded, const Typical& typical)
       : unloaded_(unloaded), typical_(typical) {}
 
   [[nodiscard]] bool stuck(std::size_t i) const {
@@ -86,8 +86,8 @@ class Judge {
     return unloaded_.sensels()[i].deviation() > kNoisy * typical_.noise && typical_.noise > 0;
   }
 
-  /// Whether it reads what one would that is pressed now and then, or always; or never, where its
-  /// fellows are. A constant low reading is what a dead sensel gives.
+  /// Whether the sensel reads as if it were touched, or as if most others were and it were not. A
+  /// constant low reading is that of a dead sensel.
   [[nodiscard]] bool as_if_touched(std::size_t i) const {
     const SenselStatistics& sensel = unloaded_.sensels()[i];
     return far_above(i) || noisy(i) || 2 * sensel.saturated > sensel.readings ||
@@ -106,30 +106,31 @@ class Judge {
   const Typical& typical_;
 };
 
-/// Faults of sensels come singly or in lines; contacts cover pillars.
+/// Throws if whole pillars are outliers: faults are single sensels or lines, contacts cover
+/// pillars.
 void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std::uint8_t>& mask,
-                         const Judge& judge) {
+                         const OutlierTest& test) {
   std::size_t touched = 0;
   std::string first;
   for_each_pillar(unloaded.skin(), [&](auto row, auto col, const auto& sensels) {
-    int telling = 0;
+    int tested = 0;
     int standing_out = 0;
     for (const std::size_t i : sensels) {
       if ((!mask.empty() && mask[i] == 0) || unloaded.sensels()[i].readings == 0) continue;
-      ++telling;
-      standing_out += judge.as_if_touched(i) ? 1 : 0;
+      ++tested;
+      standing_out += test.as_if_touched(i) ? 1 : 0;
     }
-    if (telling < kTellingSensels || standing_out < telling) return;
+    if (tested < kTestedSensels || standing_out < tested) return;
     if (touched++ == 0) first = fmt::format("row {}, column {}", row, col);
   });
   if (touched < kTouchedPillars) return;
   throw Error(
       unloaded.name(),
       fmt::format("{} pillars read as if something touched them, the first at {}", touched, first),
-      "take it while nothing touches the skin, or say that it is preloaded");
+      "record while nothing touches the skin, or declare the skin preloaded");
 }
 
-/// Tare and noise of the good sensels; zero for the others.
+/// Fills tare and noise; zero for masked sensels.
 void fill_planes(const FrameStatistics& unloaded, const FindingList& found, Calibration& planes) {
   const std::size_t sensels = unloaded.sensels().size();
   planes.tare.assign(sensels, 0);
@@ -146,7 +147,7 @@ void require_majority(const FindingList& found, const FrameStatistics& unloaded)
   const std::size_t sensels = unloaded.sensels().size();
   if (2 * found.findings().size() <= sensels) return;
   throw Error(unloaded.name(),
-              fmt::format("{} of {} sensels cannot be right", found.findings().size(), sensels),
+              fmt::format("{} of {} sensels are faulty", found.findings().size(), sensels),
               "check the sensor and its full scale");
 }
 
@@ -157,15 +158,15 @@ TareResult take_tare(const SkinCalibration& before, const FrameStatistics& unloa
   require_fitting(before, unloaded.skin(), unloaded.name());
   require_frames(unloaded, kLeastTareFrames);
   FindingList found(before.planes.mask, unloaded);
-  mask_those_without_tare(unloaded, found);
+  mask_without_tare(unloaded, found);
   Typical typical = typical_of(unloaded, found);
-  const Judge judge(unloaded, typical);
-  if (!options.preloaded) refuse_touched_skin(unloaded, before.planes.mask, judge);
+  const OutlierTest test(unloaded, typical);
+  if (!options.preloaded) refuse_touched_skin(unloaded, before.planes.mask, test);
   for (std::size_t i = 0; i < unloaded.sensels().size(); ++i) {
     if (!found.good(i)) continue;
-    if (judge.stuck(i)) {
+    if (test.stuck(i)) {
       found.mask(i, SenselFault::stuck);
-    } else if (judge.noisy(i)) {
+    } else if (test.noisy(i)) {
       found.mask(i, SenselFault::noisy);
     }
   }

@@ -194,9 +194,9 @@ TEST(Equilibration, RefusesAPressureThatIsNotUniform) {
     const UniformPress presses[] = {{press, 100}};
     return message_of([&] { (void)equilibrate(before, presses, {}); });
   };
-  EXPECT_NE(message(ball_press(skin, 5, 20)).find("do not answer"), std::string::npos);
+  EXPECT_NE(message(ball_press(skin, 5, 20)).find("do not respond"), std::string::npos);
   EXPECT_NE(message(ball_press(skin, 19, 300)).find("from pillar to pillar"), std::string::npos);
-  EXPECT_NE(message(skin.bare(20)).find("do not answer"), std::string::npos);
+  EXPECT_NE(message(skin.bare(20)).find("do not respond"), std::string::npos);
   EXPECT_NE(message(skin.press(100, 20)).find("full scale"), std::string::npos);
 }
 

@@ -50,27 +50,27 @@ class FaultFinder {
 
  private:
   /// The value that parity predicts for a sensel, over frames in which the other three are usable.
-  struct Implied {
+  struct Prediction {
     std::uint32_t frames = 0;
     std::uint32_t usable = 0;  ///< frames in which the sensel itself is usable
     double mean = 0;
     double squares = 0;
   };
   /// The range of V that a sensel can show, counts.
-  struct Sight {
+  struct Range {
     double least;
     double most;
   };
-  class Verdict;
+  class Classifier;
 
-  [[nodiscard]] Sight sight_of(std::size_t sensel) const;
-  void imply(std::size_t row, std::size_t col, const FrameView& frame);
+  [[nodiscard]] Range range_of(std::size_t sensel) const;
+  void predict(std::size_t row, std::size_t col, const FrameView& frame);
 
   FrameStatistics statistics_;
   SkinCalibration calibration_;
   FaultOptions options_;
   SolverPlan plan_;
-  std::vector<Implied> implied_;
+  std::vector<Prediction> predictions_;
 };
 
 }  // namespace pillarfield
