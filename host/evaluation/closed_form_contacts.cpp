@@ -20,8 +20,8 @@ double cone_pressure(double r, double size) {
   return r < size ? std::acosh(size / std::max(r, 1e-12)) : 0;
 }
 
-/// The contact of the body whose full contact has 1 − r², when it had the radius `size`: flat
-/// punches of all radii up to it, of strength (4/π) t √(1 − t²).
+/// Pressure of the paraboloid when its contact had the radius `size`: a superposition of flat
+/// punches of radii t <= size, of strength (4/π) t √(1 − t²).
 double paraboloid_pressure(double r2, double size) {
   const double inside = size * size - r2;
   if (inside <= 0) return 0;
@@ -35,7 +35,7 @@ double paraboloid_load(double size) {  // ∝ ∫₀^size t² √(1 − t²) dt
   return (std::asin(s) - s * std::sqrt(1 - s * s) * (1 - 2 * s * s)) / 8;
 }
 
-/// The size at which a contact bears a share of the load it bears at size 1.
+/// Size at which a contact bears a fraction of its load at size 1.
 double size_at(double share, double (*load_of)(double size)) {
   double low = 0;
   double high = 1;
@@ -46,8 +46,7 @@ double size_at(double share, double (*load_of)(double size)) {
   return (low + high) / 2;
 }
 
-/// 1/√(1 − r²), but no edge is so sharp that it bears more than a hundred times what the centre
-/// does.
+/// 1/√(1 − r²), at most 100.
 double punch_pressure(double r2) { return r2 < 1 ? 1 / std::sqrt(std::max(1 - r2, 1e-4)) : 0; }
 
 /// The squared pressures of two spheres.
@@ -77,7 +76,7 @@ double half_strip(const Body& body, double y) {
   }
 }
 
-/// What rolling takes off the shear of full sliding.
+/// Reduction of full-sliding shear in the stick zone of a roller.
 double rolled_pressure(const Body& body, double x, double y, double size) {
   const double shift = 1 - size;
   const double half = half_strip(body, y) - shift;
@@ -87,50 +86,51 @@ double rolled_pressure(const Body& body, double x, double y, double size) {
 
 double angle_of(const Body& body) { return body.angle_deg * kDegree; }
 
-/// From the frame of the body to that of the skin.
+/// Rotates from the body's frame to the skin's.
 std::array<double, 2> turned(const Body& body, double x, double y) {
   const double c = std::cos(angle_of(body));
   const double s = std::sin(angle_of(body));
   return {c * x - s * y, s * x + c * y};
 }
 
-/// The direction of the shear on the skin, in the frame of the skin.
+/// Unit vector of the shear on the skin, in the skin's frame.
 std::array<double, 2> direction_at(const StudyContact& contact, double x, double y) {
-  const Drive& drive = contact.drive;
-  switch (drive.motion) {
+  const TangentialLoad& tangential = contact.tangential;
+  switch (tangential.motion) {
     case Motion::spin:
     case Motion::turn:
     case Motion::partial_turn: {
-      const bool centred = drive.motion == Motion::spin;
-      const double from_x = x - (centred ? 0 : drive.pivot_x);
-      const double from_y = y - (centred ? 0 : drive.pivot_y);
+      const bool centred = tangential.motion == Motion::spin;
+      const double from_x = x - (centred ? 0 : tangential.pivot_x);
+      const double from_y = y - (centred ? 0 : tangential.pivot_y);
       const double far = std::max(std::hypot(from_x, from_y), 1e-12);
       return turned(contact.body, -from_y / far, from_x / far);
     }
     case Motion::roll:
       return turned(contact.body, 1, 0);
     default:
-      return {std::cos(drive.direction_deg * kDegree), std::sin(drive.direction_deg * kDegree)};
+      return {std::cos(tangential.direction_deg * kDegree),
+              std::sin(tangential.direction_deg * kDegree)};
   }
 }
 
 double shear_at(const StudyContact& contact, double x, double y, double pressure) {
   const Body& body = contact.body;
-  const Drive& drive = contact.drive;
-  switch (drive.motion) {
+  const TangentialLoad& tangential = contact.tangential;
+  switch (tangential.motion) {
     case Motion::press:
       return 0;
     case Motion::partial_slip:
     case Motion::partial_turn:
-      return pressure - pressure_at(body, x, y, stuck_size(body, drive.load_ratio));
+      return pressure - pressure_at(body, x, y, stick_size(body, tangential.load_ratio));
     case Motion::roll:
-      return pressure - rolled_pressure(body, x, y, stuck_size(body, drive.load_ratio));
+      return pressure - rolled_pressure(body, x, y, stick_size(body, tangential.load_ratio));
     default:
       return pressure;
   }
 }
 
-/// How far the contact reaches from its centre, radii.
+/// Half sizes of the contact's bounding box, radii.
 double reach(const Body& body) {
   switch (body.shape) {
     case Shape::two_spheres:
@@ -143,7 +143,7 @@ double reach(const Body& body) {
   }
 }
 
-/// A square of the skin, pitches.
+/// A square of skin, pitches.
 struct Square {
   double left;
   double bottom;
@@ -235,7 +235,7 @@ class Cubature {
   double sin_;
 };
 
-/// Makes the largest normal force `peak` counts.
+/// Scales the loads so that the largest normal force is `peak` counts.
 void scale_to(PillarLoads& loads, double peak) {
   const double largest = *std::max_element(loads.normal.begin(), loads.normal.end());
   loads.counts_per_pressure = peak / largest;
@@ -314,7 +314,7 @@ double pressure_at(const Body& body, double x, double y, double size) {
   return root(size * size - r2) - root(body.second * body.second - r2);
 }
 
-double stuck_size(const Body& body, double load_ratio) {
+double stick_size(const Body& body, double load_ratio) {
   const double left = 1 - load_ratio;
   switch (body.shape) {
     case Shape::paraboloid:

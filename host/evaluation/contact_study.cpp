@@ -77,15 +77,14 @@ double magnitude_of(const ForceField& field, std::size_t i) {
   return std::hypot(field.shear_x[i], field.shear_y[i], field.normal[i]);
 }
 
-/// Whether a component lies between the ends that are stated for it.
+/// Whether a component lies between its stated ends.
 bool is_between_ends(const ForceField& solved, ComponentEnd low, std::size_t pillar, double value) {
   const auto ends = component_ends(solved.view(), pillar, std::nullopt);
   const auto first = static_cast<std::size_t>(low);
   return ends[first] <= value && value <= ends[first + 1];
 }
 
-/// Whether a value lies between ends that are widened by a margin, up to the rounding of single
-/// precision.
+/// Whether a value lies in [low − margin, high + margin], up to single-precision rounding.
 bool is_between(const ForceField& solved, Uncertainty low, Uncertainty high, std::size_t i,
                 double value, double margin) {
   constexpr double kRounding = 1e-5;
@@ -93,8 +92,8 @@ bool is_between(const ForceField& solved, Uncertainty low, Uncertainty high, std
          value <= solved.uncertainty[high][i] * (1 + kRounding) + margin;
 }
 
-/// The same on the circle, counter-clockwise from the lower end to the upper. A margin that is not
-/// a number is that of a force without shear, of which any phi is true.
+/// Whether an angle lies on the widened arc counter-clockwise from low to high. A margin of NaN,
+/// that of a force without shear, admits any phi.
 bool is_on_arc(const ForceField& solved, std::size_t i, double phi, double margin) {
   constexpr double kTurn = 2 * std::numbers::pi;
   constexpr double kRounding = 1e-5;
@@ -105,7 +104,7 @@ bool is_on_arc(const ForceField& solved, std::size_t i, double phi, double margi
   return positive(std::fmod(phi - low, kTurn)) <= positive(std::fmod(high - low, kTurn));
 }
 
-/// How much of a friction of 1 the pillars of a contact use, and how many slip.
+/// `pillars`, `used` and `slipping` of a contact's FrictionEstimate, at a median of 1.
 FrictionEstimate usage_of(std::span<const ContactRun> runs, const ForceField& solved,
                           const ForceField& truth, double friction) {
   constexpr double kSlipping = 0.9;
@@ -203,8 +202,8 @@ double Segment::nearest(double shear_x, double shear_y, double normal) const {
 }
 
 Segment segment_of(const ForceField& direct, std::size_t index, double segment_point) {
-  // Shear to the right presses sensels 1 and 4, up 1 and 2. Where these read, a larger normal force
-  // leaves less of it for the same readings: √2 times as much (D3, D6).
+  // Shear to the right loads sensels 1 and 4, shear up 1 and 2. For given readings of these, shear
+  // falls by √2 times the increase of the normal force (D3, D6).
   const int usable = direct.status[index] & status::kUsable;
   Segment segment;
   segment.moves_in_y = usable == (status::kSensel1 | status::kSensel2) ||

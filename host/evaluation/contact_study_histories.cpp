@@ -15,13 +15,13 @@
 namespace pillarfield::contact_study {
 namespace {
 
-constexpr double kModulusMpa = 1;  // of Young; loads go with it
+constexpr double kModulusMpa = 1;  // Young's modulus; loads are proportional to it
 constexpr double kPitchMm = 1.26491106;
 constexpr double kPeakCounts = 150;
 constexpr double kHistoryNoiseCounts = 0.5;
 constexpr double kThresholdDeviations = 4;
 
-/// What an indenter of the list does: loading, radius, friction, direction.
+/// A history of one indenter: loading, radius, friction, direction.
 struct Entry {
   Loading loading;
   double radius_pillars;
@@ -79,21 +79,21 @@ std::vector<Entry> entries_of(Indenter indenter) {
           {touch_again, 3, 4.5, 273}, {reverse, 12, 4.5, 173}};
 }
 
-/// A body whose contact has about the radius `a_mm` under a load, newtons.
+/// A body whose contact has about the radius `a_mm` under a load, N.
 struct Indentation {
   pillarfield::Body body;
   double load_n = 0;
-  double reach_mm = 0;  ///< how far its contact extends from its origin
+  double reach_mm = 0;  ///< extent of its contact from its origin
 };
 
-/// Hertz: the load that gives a sphere of radius R the contact radius a, of an incompressible skin.
+/// Hertz's load of a sphere of radius R for the contact radius a on an incompressible skin.
 double hertz_load(double a_mm, double radius_mm) {
   return 16.0 / 9 * kModulusMpa * std::pow(a_mm, 3) / radius_mm;
 }
 
 Indentation indentation_of(const History& history, const std::filesystem::path& scenes) {
   const double a = history.radius_pillars * kPitchMm;
-  // Small contacts are those of small bodies; large bodies keep strains small.
+  // The body's radius grows with the contact's, which keeps strains small.
   const double radius = a * (3 + history.radius_pillars / 3);
   Indentation made;
   pillarfield::Body& body = made.body;
@@ -128,7 +128,7 @@ Indentation indentation_of(const History& history, const std::filesystem::path& 
       body.friction_variation = 0.1;
       body.friction_variation_length_mm = a;
       break;
-    case Indenter::key:  // 28 mm long, its contact has the area of a circle of 6.4 mm radius
+    case Indenter::key:  // 28 mm long: contact area of a circle of 6.4 mm radius
       body.shape = BodyShape::height_map;
       body.height_map = scenes / "key.png";
       body.height_map_size_mm = {28 * a / 6.4, 12 * a / 6.4};
@@ -140,9 +140,9 @@ Indentation indentation_of(const History& history, const std::filesystem::path& 
   return made;
 }
 
-/// Where a body is at a frame: in directions along and across the drag in units of the way after
-/// which all of the contact slides, its turn in units of that way over the contact's radius, its
-/// load in units of the indentation's.
+/// Pose of a body at a frame. Along and across the drag in units of the sliding distance, after
+/// which the whole contact slides; turn in units of that distance over the contact radius; load
+/// relative to that of the indentation.
 struct Pose {
   double along = 0;
   double across = 0;
@@ -184,7 +184,7 @@ std::vector<Pose> poses_of(Loading loading) {
           {1.0, 0, 0, 1}, {1.4, 0, 0, 1},   {1.8, 0, 0, 1},   {2.1, 0, 0, 1},   {2.3, 0, 0, 1}};
 }
 
-/// A body with its path: the way after which all slides is 0.84 µP / (E a) (docs/scenes.md).
+/// A body with its path; the sliding distance is 0.84 µP / (E a) (docs/scenes.md).
 pillarfield::Body moved(const Indentation& indentation, const History& history) {
   const double a = history.radius_pillars * kPitchMm;
   const double way_mm = 0.84 * history.friction * indentation.load_n / (kModulusMpa * a);
@@ -203,8 +203,7 @@ pillarfield::Body moved(const Indentation& indentation, const History& history) 
   return body;
 }
 
-/// The second finger: lighter, and where the first would be after half a turn of the whole scene,
-/// beside it.
+/// The second finger: lighter, and rotated by half a turn about a point beside the first.
 pillarfield::Body second_finger(const pillarfield::Body& first, const History& history,
                                 double distance_mm) {
   const double direction = history.direction_deg * std::numbers::pi / 180;
@@ -218,7 +217,7 @@ pillarfield::Body second_finger(const pillarfield::Body& first, const History& h
   return second;
 }
 
-/// Makes the skin as large as the bodies need, and places them between the pillars by the seed.
+/// Sizes the skin to the bodies and offsets them from the pillars by the seed.
 void fit_skin(Scene& scene, double reach_mm, std::uint64_t seed) {
   std::array<double, 2> low = {1e9, 1e9};
   std::array<double, 2> high = {-1e9, -1e9};
@@ -264,7 +263,7 @@ Scene scene_of(const History& history, const std::filesystem::path& scenes) {
   return scene;
 }
 
-/// The forces that the solver finds, frame by frame.
+/// True forces of each frame, from the simulator.
 std::vector<ForceField> solved_truth(const Scene& scene) {
   const Simulator simulator(scene);
   FrameBuffer unused(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);

@@ -1,4 +1,4 @@
-// Contacts of closed form, each seen at several frictions and noises.
+// Closed-form contacts at several frictions and noises.
 
 #include "evaluation/contact_study_scenes.h"
 
@@ -18,17 +18,17 @@ namespace {
 constexpr double kCountsPerNewton = 320;
 constexpr std::array kNoises = {0.25, 0.5, 1.0};
 
-/// What the contacts of a set have in common.
+/// Common parameters of a set of contacts.
 struct Set {
   std::vector<double> frictions;
   std::vector<double> load_ratios;
   double first_direction_deg;
   double direction_step_deg;
-  double first_offset;  ///< of contacts from the corners of pillars
+  double first_offset;  ///< offset of the first contact from a pillar corner
   std::uint64_t first_seed;
 };
 
-std::string drive_name(const Drive& drive) {
+std::string drive_name(const TangentialLoad& drive) {
   std::string name = name_of(drive.motion);
   switch (drive.motion) {
     case Motion::partial_slip:
@@ -48,17 +48,17 @@ std::string body_name(const Body& body) {
   return body.waves > 0 ? fmt::format("{} x {:.3g}", name, body.waves) : name;
 }
 
-/// Tells contacts of a set apart: those of a name may lie in two places.
+/// Key of a contact within a set; contacts of one name may differ in place.
 std::string contact_key(const ClosedForm& scene) {
   return fmt::format("{} {}", scene.contact_name, scene.contact.body.x);
 }
 
-/// Collects contacts; each gets a place of its own between the pillars.
+/// Collects contacts, each with its own offset from the pillars.
 class Contacts {
  public:
   explicit Contacts(Set set) : set_(std::move(set)) {}
 
-  void add(const Body& body, double peak_counts, const Drive& drive) {
+  void add(const Body& body, double peak_counts, const TangentialLoad& drive) {
     StudyContact contact{body, drive, peak_counts};
     const double number = set_.first_offset + static_cast<double>(contacts_.size());
     contact.body.x = std::fmod(0.6180339887 * number, 1.0) - 0.5;
@@ -100,7 +100,7 @@ class Contacts {
          .pivot_y = y});
   }
 
-  /// What every body does.
+  /// Adds the motions common to all bodies.
   void usual(const Body& body, double peak) {
     press(body, peak);
     partial_slip(body, peak);
@@ -116,7 +116,7 @@ class Contacts {
     return std::fmod(direction, 360.0);
   }
 
-  /// Not far from an axis of the pillars, where region 3 is.
+  /// A direction near a pillar axis, where region 3 occurs.
   double next_direction_along_axis() {
     const int drag = drags_++;
     return std::fmod(set_.first_direction_deg + 90.0 * drag + 1.5 * (drag % 7), 360.0);
@@ -128,13 +128,13 @@ class Contacts {
   int drags_ = 0;
 };
 
-/// The scenes of a contact: all frictions, which do not matter without shear, and all noises.
+/// The scenes of a contact: all noises and, with shear, all frictions.
 void append_scenes(const StudyContact& contact, const std::vector<double>& frictions,
                    std::uint64_t& seed, std::vector<ClosedForm>& scenes) {
   ClosedForm scene;
   scene.contact = contact;
-  scene.contact_name = body_name(contact.body) + ", " + drive_name(contact.drive);
-  const bool press = contact.drive.motion == Motion::press;
+  scene.contact_name = body_name(contact.body) + ", " + drive_name(contact.tangential);
+  const bool press = contact.tangential.motion == Motion::press;
   for (std::size_t i = 0; i < (press ? 1 : frictions.size()); ++i) {
     for (const double noise : kNoises) {
       scene.friction = frictions[i];
@@ -208,7 +208,7 @@ std::vector<ClosedForm> closed_forms(std::string_view filter) {
   contacts.partial_slip(cylinder, 110);
   contacts.roll(cylinder, 110);
   std::vector<ClosedForm> scenes = contacts.scenes(filter);
-  // Below 1.41 friction hardly a pillar is ambiguous; once is enough.
+  // Below a friction of 1.41 few pillars are ambiguous: one friction is enough.
   Contacts little({{1.0}, {0.9}, 3, 47, 0.17, 900'000});
   little.partial_slip(sphere, 100);
   little.slide(sphere, 100, 1);

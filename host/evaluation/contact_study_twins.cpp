@@ -15,14 +15,14 @@ using double_precision::Force;
 
 constexpr double kTwinCountsPerNewton = 320;
 
-/// The force with that much of the normal force and the same readings of sensels 1 and 4, which
-/// shear to the right presses.
+/// The force with `normal_share` of the normal force and equal readings of sensels 1 and 4, those
+/// that shear to the right loads.
 Force twin_of(const Force& force, double normal_share) {
   const double less = (1 - normal_share) * force.normal;
   return {force.shear_x + std::numbers::sqrt2 * less, force.shear_y, force.normal - less};
 }
 
-/// Sensels 2 and 3 lift.
+/// Throws Error unless sensels 2 and 3 are inactive.
 void check_inactive(const Force& force) {
   const auto v = double_precision::model_readings(force, kTwinCountsPerNewton);
   if (v.v2 <= 0 && v.v3 <= 0) return;
@@ -34,7 +34,7 @@ void check_inactive(const Force& force) {
 StudyContact contact_of(const TwinScene& scene) {
   StudyContact contact;
   contact.body.radius = scene.radius;
-  contact.drive = {.motion = Motion::slide, .direction_deg = scene.direction_deg};
+  contact.tangential = {.motion = Motion::slide, .direction_deg = scene.direction_deg};
   contact.peak_counts = scene.peak_counts;
   return contact;
 }

@@ -85,7 +85,7 @@ TEST_P(OfEachShape, NoTractionExceedsFriction) {
                               Motion::partial_turn, Motion::roll}) {
     StudyContact contact = contact_of(GetParam());
     contact.body.second = 0.3;
-    contact.drive = {.motion = motion, .load_ratio = 0.7, .pivot_x = 0.2};
+    contact.tangential = {.motion = motion, .load_ratio = 0.7, .pivot_x = 0.2};
     const bool rolls = family_of(GetParam()) == Family::rounded &&
                        GetParam() != Shape::paraboloid && GetParam() != Shape::two_spheres &&
                        GetParam() != Shape::merged_spheres;
@@ -112,7 +112,7 @@ TEST(FieldContacts, DragByTheirLoadRatio) {
                             Shape::cone, Shape::truncated_cone, Shape::rounded_punch}) {
     StudyContact contact = contact_of(shape);
     contact.body.second = 0.3;
-    contact.drive = {.motion = Motion::partial_slip, .direction_deg = 20, .load_ratio = 0.8};
+    contact.tangential = {.motion = Motion::partial_slip, .direction_deg = 20, .load_ratio = 0.8};
     const PillarLoads loads = loads_of(contact);
     const double drag = std::hypot(sum(loads.shear_x), sum(loads.shear_y));
     EXPECT_NEAR(drag / sum(loads.normal), 0.8, 1e-3) << name_of(shape);
@@ -130,8 +130,8 @@ ForceField simulated(const StudyContact& contact, const PillarLoads& loads) {
       {Motion::roll, ContactMotion::roll}};
   const Body& body = contact.body;
   Contact made;
-  made.motion = motions.at(contact.drive.motion);
-  made.direction_deg = contact.drive.direction_deg;
+  made.motion = motions.at(contact.tangential.motion);
+  made.direction_deg = contact.tangential.direction_deg;
   if (body.shape == Shape::punch) made.shape = ContactShape::flat_punch;
   if (body.shape == Shape::cylinder) {
     made.shape = ContactShape::cylinder;
@@ -141,7 +141,7 @@ ForceField simulated(const StudyContact& contact, const PillarLoads& loads) {
   made.reference_load_n = sum(loads.normal);
   made.length_mm = 2 * body.aspect * body.radius;
   made.friction = 1;
-  made.tangential_ratio = contact.drive.load_ratio;
+  made.tangential_ratio = contact.tangential.load_ratio;
   ForceField forces(loads.rows, loads.cols);
   add_contact(made, {0, body.x, body.y, made.reference_load_n}, 1, forces);
   return forces;
@@ -157,7 +157,7 @@ TEST(FieldContacts, AreThoseOfTheSimulator) {
     SCOPED_TRACE(std::string(name_of(shape)) + ", " + name_of(motion));
     StudyContact contact = contact_of(shape);
     if (shape != Shape::cylinder) contact.body.angle_deg = 0;
-    contact.drive = {.motion = motion, .direction_deg = 70, .load_ratio = 0.6};
+    contact.tangential = {.motion = motion, .direction_deg = 70, .load_ratio = 0.6};
     const PillarLoads loads = loads_of(contact);
     const ForceField forces = simulated(contact, loads);
     // Of 100 counts; at the edge of a punch the pressure has no end.
@@ -175,7 +175,7 @@ TEST(FieldContacts, AreThoseOfTheSimulator) {
 
 TEST(FieldContacts, SphereBearsItsPressureInTheMiddle) {
   StudyContact contact = contact_of(Shape::sphere);
-  contact.drive = {.motion = Motion::slide, .direction_deg = 90};
+  contact.tangential = {.motion = Motion::slide, .direction_deg = 90};
   const PillarLoads loads = loads_of(contact);
   const std::size_t middle = std::size_t{loads.rows / 2} * loads.cols + loads.cols / 2;
   EXPECT_NEAR(loads.normal[middle], 100, 0.5);
