@@ -10,7 +10,7 @@ namespace {
 
 /// Least number of pillars of a part that is split off, and of a batch: a few microseconds of work,
 /// below which waking a thread does not pay.
-constexpr std::uint64_t kBatchPillars = 2048;
+constexpr std::uint64_t kLeastBatchPillars = 2048;
 
 std::size_t threads_for(std::uint32_t wanted) {
   return wanted != 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
@@ -21,7 +21,7 @@ std::size_t threads_for(std::uint32_t wanted) {
 ParallelContactMoments::ParallelContactMoments(std::uint32_t threads)
     : threads_(threads_for(threads)) {}
 
-/// Splits contacts into parts and groups parts into batches of about kBatchPillars.
+/// Splits contacts into parts and groups parts into batches of about kLeastBatchPillars.
 void ParallelContactMoments::split(const ContactLabels& labels) {
   parts_.clear();
   batches_.assign(1, 0);
@@ -32,12 +32,12 @@ void ParallelContactMoments::split(const ContactLabels& labels) {
     std::uint64_t pillars = 0;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       pillars += runs[i].end - runs[i].first;
-      if (pillars < kBatchPillars && i + 1 < runs.size()) continue;
+      if (pillars < kLeastBatchPillars && i + 1 < runs.size()) continue;
       parts_.push_back({contact, runs.subspan(first, i + 1 - first), {}});
       first = i + 1;
       batched += pillars;
       pillars = 0;
-      if (batched < kBatchPillars) continue;
+      if (batched < kLeastBatchPillars) continue;
       batches_.push_back(parts_.size());
       batched = 0;
     }
