@@ -98,12 +98,12 @@ Force force_from(double magnitude_n, double theta_rad, double phi_rad) {
 }
 
 double information(double deviations) {
-  constexpr double kAllOfIt = 30;  // beyond, the chance of silence is no longer a number
+  constexpr double kAllOfIt = 30;  // beyond, the probability of inactivity underflows
   if (deviations > kAllOfIt) return 1;
   const double density = std::exp(-deviations * deviations / 2) / std::sqrt(2 * std::numbers::pi);
-  const double silent = std::erfc(deviations / std::numbers::sqrt2) / 2;
+  const double inactive = std::erfc(deviations / std::numbers::sqrt2) / 2;
   const double speaks = std::erfc(-deviations / std::numbers::sqrt2) / 2;
-  return speaks - deviations * density + density * density / silent;
+  return speaks - deviations * density + density * density / inactive;
 }
 
 double least_error(Force force, const PillarSensor& sensor) {
@@ -115,10 +115,10 @@ double least_error(Force force, const Sensels& sensels) {
   const std::array<double, 4> v = readings_of(force, sensels[0]);
   std::array<Row, 3> sum{};
   for (std::size_t n = 0; n < 4; ++n) {
-    if (v[n] <= 0) continue;  // A inactive pillar tells nothing of how far.
+    if (v[n] <= 0) continue;  // V below zero carries no information.
     const double noise = sensels[n].noise_counts;
-    const double told = information((v[n] - sensels[n].threshold_counts) / noise);
-    const double weight = told * (unit / noise) * (unit / noise);
+    const double share = information((v[n] - sensels[n].threshold_counts) / noise);
+    const double weight = share * (unit / noise) * (unit / noise);
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) sum[i][j] += weight * kModel[n][i] * kModel[n][j];
     }

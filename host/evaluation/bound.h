@@ -5,9 +5,9 @@
 
 #include "solve/one_pillar.h"
 
-/// The least error that noise allows, and the error that an estimator has
-/// (docs/derivations/bound.md). A sensel reads max(0, V) and noise of `noise_counts`; it is usable
-/// above `threshold_counts`. Dead zone and full scale are left aside.
+/// Lower bound of the error under noise, and the error of an estimator (docs/derivations/bound.md).
+/// A sensel reads max(0, V) and noise of `noise_counts`; it is usable above `threshold_counts`.
+/// Dead zone and full scale are left aside.
 namespace pillarfield::bound {
 
 using Force = double_precision::Force;
@@ -15,8 +15,8 @@ using Force = double_precision::Force;
 /// The force of `magnitude_n` that comes from (theta, phi), radians (M2).
 [[nodiscard]] Force force_from(double magnitude_n, double theta_rad, double phi_rad);
 
-/// What a reading tells of its V, as a share of what it would without a threshold, at a V that is
-/// `deviations` standard deviations above the threshold (B2).
+/// Fisher information of a reading about its V, over that without a threshold, for V `deviations`
+/// standard deviations above the threshold (B2).
 [[nodiscard]] double information(double deviations);
 
 /// The Cramér–Rao bound: the least RMS of |estimate − force| of unbiased estimates, N (B3).

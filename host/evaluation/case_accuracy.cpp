@@ -20,11 +20,11 @@ using oracle::SomeReadings;
 struct Known {
   SomeReadings usable;
   Exact unit = 0;    ///< counts; 0 where nothing is usable
-  Exact hidden = 0;  ///< what silence may hide
+  Exact hidden = 0;  ///< largest V of an inactive sensel
 };
 
-/// The usable readings of an example; absent where more than silence keeps the others from it. The
-/// paper knows of no silence that hides, no saturation, and no difference of missing and silent.
+/// The usable readings of an example; unset if sensels are saturated or missing. The paper has no
+/// threshold, no saturation, and does not distinguish missing from inactive sensels.
 std::optional<Known> known_of(const Example& example, Estimator estimator, Precision precision) {
   const bool paper = estimator == Estimator::paper;
   Known known;

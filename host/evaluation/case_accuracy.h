@@ -4,7 +4,7 @@
 
 #include "evaluation/hard_cases.h"
 
-/// How exactly kernels/pillar solves a pillar, measured against the oracle.
+/// Accuracy of kernels/pillar, measured against the oracle.
 namespace pillarfield::hard_cases {
 
 /// What is solved of an example, in either precision.

@@ -136,8 +136,8 @@ double distance(Force a, Force b) {
   return std::hypot(a.shear_x - b.shear_x, a.shear_y - b.shear_y, a.normal - b.normal);
 }
 
-/// How far a solved force is from a true one that presses on the sensels, in magnitude and angle.
-/// Of one that is not a number the error is infinite and the direction is the opposite.
+/// Errors of a solved force in magnitude and angle if the truth loads the pillar. For NaN the error
+/// is infinite and the direction opposite.
 PillarErrors errors_of(Force solved, Force truth) {
   using std::numbers::pi;
   const Direction expected = double_precision::direction_of(truth);
@@ -151,7 +151,7 @@ PillarErrors errors_of(Force solved, Force truth) {
   return errors;
 }
 
-/// The same of a pillar whose sensels the truth leaves alone: there is no direction to miss.
+/// Errors of a solved force if the truth leaves the pillar unloaded: no angular error.
 PillarErrors errors_at_rest(Force solved, Force truth) {
   PillarErrors errors;
   errors.status_mismatch = !is_finite(solved);

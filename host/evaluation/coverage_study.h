@@ -6,10 +6,10 @@
 #include "pillarfield/coverage.h"
 #include "pillarfield/scene.h"
 
-/// Scenes with known truth on which the stated uncertainty is held against the truth.
+/// Coverage of the stated uncertainty on simulated scenes.
 namespace pillarfield::coverage_study {
 
-/// A scene and what it is like, for readers.
+/// A scene and its description.
 struct Study {
   std::string name;
   Scene scene;
@@ -24,8 +24,8 @@ struct Study {
 struct Parted {
   Coverage all;
   Coverage rightly_read;  ///< the usable sensels are those that would be without noise
-  Coverage by_luck;       ///< some are usable by luck: noise inactive them above the threshold
-  Coverage by_bad_luck;   ///< none is, but some are silent by bad luck
+  Coverage by_luck;       ///< some are usable by luck: noise raised them above the threshold
+  Coverage by_bad_luck;   ///< none is, but noise made some inactive
 };
 [[nodiscard]] Parted cover(const Scene& scene);
 

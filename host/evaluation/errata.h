@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-/// Where the paper's printed equations are wrong, measured: as they are printed, and as
-/// docs/derivations/pillar_model.md, section 6, mends them.
+/// Errors of the paper's printed equations, and of the corrected ones of
+/// docs/derivations/pillar_model.md, section 6.
 namespace pillarfield::errata {
 
-/// How far an equation is from the angle it should give, over directions where it applies.
+/// Errors of an equation's angle over the directions to which it applies.
 struct Deviation {
   int cases = 0;
   int wrong = 0;         ///< cases that are off by more than 0.01 rad, or not a number

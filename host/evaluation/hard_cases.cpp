@@ -55,7 +55,7 @@ Examples turns_of(const std::vector<Raw>& pillars, const PillarSensor& sensor = 
   return examples;
 }
 
-/// What a pillar shows of a force that comes from (theta, phi): zero where it lifts.
+/// Readings of a force from (theta, phi), zero where V is negative.
 Example pressed(double force_n, Exact theta, Exact phi, double k, Precision precision) {
   Example example{{}, sensor_of(k)};
   const oracle::Readings readings = oracle::readings_from(force_n, theta, phi, k);
@@ -219,7 +219,7 @@ Examples with_readings_of(double odd) {
   return examples;
 }
 
-/// Forces whose four sensels all press, and one of them in turn tells nothing.
+/// Forces that load all four sensels, one of which in turn is uninformative.
 Examples one_missing(Precision precision) {
   Examples examples;
   for (const double theta : {1e-3, 0.3, 0.5}) {

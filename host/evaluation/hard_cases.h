@@ -8,13 +8,13 @@
 #include "evaluation/oracle.h"
 #include "solve/one_pillar.h"
 
-/// Pillars that are hard to solve, by name: for the tests, and for the table of docs/accuracy.md.
+/// Named hard cases of single pillars, for tests and docs/accuracy.md.
 namespace pillarfield::hard_cases {
 
 /// Of the arithmetic in which a pillar is solved, and for which its readings are rounded.
 enum class Precision { single_precision, double_precision };
 
-/// A pillar that is to be solved.
+/// A pillar to solve.
 struct Example {
   std::array<double, 4> raw{};  ///< counts, sensels 1 to 4; numbers of the precision asked for
   PillarSensor sensor;
@@ -22,7 +22,7 @@ struct Example {
 
 struct HardCase {
   std::string name;  ///< as a test is called: letters, digits and underscores
-  std::string what;  ///< the same for readers
+  std::string what;  ///< description
   int status = 0;    ///< bits beside the usable ones that every example must have
   std::function<std::vector<Example>(Precision)> examples;
 };

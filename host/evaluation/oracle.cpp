@@ -10,7 +10,7 @@ namespace {
 /// Unknowns: F sin(theta) cos(phi), F sin(theta) sin(phi), F cos(theta).
 using Row = std::array<Exact, 3>;
 
-/// What equation (2) multiplies the unknowns of sensel 0..3 by, but for k.
+/// Coefficients of equation (2) for sensel 0..3, without k.
 const std::array<Row, 4>& model_rows() {
   static const std::array<Row, 4> rows = [] {
     std::array<Row, 4> made{};
@@ -48,7 +48,7 @@ struct Equation {
   Exact value;
 };
 
-/// What the usable readings say, and that two opposite silent sensels read the same.
+/// Equations of the usable readings, and equal readings of two opposite inactive sensels.
 std::vector<Equation> equations_of(const SomeReadings& usable, Exact k) {
   std::vector<Equation> equations;
   for (std::size_t n = 0; n < 4; ++n) {

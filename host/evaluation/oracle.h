@@ -7,8 +7,8 @@
 
 #include "evaluation/exact.h"
 
-/// A pillar by another way than kernels/pillar, and with none of its code: equation (2) of the
-/// paper with its sines and cosines, Gaussian elimination, and bisection, in 113 bits.
+/// Independent solution of a pillar, without code of kernels/pillar: equation (2) of the paper with
+/// its sines and cosines, Gaussian elimination, and bisection, in 113 bits.
 namespace pillarfield::oracle {
 
 using exact::Exact;
@@ -41,18 +41,18 @@ using SomeReadings = std::array<std::optional<Exact>, 4>;  ///< absent where not
 [[nodiscard]] Force least_squares(const SomeReadings& usable, Exact k);
 
 /// The forces with normal >= 0 that give one usable reading, or two adjacent ones, exactly, and
-/// none of the silent sensels more than `hidden` counts: a segment from normal = 0 to the end that
-/// bisection finds. Two opposite sensels that are both silent read the same.
+/// none of the inactive sensels more than `hidden` counts: a segment from normal = 0 to the end
+/// that bisection finds. Two opposite inactive sensels read equal values.
 struct Segment {
   Force low;
   Force high;
 };
 [[nodiscard]] Segment segment_of(const SomeReadings& usable, Exact k, Exact hidden = 0);
 
-/// What docs/derivations/direct_solve.md promises for pillars whose other sensels are silent: least
-/// squares where the force is determined; of the segment where it is not the segment point for two
-/// usable readings, the middle for one; and no force without usable readings. Two opposite usable
-/// ones are completed by two that read the same.
+/// The solution of docs/derivations/direct_solve.md for pillars whose other sensels are inactive:
+/// least squares if the force is determined; else the segment point (two usable readings) or the
+/// segment's midpoint (one); zero without usable readings. Two opposite usable readings are
+/// completed by two equal ones.
 [[nodiscard]] Force direct_force(const SomeReadings& usable, Exact k, Exact hidden = 0,
                                  Exact segment_point = Exact{7} / 8);
 

@@ -26,12 +26,12 @@ Exact azimuth_from_four(const SomeReadings& v) {
   return exact::atan2(*v[2] * *v[3] - *v[0] * *v[1], *v[1] * *v[2] - *v[0] * *v[3]);
 }
 
-/// Equation (8), its denominator mended, for the sensels i, j, k that follow a silent one.
+/// Equation (8), its denominator mended, for the sensels i, j, k that follow an inactive one.
 Exact azimuth_from_three(const SomeReadings& v) {
-  const std::size_t silent = first_idle(v);
-  const std::size_t i = (silent + 1) % 4;
-  const std::size_t j = (silent + 2) % 4;
-  const std::size_t k = (silent + 3) % 4;
+  const std::size_t inactive = first_idle(v);
+  const std::size_t i = (inactive + 1) % 4;
+  const std::size_t j = (inactive + 2) % 4;
+  const std::size_t k = (inactive + 3) % 4;
   const Exact ratio_ik = *v[i] / *v[k];
   const Exact ratio_jk = *v[j] / *v[k];
   const auto sum = [&](const auto& of_angle) {
@@ -122,15 +122,15 @@ std::vector<PaperChoice> diagonals_along_shear(const SomeReadings& usable) {
   return pairs;
 }
 
-/// P2: the sensel opposite the silent one, and that of its neighbours which differs more from it.
+/// P2: the sensel opposite the inactive one, and that of its neighbours which differs more from it.
 std::vector<PaperChoice> opposite_and_neighbour(const SomeReadings& usable) {
-  const std::size_t silent = first_idle(usable);
-  const std::size_t opposite = (silent + 2) % 4;
+  const std::size_t inactive = first_idle(usable);
+  const std::size_t opposite = (inactive + 2) % 4;
   const auto difference = [&](std::size_t neighbour) {
     return exact::abs(*usable[opposite] - *usable[neighbour]);
   };
-  const std::size_t one = (silent + 1) % 4;
-  const std::size_t other = (silent + 3) % 4;
+  const std::size_t one = (inactive + 1) % 4;
+  const std::size_t other = (inactive + 3) % 4;
   std::vector<PaperChoice> pairs;
   if (difference(one) >= difference(other)) pairs.push_back({opposite, one, 0});
   if (difference(other) >= difference(one)) pairs.push_back({opposite, other, 0});

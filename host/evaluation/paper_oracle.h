@@ -9,7 +9,7 @@
 /// tangents and angles as they are printed, and none of the code of kernels/pillar.
 namespace pillarfield::oracle {
 
-/// What the equations leave open in regions 1 and 2: the sensels i, j of (5), and the one whose
+/// Choices that the equations leave in regions 1 and 2: the sensels i, j of (5), and the one whose
 /// reading gives the magnitude by (2).
 struct PaperChoice {
   std::size_t i = 0;

@@ -6,15 +6,13 @@
 
 namespace pillarfield {
 
-/// The readings of a flawless sensor: those of equation (2), zero where the pillar lifts off.
-///
-/// A reading of at most 1e-6 of the pillar's largest in magnitude is zero too. Forces are kept in
-/// single precision, so that is the margin in a reading that ought to vanish, and a force on the
-/// boundary between two regions belongs to the one with fewer readings.
+/// Readings of a flawless sensor: equation (2), zero where V is negative or at most 1e-6 of the
+/// pillar's largest |V|. That is the rounding error of single-precision forces, so a force on the
+/// boundary of two regions belongs to the one with fewer readings.
 [[nodiscard]] double_precision::Readings ideal_readings(double_precision::Force force,
                                                         double counts_per_newton);
 
-/// The usable bits of the status byte for readings of which the positive ones are usable.
+/// Usable bits of the status byte if positive readings are usable.
 [[nodiscard]] std::uint8_t usable_bits(const double_precision::Readings& readings);
 
 }  // namespace pillarfield

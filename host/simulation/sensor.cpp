@@ -10,7 +10,7 @@
 namespace pillarfield {
 namespace {
 
-/// The part of a plane that belongs to a row as long as `signal`.
+/// The elements of a plane that belong to a row of `signal`'s length.
 template <class T>
 std::span<const T> row_of(const std::vector<T>& plane, std::uint32_t row, std::size_t cols) {
   return std::span(plane).subspan(row * cols, cols);
@@ -30,8 +30,7 @@ std::vector<float> normal_plane(const Scene& scene, random::Stream stream, Map m
   return plane;
 }
 
-/// The calibration's gain, 1/g. Sensitivities g are lognormal with mean 1 and the given standard
-/// deviation, and so always positive.
+/// Gain 1/g; sensitivities g are lognormal with mean 1 and the given standard deviation.
 std::vector<float> draw_gains(const Scene& scene) {
   const double variance = std::log1p(scene.sensor.gain_spread * scene.sensor.gain_spread);
   const double deviation = std::sqrt(variance);
@@ -39,7 +38,7 @@ std::vector<float> draw_gains(const Scene& scene) {
                       [=](double n) { return std::exp(variance / 2 - deviation * n); });
 }
 
-/// Tares are normal; what would lie below zero is zero.
+/// Normal tares, clipped at zero.
 std::vector<float> draw_tares(const Scene& scene) {
   const SensorModel& model = scene.sensor;
   return normal_plane(scene, random::Stream::tare, [&](double n) {
@@ -75,7 +74,7 @@ Calibration draw_calibration(const Scene& scene) {
 template <class Count>
 void round_to(std::span<const double> signal, double full_scale, std::span<Count> out) {
   std::transform(signal.begin(), signal.end(), out.begin(), [=](double value) {
-    // No call of a library for each sensel; it differs from lround just below a half.
+    // Avoids a library call per sensel; differs from lround just below a half.
     // NOLINTNEXTLINE(bugprone-incorrect-roundings)
     return static_cast<Count>(std::clamp(value, 0.0, full_scale) + 0.5);
   });
@@ -113,7 +112,7 @@ void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> 
 
 void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
   if (model_.dead_zone_counts > 0) {
-    // The plane is single precision, and exact readings want the very number it holds.
+    // Uses the gain as rounded in the single-precision plane, so that readings are exact.
     const double dead_zone = calibration_.dead_zone.front();
     for (double& value : signal) value = std::max(0.0, value - dead_zone);
   }

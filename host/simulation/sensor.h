@@ -11,20 +11,20 @@
 
 namespace pillarfield {
 
-/// The sensels of a scene: what stands between the model's V and the raw reading, in this order,
-/// each stage only where the scene lists it (docs/scenes.md):
+/// The sensels of a scene: the stages from the model's V to the raw reading, in this order, each
+/// only if the scene lists it (docs/scenes.md):
 ///
 ///     dead zone, power law, sensitivity, tare, drift, noise, full scale and rounding, dead.
 class Sensor {
  public:
-  /// Draws the planes that differ from sensel to sensel. Needs a scene that passes check().
+  /// Draws the per-sensel planes. The scene must pass check().
   explicit Sensor(const Scene& scene);
 
   [[nodiscard]] SenselType sensel_type() const;
   [[nodiscard]] const Calibration& calibration() const { return calibration_; }
 
   /// Writes one row of raw readings. `signal` holds the model's V of that row, counts, and is
-  /// used up.
+  /// overwritten.
   void read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
                 FrameBuffer& raw) const;
 
@@ -37,7 +37,7 @@ class Sensor {
 
   SensorModel model_;
   double full_scale_counts_;
-  std::optional<PowerLaw> bend_;  ///< the power law backwards: what a straight signal reads
+  std::optional<PowerLaw> bend_;  ///< inverse of the power law
   std::uint64_t seed_;
   double rate_hz_;
   Calibration calibration_;

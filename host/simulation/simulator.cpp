@@ -40,7 +40,7 @@ void add_forces(const BodyForces& forces, ForceField& field) {
   }
 }
 
-/// The model's V of the two sensel rows under a row of pillars, counts.
+/// V of the two sensel rows under a row of pillars, counts.
 struct SignalRows {
   explicit SignalRows(std::size_t cols) : upper(cols), lower(cols) {}
   std::vector<double> upper;

@@ -230,7 +230,7 @@ TEST(FaultFinder, ConstantlyPressedAndIdleSenselsAreOnlyUntested) {
 }
 
 /// A load that comes and goes, whose direction keeps sensels inactive all the time.
-TEST(FaultFinder, LegallyLiftedSenselsAreNeverMasked) {
+TEST(FaultFinder, SenselsInactiveByShearAreNeverMasked) {
   for (const double direction_deg : {0.0, 45.0, 100.0, 225.0, 290.0}) {
     for (const double friction : {0.9, 1.2, 3.0}) {
       Scene scene = bare_scene();
@@ -289,7 +289,7 @@ TEST(FaultFinder, NeedsFramesAndMovement) {
             std::string::npos);
 }
 
-/// Few loaded frames convict nobody.
+/// Too few loaded frames mask no sensel.
 TEST(FaultFinder, AsksForLoadedFrames) {
   const std::size_t dead = place(20, 20);
   const auto spoil = [=](auto readings, std::uint32_t) { readings[dead] = 0; };

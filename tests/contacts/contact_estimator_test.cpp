@@ -1,6 +1,5 @@
-// The estimator `contact` on contacts that a boundary-element solver makes, as small as a
-// fingertip: what it gains over the paper's midpoint, what it may not touch, and hard cases by
-// name.
+// The estimator `contact` on boundary-element contacts down to a fingertip's size: its error
+// against the paper's midpoint, the pillars it must not change, and named hard cases.
 
 #include "contacts/estimator/contact_estimator.h"
 
@@ -122,7 +121,7 @@ Errors paper_errors(const Scene& scene) {
   return errors_of(scene, [&](const FrameView& frame) { return solve_on_host(plan, frame); });
 }
 
-/// Frame after frame, with the memory of contacts.
+/// Solves frame by frame, carrying friction over.
 Errors contact_errors(const Scene& scene, const FrictionKnowledge& friction = {}) {
   SolverPlan direct = plan_of(scene, Estimator::direct);
   SolverPlan plan = plan_of(scene, Estimator::contact);
@@ -189,8 +188,8 @@ TEST(ContactEstimator, RemembersWhatAContactShowed) {
   EXPECT_LT(contact_errors(scene).rms(), contact_errors(scene, unrelated).rms());
 }
 
-/// A single frame of a ball in partial slip, as a closed form: most of what slips is ambiguous, and
-/// the pressure's shape tells what the ratios of determined pillars do not.
+/// A single frame of a ball in partial slip, as a closed form: most slipping pillars are ambiguous,
+/// and the pressure regression adds what the ratios of determined pillars lack.
 TEST(ContactEstimator, ReadsTheShapeOfThePressureUnderASmoothBody) {
   for (const double friction : {1.6, 1.8, 2.2}) {
     for (const double direction_deg : {0.0, 3.0, 90.0, 183.0}) {
@@ -322,7 +321,7 @@ TEST_F(OneFrame, StaysFiniteOnAnyPlanes) {
       broken.status[i] = static_cast<std::uint8_t>(i);
     }
     estimator.resolve(broken);
-    // And what follows is not spoilt.
+    // Later frames are unaffected.
     ForceField next = direct_;
     estimator.resolve(next);
     for (const float normal : next.normal) EXPECT_TRUE(std::isfinite(normal));
@@ -332,7 +331,7 @@ TEST_F(OneFrame, StaysFiniteOnAnyPlanes) {
   }
 }
 
-/// One pillar alone: all that is known is the prior and that its readings need so much friction.
+/// An isolated pillar: only the prior and the lower bound of its own readings constrain friction.
 TEST(ContactEstimator, OnePillarHasThePriorsForce) {
   SolverPlan plan;
   plan.skin.rows = plan.skin.cols = 10;

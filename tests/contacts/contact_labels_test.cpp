@@ -75,7 +75,7 @@ std::vector<std::int64_t> flooded(const Mask& mask, std::int64_t& contacts) {
   return label;
 }
 
-/// The contact of each pillar as the runs say; each must be listed once, and in order.
+/// The contact of each pillar by the runs, each listed once and in order.
 std::vector<std::int64_t> mapped(const Mask& mask, const ContactLabels& labels) {
   std::vector<std::int64_t> label(mask.status.size(), kNone);
   std::size_t listed = 0;
@@ -100,7 +100,8 @@ std::vector<std::int64_t> mapped(const Mask& mask, const ContactLabels& labels) 
   return label;
 }
 
-/// Compares with the flood, which numbers in the documented order; returns how many there are.
+/// Compares with the flood fill, which labels in the documented order. Returns the number of
+/// contacts.
 std::int64_t expect_as_flooded(const Mask& mask, ContactLabels& labels) {
   labels.find(mask.status, mask.rows, mask.cols);
   std::int64_t contacts = 0;
@@ -142,7 +143,7 @@ Mask random_mask(std::uint32_t rows, std::uint32_t cols, unsigned percent, std::
 }
 
 TEST(ContactLabels, IsThatOfAFloodOnRandomMasks) {
-  ContactLabels labels;  // one for all: what it keeps must not show
+  ContactLabels labels;  // reused: kept memory must not matter
   std::uint64_t seed = 0;
   for (const unsigned percent : {1u, 5u, 15u, 30u, 40u, 50u, 60u, 75u, 90u, 99u}) {
     for (const auto& [rows, cols] : {std::pair<std::uint32_t, std::uint32_t>{1, 200},
@@ -185,7 +186,7 @@ TEST(ContactLabels, EveryStatusByteCountsByItsUsableBits) {
   }
 }
 
-/// Marks of those blocks of so many pillars that have no loaded one.
+/// Idle flags of blocks of `pillars` pillars without a loaded one.
 struct Marks {
   Marks(const Mask& mask, std::uint32_t pillars)
       : stride(mask.cols / pillars + 2), size(pillars), marks(mask.rows * stride) {
@@ -207,7 +208,7 @@ struct Marks {
   std::vector<std::uint8_t> marks;
 };
 
-TEST(ContactLabels, IsTheSameWhereSilentBlocksAreKnown) {
+TEST(ContactLabels, DoesNotDependOnIdleBlocks) {
   std::uint64_t random = 1;
   for (const std::uint32_t cols : {1U, 3U, 7U, 8U, 15U, 16U, 17U, 50U, 200U, 1100U}) {
     for (const std::uint32_t pillars : {1U, 2U, 8U, 16U}) {
@@ -234,7 +235,7 @@ TEST(ContactLabels, IsTheSameWhereSilentBlocksAreKnown) {
   }
 }
 
-TEST(ContactLabels, DoesNotLookIntoSilentBlocks) {
+TEST(ContactLabels, DoesNotReadIdleBlocks) {
   Mask mask(3, 40);
   Marks marks(mask, 16);
   for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);

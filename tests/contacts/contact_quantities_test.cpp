@@ -136,10 +136,11 @@ TEST(ContactQuantities, PatchHasWhatSmallContactsBear) {
   EXPECT_EQ(tracker.labels().contacts(), 2);
 }
 
-/// A band of pillars, of which the first `slipping` have the ratio 0.5 and the others 0.1; `open`
-/// more are ambiguous.
-ContactQuantities band(int slipping, int sticking, int open, std::optional<double> friction) {
-  ForceField field(1, static_cast<std::uint32_t>(slipping + sticking + open));
+/// A band of `slipping` pillars of ratio 0.5, `sticking` ones of ratio 0.1 and `undetermined`
+/// ambiguous ones.
+ContactQuantities band(int slipping, int sticking, int undetermined,
+                       std::optional<double> friction) {
+  ForceField field(1, static_cast<std::uint32_t>(slipping + sticking + undetermined));
   for (std::uint32_t col = 0; col < field.cols; ++col) {
     const int i = static_cast<int>(col);
     const bool slips = i < slipping;
@@ -164,7 +165,7 @@ TEST(Slip, StateGoesByTheShareThatSlips) {
 TEST(Slip, PillarsLeftOpenMayMakeItUnknown) {
   using enum SlipState;
   EXPECT_EQ(band(0, 91, 9, 0.5).slip, sticking);
-  EXPECT_EQ(band(0, 80, 20, 0.5).slip, unknown);  // the open ones may slip
+  EXPECT_EQ(band(0, 80, 20, 0.5).slip, unknown);  // the undetermined ones may slip
   EXPECT_EQ(band(80, 0, 20, 0.5).slip, sliding);
   EXPECT_EQ(band(70, 0, 30, 0.5).slip, unknown);
   EXPECT_EQ(band(30, 30, 40, 0.5).slip, partial);
@@ -187,14 +188,14 @@ TEST(Slip, MarginIsOfTheSums) {
   EXPECT_EQ(contact.friction_source, FrictionSource::given);
 }
 
-/// Pillars of one row and column bear this share of the middle's under a rounded body.
+/// Force of a pillar over that of the middle under a rounded body.
 double rounded(std::uint32_t i, std::uint32_t count) {
   const double place = (2.0 * i + 1) / count - 1;
   return std::sqrt(1.0001 - place * place);
 }
 
-/// A contact of so many rows and columns under a rounded body, a seventh of whose pillars sticks.
-/// The others have the friction's ratio, in directions of their own, with a little noise.
+/// A contact of `rows` x `cols` pillars under a rounded body. A seventh of the pillars sticks; the
+/// others slip in various directions, with a little noise.
 ForceField mostly_sliding(std::uint32_t rows, std::uint32_t cols, double friction) {
   ForceField field(rows + 2, cols + 2);
   for (std::uint32_t i = 0; i < rows * cols; ++i) {
@@ -246,7 +247,7 @@ TEST(Friction, WithoutMemoryIsNotCarriedOver) {
   EXPECT_EQ(stuck.contacts.at(0).quantities.friction_source, FrictionSource::prior);
 }
 
-/// The same contact, 15 pillars (19 mm) further on.
+/// The contact moves by 15 pillars (19 mm).
 ForceField moved(const ForceField& field) {
   ForceField wide(field.rows, field.cols + 30);
   for (std::size_t i = 0; i < field.pillars(); ++i) {
@@ -273,7 +274,7 @@ TEST(Friction, IsCarriedOverAsFarAsAContactMayJump) {
   }
 }
 
-/// A stuck punch: all its pillars have the same ratio, which grows with the shear.
+/// A sticking punch: all pillars share one ratio, which grows with the shear.
 TEST(Friction, OfAFaceThatMayStickIsNotTold) {
   ContactTracker tracker(kPitchMm);
   for (const double ratio : {0.3, 0.4, 0.55, 0.55, 0.7}) {
@@ -284,7 +285,7 @@ TEST(Friction, OfAFaceThatMayStickIsNotTold) {
   }
 }
 
-/// What was believed is carried over, but to lose the shear again proves nothing.
+/// The posterior is carried over, but losing the shear again proves nothing.
 TEST(Friction, OfAFaceThatStuckIsNotToldWhenItsShearIsGone) {
   ContactTracker tracker(kPitchMm);
   for (const double ratio : {0.4, 0.4, 0.0, 0.1, 0.3, 0.25, 0.0}) {
@@ -317,8 +318,7 @@ TEST(Friction, IsNeverBelowARatioThatWasSurelySeen) {
   }
 }
 
-/// Of a large contact not every pillar is asked. What is learnt is the same within a tenth of what
-/// a pillar's noise is.
+/// Large contacts are sampled: the friction agrees within a tenth of a pillar's noise.
 TEST(Friction, OfALargeContactIsSeenInSomeOfItsPillars) {
   for (const auto& [rows, cols] :
        {std::pair{10U, 10U}, {30U, 33U}, {30U, 34U}, {63U, 64U}, {200U, 210U}, {300U, 9U}}) {
@@ -326,7 +326,7 @@ TEST(Friction, OfALargeContactIsSeenInSomeOfItsPillars) {
     ASSERT_TRUE(contact.friction.has_value()) << rows << " x " << cols;
     EXPECT_NEAR(*contact.friction, 0.7, 0.02) << rows << " x " << cols;
     EXPECT_EQ(contact.friction_source, FrictionSource::observed);
-    // Of slip all pillars tell.
+    // Slip is summed over all pillars.
     EXPECT_NEAR(*contact.slipping_share, 6.0 / 7, 0.03) << rows << " x " << cols;
   }
 }
@@ -341,7 +341,7 @@ TEST(Slip, StatesAndSourcesHaveNames) {
                                           "sliding", "sticking", "unknown"}));
 }
 
-/// A scene, solved and followed frame by frame.
+/// A scene, solved and tracked frame by frame.
 class SolvedScene {
  public:
   explicit SolvedScene(const std::string& name)
@@ -403,7 +403,7 @@ TEST(Scenes, PressedBallBearsItsLoad) {
   }
 }
 
-/// Noise of half a count, rounding, and a threshold that swallows what the edge bears.
+/// Noise of half a count, rounding, and a threshold above the edge's readings.
 TEST(Scenes, SeveralContactsBearTheirLoads) {
   SolvedScene scene("several_contacts.toml");
   std::set<std::uint64_t> ids;
@@ -437,7 +437,7 @@ TEST(Scenes, SeveralContactsBearTheirLoads) {
   EXPECT_EQ(ids.size(), 3);
 }
 
-/// The resultant shear of a spin is nothing, its torque and its slip are.
+/// A spin has no resultant shear, but torque and slip.
 TEST(Scenes, SpinSlidesThoughItsShearCancels) {
   SolvedScene scene("spin.toml");
   const ContactQuantities contact = scene.frame(0).contacts.at(0).quantities;

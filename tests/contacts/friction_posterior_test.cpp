@@ -97,7 +97,7 @@ TEST_F(Likelihood, AmbiguousPillarsBoundItFromBelow) {
   EXPECT_GT(posterior.quantile(0.05), 1.65);
 }
 
-/// A contact is one witness, however many pillars it has.
+/// The posterior's width does not fall with the number of pillars beyond effective_pillars.
 TEST_F(Likelihood, ManyPillarsAreNotMoreCertainThanTheirEffectiveNumber) {
   const auto spread = [](std::size_t pillars) {
     return after(std::vector<ObservedRatio>(pillars, {1.0, 0.2, kNoCeiling})).spread();

@@ -91,7 +91,7 @@ TEST(LeastError, OfUnequalSensorsIsThatOfTheirVariances) {
   EXPECT_NEAR(least_error(force, sensels), std::sqrt(variance), 1e-6);
 }
 
-TEST(LeastError, LosesNoMoreThanWhatASilentSenselAdds) {
+TEST(LeastError, LosesNoMoreThanAnInactiveSenselAdds) {
   // B5: a fourth reading of weight w takes 5 w / (1 + 3 w) from the squared bound of 5/2.
   const PillarSensor sensor = sensor_of(1);
   const Force force = {10.5 * std::numbers::sqrt2, 10.5 * std::numbers::sqrt2, 22};  // V3 = 1

@@ -39,7 +39,7 @@ TEST_P(StatedUncertainty, HasEndsThatHoldTheTruthInRegionThree) {
 }
 
 TEST_P(StatedUncertainty, IsTooNarrowOnlyWhereASenselIsUsableByLuck) {
-  // It read too much; one that is silent by bad luck leaves the estimate without it unbiased.
+  // A sensel usable by luck reads too much; one inactive by bad luck leaves the estimate unbiased.
   for (const Region region : {Region::one, Region::two}) {
     const RegionCoverage lucky = parted_.by_luck.region(region);
     const RegionCoverage all = parted_.all.region(region);

@@ -131,7 +131,7 @@ TEST(NormalContact, AFlatPunchSinksInProportionToItsLoad) {
   EXPECT_NEAR(contact.approach_mm, load / (2 * radius), 0.012 * load / (2 * radius));
 }
 
-/// Sneddon's cone: P = π a² E* cot α / 2 with a flank that rises by cot α per millimetre.
+/// Sneddon's cone: P = π a² E* cot α / 2 with a side that rises by cot α per millimetre.
 TEST(NormalContact, AConeIsSneddons) {
   constexpr double kSlope = 0.05;
   constexpr double kContactMm = 10;

@@ -15,7 +15,7 @@
 namespace pillarfield {
 namespace {
 
-/// A turn about the skin's normal, counter-clockwise.
+/// A rotation about the skin's normal, counter-clockwise.
 struct Turn {
   explicit Turn(double angle_deg)
       : cosine(std::cos(angle_deg * std::numbers::pi / 180)),
@@ -29,7 +29,7 @@ struct Turn {
   double sine;
 };
 
-/// Calls `visit(index, place)` for each cell of a box; `place` is its middle in the body's frame.
+/// Calls `visit(index, place)` for each cell of a box; `place` is its centre in the body's frame.
 template <class Visit>
 void for_each_place(const CellGrid& grid, const CellBox& box, const BodyKey& pose, Visit visit) {
   const Turn turn(pose.angle_deg);
@@ -76,7 +76,7 @@ BodyHistory::BodyHistory(const Scene& scene, std::size_t number)
 
 std::shared_ptr<const BodyForces> BodyHistory::forces(std::uint64_t frame) {
   frame = std::min(frame, last_frame_);
-  // Frames that are solved need not wait for those that are not.
+  // Solved frames are returned without waiting for the solver.
   if (SharedForces known = solved(frame)) return known;
   const std::scoped_lock solving(solving_mutex_);
   while (true) {
@@ -99,7 +99,7 @@ BodyHistory::SharedForces BodyHistory::next_frame() {
     return forces_;
   }
   const std::uint32_t steps = body_.substeps;
-  // A frame that fails leaves the state of the frame before, for whoever asks again.
+  // On failure the state is that of the frame before, so a later call can retry.
   const auto before = std::make_tuple(pose_, shear_, touches_, forces_);
   try {
     for (std::uint32_t step = 1; step <= steps; ++step) {
@@ -160,7 +160,7 @@ NormalContact BodyHistory::press(const BodyKey& pose) {
                 fmt::format("its pressure was not found in {} iterations", kMostPressIterations),
                 "change its shape or load");
   }
-  // Where the body goes on beyond the box, the contact must end before it does.
+  // If the body extends beyond the box, the contact must end inside it.
   const CellBox inner = {box.first_row + 2, box.first_col + 2, box.rows - 4, box.cols - 4};
   if ((turned.x > most_mm || turned.y > most_mm) && !inner.holds(normal->contact)) {
     throw Error(place(pose),
@@ -190,8 +190,8 @@ CellVectors BodyHistory::rub(const BodyKey& pose, const NormalContact& normal) {
   return shear;
 }
 
-/// Where the cells of the contact would be if none slipped: where shear had them before, and as far
-/// as the body went since (H9).
+/// Displacements of the contact's cells if none slipped: those under the earlier shear plus the
+/// body's movement (H9).
 CellVectors BodyHistory::drive(const BodyKey& pose, const CellBox& contact) {
   CellVectors drive_mm(contact);
   if (!touches_) return drive_mm;

@@ -17,7 +17,7 @@
 
 namespace pillarfield {
 
-/// What a body does to one pillar, newtons; the signs are those of ForceField.
+/// Force of a body on one pillar, N; signs as in ForceField.
 struct BodyForce {
   std::size_t pillar;  ///< row times columns plus column
   double shear_x;
@@ -26,16 +26,15 @@ struct BodyForce {
 };
 using BodyForces = std::vector<BodyForce>;
 
-/// The forces of a body on the pillars, frame by frame. A frame depends on those before it, which
-/// are solved when one is asked for and kept, so the order of the calls does not matter. Several
-/// threads may call at once.
+/// Forces of a body on the pillars, frame by frame. A frame depends on all earlier ones, which are
+/// solved on demand and kept, so calls may come in any order. Thread-safe.
 class BodyHistory {
  public:
   /// Reads the height map. `number` counts the scene's bodies from 0; the scene is checked.
   BodyHistory(const Scene& scene, std::size_t number);
 
-  /// Of a frame, in order of pillars; what lies outside the skin is left out. Throws Error where
-  /// the contact cannot be solved, and where is_interrupted().
+  /// Forces of a frame, in order of pillars, without those outside the skin. Throws Error if the
+  /// contact cannot be solved or is_interrupted().
   [[nodiscard]] std::shared_ptr<const BodyForces> forces(std::uint64_t frame);
 
  private:
@@ -54,21 +53,21 @@ class BodyHistory {
   Body body_;
   std::size_t number_;
   double rate_hz_;
-  std::uint64_t last_frame_;  ///< from which on nothing changes
+  std::uint64_t last_frame_;  ///< last frame in which the body moves
   std::uint32_t pillar_rows_;
   std::uint32_t pillar_cols_;
   CellGrid grid_;
-  double traction_to_force_n_;  ///< of one cell, from a traction over πE*
+  double traction_to_force_n_;  ///< factor from a cell's traction over πE* to its force
   BodySurface surface_;
 
-  mutable std::mutex frames_mutex_;   ///< of `frames_`
-  std::vector<SharedForces> frames_;  ///< those that are solved, from 0
-  std::mutex solving_mutex_;          ///< of all that follows
+  mutable std::mutex frames_mutex_;   ///< guards frames_
+  std::vector<SharedForces> frames_;  ///< solved frames, from 0
+  std::mutex solving_mutex_;          ///< guards the members below
   HalfSpaces half_spaces_;
-  BodyKey pose_;       ///< of the step before
-  CellVectors shear_;  ///< of the step before; its box is empty where nothing was sheared
+  BodyKey pose_;       ///< at the last step
+  CellVectors shear_;  ///< at the last step; empty box without shear
   bool touches_ = false;
-  SharedForces forces_;  ///< of the step before
+  SharedForces forces_;  ///< at the last step
 };
 
 }  // namespace pillarfield

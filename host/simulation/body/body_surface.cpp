@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNoBody = std::numeric_limits<double>::infinity();
 
-/// How much an arc of `radius` has risen, `along` from where it leaves the flat; none beyond it.
+/// Rise of an arc of `radius` at the distance `along` from its flat tangent point.
 double arc_height(double along, double radius) {
   if (along <= 0) return 0;
   if (along > radius) return kNoBody;
@@ -69,7 +69,7 @@ class PunchRelief final : public Relief {
   double edge_;
 };
 
-/// Bilinear between the middles of pixels, constant in the outer half of those at the border.
+/// Bilinear between pixel centres, constant beyond the outermost centres.
 class MapRelief final : public Relief {
  public:
   MapRelief(HeightMap map, const Body& body)
@@ -88,7 +88,7 @@ class MapRelief final : public Relief {
   [[nodiscard]] PlaneVector reach_mm() const override { return {size_[0] / 2, size_[1] / 2}; }
 
  private:
-  /// The pixel before a place and how far that is on the way to the next.
+  /// The pixel before a place and the fraction of the way to the next.
   struct Pixel {
     std::size_t first;
     double fraction;

@@ -18,23 +18,23 @@ class Relief {
   Relief(const Relief&) = delete;
   Relief& operator=(const Relief&) = delete;
 
-  /// Above the shape's lowest point, mm; infinite where there is no body.
+  /// Height above the shape's lowest point, mm; infinite outside the body.
   [[nodiscard]] virtual double height_mm(double x_mm, double y_mm) const = 0;
 
-  /// Half sizes of the rectangle about the origin beyond which there is no body.
+  /// Half sizes of the shape's bounding rectangle about the origin.
   [[nodiscard]] virtual PlaneVector reach_mm() const = 0;
 };
 
-/// The shape of a body; reads its height map where it has one. Throws Error.
+/// The shape of a body; reads its height map, if any. Throws Error.
 [[nodiscard]] std::unique_ptr<Relief> make_relief(const Body& body);
 
 /// A body's surface: its shape, its roughness and its friction.
 class BodySurface {
  public:
-  /// `number` counts the scene's bodies: each has roughness and friction of its own.
+  /// `number`, the body's index in the scene, seeds roughness and friction.
   BodySurface(const Body& body, double pillar_pitch_mm, std::uint64_t seed, std::uint64_t number);
 
-  /// Of the surface at a place in the body's frame; infinite where there is none. Roughness may
+  /// Height of the surface at a place in the body's frame; infinite outside the body. Roughness may
   /// make it negative.
   [[nodiscard]] double height_mm(double x_mm, double y_mm) const;
   [[nodiscard]] double friction(double x_mm, double y_mm) const;

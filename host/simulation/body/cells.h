@@ -10,11 +10,11 @@
 
 namespace pillarfield {
 
-/// Cells along a pillar's edge: tractions are constant on each cell.
+/// Cells along a pillar's edge; tractions are constant on a cell.
 inline constexpr std::int64_t kCellsPerPillar = 4;
 
-/// A rectangle of cells. Rows and columns count like those of pillars, from the top left corner of
-/// the skin; they may lie beyond the skin, for the half-space does not end there.
+/// A rectangle of cells. Rows and columns count from the top left corner of the skin and may lie
+/// beyond it.
 struct CellBox {
   std::int64_t first_row = 0;
   std::int64_t first_col = 0;
@@ -33,7 +33,7 @@ struct CellBox {
   }
 };
 
-/// The smallest box that holds both.
+/// The smallest box that contains both.
 [[nodiscard]] inline CellBox hull(const CellBox& a, const CellBox& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
@@ -43,7 +43,7 @@ struct CellBox {
           std::max(a.end_col(), b.end_col()) - col};
 }
 
-/// What both have in common; empty where they do not meet.
+/// The intersection; empty if they are disjoint.
 [[nodiscard]] inline CellBox intersection(const CellBox& a, const CellBox& b) {
   const std::int64_t row = std::max(a.first_row, b.first_row);
   const std::int64_t col = std::max(a.first_col, b.first_col);
@@ -51,7 +51,7 @@ struct CellBox {
           std::max<std::int64_t>(0, std::min(a.end_col(), b.end_col()) - col)};
 }
 
-/// A number for each cell of a box, row by row.
+/// A value per cell of a box, row by row.
 struct CellField {
   CellField() = default;
   explicit CellField(const CellBox& over) : box(over), values(over.cells(), 0.0) {}
@@ -64,7 +64,7 @@ struct CellField {
   std::vector<double> values;
 };
 
-/// `field` over another box, zero where it has no value.
+/// `field` on another box, zero outside its own.
 [[nodiscard]] inline CellField on_box(const CellField& field, const CellBox& box) {
   CellField moved(box);
   const CellBox common = intersection(field.box, box);
@@ -98,14 +98,14 @@ class CellGrid {
         cell_mm_(skin.pillar_pitch_mm() / static_cast<double>(kCellsPerPillar)) {}
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
-  /// Of a cell's middle.
+  /// Place of a cell's centre.
   [[nodiscard]] double x_mm(std::int64_t col) const {
     return (static_cast<double>(col) + 0.5 - half(pillar_cols_)) * cell_mm_;
   }
   [[nodiscard]] double y_mm(std::int64_t row) const {
     return (half(pillar_rows_) - static_cast<double>(row) - 0.5) * cell_mm_;
   }
-  /// The cells whose middles lie within centre ± reach, and a cell more on each side.
+  /// The cells whose centres lie within centre ± reach, and one more on each side.
   [[nodiscard]] CellBox box_around(PlaneVector centre, PlaneVector reach) const;
 
  private:

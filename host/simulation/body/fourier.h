@@ -8,8 +8,8 @@ namespace pillarfield {
 
 using Complex = std::complex<double>;
 
-/// Discrete Fourier transforms of one length, which is a product of 2, 3 and 5. Neither direction
-/// is normalised: one after the other multiplies by the length. Several threads may share one.
+/// Discrete Fourier transforms of one length, a product of powers of 2, 3 and 5. Unnormalised:
+/// forward and inverse together multiply by the length. Thread-safe.
 class Fourier {
  public:
   explicit Fourier(std::size_t length);
@@ -18,9 +18,9 @@ class Fourier {
   Fourier& operator=(Fourier&&) noexcept;
 
   [[nodiscard]] std::size_t length() const { return length_; }
-  /// exp(−2πi jk/n); `in` and `out` are different arrays of length().
+  /// Forward, exp(−2πi jk/n); `in` and `out` are distinct arrays of length().
   void forward(const Complex* in, Complex* out) const;
-  /// exp(+2πi jk/n).
+  /// Inverse, exp(+2πi jk/n).
   void inverse(const Complex* in, Complex* out) const;
 
  private:
@@ -29,7 +29,7 @@ class Fourier {
   std::unique_ptr<const Plans> plans_;
 };
 
-/// The least even length of at least `length` whose transform is quick: a product of 2, 3 and 5.
+/// The least even product of powers of 2, 3 and 5 that is at least `length`.
 [[nodiscard]] std::size_t quick_fourier_length(std::size_t length);
 
 /// Transforms a plane of `rows.length()` rows and `cols.length()` columns forwards, in place.

@@ -7,7 +7,7 @@
 namespace pillarfield {
 namespace {
 
-/// The components of a vector for each cell that bears shear.
+/// Vector components of the cells that bear shear.
 struct ShearVector {
   explicit ShearVector(std::size_t cells) : x(cells), y(cells) {}
   std::vector<double> x;

@@ -52,7 +52,7 @@ void mirror(std::vector<Complex>& plane, std::size_t height, std::size_t width, 
   plane[other_row * width + other_col] = value;
 }
 
-/// Lengths of windows come in steps, lest every step of a path need kernels of its own.
+/// Rounds window lengths up, so that steps of a path share kernels.
 std::size_t stepped_length(std::int64_t cells) {
   std::size_t step = 8;
   while (static_cast<std::int64_t>(16 * step) < cells) step *= 2;

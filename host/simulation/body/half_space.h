@@ -9,14 +9,12 @@
 
 namespace pillarfield {
 
-/// The surface of an incompressible elastic half-space: what tractions that are constant on each
-/// cell of a window displace at the cells' middles (Boussinesq, Cerruti and Love;
-/// docs/derivations/half_space.md, equations H3 to H6). With ν = 1/2 pressure moves the surface
-/// along the normal alone, and shear within its plane alone.
+/// Surface displacements of an incompressible elastic half-space at cell centres under tractions
+/// constant on each cell (Boussinesq, Cerruti and Love; docs/derivations/half_space.md, H3 to H6).
+/// With ν = 1/2 pressure causes normal and shear tangential displacement only.
 ///
-/// A traction here is a traction over πE*, E* = 4E/3, so it has no unit and displacements are in
-/// millimetres. Convolutions go through Fourier transforms, padded with zeros, so nothing wraps
-/// around. An object keeps memory for its work: one thread at a time uses it.
+/// Tractions are divided by πE*, E* = 4E/3, and have no unit; displacements are in mm. Convolutions
+/// use zero-padded Fourier transforms. Not thread-safe: an object holds work memory.
 class HalfSpace {
  public:
   /// For windows of up to `rows` by `cols` cells.
@@ -24,13 +22,13 @@ class HalfSpace {
 
   [[nodiscard]] bool fits(const CellBox& box) const;
 
-  /// No shear of 1 in every cell moves the surface farther, give or take a rounding.
+  /// Upper bound, up to rounding, of the displacement by shear of magnitude 1 in every cell.
   [[nodiscard]] double most_shear_mm() const { return most_shear_mm_; }
 
-  /// How far `pressure` presses the surface in. `depth_mm` has the same box.
+  /// Normal displacement `depth_mm` under `pressure`, in one box.
   void press(const CellField& pressure, CellField& depth_mm);
 
-  /// Where shear (x right, y up) moves the surface. All four have the same box.
+  /// Tangential displacement under shear (x right, y up). All four have one box.
   void shear(const CellField& x, const CellField& y, CellField& x_mm, CellField& y_mm);
 
  private:
@@ -62,15 +60,14 @@ class HalfSpace {
   Spectrum column_y_;
 };
 
-/// The half-spaces of the sizes that were needed last: their kernels take as long as some ten
-/// convolutions.
+/// Cache of half-spaces by size: computing the kernels costs about ten convolutions.
 class HalfSpaces {
  public:
   explicit HalfSpaces(double cell_mm) : cell_mm_(cell_mm) {}
 
   [[nodiscard]] double cell_mm() const { return cell_mm_; }
 
-  /// One that fits the box; it stays valid until the next call.
+  /// A half-space that fits the box; valid until the next call.
   [[nodiscard]] HalfSpace& for_box(const CellBox& box);
 
  private:
@@ -80,7 +77,7 @@ class HalfSpaces {
     std::unique_ptr<HalfSpace> half_space;
   };
   double cell_mm_;
-  std::vector<Sized> sized_;  ///< the one used last is last
+  std::vector<Sized> sized_;  ///< least recently used first
 };
 
 }  // namespace pillarfield

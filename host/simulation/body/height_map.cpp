@@ -16,7 +16,7 @@ std::vector<std::byte> bytes_of_height_map(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{160} << 20U;
   const Error unreadable(path.string(), "the height map cannot be read",
                          "name a .npy or .png file");
-  // A pipe or device is never opened: reading it might wait for ever.
+  // Never opens a pipe or device: reading it may block.
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed) || failed) throw unreadable;
   const std::uintmax_t size = std::filesystem::file_size(path, failed);

@@ -16,7 +16,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-/// A type of numbers in a .npy file, and how one is read.
+/// A number type of .npy files, and its reader.
 struct NpyType {
   std::string_view descr;
   std::size_t size;
@@ -49,7 +49,7 @@ struct NpyHeader {
   std::array<std::size_t, 2> shape = {};
 };
 
-/// Reads the header's text, a Python dictionary of three entries, piece by piece.
+/// Parses the header, a Python dictionary of three entries.
 class NpyHeaderReader {
  public:
   NpyHeaderReader(std::string_view text, const std::string& name) : rest_(text), name_(name) {}
@@ -167,7 +167,7 @@ class NpyHeaderReader {
   const std::string& name_;
 };
 
-/// The header's text and where the numbers begin.
+/// The header's text and the offset of the numbers.
 struct NpyParts {
   std::string_view header;
   std::size_t data;

@@ -12,7 +12,7 @@
 namespace pillarfield {
 namespace {
 
-/// What libpng reads from, and what it says when it fails.
+/// The input of libpng and its error message.
 struct PngInput {
   const std::byte* rest;
   std::size_t left;
@@ -36,7 +36,7 @@ void read_png_bytes(png_structp png, png_bytep to, std::size_t count) {
 
 void ignore_png_warning(png_structp, png_const_charp) {}
 
-/// What is decoded. It outlives every jump out of libpng.
+/// The decoded image. It outlives every longjmp() out of libpng.
 struct PngPicture {
   png_structp png = nullptr;
   png_infop info = nullptr;
@@ -53,7 +53,7 @@ struct PngPicture {
   ~PngPicture() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-// libpng leaves by longjmp(), so the two functions that it may leave own nothing.
+// libpng reports errors by longjmp(): the two functions below own no resources.
 
 bool read_png_header(PngPicture& picture) {
   if (setjmp(png_jmpbuf(picture.png)) != 0) return false;

@@ -8,7 +8,7 @@
 namespace pillarfield {
 namespace {
 
-/// The sum of pressures that a body presses with at an approach, by the volume that overlaps (H8).
+/// Estimated sum of pressures at an approach, from the volume of overlap (H8).
 double estimated_sum(const CellField& height_mm, double approach_mm, double cell_mm) {
   double overlap_mm = 0;
   double cells = 0;
@@ -37,7 +37,7 @@ double smallest_cell_mm(const CellField& height_mm) {
   return *std::min_element(height_mm.values.begin(), height_mm.values.end());
 }
 
-/// The iteration on one window. Cells outside the body stay without pressure.
+/// The iteration on one window. Cells outside the body have no pressure.
 class PressureSearch {
  public:
   PressureSearch(const CellField& height_mm, double sum, HalfSpace& surface)
@@ -49,7 +49,7 @@ class PressureSearch {
         direction_(height_mm.box),
         response_(height_mm.box) {}
 
-  /// Begins with half an ellipsoid over the overlap at `approach_mm`, which is right for spheres.
+  /// Starts from a semi-ellipsoidal pressure over the overlap at `approach_mm`, exact for spheres.
   void start(double approach_mm) {
     for (std::size_t i = 0; i < height_.values.size(); ++i) {
       const double share = 1 - 2 * height_.values[i] / approach_mm;
@@ -94,7 +94,7 @@ class PressureSearch {
     for (double& p : pressure_.values) p *= scale_;
   }
 
-  /// Sets the approach to its mean over the contact; gives the sum of the squares of the gaps left.
+  /// Sets the approach to its mean over the contact. Returns the sum of squared gaps.
   double find_gaps() {
     double mean = 0;
     cells_ = 0;
@@ -123,7 +123,7 @@ class PressureSearch {
            worst_overlap_ <= allowed_overlap();
   }
 
-  /// To the minimum along the direction, with the approach free.
+  /// Step length to the minimum along the direction, with free approach.
   [[nodiscard]] double length_of_step() const {
     double mean = 0;
     for (std::size_t i = 0; i < pressure_.values.size(); ++i) {
@@ -140,7 +140,7 @@ class PressureSearch {
     return curvature > 0 ? slope / curvature : 0;
   }
 
-  /// Makes the step, drops tension and adds overlapping cells; whether none was added.
+  /// Makes the step, drops tensile cells and adds overlapping ones. Returns whether none was added.
   bool step(double length) {
     bool added = false;
     bool dropped = false;
@@ -170,9 +170,9 @@ class PressureSearch {
   double sum_;
   HalfSpace& surface_;
   CellField pressure_;
-  CellField depth_;      ///< what the pressure makes of the surface
-  CellField direction_;  ///< of the search
-  CellField response_;   ///< what it makes of the surface
+  CellField depth_;      ///< displacement by the pressure
+  CellField direction_;  ///< search direction
+  CellField response_;   ///< displacement by direction_
   double approach_ = 0;
   double scale_ = 1;
   double worst_overlap_ = 0;
@@ -193,8 +193,8 @@ std::optional<NormalContact> solve_normal_contact(const CellField& height_mm, do
   const double cell_mm = surfaces.cell_mm();
   CellField height = height_mm;
   for (double& value : height.values) value -= lowest;
-  // The surface moves inwards under pressure, so only cells below the approach can touch. A window
-  // that is too small makes the approach too large, whence the second window is never too small.
+  // Pressure moves the surface inwards, so only cells below the approach can touch. Too small a
+  // window makes the approach too large, so the second window is large enough.
   double approach = estimated_approach(height, sum, cell_mm);
   NormalContact contact;
   CellBox window = reached(height, 1.05 * approach);

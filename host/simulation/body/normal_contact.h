@@ -7,26 +7,26 @@
 
 namespace pillarfield {
 
-/// How a rigid body without friction lies on the half-space under a load (H7).
+/// Frictionless contact of a rigid body with the half-space (H7).
 struct NormalContact {
-  double approach_mm = 0;  ///< how far height 0 is below the undeformed surface
-  CellField pressure;      ///< over πE*, zero or more; its box holds the whole contact
-  CellBox contact;         ///< the cells that bear pressure
+  double approach_mm = 0;  ///< depth of height 0 below the undeformed surface
+  CellField pressure;      ///< over πE*, >= 0; the box contains the contact
+  CellBox contact;         ///< box of the cells under pressure
   int iterations = 0;
 };
 
-/// Gaps and overlaps that are left may be that part of the approach: the root mean square over the
-/// contact, and three times as much in any single cell outside.
+/// Convergence tolerance, relative to the approach: RMS gap over the contact; three times as much
+/// overlap in any cell outside.
 inline constexpr double kGapTolerance = 1e-5;
 
-/// Iterations that are tried; some 25 are usual.
+/// Largest number of iterations; about 25 are usual.
 inline constexpr int kMostPressIterations = 2000;
 
 /// Finds the pressure whose sum over the cells is `sum` (> 0) under a body whose surface is
 /// at `height_mm`, of any origin; infinite where there is no body. Bound-constrained conjugate
 /// gradients of Polonsky and Keer (Wear 231, 1999, 206-219), on the cells that the body reaches.
-/// The sum is met to rounding. Unset where no cell is below the body, or where
-/// kMostPressIterations did not suffice.
+/// The sum is met to rounding. Unset if no cell is below the body or
+/// kMostPressIterations do not suffice.
 [[nodiscard]] std::optional<NormalContact> solve_normal_contact(const CellField& height_mm,
                                                                 double sum, HalfSpaces& surfaces);
 

@@ -7,9 +7,8 @@
 
 namespace pillarfield {
 
-/// A smooth random function of the plane, which repeats after 512 spacings: Gaussian noise, a
-/// function of seed, stream and number, that is filtered in the Fourier domain and interpolated
-/// linearly.
+/// A smooth random function of the plane with a period of 512 spacings: Gaussian noise, a function
+/// of seed, stream and number, filtered in the Fourier domain and interpolated linearly.
 class RandomField {
  public:
   struct Noise {
@@ -18,13 +17,12 @@ class RandomField {
     std::uint64_t number;  ///< of the body
   };
 
-  /// Power spectrum ~ k^(−2 − 2 exponent) for wavelengths from 8 `spacing_mm` to `longest_mm`, none
-  /// beyond; mean 0, root mean square 1. A single wavelength is left where there would be none.
+  /// Power spectrum ∝ k^(−2 − 2 exponent) for wavelengths from 8 `spacing_mm` to `longest_mm`, at
+  /// least one; mean 0, root mean square 1.
   [[nodiscard]] static RandomField self_affine(const Noise& noise, double spacing_mm,
                                                double longest_mm, double exponent);
 
-  /// Gaussian noise f correlated as exp(−(d/length)²), made even: erf(f/√2), so that every value
-  /// between −1 and 1 is as likely.
+  /// erf(f/√2) of Gaussian noise f with correlation exp(−(d/length)²): uniform on (−1, 1).
   [[nodiscard]] static RandomField smooth(const Noise& noise, double length_mm);
 
   [[nodiscard]] double at(double x_mm, double y_mm) const;

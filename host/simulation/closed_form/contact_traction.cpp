@@ -31,7 +31,7 @@ SpinCorners spin_corners(ContactShape shape) {
           [](double x, double y) { return punch_spin_corner(y, x); }};
 }
 
-/// A contact at an instant, over the pillars it can reach.
+/// A contact at an instant, over the pillars of its bounding box.
 class Footprint {
  public:
   Footprint(const Contact& contact, const ContactKey& state, const PillarGrid& grid)
@@ -45,11 +45,11 @@ class Footprint {
   [[nodiscard]] const PillarBox& box() const { return box_; }
   [[nodiscard]] PlaneVector direction() const { return direction_; }
 
-  /// Shares of the normal load.
+  /// Fractions of the normal load.
   [[nodiscard]] Shares pressure() const { return pressure_within(centre_, radius_mm_); }
 
-  /// The ellipse that the stick zone takes from the shear of full sliding: concentric under a
-  /// sphere (C11), at the leading edge under a roller (C20).
+  /// Reduction of full-sliding shear by the stick zone: concentric under a sphere (C11), at the
+  /// leading edge under a roller (C20).
   [[nodiscard]] Shares stick() const {
     const double slip_share = 1 - contact_.tangential_ratio;
     if (!is_cylinder()) return pressure_within(centre_, radius_mm_ * std::cbrt(slip_share));
@@ -59,7 +59,7 @@ class Footprint {
                            half_width);
   }
 
-  /// Shares of one component of the spin.
+  /// Fractions of one component of the spin's shear.
   [[nodiscard]] Shares spin(CornerFunction corner) const {
     return disc_shares(grid_, box_, {centre_, radius_mm_}, corner);
   }
@@ -81,7 +81,7 @@ class Footprint {
     Shares shares = disc_shares(
         grid_, box_, {centre, radius_mm},
         contact_.shape == ContactShape::sphere ? sphere_pressure_corner : punch_pressure_corner);
-    // A cell that barely meets the disc may come out a rounding below zero.
+    // Rounding may make a cell at the rim negative.
     for (double& share : shares) share = std::max(0.0, share);
     return shares;
   }
@@ -106,8 +106,8 @@ void add_shares(const Shares& shares, double force_n, const PillarBox& box,
   }
 }
 
-/// Shares of mu P along the direction of motion, from those of the pressure: all of them in full
-/// sliding (C10), less the stick zone's ellipse where there is one.
+/// Fractions of µP along the direction of motion: those of the pressure in full sliding (C10),
+/// minus the stick zone's reduction, if any.
 Shares tangential_shares(const Contact& contact, const Footprint& footprint, Shares pressure) {
   if (contact.motion == ContactMotion::slide) return pressure;
   const Shares stick = footprint.stick();

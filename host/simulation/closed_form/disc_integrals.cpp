@@ -11,8 +11,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// A corner moved into the square around the disc, where the corner functions of pressure are
-/// constant beyond, and the three angles of (C5) and (C7).
+/// A corner clamped to the disc's bounding square, beyond which the corner functions of pressure
+/// are constant, and the three angles of (C5) and (C7).
 struct PressureCorner {
   double x;
   double y;
@@ -29,11 +29,11 @@ PressureCorner pressure_corner(double x, double y) {
   return {x, y, height, std::atan2(y, height), std::atan2(x, height), std::atan2(x * y, height)};
 }
 
-/// A point of the edge at height y, moved into the disc, and the integrals of (C13).
+/// A point at height y clamped to the disc, and the integrals of (C13).
 struct SpinCorner {
   double x;  ///< within the chord at height y
   double y;
-  double beyond;  ///< by how much x was moved, with its sign
+  double beyond;  ///< signed distance by which x was clamped
   double radius;
   double height;      ///< sqrt(1 − r²)
   double half_chord;  ///< sqrt(1 − y²), squared
@@ -50,7 +50,7 @@ SpinCorner spin_corner(double x, double y) {
   SpinCorner corner{inside, y, x - inside, radius, height, half_chord_squared, 0, 0};
   if (inside == 0 || half_chord == 0) return corner;
 
-  // Closer to the diameter than this the limit y = 0 holds to all digits.
+  // Below this the limit y = 0 is exact in double precision.
   const double y_squared = y * y;
   if (y_squared < 1e-24) {
     corner.second = std::copysign(1 - height, inside);

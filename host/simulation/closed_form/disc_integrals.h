@@ -2,15 +2,15 @@
 
 namespace pillarfield {
 
-/// Integrals of the tractions under a disc of radius 1 that carries a load of 1, friction 1.
+/// Corner functions of tractions on a disc of radius 1 under load 1, friction 1.
 ///
-/// A traction f has the corner function W(x, y), whose mixed derivative is f. The force on the cell
-/// [x0, x1] × [y0, y1] is the second difference of equation (C2),
+/// The corner function W(x, y) of a traction f has the mixed derivative f. The force on the cell
+/// [x0, x1] × [y0, y1] is its second difference (C2),
 ///
 ///     W(x1, y1) − W(x0, y1) − W(x1, y0) + W(x0, y0),
 ///
-/// so that the forces of cells which cover the disc add up to its whole load but for rounding.
-/// Each function takes any finite x and y, is exact to 1e-15, and costs 35 ns, with spin 0.2 µs.
+/// so forces of cells that cover the disc add up to the load, up to rounding. Arguments: any finite
+/// x and y. Error: 1e-15. Cost: 35 ns, of spin 0.2 µs.
 using CornerFunction = double (*)(double x, double y);
 
 /// Pressure under a sphere, p = 3/(2 pi) sqrt(1 − r²): equation (C5).
@@ -19,11 +19,11 @@ using CornerFunction = double (*)(double x, double y);
 /// Pressure under a flat punch, p = 1 / (2 pi sqrt(1 − r²)): equation (C7).
 [[nodiscard]] double punch_pressure_corner(double x, double y);
 
-/// What turns counter-clockwise under a spinning sphere, q = p (−y, x)/r: the y component has the
-/// corner function W(y, x), the x component −W(x, y). Equation (C15).
+/// Shear under a sphere that spins counter-clockwise, q = p (−y, x)/r: its y component has the
+/// corner function W(y, x), its x component −W(x, y). Equation (C15).
 [[nodiscard]] double sphere_spin_corner(double x, double y);
 
-/// The same under a spinning flat punch: equation (C16).
+/// Shear under a spinning flat punch: equation (C16).
 [[nodiscard]] double punch_spin_corner(double x, double y);
 
 }  // namespace pillarfield

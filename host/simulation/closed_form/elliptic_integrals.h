@@ -2,7 +2,7 @@
 
 namespace pillarfield {
 
-/// Carlson's symmetric elliptic integrals of the same three arguments,
+/// Carlson's symmetric elliptic integrals,
 ///
 ///     first  = R_F(x, y, z) = 1/2 ∫ dt / sqrt((t+x)(t+y)(t+z)),           t from 0 to infinity
 ///     second = R_D(x, y, z) = 3/2 ∫ dt / (sqrt((t+x)(t+y)(t+z)) (t+z))
@@ -13,8 +13,8 @@ struct CarlsonIntegrals {
   double second;
 };
 
-/// Needs x, y >= 0, of which one at most is zero, and z > 0. Within 1e-14 relative; 15 steps where
-/// the arguments are alike, 20 where they differ by 24 decades, of three square roots each.
+/// Requires x, y >= 0, at most one of them zero, and z > 0. Relative error: 1e-14. Cost: 15 steps
+/// of three square roots for similar arguments, 20 for a range of 24 decades.
 [[nodiscard]] CarlsonIntegrals carlson_integrals(double x, double y, double z);
 
 }  // namespace pillarfield

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A convex polygon: a cell cut by two half planes, and room for what rounding may add.
+/// A convex polygon: a cell cut by two half planes, with spare corners for rounding.
 struct Polygon {
   std::array<LinePoint, 9> corners{};
   std::size_t size = 0;
@@ -20,7 +20,7 @@ struct Polygon {
   [[nodiscard]] std::span<const LinePoint> points() const { return {corners.data(), size}; }
 };
 
-/// What of the polygon has sign·along <= limit.
+/// The part of the polygon with sign·along <= limit.
 Polygon clip(std::span<const LinePoint> points, double sign, double limit) {
   Polygon inside;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -52,7 +52,7 @@ double integral_of_load_to(double u) {
   return integral / pi + (std::abs(u) - inside) / 2;
 }
 
-/// Mean of load_to over [u0, u1]; where the quotient loses its digits, the value in the middle.
+/// Mean of load_to over [u0, u1]; the midpoint value if the quotient loses digits.
 double mean_load_to(double u0, double u1) {
   if (std::abs(u1 - u0) < 1e-6) return load_to((u0 + u1) / 2);
   return (integral_of_load_to(u1) - integral_of_load_to(u0)) / (u1 - u0);

@@ -41,7 +41,7 @@ bool meets_disc(const Edges& edges, std::size_t row, std::size_t col) {
   return dx * dx + dy * dy < 1;
 }
 
-/// A point of the skin as the strip sees it.
+/// A point of the skin in the strip's frame.
 LinePoint on_strip(const Strip& strip, double x_mm, double y_mm) {
   const double dx = x_mm - strip.centre_mm.x;
   const double dy = y_mm - strip.centre_mm.y;

@@ -7,7 +7,7 @@
 
 namespace pillarfield {
 
-/// The share of a contact's load that each pillar of a box takes, row by row from the top left.
+/// Fraction of a contact's load on each pillar of a box, row by row from the top left.
 using Shares = std::vector<double>;
 
 /// A circular contact area.
@@ -16,12 +16,12 @@ struct Disc {
   double radius_mm;
 };
 
-/// Integrals over the cells of `box` of the traction on a disc that `corner` stands for; zero where
-/// a cell does not meet the disc. Exact to 1e-13 of the load; they add up to the whole of it.
+/// Integrals over the cells of `box` of the traction with the corner function `corner`; zero
+/// outside the disc. They add up to the load. Error: 1e-13 of the load.
 [[nodiscard]] Shares disc_shares(const PillarGrid& grid, const PillarBox& box, const Disc& disc,
                                  CornerFunction corner);
 
-/// The contact area of a cylinder whose axis lies across `direction`, a unit vector.
+/// The contact area of a cylinder whose axis is at right angles to the unit vector `direction`.
 struct Strip {
   PlaneVector centre_mm;
   PlaneVector direction;
@@ -29,7 +29,7 @@ struct Strip {
   double length_mm;
 };
 
-/// The same for the elliptical pressure under a cylinder (C17). Exact to 1e-9 of the load.
+/// Integrals of the elliptical pressure under a cylinder (C17). Error: 1e-9 of the load.
 [[nodiscard]] Shares strip_shares(const PillarGrid& grid, const PillarBox& box, const Strip& strip);
 
 }  // namespace pillarfield

@@ -15,12 +15,12 @@ std::string shape_text(BodyShape shape) {
   return fmt::format(R"(shape = "{}")", kBodyShapes[static_cast<std::size_t>(shape)].name);
 }
 
-/// Refuses a key of another shape.
+/// Refuses a key that does not apply to the shape.
 void refuse_key(const TomlSection& section, std::string_view key, BodyShape shape) {
   if (section.has(key)) section.fail(key, "does not apply to " + shape_text(shape), "no such key");
 }
 
-/// Reads the numbers that this shape has, and refuses those of other shapes.
+/// Reads the numbers that apply to the shape; refuses others.
 void read_body_quantities(TomlSection& section, Body& body) {
   for (const auto& [quantity, required, applies] : kBodyQuantities) {
     if (!applies(body.shape)) {
@@ -33,7 +33,7 @@ void read_body_quantities(TomlSection& section, Body& body) {
   }
 }
 
-/// As many numbers as `values` has.
+/// Reads a list of `values`' length.
 template <std::size_t count>
 void read_sizes(TomlSection& section, std::string_view key, std::array<double, count>& values) {
   const auto sizes = section.numbers(key, count, kBodySizeMm);
@@ -71,13 +71,13 @@ void read_body_shape(TomlSection& section, const std::filesystem::path& folder, 
   }
 }
 
-/// A part of a body's description is nothing without another.
+/// Refuses a key without the key that it depends on.
 void expect_together(const TomlSection& section, std::string_view key, std::string_view needed) {
   if (!section.has(key) || section.has(needed)) return;
   section.fail(key, fmt::format("comes without {}", needed), "both, or none");
 }
 
-/// A key of the path, or of a body that stays in place.
+/// Reads a key of the path, or the pose of a body in a fixed place.
 BodyKey read_body_key(TomlSection& section) {
   const auto position = section.numbers("position_mm", 2, kPathPositionMm);
   if (!position) section.fail_missing("position_mm", "a list of 2, [x, y] in millimetres");

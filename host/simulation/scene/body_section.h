@@ -7,8 +7,8 @@
 
 namespace pillarfield {
 
-/// Reads a [[body]]. `folder` comes before the path of a height map that is relative; the file is
-/// not opened. Throws Error.
+/// Reads a [[body]]. Relative height map paths are relative to `folder`; the file is not opened.
+/// Throws Error.
 [[nodiscard]] Body read_body(TomlSection& section, const std::filesystem::path& folder);
 
 }  // namespace pillarfield

@@ -14,7 +14,7 @@
 
 namespace pillarfield {
 
-/// "sphere", "flat_punch", ... as a message lists them.
+/// Names as in messages: "sphere", "flat_punch", ...
 template <class Names>
 std::string quoted(const Names& names) {
   std::vector<std::string> all;
@@ -23,7 +23,7 @@ std::string quoted(const Names& names) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-/// The value that a name stands for; unset where the key is absent.
+/// The value of a name; unset if the key is absent.
 template <class Value, std::size_t count>
 std::optional<Value> read_name(TomlSection& section, std::string_view key,
                                const std::array<Named<Value>, count>& names) {

@@ -13,9 +13,8 @@
 
 namespace pillarfield {
 
-/// The path of a contact or body: the tables of `path`, their time_s rising, each read by `read`;
-/// or a single key, read from the section itself, whose names must not stand beside `path`. Throws
-/// Error with the line of what is wrong.
+/// Reads the path of a contact or body: the tables of `path` by `read`, with increasing time_s; or
+/// a single key from the section itself, whose names exclude `path`. Throws Error with the line.
 template <class Key, class Read>
 std::vector<Key> read_path(TomlSection& section, const std::string& title,
                            std::initializer_list<std::string_view> names, const Read& read) {

@@ -10,7 +10,7 @@
 
 namespace pillarfield {
 
-/// A number of a scene: its key in the file, where it is kept, and what it may be.
+/// A number of a scene: its key in the file, its member, and its range.
 template <class Part>
 struct Quantity {
   std::string_view key;
@@ -18,7 +18,7 @@ struct Quantity {
   Range range;
 };
 
-// The one table of what a scene may say, used to read a file and to check a scene made in code.
+// Keys and ranges, for reading files and for checking scenes made in code.
 
 inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
     {"sensel_pitch_mm", &Skin::sensel_pitch_mm, {1e-3, 1e3}},
@@ -40,19 +40,19 @@ inline constexpr int kMaxAdcBits = 16;
 inline constexpr Range kPowerLawExponent = {kMinExponent, kMaxExponent};
 inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceCounts};
 
-/// A number of a contact, and the contacts that have it.
+/// A number of a contact, and the shapes and motions to which it applies.
 struct ContactQuantity {
   Quantity<Contact> quantity;
   bool required = false;
   bool (*applies)(ContactShape shape, ContactMotion motion) = nullptr;
 };
 
-/// Whether a motion pushes the skin in a direction.
+/// Whether the motion has a direction.
 [[nodiscard]] constexpr bool is_directed(ContactMotion motion) {
   return motion != ContactMotion::press && motion != ContactMotion::spin;
 }
 
-/// Whether a motion leaves a part of the contact sticking.
+/// Whether the motion has a stick zone.
 [[nodiscard]] constexpr bool sticks(ContactMotion motion) {
   return motion == ContactMotion::partial_slip || motion == ContactMotion::roll;
 }
@@ -80,7 +80,7 @@ inline constexpr std::array<ContactQuantity, 6> kContactQuantities = {{
      [](ContactShape, ContactMotion motion) { return sticks(motion); }},
 }};
 
-/// A number of a body, and the shapes that have it.
+/// A number of a body, and the shapes to which it applies.
 struct BodyQuantity {
   Quantity<Body> quantity;
   bool required = false;
@@ -171,16 +171,16 @@ inline constexpr std::array<Named<Estimator>, 4> kEstimators = {{
     {"direct", Estimator::direct},
     {"paper", Estimator::paper},
     {"contact", Estimator::contact},
-    {"field", Estimator::contact},  // its former name
+    {"field", Estimator::contact},  // former name
 }};
 
-/// Whether the closed forms know this motion of this shape.
+/// Whether a closed form exists for this shape and motion.
 [[nodiscard]] bool is_possible(ContactShape shape, ContactMotion motion);
 
-/// What an analogue-to-digital converter reads at most, 2^bits − 1; unset without one.
+/// Largest value of the analogue-to-digital converter, 2^bits − 1; unset without one.
 [[nodiscard]] std::optional<double> full_scale_of(const SensorModel& sensor);
 
-/// Throws Error, its place being `where`, when anything in `scene` is out of its range.
+/// Throws Error, naming `where`, if a value of `scene` is out of range.
 void check(const Scene& scene, const char* where);
 
 }  // namespace pillarfield

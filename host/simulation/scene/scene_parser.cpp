@@ -20,7 +20,7 @@
 namespace pillarfield {
 namespace {
 
-/// Reads the numbers of a table into the members they belong to.
+/// Reads the numbers of a table into the members of `part`.
 template <class Part, std::size_t count>
 void read_quantities(TomlSection& section, const std::array<Quantity<Part>, count>& quantities,
                      Part& part) {
@@ -31,7 +31,7 @@ void read_quantities(TomlSection& section, const std::array<Quantity<Part>, coun
 
 // [sensor]
 
-/// What a sensel reads at most; with a converter, what that can express unless the scene says less.
+/// Full scale of the sensor: from the scene, else the converter's largest value.
 std::optional<double> read_full_scale(TomlSection& section, const SensorModel& sensor) {
   const std::optional<double> largest = full_scale_of(sensor);
   if (!largest) return section.number("full_scale_counts", kFullScaleCounts);
@@ -39,7 +39,7 @@ std::optional<double> read_full_scale(TomlSection& section, const SensorModel& s
   return whole ? static_cast<double>(*whole) : largest;
 }
 
-/// A reading must have room between threshold and full scale.
+/// Refuses a full scale that does not exceed the threshold.
 void check_full_scale(const TomlSection& section, const Skin& skin) {
   if (!skin.full_scale_counts || *skin.full_scale_counts > skin.threshold_counts) return;
   section.fail(section.has("full_scale_counts") ? "full_scale_counts" : "adc_bits",
@@ -82,7 +82,7 @@ void read_time(TomlSection section, Scene& scene) {
   section.finish();
 }
 
-/// What is known of friction.
+/// Reads the prior of friction.
 void read_friction(TomlSection& section, FrictionKnowledge& friction) {
   friction.given = section.number("friction", kFrictions);
   friction.bound = section.number("friction_bound", kFrictionBound);
@@ -120,13 +120,13 @@ void read_solver(TomlSection section, Scene& scene) {
 
 // The size of the skin
 
-/// Rows and columns of pillars, as a scene asks for them.
+/// Rows and columns of pillars of a scene, not yet checked.
 struct PillarCounts {
   double rows;
   double cols;
 };
 
-/// Gives the skin the size that `key` asks for.
+/// Sets the size of the skin from `key`.
 void set_size(const TomlSection& section, std::string_view key, PillarCounts counts, Skin& skin) {
   const Range allowed = {1, kMaxPillars};
   const bool fits = 4 * counts.rows * counts.cols <= double{kMaxSkinSensels};
@@ -138,7 +138,7 @@ void set_size(const TomlSection& section, std::string_view key, PillarCounts cou
   skin.cols = 2 * static_cast<std::uint32_t>(counts.cols);
 }
 
-/// Whole pillars along a length; one that lacks no more than a rounding is whole.
+/// Number of whole pillars along a length, tolerant of rounding.
 double pillars_along(double length_mm, const Skin& skin) {
   return std::floor(length_mm / skin.pillar_pitch_mm() + 1e-9);
 }
@@ -196,7 +196,7 @@ void read_skin(TomlSection section, Scene& scene) {
 
 // [[contact]]
 
-/// A shape and a motion as the file writes them.
+/// A shape and a motion as in the file.
 std::string name_of(ContactShape shape, ContactMotion motion) {
   return fmt::format(R"(shape = "{}", motion = "{}")",
                      kShapes[static_cast<std::size_t>(shape)].name,
@@ -222,7 +222,7 @@ void read_motion(TomlSection& section, Contact& contact) {
                quoted(possible));
 }
 
-/// Reads the numbers that this shape and motion have, and refuses those that they have not.
+/// Reads the numbers that apply to the shape and motion; refuses others.
 void read_contact_quantities(TomlSection& section, Contact& contact) {
   for (const auto& [quantity, required, applies] : kContactQuantities) {
     if (!applies(contact.shape, contact.motion)) {
@@ -238,8 +238,7 @@ void read_contact_quantities(TomlSection& section, Contact& contact) {
   }
 }
 
-/// Reads where a contact is and how hard it presses, from a key of its path or from the contact
-/// itself where it stays in place.
+/// Reads place and load of a contact, from a key of its path or from the contact itself.
 ContactKey read_state(TomlSection& section) {
   const auto position = section.numbers("position_mm", 2, kPathPositionMm);
   if (!position) section.fail_missing("position_mm", "a list of 2, [x, y] in millimetres");
@@ -248,7 +247,7 @@ ContactKey read_state(TomlSection& section) {
   return {0, position->front(), position->back(), *load};
 }
 
-/// The load at which a contact has its radius, where the scene does not say: the heaviest.
+/// Default reference load: the heaviest of the path.
 double heaviest_load(const std::vector<ContactKey>& path) {
   const double heaviest = std::ranges::max(path, {}, &ContactKey::load_n).load_n;
   return heaviest > 0 ? heaviest : 1;
@@ -329,7 +328,7 @@ Scene parse_scene(std::string_view text, const std::string& name) {
 Scene load_scene(const std::filesystem::path& path) {
   constexpr std::uintmax_t kMaxBytes = 16 << 20;
   const Error unreadable(path.string(), "cannot be read", "name a scene file (.toml)");
-  // The size first: only a regular file has one, and opening a pipe would wait for its writer.
+  // Check the size first: only regular files have one, and opening a pipe may block.
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
   if (failed) throw unreadable;

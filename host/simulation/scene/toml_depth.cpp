@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kMostParts = 16;
 
-/// Bytes of the string that `text` begins with, its quotes included. One that is not closed ends
-/// before its line does, or where it may have several lines, with the text.
+/// Length in bytes of the string at the start of `text`, quotes included. An unclosed string ends
+/// before the line's end; a multi-line one at the end of the text.
 std::size_t string_length(std::string_view text) {
   const char quote = text.front();
   const std::string three(3, quote);
@@ -27,7 +27,7 @@ std::size_t string_length(std::string_view text) {
       return at + 1;
     } else if (several_lines && text.substr(at).starts_with(three)) {
       at += 3;
-      // Up to two quotes more may end the string's own text.
+      // Up to two quotes may precede the closing three.
       for (int more = 0; more < 2 && at < text.size() && text[at] == quote; ++more) ++at;
       return at;
     }
@@ -35,7 +35,7 @@ std::size_t string_length(std::string_view text) {
   return text.size();
 }
 
-/// Bytes of what `text` begins with: a string, a comment, or one character.
+/// Length in bytes of the token at the start of `text`: a string, a comment, or one character.
 std::size_t token_length(std::string_view text) {
   if (text.front() == '"' || text.front() == '\'') return string_length(text);
   if (text.front() == '#') return std::min(text.find('\n'), text.size());

@@ -10,7 +10,7 @@
 namespace pillarfield {
 namespace {
 
-/// A value as a message shows it.
+/// A value as in messages.
 std::string describe(const toml::node& node) {
   if (const auto* number = node.as_integer()) return fmt::format("is {}", number->get());
   if (const auto* number = node.as_floating_point()) return fmt::format("is {}", number->get());
@@ -20,7 +20,7 @@ std::string describe(const toml::node& node) {
   return node.is_table() ? "is a table" : "is a date or time";
 }
 
-/// The number in a node, whole or not; unset where it is no number or out of range.
+/// The number in a node; unset if it is not a number or out of range.
 std::optional<double> number_in(const toml::node& node, const Range& range) {
   if (!node.is_number()) return std::nullopt;
   const std::optional<double> value = node.value<double>();
@@ -137,7 +137,7 @@ toml::source_region TomlSection::source() const {
 
 void TomlSection::fail_at(const toml::source_region& source, std::string_view key,
                           std::string_view is, std::string_view allowed) const {
-  // A section that is absent has no line.
+  // An absent section has no line.
   const std::string place =
       source.begin.line == 0 ? *file_ : fmt::format("{}:{}", *file_, source.begin.line);
   throw Error(place, fmt::format("key '{:.40}' in {} {}", key, title_, is),

@@ -13,9 +13,9 @@
 
 namespace pillarfield {
 
-/// A table of a TOML file that is read key by key. Every reader returns nothing where the key is
-/// absent and throws Error, "file:line: key 'x' in [section] ...; allowed: ...", where its value is
-/// not allowed. The keys asked for are the keys allowed: finish() refuses all others.
+/// A table of a TOML file, read key by key. Readers return nullopt for an absent key and throw
+/// Error, "file:line: key 'x' in [section] ...; allowed: ...", for a value that is not allowed.
+/// Allowed keys are those that have been read: finish() refuses all others.
 class TomlSection {
  public:
   /// `title` is the section's name in messages: "[skin]". Without a `table`, it is absent. `file`
@@ -32,19 +32,19 @@ class TomlSection {
   std::optional<bool> flag(std::string_view key);
   std::optional<std::string> text(std::string_view key);
 
-  /// A list of numbers: `count` of them, or any number but none where `count` is zero.
+  /// A list of `count` numbers; of at least one if `count` is zero.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
                                              const Range& range);
-  /// A list of tables, one at least.
+  /// A list of at least one table.
   std::optional<std::vector<TomlSection>> tables(std::string_view key, const std::string& title);
 
-  /// The table of that name, titled by it.
+  /// The table `key`, with the title "[key]".
   TomlSection table(std::string_view key);
 
-  /// Refuses the keys that nothing has asked for.
+  /// Refuses keys that have not been read.
   void finish() const;
 
-  /// Throws: the key `is` something that it may not be.
+  /// Throws Error: what the key `is`, and what is allowed.
   [[noreturn]] void fail(std::string_view key, std::string_view is, std::string_view allowed) const;
   [[noreturn]] void fail_missing(std::string_view key, std::string_view allowed) const;
 
