@@ -43,7 +43,7 @@ struct RmsError {
 
 /// Draws `draws` times four readings. The standard error of the second figure is at most
 /// 0.7 / sqrt(draws) of it; that of the first may be larger, as rare misreadings count much.
-/// `number` tells one experiment's noise from another's. About 0.5 µs a draw.
+/// `number` seeds the noise. About 0.5 µs a draw.
 [[nodiscard]] RmsError rms_error(Force force, const PillarSensor& sensor, Estimator estimator,
                                  int draws, std::uint64_t number);
 

@@ -16,15 +16,16 @@ using oracle::Exact;
 using oracle::Force;
 using oracle::SomeReadings;
 
-/// What an estimator may know of an example, in units of the largest reading.
+/// The input of an estimator, in units of the largest reading.
 struct Known {
   SomeReadings usable;
   Exact unit = 0;    ///< counts; 0 where nothing is usable
   Exact hidden = 0;  ///< largest V of an inactive sensel
 };
 
-/// The usable readings of an example; unset if sensels are saturated or missing. The paper has no
-/// threshold, no saturation, and does not distinguish missing from inactive sensels.
+/// The usable readings of an example; unset if sensels are saturated or missing and fewer than
+/// three are usable. The paper has no threshold and no saturation, and equates missing and inactive
+/// sensels.
 std::optional<Known> known_of(const Example& example, Estimator estimator, Precision precision) {
   const bool paper = estimator == Estimator::paper;
   Known known;
@@ -54,8 +55,8 @@ bool is_number(const Force& force) {
   return std::isfinite(static_cast<double>(force.shear_x + force.shear_y + force.normal));
 }
 
-/// The answers that the estimator may give for k = 1; the paper's equations leave a choice at ties.
-/// Where they are 0/0, least squares.
+/// Valid solutions for k = 1: several at ties of the paper's equations, least squares if these are
+/// 0/0.
 std::vector<Force> answers_to(const Known& known, Estimator estimator) {
   if (known.unit == 0 || estimator == Estimator::direct) {
     return {oracle::direct_force(known.usable, 1, known.hidden)};

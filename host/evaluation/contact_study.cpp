@@ -175,7 +175,7 @@ std::vector<FrictionEstimate> friction_estimates(const Recording& recording) {
   SolverPlan plan = recording.plan;
   plan.estimator = Estimator::contact;
   ContactEstimator estimator(plan);
-  std::vector<FrictionEstimate> learnt;
+  std::vector<FrictionEstimate> estimates;
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
     ForceField solved = solve_on_host(recording.plan, recording.frames[frame].view());
     estimator.resolve(solved);
@@ -186,10 +186,10 @@ std::vector<FrictionEstimate> friction_estimates(const Recording& recording) {
       one.median = friction.median;
       one.spread = friction.spread;
       one.used /= friction.median;
-      learnt.push_back(one);
+      estimates.push_back(one);
     }
   }
-  return learnt;
+  return estimates;
 }
 
 double Segment::shear_x(double normal) const { return moves_in_y ? fixed : moving + rate * normal; }

@@ -12,7 +12,7 @@
 namespace pillarfield::coverage_study {
 namespace {
 
-/// A sensor with every imperfection that a calibration knows, read to whole counts.
+/// A sensor with all imperfections that a calibration corrects, in whole counts.
 Scene real_sensor(double noise_counts, std::uint64_t seed) {
   Scene scene;
   scene.skin.counts_per_newton = 320;

@@ -31,7 +31,7 @@ using SomeReadings = std::array<std::optional<Exact>, 4>;  ///< absent where not
 /// The force that comes from (theta, phi), radians.
 [[nodiscard]] Force force_from(Exact magnitude, Exact theta, Exact phi);
 
-/// Equation (2), negative where the pillar lifts off. `k` in counts per newton.
+/// Equation (2), negative for inactive sensels. `k` in counts per newton.
 [[nodiscard]] Readings readings_from(Exact magnitude, Exact theta, Exact phi, Exact k);
 
 /// The same for a force by its components.

@@ -21,7 +21,7 @@ std::size_t first_idle(const SomeReadings& usable) {
   return sensel;
 }
 
-/// Equation (7), with the signs that tell the quadrant.
+/// Equation (7), with the signs that determine the quadrant.
 Exact azimuth_from_four(const SomeReadings& v) {
   return exact::atan2(*v[2] * *v[3] - *v[0] * *v[1], *v[1] * *v[2] - *v[0] * *v[3]);
 }

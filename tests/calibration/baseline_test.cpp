@@ -1,4 +1,4 @@
-// A baseline that drifts is followed where nothing touches the skin, and nowhere else.
+// The baseline follows drift where nothing touches the skin, and only there.
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ double total_normal(const ForceField& forces) {
   return std::accumulate(forces.normal.begin(), forces.normal.end(), 0.0);
 }
 
-/// The mean of the total over so many frames.
+/// Mean of the total over a number of frames.
 double mean_total(Follower& follower, int frames) {
   double total = 0;
   for (int i = 0; i < frames; ++i) total += total_normal(follower.step());

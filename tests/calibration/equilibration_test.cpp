@@ -147,7 +147,7 @@ TEST(Equilibration, DeadAndSaturatedSenselsAreMasked) {
   sensor.dead_share = 0.02;
   PressedSkin skin(20, 20, sensor);
   const Calibration truth = skin.truth();
-  // The tare does not know them: with a threshold of zero counts they may pass for quiet ones.
+  // The tare step has not masked them.
   SkinCalibration before = blank_calibration(skin.skin());
   before.planes.tare = truth.tare;
   const FrameStatistics press = skin.press(0.4, kFrames);

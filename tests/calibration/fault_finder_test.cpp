@@ -1,4 +1,4 @@
-// Faults found by parity over time, and good sensels that must not be called faulty.
+// Faults found by parity over time, and good sensels that must not be masked.
 
 #include "pillarfield/fault_finder.h"
 

@@ -212,8 +212,7 @@ ForceField mostly_sliding(std::uint32_t rows, std::uint32_t cols, double frictio
   return field;
 }
 
-/// A face that presses everywhere alike: so many of its hundred pillars at one ratio, the others at
-/// another.
+/// A face of uniform pressure on a hundred pillars: some at one ratio, the others at another.
 ForceField face(int first, double first_ratio, double other_ratio) {
   ForceField field(12, 12);
   for (std::uint32_t i = 0; i < 100; ++i) {

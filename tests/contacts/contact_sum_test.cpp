@@ -107,7 +107,7 @@ std::vector<ContactRun> some_runs(std::uint32_t rows, std::uint32_t cols) {
   return runs;
 }
 
-/// Within the rounding of so many additions.
+/// Expects agreement within the rounding of the additions.
 void expect_near(double sum, const Exact& exact, std::int64_t pillars) {
   constexpr auto kEpsilon = std::numeric_limits<double>::epsilon();
   const auto bound = exact.magnitude * static_cast<long double>(pillars + 8) * kEpsilon;

@@ -106,7 +106,7 @@ TEST_F(Likelihood, ManyPillarsAreNotMoreCertainThanTheirEffectiveNumber) {
   EXPECT_GT(spread(10), 1.5 * spread(40));
 }
 
-TEST_F(Likelihood, StrangeRatiosLeaveABelief) {
+TEST_F(Likelihood, ExtremeRatiosLeaveAFinitePosterior) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double ratio : {0.0, 1e-30, 1e30, infinity, std::nan("")}) {
     const FrictionPosterior posterior =

@@ -350,11 +350,11 @@ TEST(Histories, TellWhichPillarsSlip) {
     return history.name() == "fingertip 5, slide at 98°, mu 2.2";
   });
   ASSERT_NE(found, all.end());
-  const auto learnt = friction_estimates(record(*found, PILLARFIELD_SCENES));
-  ASSERT_EQ(learnt.size(), 10);  // one contact in each frame
-  EXPECT_EQ(learnt.front().slipping, 0);
-  EXPECT_GT(learnt.back().slipping, 0.95);
-  EXPECT_NEAR(learnt.back().used, 2.2 / learnt.back().median, 0.2);
+  const auto estimates = friction_estimates(record(*found, PILLARFIELD_SCENES));
+  ASSERT_EQ(estimates.size(), 10);  // one contact in each frame
+  EXPECT_EQ(estimates.front().slipping, 0);
+  EXPECT_GT(estimates.back().slipping, 0.95);
+  EXPECT_NEAR(estimates.back().used, 2.2 / estimates.back().median, 0.2);
 }
 
 class SmallHistories : public testing::TestWithParam<Indenter> {

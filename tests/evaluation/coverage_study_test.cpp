@@ -1,5 +1,5 @@
-// The stated uncertainty holds the truth as often as it says, on scenes with every imperfection of
-// a sensor that a calibration knows.
+// The coverage of the stated uncertainty is as stated, on scenes with all imperfections that a
+// calibration corrects.
 
 #include "evaluation/coverage_study.h"
 

@@ -298,9 +298,10 @@ TEST(BodyHistory, RefusesWhatItCannotSolve) {
   BodyHistory history(scene_of(fast), 0);
   EXPECT_NO_THROW(static_cast<void>(history.forces(1)));
   for (int again = 0; again < 2; ++again) {
-    EXPECT_EQ(message_of([&] { static_cast<void>(history.forces(2)); }),
-              "body 1 at 0.2 s: it moves 899 mm in one step; give it more substeps, or lift it in "
-              "between");
+    EXPECT_EQ(
+        message_of([&] { static_cast<void>(history.forces(2)); }),
+        "body 1 at 0.2 s: it moves 899 mm in one step; give it more substeps, or withdraw it in "
+        "between");
   }
 }
 

@@ -217,7 +217,7 @@ void BodyHistory::add_elastic_shear(CellVectors& drive_mm, const BodyKey& pose) 
     throw Error(place(pose),
                 fmt::format("it moves {:.3g} mm in one step",
                             std::hypot(pose.x_mm - pose_.x_mm, pose.y_mm - pose_.y_mm)),
-                "give it more substeps, or lift it in between");
+                "give it more substeps, or withdraw it in between");
   }
   CellVectors moved(both);
   half_spaces_.for_box(both).shear(on_box(shear_.x, both), on_box(shear_.y, both), moved.x,

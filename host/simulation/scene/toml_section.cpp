@@ -112,8 +112,9 @@ TomlSection TomlSection::table(std::string_view key) {
 void TomlSection::finish() const {
   if (!table_) return;
   for (const auto& [key, node] : *table_) {
-    if (std::find(asked_.begin(), asked_.end(), key.str()) != asked_.end()) continue;
-    fail_at(key.source(), key.str(), "is unknown here", fmt::format("{}", fmt::join(asked_, ", ")));
+    if (std::find(read_keys_.begin(), read_keys_.end(), key.str()) != read_keys_.end()) continue;
+    fail_at(key.source(), key.str(), "is unknown here",
+            fmt::format("{}", fmt::join(read_keys_, ", ")));
   }
 }
 
@@ -127,7 +128,7 @@ void TomlSection::fail_missing(std::string_view key, std::string_view allowed) c
 }
 
 const toml::node* TomlSection::find(std::string_view key) {
-  asked_.push_back(key);
+  read_keys_.push_back(key);
   return table_ ? table_->get(key) : nullptr;
 }
 

@@ -57,7 +57,7 @@ class TomlSection {
   const toml::table* table_;
   std::string title_;
   const std::string* file_;
-  std::vector<std::string_view> asked_;
+  std::vector<std::string_view> read_keys_;
 };
 
 }  // namespace pillarfield
