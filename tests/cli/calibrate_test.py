@@ -241,7 +241,7 @@ class WrongInput(Calibrate):
         self.assert_refused("tare", few, says=["few.h5", "4 frames", "at least 10"])
         self.assert_refused("tare", ball, says=["ball.h5", "touched", "preloaded"])
         self.assert_refused("tare", small, "--calibration", tared, says=["60 x 40", "60 x 60"])
-        self.assert_refused("equilibrate", bare, *equilibrate, says=["unloaded.h5", "not answer"])
+        self.assert_refused("equilibrate", bare, *equilibrate, says=["unloaded.h5", "not respond"])
         self.assert_refused("equilibrate", ball, *equilibrate, says=["ball.h5", "not answer"])
         self.assert_refused("equilibrate", few, *equilibrate, says=["few.h5", "at least 5"])
         self.assert_refused("equilibrate", small, *equilibrate, says=["60 x 40", "60 x 60"])

@@ -427,13 +427,13 @@ TEST(ContactTracker, RefusesWhatMakesNoSense) {
     says([&] { const ContactTracker tracker(1, {.hidden_n = force_n}); }, "hidden");
   }
   for (const double reach_mm : {-1.0, 1001.0, kNan}) {
-    says([&] { const ContactTracker tracker(1, {.reach_mm = reach_mm}); }, "jump");
+    says([&] { const ContactTracker tracker(1, {.reach_mm = reach_mm}); }, "reach");
   }
   says([] { const ContactTracker tracker(1, {.threads = 1025}); }, "1025 threads");
   ContactTracker tracker(kPillarPitchMm);
   tracker.update(Patch(4, 5).view(), 0);
   const Patch other(5, 4);
-  says([&] { tracker.update(other.view(), 1); }, "5 x 4 pillars after such of 4 x 5");
+  says([&] { tracker.update(other.view(), 1); }, "5 x 4 pillars after frames of 4 x 5");
   const Patch same(4, 5);
   ForceFieldView cut = same.view();
   cut.normal = {};
