@@ -30,18 +30,17 @@ struct SolveSummary {
   double seconds = 0;          ///< reading, solving and writing, which overlap
 };
 
-/// Seconds from one frame to the next; throws where the file does not tell.
+/// Seconds between frames. Throws Error where the times do not rise.
 double frame_interval(const SolveOptions& options, FrameSource& source) {
   if (source.frames() >= 2) {
     const double interval = (source.time(source.frames() - 1) - source.time(0)) /
                             static_cast<double>(source.frames() - 1);
     if (interval > 0) return interval;
   }
-  throw Error(options.input, "its frames do not tell the time from one to the next",
-              "solve without following the baseline");
+  throw Error(options.input, "the times of its frames do not rise", "leave out --follow-baseline");
 }
 
-/// The plan that the file asks for, and after it the command line.
+/// The settings of the file, then of the command line.
 SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
@@ -62,13 +61,13 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
-  ask_for_contacts(options.contacts, options.output, info);
+  set_contacts(options.contacts, options.output, info);
   return info;
 }
 
 constexpr int kFramesInFlight = 3;
 
-/// Counts what is solved, and shows how far the work is.
+/// Counts regions and shows the progress.
 class Counter final : public ForceSink {
  public:
   Counter(std::uint64_t frames, bool quiet) : progress_("Solving", frames, quiet) {}
@@ -130,7 +129,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
              summary.seconds, rounded(per_second(frames, summary.seconds)),
              per_second(pillars, summary.seconds) / 1e6);
   fmt::print("  opening, compiling         {:.2f} s\n", summary.startup_seconds);
-  fmt::print("In contact: {} of {} pillars ({}), of these\n", grouped(regions.in_contact()),
+  fmt::print("In contact: {} of {} pillars ({}), of which\n", grouped(regions.in_contact()),
              grouped(regions.all()), percent(regions.in_contact(), regions.all()));
   for (const Region region : kContactRegions) {
     fmt::print("  {:<9} {:>7}  {}\n",
@@ -138,11 +137,12 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
   if (plan.estimator == Estimator::contact) {
-    fmt::print("Resolved with the help of their contacts: {} of {} pillars of region 3\n",
+    fmt::print("Resolved by the friction of their contacts: {} of {} pillars of region 3\n",
                grouped(regions.resolved), grouped(regions.of(Region::three)));
   }
-  fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
-             grouped(regions.saturated), grouped(regions.inconsistent));
+  fmt::print(
+      "Flagged: {} with a saturated sensel, {} with a missing sensel or inconsistent readings\n",
+      grouped(regions.saturated), grouped(regions.inconsistent));
   if (!options.contacts.file.empty()) {
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
                summary.done.most_contacts, printable(options.contacts.file));
@@ -150,7 +150,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// Where nearly all pillars of a real skin are in contact, its tare is likely to be missing.
+/// Warns of a recording that seems to lack its tare: nearly all pillars of a real skin in contact.
 void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
                   const RegionCount& regions) {
   constexpr double kNearlyAll = 0.95;
@@ -159,7 +159,7 @@ void warn_of_tare(const SolveOptions& options, const FrameSource& source, const 
     return;
   }
   fmt::print(stderr,
-             "{}: {} of all pillars are in contact and it has no tare; measure one with "
+             "{}: {} of all pillars are in contact and there is no tare; measure one with "
              "'pillarfield calibrate tare'\n",
              printable(options.input), percent(regions.in_contact(), regions.all()));
 }
@@ -171,7 +171,6 @@ void check_solve_outputs(const SolveOptions& options) {
                 options.replace);
 }
 
-/// Reads, solves, tracks and writes all frames.
 void run(const SolveOptions& options, FrameSource& source, Processor& processor,
          const std::vector<std::unique_ptr<ForceSink>>& files, ContactTracker* tracker,
          SolveSummary& summary) {
@@ -192,15 +191,15 @@ void run(const SolveOptions& options, FrameSource& source, Processor& processor,
 
 }  // namespace
 
-void solve(const SolveOptions& asked) {
-  SolveOptions options = asked;
+void solve(const SolveOptions& given) {
+  SolveOptions options = given;
   const Stopwatch watch;
   check(options.contacts, options.output);
   check_solve_outputs(options);
   const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
   print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
-  take_friction(plan, options.contacts.contacts);
+  set_friction(plan, options.contacts.contacts);
   const Device device = open_device(options.device.name);
   Processor processor(device, plan,
                       {.memory = options.device.memory,

@@ -1,6 +1,6 @@
-"""What the commands write: never onto what they read, never two at once, never over a recording.
+"""Outputs of the commands never replace inputs, recordings or a concurrent output.
 
-`outputs_test.py --pairs 20` races so many pairs of writers.
+`outputs_test.py --pairs 20` races 20 pairs of writers.
 """
 
 import os
@@ -39,7 +39,7 @@ position_mm = [0, 0]
 
 
 def content_of(path):
-    """All that a file holds, in a form that can be compared."""
+    """The content of a file, for comparison."""
     if path.suffix != ".h5":
         return path.read_bytes()
     found = {}
@@ -61,7 +61,7 @@ class OutputTest(CommandTest):
 
 
 class Inputs(OutputTest):
-    """A file that is read is never written, however it is called."""
+    """An input is never written, whatever its path."""
 
     def setUp(self):
         super().setUp()
@@ -118,7 +118,7 @@ class Inputs(OutputTest):
             ("calibrate", "apply", calibration, recording, "-o", "soft_cal.h5"),
             ("calibrate", "apply", calibration, "new.h5.part", "-o", "new.h5"),
         ]
-        # A table of contacts that is the scene, by a further name.
+        # Another name of the scene, given as table of contacts.
         os.link(self.scene, self.folder / "ball.csv")
         before = {path: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
         names = sorted(path.name for path in self.folder.iterdir())
@@ -127,7 +127,7 @@ class Inputs(OutputTest):
         for arguments in aims:
             for leave in ((), ("--overwrite",)):
                 with self.subTest(arguments=arguments, leave=leave):
-                    line = self.assert_fails(*arguments, *leave, says=["read"])
+                    line = self.assert_fails(*arguments, *leave, names=["read"])
                     self.assertIn("write to another file", line)
         self.assert_folder_holds(*names)
         for path, content in before.items():
@@ -139,19 +139,19 @@ class Inputs(OutputTest):
         (self.folder / "link.csv").symlink_to("x.csv")
         for table in ("x.csv", "./x.csv", "here/x.csv", "link.csv"):
             self.assert_fails("solve", "rec.h5", "-o", "x.csv", "--contacts", table,
-                              says=["share this file"])
+                              names=["share this file"])
         self.assertFalse((self.folder / "x.csv").exists())
 
 
 class Existing(OutputTest):
-    def test_what_cannot_be_made_again_is_replaced_only_when_told(self):
+    def test_recordings_are_replaced_only_with_overwrite(self):
         recording = self.record()
         before = recording.read_bytes()
         other = self.record("other.h5", "--seed", 7)
         for arguments in (("simulate", self.scene, "-o", recording),
                           ("solve", other, "-o", recording),
                           ("calibrate", "tare", other, "-o", recording)):
-            self.assert_fails(*arguments, says=["rec.h5", "holds a recording", "--overwrite"])
+            self.assert_fails(*arguments, names=["rec.h5", "holds a recording", "--overwrite"])
         self.assertEqual(recording.read_bytes(), before)
         run("simulate", self.scene, "-o", recording, "--seed", 7, "--overwrite")
         self.assertEqual(content_of(recording), content_of(other))
@@ -163,12 +163,12 @@ class Existing(OutputTest):
             run("solve", recording, "-o", output)
             run("solve", recording, "-o", output)
             output.write_text("my notes\n", encoding="utf-8")
-            self.assert_fails("solve", recording, "-o", output, says=[name, "--overwrite"])
+            self.assert_fails("solve", recording, "-o", output, names=[name, "--overwrite"])
             self.assertEqual(output.read_text(encoding="utf-8"), "my notes\n")
             run("solve", recording, "-o", output, "--overwrite")
         notes = self.folder / "notes.toml"
         notes.write_text("[a]\n", encoding="utf-8")
-        self.assert_fails("simulate", self.scene, "-o", notes, says=["notes.toml", "TOML"])
+        self.assert_fails("simulate", self.scene, "-o", notes, names=["notes.toml", "TOML"])
 
     def test_a_link_at_the_name_stays(self):
         (self.folder / "far").mkdir()
@@ -177,22 +177,22 @@ class Existing(OutputTest):
         self.assertTrue((self.folder / "f.csv").is_symlink())
         self.assertIn("frame,time_s", (self.folder / "far/real.csv").read_text(encoding="utf-8"))
 
-    def test_a_link_at_the_part_is_no_way_to_other_files(self):
+    def test_a_link_at_the_part_is_refused(self):
         victim = self.folder / "victim"
         victim.write_text("precious", encoding="utf-8")
         recording = self.record()
         for name in ("f.h5", "f.csv", "f.npy"):
             (self.folder / (name + ".part")).symlink_to("victim")
             self.assert_fails("solve", recording, "-o", self.folder / name,
-                              says=[name + ".part", "symbolic link"])
+                              names=[name + ".part", "symbolic link"])
         (self.folder / "new.h5.part").symlink_to("victim")
         self.assert_fails("simulate", self.scene, "-o", self.folder / "new.h5",
-                          says=["symbolic link"])
+                          names=["symbolic link"])
         self.assertEqual(victim.read_text(encoding="utf-8"), "precious")
 
 
 class Race(OutputTest):
-    """Two writers of one output: one wins whole, the other ends with one line."""
+    """Of two writers of one output one completes it and the other ends with one line."""
 
     FRAMES = 1500
 
@@ -203,7 +203,7 @@ class Race(OutputTest):
 
     @staticmethod
     def writers_of(processes, part):
-        """Those that have the part open."""
+        """The processes that have opened the part."""
         def has_it(process):
             folder = f"/proc/{process.pid}/fd"
             try:
@@ -214,8 +214,8 @@ class Race(OutputTest):
         return [process for process in processes if has_it(process)]
 
     def race(self, commands, output, wait_s):
-        """Starts two commands `wait_s` apart. Once one of them writes, it is held until the other
-        has ended, so that they meet on a slow machine too. Returns the index of the winner."""
+        """Starts two commands `wait_s` apart and stops the first writer until the other has ended, so that
+        they overlap on slow machines too. Returns the index of the winner."""
         logs = [open(self.folder / f"log_{index}", "w+", encoding="utf-8") for index in range(2)]
         processes = [self.start(commands[0], logs[0])]
         time.sleep(wait_s)
@@ -278,7 +278,7 @@ class Race(OutputTest):
 
 
 class Ends(OutputTest):
-    """Signals and limits end in one line, and what was flushed stays."""
+    """Signals and limits end in one line and keep flushed frames."""
 
     def setUp(self):
         super().setUp()
@@ -295,8 +295,8 @@ class Ends(OutputTest):
                     until(process)
                     break
                 time.sleep(0.01)
-            _, complaint = process.communicate(timeout=60)
-        return process.returncode, complaint.strip().splitlines()
+            _, error = process.communicate(timeout=60)
+        return process.returncode, error.strip().splitlines()
 
     def assert_part_is_read(self):
         with h5py.File(self.part, "r", swmr=True) as file:

@@ -11,7 +11,7 @@
 namespace pillarfield::testbed {
 namespace {
 
-/// The bracket of equation (2), written out anew.
+/// The bracket of equation (2), written independently.
 double bracket(int n, double theta, double phi) {
   return std::cos(theta) - std::sin(theta) * std::cos(kPi / 4 * (2 * n - 1) - phi);
 }
