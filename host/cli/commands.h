@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/options/contact_output.h"
 #include "cli/options/plan_options.h"
+#include "pillarfield/contact_tracker.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/fault_finder.h"
 #include "pillarfield/load_calibration.h"
@@ -45,7 +45,8 @@ struct SolveOptions : WriteOptions {
   std::string input;
   PlanOptions plan;
   DeviceOptions device;
-  ContactOutputOptions contacts;
+  std::string contacts_file;  ///< empty: none
+  ContactOptions contacts;
 };
 
 struct PaceOptions : PrintOptions {

@@ -12,6 +12,8 @@
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
+#include "io/ending.h"
+#include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/pipeline.h"
@@ -22,6 +24,30 @@
 
 namespace pillarfield::cli {
 namespace {
+
+bool is_hdf5(const std::string& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".h5" || ending == ".hdf5";
+}
+
+/// Returns the table of contacts, unless contacts go into the force file alone. Throws Error where
+/// they cannot be written as the options name them.
+std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
+  const std::string& file = options.contacts_file;
+  if (file.empty()) return std::nullopt;
+  check(options.contacts, "the command line");
+  if (name_same_file(file, options.output)) {
+    if (is_hdf5(options.output)) return std::nullopt;
+    throw Error(file, "forces and contacts cannot share this file",
+                "name another file for contacts");
+  }
+  if (is_hdf5(file)) {
+    throw Error(file, "its ending is no format of contacts",
+                fmt::format("end it in {}, or name the .h5 file of forces",
+                            endings_of(OutputKind::contacts)));
+  }
+  return planned_contact_file(file);
+}
 
 struct SolveSummary {
   PipelineStatistics done;
@@ -61,7 +87,7 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
-  set_contacts(options.contacts, options.output, info);
+  if (!options.contacts_file.empty() && is_hdf5(options.output)) info.contacts = options.contacts;
   return info;
 }
 
@@ -108,8 +134,8 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
                                  {"startup_seconds", summary.startup_seconds},
                                  {"seconds", summary.seconds},
                                  {"warnings", warnings}};
-  if (!options.contacts.file.empty()) {
-    json["contacts_output"] = options.contacts.file;
+  if (!options.contacts_file.empty()) {
+    json["contacts_output"] = options.contacts_file;
     json["contacts"] = summary.done.contacts;
     json["contacts_at_once"] = summary.done.most_contacts;
   }
@@ -143,9 +169,9 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print(
       "Flagged: {} with a saturated sensel, {} with a missing sensel or inconsistent readings\n",
       grouped(regions.saturated), grouped(regions.inconsistent));
-  if (!options.contacts.file.empty()) {
+  if (!options.contacts_file.empty()) {
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
-               summary.done.most_contacts, printable(options.contacts.file));
+               summary.done.most_contacts, printable(options.contacts_file));
   }
   fmt::print("Wrote {}\n", printable(options.output));
 }
@@ -162,13 +188,6 @@ void warn_of_tare(const SolveOptions& options, const FrameSource& source, const 
              "{}: {} of all pillars are in contact and there is no tare; measure one with "
              "'pillarfield calibrate tare'\n",
              printable(options.input), percent(regions.in_contact(), regions.all()));
-}
-
-void check_solve_outputs(const SolveOptions& options) {
-  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
-  if (const auto table = planned_table(options.contacts, options.output)) outputs.push_back(*table);
-  check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
-                options.replace);
 }
 
 void run(const SolveOptions& options, FrameSource& source, Processor& processor,
@@ -194,12 +213,17 @@ void run(const SolveOptions& options, FrameSource& source, Processor& processor,
 void solve(const SolveOptions& given) {
   SolveOptions options = given;
   const Stopwatch watch;
-  check(options.contacts, options.output);
-  check_solve_outputs(options);
+  const std::optional<PlannedOutput> table = contact_table(options);
+  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
+  if (table) outputs.push_back(*table);
+  check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
+                options.replace);
   const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
   print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
-  set_friction(plan, options.contacts.contacts);
+  options.contacts.friction = plan.friction;
+  options.contacts.noise_n = reading_noise_n(plan);
+  options.contacts.hidden_n = hidden_normal_n(plan.skin);
   const Device device = open_device(options.device.name);
   Processor processor(device, plan,
                       {.memory = options.device.memory,
@@ -209,12 +233,11 @@ void solve(const SolveOptions& given) {
   std::vector<std::unique_ptr<ForceSink>> files;
   files.push_back(create_force_sink(options.output, info, options.replace));
   std::optional<ContactTracker> tracker;
-  if (!options.contacts.file.empty()) {
-    tracker.emplace(info.pillar_pitch_mm, options.contacts.contacts);
-    if (const auto table = planned_table(options.contacts, options.output)) {
+  if (!options.contacts_file.empty()) {
+    tracker.emplace(info.pillar_pitch_mm, options.contacts);
+    if (table) {
       files.push_back(create_contact_sink(
-          table->path, {info.pillar_pitch_mm, info.source, options.contacts.contacts},
-          options.replace));
+          table->path, {info.pillar_pitch_mm, info.source, options.contacts}, options.replace));
     }
   }
   SolveSummary summary;

@@ -401,6 +401,8 @@ class Testbed(CommandTest):
         self.assertEqual(sorted(path.name for path in folder.iterdir()),
                          sorted(name + ending for name in self.FIGURES
                                 for ending in (".png", ".svg")))
+        self.assertGreater(min(path.stat().st_size for path in folder.iterdir()), 10_000)
+        self.assert_fails("testbed", "--runs", 2, "--figures", __file__, names=["command_test.py"])
 
     def test_figures_without_gnuplot(self):
         result = run("testbed", "--runs", 2, "--figures", self.folder, expect=1, env={"PATH": ""})

@@ -150,33 +150,35 @@ TEST(Testbed, AnglesAreUnwrapped) {
 }
 
 TEST(Testbed, ParametersOutOfRangeAreNamed) {
-  check(Parameters{});
-  const double not_a_number = std::numeric_limits<double>::quiet_NaN();
-  for (const double wrong : {-1.0, 1e40, not_a_number}) {
-    const auto complaint_with = [&](auto change) -> std::string {
-      Parameters parameters;
-      change(parameters);
-      try {
-        check(parameters);
-      } catch (const Error& error) {
-        return error.what();
-      }
-      return "";
-    };
-    using P = Parameters;
-    const auto says = [&](const char* word, auto change) {
-      EXPECT_NE(complaint_with(change).find(word), std::string::npos) << word << ' ' << wrong;
-    };
-    says("sensitivity", [&](P& p) { p.sensor.counts_per_newton = wrong; });
-    says("dead zone", [&](P& p) { p.sensor.dead_zone_counts = wrong; });
-    says("threshold", [&](P& p) { p.sensor.threshold_counts = wrong; });
-    says("noise", [&](P& p) { p.sensor.noise_counts = wrong; });
-    says("full scale", [&](P& p) { p.sensor.full_scale_counts = wrong; });
-    says("full scale", [](P& p) { p.sensor.full_scale_counts = p.sensor.threshold_counts; });
-    says("positioner", [&](P& p) { p.positioner_rad = wrong; });
-    says("play", [&](P& p) { p.play_rad = wrong; });
-    says("probe", [&](P& p) { p.probe_resolution_n = wrong; });
+  using P = Parameters;
+  using Change = void (*)(P&, double);
+  const auto error_with = [](Change change, double value) -> std::string {
+    P parameters;
+    change(parameters, value);
+    try {
+      check(parameters);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::pair<const char*, Change> changes[] = {
+      {"sensitivity", [](P& p, double value) { p.sensor.counts_per_newton = value; }},
+      {"dead zone", [](P& p, double value) { p.sensor.dead_zone_counts = value; }},
+      {"threshold", [](P& p, double value) { p.sensor.threshold_counts = value; }},
+      {"noise", [](P& p, double value) { p.sensor.noise_counts = value; }},
+      {"full scale", [](P& p, double value) { p.sensor.full_scale_counts = value; }},
+      {"positioner", [](P& p, double value) { p.positioner_rad = value; }},
+      {"play", [](P& p, double value) { p.play_rad = value; }},
+      {"probe", [](P& p, double value) { p.probe_resolution_n = value; }}};
+  EXPECT_NO_THROW(check(P{}));
+  for (const auto& [name, change] : changes) {
+    for (const double wrong : {-1.0, 1e40, std::numeric_limits<double>::quiet_NaN()}) {
+      EXPECT_NE(error_with(change, wrong).find(name), std::string::npos) << name << ' ' << wrong;
+    }
   }
+  EXPECT_NE(error_with(changes[4].second, P{}.sensor.threshold_counts).find("full scale"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -296,10 +296,10 @@ void add_solve(CLI::App& parent, Work& work) {
   add_solver(command, options->plan);
   Group contacts(command, "Contacts");
   CLI::Option* const file =
-      contacts.text("--contacts", options->contacts.file, "FILE",
+      contacts.text("--contacts", options->contacts_file, "FILE",
                     "Track contacts and write them: " + endings_of(OutputKind::contacts) +
                         "; the .h5 of --output holds them too");
-  ContactOptions& found = options->contacts.contacts;
+  ContactOptions& found = options->contacts;
   contacts
       .whole("--minimum-pillars", found.minimum_pillars, "N",
              "Leave out contacts of fewer pillars [1]", 0,
