@@ -52,8 +52,8 @@ def run_json(*arguments):
 
 
 def on_terminal(words, watch=lambda process, messages: True, **options):
-    """Runs `words` with a terminal as standard error. Returns exit status, standard output and messages.
-    Calls watch(process, messages so far) until it returns true."""
+    """Runs `words` with a terminal as standard error; returns exit status, output and messages. Calls
+    watch(process, messages so far) until it returns true."""
     controller, terminal = pty.openpty()
     with tempfile.TemporaryFile("w+") as out, subprocess.Popen(
             words, stdout=out, stderr=terminal, stdin=subprocess.DEVNULL, **options) as process:
@@ -81,7 +81,7 @@ class CommandTest(unittest.TestCase):
         self.folder = pathlib.Path(scratch.name)
 
     def assert_fails(self, *arguments, names=(), status=1):
-        """The command ends with `status` and one line on standard error that contains all `names`."""
+        """The command ends with `status` and one line on standard error with all `names`."""
         result = run(*arguments, expect=status)
         lines = result.stderr.strip().splitlines()
         self.assertEqual(len(lines), 1, result.stderr)

@@ -148,7 +148,7 @@ class Contacts(CommandTest):
             self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)
 
     def friction_of(self, *arguments):
-        """What the table names of all rows, and what the force file names it was given."""
+        """The friction values of the table, and the given friction of the force file."""
         run("solve", self.recording, "-o", self.forces, "--contacts", self.csv, *arguments)
         with h5py.File(self.forces) as file:
             given = file["contacts"].attrs.get("given_friction")

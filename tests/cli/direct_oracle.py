@@ -19,8 +19,8 @@ def sensels_of(frame):
 
 
 def solve_pattern(usable, readings, threshold):
-    """Forces (X, Y, N) in counts, k = 1, of pillars [n, 4] with equal usable sensels. Inactive sensels
-    may read up to the threshold."""
+    """Forces (X, Y, N) in counts, k = 1, of pillars [n, 4] with one pattern of usable sensels. Inactive
+    ones may read up to the threshold."""
     chosen = [n for n in range(4) if usable[n]]
     known = readings[:, chosen]
     if len(chosen) >= 3:

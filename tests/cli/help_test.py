@@ -39,8 +39,8 @@ class Help(CommandTest):
                 self.assertGreaterEqual(len(own), 1 if command[:1] == ["calibrate"] else 2)
 
     def run_examples(self, more, check):
-        """Runs the examples of each command with `more` arguments, on a terminal, in a new folder, and
-        calls check(line, output, messages)."""
+        """Runs the examples of each command with `more` arguments on a terminal in a new folder, and calls
+        check(line, output, messages)."""
         environment = dict(os.environ, PATH=os.pathsep.join(
             [str(pathlib.Path(PROGRAM).parent), os.environ["PATH"]]))
         for command in COMMANDS:
@@ -142,8 +142,8 @@ class WrongCommandLines(CommandTest):
         copies = []
         for name, notes in (("contact", 0), ("field", 1)):
             copies.append(self.folder / f"{name}.npy")
-            messages = run("solve", self.folder / "a.h5", "-o", copies[-1], "--estimator", name).stderr
-            self.assertEqual(messages.count("'--estimator field' is now"), notes)
+            notes_of = run("solve", self.folder / "a.h5", "-o", copies[-1], "--estimator", name)
+            self.assertEqual(notes_of.stderr.count("'--estimator field' is now"), notes)
         self.assertEqual(*(copy.read_bytes() for copy in copies))
 
 

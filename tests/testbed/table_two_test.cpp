@@ -34,8 +34,8 @@ TEST(Statistics, OfLessThanTwoAnglesAreNotNumbers) {
   EXPECT_TRUE(std::isnan(statistics_of(std::vector<double>{1}, 1).deviation));
 }
 
-// What the paper says of region 1: "primarily caused by one of the sensors remaining zero for small
-// forces". With the dead zone that does it, and a solve that knows of it, the scatter is gone.
+// The paper attributes the scatter in region 1 to "one of the sensors remaining zero for small
+// forces". With the fitted dead zone, calibrated, the scatter vanishes.
 TEST(TableTwo, DirectHasAtMostAFifthOfThePapersScatterInRegion1) {
   constexpr double kPublished = 0.240;
   const Parameters parameters;
