@@ -10,8 +10,7 @@ namespace pillarfield::cli {
 /// Returns a function that prints a line to standard error; empty if `quiet` or without a terminal.
 [[nodiscard]] std::function<void(const std::string&)> terminal_line(bool quiet);
 
-/// Progress of a long job: a line on standard error if that is a terminal, updated at most ten
-/// times per second.
+/// Shows the progress of a job on standard error if that is a terminal, at most ten times a second.
 class Progress {
  public:
   /// `verb` is a word such as "Solving".

@@ -51,8 +51,7 @@ inline constexpr std::array<RegionLabel, 4> kCornerLabels = {{
 /// border of the region: a contour of equation (5) of the paper. `points` >= 2.
 [[nodiscard]] std::vector<Angles> contour(double ratio, int points);
 
-/// Returns the estimate on that contour: the midpoint in theta (paper) or the segment point
-/// (direct).
+/// Returns the estimate on that contour: midpoint in theta (paper) or segment point (direct).
 [[nodiscard]] Angles point_on_contour(double ratio, Estimator estimator);
 
 /// Returns half the range of theta and phi along that contour, rad; equal for all pairs of adjacent

@@ -17,8 +17,7 @@ struct Size {
 /// without an ending in an existing folder.
 ///
 /// The script sets neither terminal nor output. Its style is UTF-8, enhanced text, tics outside, no
-/// box, and linetypes 1 to 8 in the colours of Okabe and Ito, which colour-blind readers
-/// distinguish:
+/// box, and linetypes 1 to 8 in the colour-blind safe colours of Okabe and Ito:
 ///
 ///     1 black  2 orange  3 sky blue  4 bluish green  5 yellow  6 blue  7 vermilion  8 purple
 ///

@@ -33,8 +33,7 @@ inline constexpr double kStudyDeadZoneCounts = 20;
 inline constexpr double kStudyNoiseCounts = 0.5;
 inline constexpr double kStudyThresholdCounts = 3;
 
-/// Solves forces of loads from 0.3 to 100 from directions spread evenly over the hemisphere. Takes
-/// about 0.1 s.
+/// Solves loads from 0.3 to 100 in directions spread evenly over the hemisphere, in about 0.1 s.
 [[nodiscard]] std::vector<SmallForcePoint> small_forces();
 
 }  // namespace pillarfield::testbed

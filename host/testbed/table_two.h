@@ -62,8 +62,7 @@ struct TableTwo {
   Audit audit;
 };
 
-/// RMS, over the paper's 18 figures, of published minus expected value of the paper's equations,
-/// rad.
+/// RMS of published minus expected value, rad, over the paper's 18 figures and its equations.
 [[nodiscard]] double rms_difference(const TableTwo& table);
 
 /// Computes Table II from `runs` >= 2 runs; about 15 µs each.

@@ -32,12 +32,10 @@ inline constexpr std::array<Site, 3> kSites = {{
 /// Applied forces at each site, as the probe reads them.
 inline constexpr std::array<double, 10> kAppliedN = {10, 20, 30, 40, 50, 60, 70, 80, 90, 100};
 
-/// Constants of the testbed for all sites and forces. The paper states those of the probe; those of
-/// the sensor are chosen.
+/// Constants of the testbed. The paper states those of the probe; those of the sensor are chosen.
 struct Parameters {
-  /// 20 counts per newton and 12 bits cover 100 N from every site. The dead zone of 7.2 N (144
-  /// counts) fits the scatter in region 1 best (scan_dead_zones()). The threshold is six times the
-  /// noise.
+  /// 12 bits cover 100 N from every site. The dead zone of 7.2 N (144 counts) fits the scatter in
+  /// region 1 best (scan_dead_zones()). The threshold is six times the noise.
   PillarSensor sensor = {.counts_per_newton = 20,
                          .threshold_counts = 3,
                          .dead_zone_counts = 144,

@@ -70,9 +70,8 @@ TEST(SmallForces, CalibratedIntervalsHoldTheTruth) {
   }
 }
 
-// With three or four usable sensels a dead zone takes z counts from each: the shear is exact and
-// the normal force z / k short. With calibration only noise is left, at most sqrt(5/2) deviations
-// over k.
+// With three or four usable sensels a dead zone takes z counts from each: the shear is exact, the
+// normal force z / k short. Calibration leaves noise of at most sqrt(5/2) deviations over k.
 TEST(SmallForces, CalibrationLeavesOnlyNoiseInDeterminedForces) {
   const double noise = std::hypot(kStudyNoiseCounts, 1 / std::sqrt(12.0)) / kStudyDeadZoneCounts;
   for (const SmallForcePoint& point : points()) {

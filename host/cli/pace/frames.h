@@ -31,8 +31,7 @@ struct PaceFrames {
 /// standard error. Throws Error where it cannot be read or has no frames.
 [[nodiscard]] PaceFrames open_pace_frames(const std::string& file, const ReadOptions& options);
 
-/// Loads the first frames: at most `most`, and no more than fit into `memory_bytes`. Throws Error
-/// where none fits.
+/// Loads at most `most` frames of up to `memory_bytes` together. Throws Error where none fits.
 void load(PaceFrames& frames, std::uint64_t most, std::uint64_t memory_bytes, bool quiet);
 
 }  // namespace pillarfield::cli

@@ -68,7 +68,7 @@ void print_counts(const PaceReport& report, const Latencies& latencies) {
   fmt::print("  scheduled {:9}  in {:.3f} s\n", result.scheduled(), seconds(result.elapsed));
   fmt::print("  solved    {:9}  {} of {} frames/s requested\n", result.solved(),
              rounded(achieved_rate_hz(result)), rounded(schedule.rate_hz));
-  fmt::print("  dropped   {:9}  due more than {} periods ago\n", result.dropped,
+  fmt::print("  dropped   {:9}  more than {} periods late\n", result.dropped,
              schedule.backlog_frames);
   fmt::print("  missed    {:9}  solved later than the deadline of {:.3f} ms\n",
              latencies.later_than(report.deadline), milliseconds(report.deadline));
