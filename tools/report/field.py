@@ -9,7 +9,7 @@ from page import percent, text
 
 FRICTIONS = (0.8, 1.2, 1.6, 2.2, 3.0, 4.5)
 LARGEST_USUAL = 3.0  # friction that goals are about: larger ones are rare
-ENOUGH_PILLARS = 30  # of region 3, for a ratio or a share of a recording's own
+ENOUGH_PILLARS = 30  # of region 3, for a ratio or a fraction of one recording
 LOADINGS = ("slide", "twist", "turn", "reverse", "swing", "load grows", "load falls", "touch again")
 INDENTERS = ("sphere", "fingertip", "cylinder", "flat punch", "rough ball", "key", "two fingers")
 RADII = (3, 5, 8, 12, 16, 22)  # pillars
@@ -218,8 +218,8 @@ def draw_errors(histories, folder):
     pictures.save(figure, folder, "error_by_friction")
 
 
-def body_rows(histories):
-    """By body, motion and size."""
+def indenter_rows(histories):
+    """By indenter, motion and size."""
     for key, values, name in (("indenter", INDENTERS, "{}"), ("loading", LOADINGS, "{}"),
                               ("radius_pillars", RADII, "radius of {} pillars")):
         for value in values:
@@ -344,7 +344,7 @@ def main(docs, measured):
         error_rows=friction_rows(histories, ("direct", "direct_0.75", "direct_0.5", "paper",
                                              "contact", "unrelated", "given", "noise")),
         pillars=" | ".join(str(Score(some, "noise").ambiguous) for some in by_friction.values()),
-        body_rows=body_rows(histories),
+        indenter_rows=indenter_rows(histories),
         prior_rows=friction_rows(histories, (*PRIORS, "bounded", "given", "paper")),
         learnt_rows=learnt_rows(histories), sticking=sticking, sticking_off=sticking_off,
         coverage_rows=coverage_rows(histories),
