@@ -4,8 +4,8 @@
 
 FRAMES holds uint8 frames of ROWS x COLS sensels, one after the other, ROWS and COLS even. RESULT
 receives the solved first frame: shear_x, shear_y, normal as float32, then status as uint8. After
-printing "ready", it reads a number of frames per line of standard input, solves them, and prints the
-nanoseconds per pillar.
+printing "ready", the program reads a number of frames per line of standard input, solves them, and
+prints the nanoseconds per pillar.
 """
 
 import math

@@ -15,7 +15,7 @@ class UnsuffixedReporter final : public benchmark::BenchmarkReporter {
   void ReportRuns(const std::vector<Run>& runs) override;
   void Finalize() override;
 
-  /// Whether a case failed; skipped ones do not count.
+  /// True after a case failed; skipped ones do not count.
   [[nodiscard]] bool any_failed() const { return any_failed_; }
 
  private:

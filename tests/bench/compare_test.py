@@ -68,9 +68,9 @@ class Reports(unittest.TestCase):
         self.assertEqual(compare.times_of({"benchmarks": cases}), {"a": 2.5})
 
     def test_cases_of_older_programs_get_their_new_names(self):
-        old = ["opponent/numpy", "by_hand/1024", "ceiling/copy/10000/none", "regions/silent", "size/1024"]
+        old = ["opponent/numpy", "by_hand/1024", "ceiling/memcpy", "regions/silent", "size/1024"]
         cases = [{"name": name, "run_type": "iteration", "ns_per_pillar": 1} for name in old]
-        new = ["baseline/numpy", "intrinsics/1024", "limit/copy/10000/none", "regions/idle", "size/1024"]
+        new = ["baseline/numpy", "intrinsics/1024", "limit/memcpy", "regions/idle", "size/1024"]
         self.assertEqual(list(compare.times_of({"benchmarks": cases})), new)
         for before, after in zip(old, new):
             for name in (before, after):

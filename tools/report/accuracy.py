@@ -1,7 +1,7 @@
 """accuracy.py DOCS MEASURED PILLARFIELD: writes DOCS/accuracy.md with its pictures.
 
-MEASURED is the output of measure_accuracy, PILLARFIELD the program, whose `testbed` command computes
-the paper's figures."""
+MEASURED is the output of measure_accuracy; PILLARFIELD is the program, whose `testbed` command
+computes the paper's figures."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""field.py DOCS MEASURED: writes DOCS/field.md with its pictures, from the output of measure_field."""
+"""field.py DOCS MEASURED: writes DOCS/field.md with its pictures from measure_field's output."""
 
 import math
 from pathlib import Path
