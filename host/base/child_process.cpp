@@ -37,7 +37,7 @@ constexpr bool kShadowMemory = false;
 
 constexpr int kAnswerDescriptor = 3;  // the child's end of the pipe
 
-/// `resource` is of an enumeration in some C libraries, and an int in others.
+/// `resource` is an enumeration in some C libraries, and an int in others.
 template <class Resource>
 void lower_limit(Resource resource, rlim_t soft, rlim_t hard) {
   rlimit limit = {};
@@ -47,7 +47,7 @@ void lower_limit(Resource resource, rlim_t soft, rlim_t hard) {
   setrlimit(resource, &limit);
 }
 
-/// Bytes of addresses that this process has; 0 where that is not known.
+/// Size of the process's address space, bytes; 0 where unknown.
 rlim_t mapped_bytes() {
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -69,7 +69,7 @@ void limit_child(const ChildLimits& limits) {
   lower_limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + limits.memory_bytes);
 }
 
-/// An interrupt from the terminal reaches parent and child; the parent deals with it.
+/// An interrupt from the terminal reaches parent and child; only the parent handles it.
 void reset_signals() {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
@@ -78,8 +78,8 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// Leaves the end of the pipe, and /dev/null in the place of what the parent reads and prints. A
-/// file that the parent has open could share its position with the child.
+/// Closes all files but the pipe, and replaces the standard streams by /dev/null: a file inherited
+/// from the parent would share its position.
 void leave_only(int answer) {
   answer = fcntl(answer, F_DUPFD, kAnswerDescriptor + 1);
   const int nothing = open("/dev/null", O_RDWR);
@@ -110,7 +110,7 @@ void write_all(int file, const std::string& text) {
   _exit(0);
 }
 
-/// Reads to the end of the pipe or to `deadline`; whether it came to the end.
+/// Reads to the end of the pipe; false if `deadline` came first.
 bool read_answer(int answer, ChildClock::time_point deadline, std::string& text) {
   for (;;) {
     const auto left =
@@ -129,7 +129,7 @@ bool read_answer(int answer, ChildClock::time_point deadline, std::string& text)
   }
 }
 
-/// The signal that ended the child, 0 where there was none or somebody else waited for it.
+/// The signal that ended the child; 0 if none did or another thread waited for the child.
 int signal_of_end(pid_t child) {
   int status = 0;
   pid_t ended = 0;
@@ -140,8 +140,8 @@ int signal_of_end(pid_t child) {
 
 [[noreturn]] void fail_to_start(const std::string& where) {
   throw Error(where,
-              std::string("cannot be tried in a process of its own: ") + std::strerror(errno),
-              "allow another process, or say that you trust the file (--trust-input)");
+              std::string("cannot be checked in a separate process: ") + std::strerror(errno),
+              "allow another process, or trust the file with --trust-input");
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kLongestComplaint = 400;
 
-/// The files that the program begins with in place of ours.
+/// Standard streams of the program.
 class FileActions {
  public:
   FileActions(int input, int output, int errors) {
@@ -62,7 +62,7 @@ int spawn(const std::vector<std::string>& words, const FileActions& actions, pid
 ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::string& mend,
                            int output)
     : errors_(std::tmpfile()) {
-  // A socket can be written to without a signal where nobody reads any more; a pipe cannot.
+  // Writing to a socket without a reader need not raise a signal; writing to a pipe does.
   std::array<int, 2> ends{};
   if (!errors_ || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw Error(words.front(), std::string("cannot be started: ") + std::strerror(errno),
@@ -134,7 +134,7 @@ std::string ChildProgram::complaint() const {
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
     text.replace(end, 1, "; ");
   }
-  return text.empty() ? "it does not say why" : text;
+  return text.empty() ? "it gives no reason" : text;
 }
 
 }  // namespace pillarfield

@@ -11,7 +11,7 @@ struct Range {
   bool open_low = false;
   bool open_high = false;
 
-  [[nodiscard]] bool contains(double value) const;  ///< false for what is not a number
+  [[nodiscard]] bool contains(double value) const;  ///< false for NaN
   [[nodiscard]] std::string text() const;           ///< "a number in [0, 1)"
 };
 

@@ -20,7 +20,7 @@ namespace pillarfield {
 namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
-constexpr std::chrono::milliseconds kMoment{300};  ///< that nobody minds to wait
+constexpr std::chrono::milliseconds kMoment{300};  ///< wait without a message
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -43,7 +43,7 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
-/// The paths with what the device leaves to choose decided.
+/// The speed paths with automatic choices resolved.
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
@@ -57,7 +57,7 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
-/// What a user reads while kernels are compiled.
+/// Message while kernels are compiled.
 std::string line_on_compiling(const DeviceInfo& device) {
   if (!device.kernel_cache.empty()) {
     return fmt::format("Compiling the kernels for {}; the next start finds them in {}", device.name,
@@ -71,12 +71,12 @@ std::string line_on_compiling(const DeviceInfo& device) {
 [[noreturn]] void throw_no_slot(const SlotScheduler& turns) {
   if (turns.pinned() == 0) {
     throw Error("Processor::submit", fmt::format("all {} frames are in flight", turns.slots()),
-                "receive() one first, or ask for more frames_in_flight");
+                "receive() one first, or set more frames_in_flight");
   }
   throw Error("Processor::submit",
               fmt::format("of {} frames {} are in flight and {} are pinned", turns.slots(),
                           turns.in_flight(), turns.pinned()),
-              "receive() one or give one back first, or ask for more frames_in_flight");
+              "receive() or unpin a frame first, or set more frames_in_flight");
 }
 
 }  // namespace
@@ -111,8 +111,8 @@ struct Processor::State {
     baseline.frame = 0;
   }
 
-  /// Solves an empty frame: drivers finish compiling and make their buffers at the first launch,
-  /// which no real frame shall wait for. The baseline's rate is still zero: the tare stays.
+  /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
+  /// buffers at the first launch. The baseline's rate is still zero: the tare does not change.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front()->submit(frame.view());
@@ -125,11 +125,11 @@ struct Processor::State {
   bool shares_memory;
   SpeedPaths paths;
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
-  Baseline baseline;              ///< as well
-  std::optional<ContactStage> contacts;      ///< where the estimator is that of contacts
-  std::vector<std::shared_ptr<Slot>> slots;  ///< one that is pinned outlives the processor
+  Baseline baseline;              ///< outlives the slots
+  std::optional<ContactStage> contacts;      ///< of the estimator `contact`
+  std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
   SlotScheduler turns;
-  bool received = false;  ///< a frame, once
+  bool received = false;  ///< a frame has been received
 };
 
 struct Processor::PinnedResult::State {
@@ -204,8 +204,8 @@ ForceFieldView Processor::receive() {
 Processor::PinnedResult Processor::pin() {
   const std::optional<std::size_t> slot = state_->turns.pin();
   if (!slot) {
-    throw Error("Processor::keep", "there is no frame to keep",
-                "pin() a frame once, after it was received and before its slot is used again");
+    throw Error("Processor::pin", "there is no frame to pin",
+                "call pin() once per frame, after receive() and before its slot is used again");
   }
   return PinnedResult(
       std::make_unique<PinnedResult::State>(state_->slots[*slot], state_->turns.returned(), *slot));

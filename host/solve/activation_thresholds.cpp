@@ -8,8 +8,8 @@
 namespace pillarfield {
 namespace {
 
-/// The reading at which the power law reaches the threshold. Powers are not rounded alike
-/// everywhere, so a little below.
+/// The reading at which the power law reaches the threshold, reduced by 1e-4: pow() rounds
+/// differently on other devices.
 double threshold_before_power_law(const SolverPlan& plan) {
   const double threshold = plan.skin.threshold_counts;
   if (!plan.skin.power_law) return threshold;

@@ -1,4 +1,4 @@
-// Texts that come from files, as a terminal may show them.
+// Texts from files are safe to print on a terminal.
 
 #include "pillarfield/printable.h"
 

@@ -1,5 +1,5 @@
-// The estimator `contact` of a processor against the direct solve and the estimator as a C++ loop:
-// 0 ULP, whatever the memory and whatever is known of friction.
+// The estimator `contact` of a processor against direct solve and estimator in C++: 0 ULP with all
+// kinds of memory and of friction.
 
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
   }
 }
 
-/// What differs from one way to run it to the next.
+/// Parameters of a run.
 struct Way {
   const char* name;
   Memory memory;
@@ -169,7 +169,7 @@ TEST_P(EveryWay, FrictionIsCarriedFromFrameToFrame) {
     expect_same_bits(forces, expected.view());
     any_differs |= solve_on_host(plan, raw.view()).normal != expected.normal;
   }
-  EXPECT_TRUE(any_differs);  // from frames by themselves
+  EXPECT_TRUE(any_differs);  // from frames solved without history
 }
 
 TEST_P(EveryWay, LendsTheContactsOfTheFrame) {

@@ -1,4 +1,4 @@
-// Which device is opened, and what is said where none can be.
+// The choice of a device, and errors where there is none.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The program that a plan makes: its stages, its constants, its files.
+// The program of a plan: its stages, constants and files.
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ TEST(KernelSource, EveryWishOfAPlanIsAStage) {
   EXPECT_EQ(kernel_stages(plan), expected);
 }
 
-TEST(KernelSource, TheDoubtIsFiveDeviationsOfThreeReadings) {
+TEST(KernelSource, TheMarginIsFiveDeviationsOfThreeReadings) {
   SolverPlan plan = bare_plan(8, 8, SenselType::f32);
   const auto margin = [&] {
     return std::strtof(macro(kernel_source(plan, 1), "PF_MARGIN").c_str(), nullptr);

@@ -27,7 +27,7 @@ TEST(LargePages, BeginOnALargePageAndHoldWhatWasAskedFor) {
 }
 
 TEST(LargePages, AreWholePagesToTheirEnd) {
-  // What is sent to a device ends with a page, beyond what was asked for.
+  // The device reads up to the end of a page, beyond the requested bytes.
   const LargePages small = allocate_large_pages(1);
   std::ranges::fill(std::span(small.get(), 4096), std::byte{1});
   const LargePages large = allocate_large_pages(kLargePage + 1);

@@ -1,4 +1,4 @@
-// The frame solver against the same mathematics as a C++ loop: 0 ULP on every path.
+// The kernels against the C++ path: 0 ULP on every path.
 
 #include "pillarfield/processor.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
 
-/// Within so many units in the last place of `scale`, which is at least |expected|.
+/// Equal within `ulps` units in the last place of `scale`, which is at least |expected|.
 void expect_near(float actual, float expected, float scale, float ulps, const char* plane,
                  std::size_t pillar) {
   const float tolerance = ulps * std::max(std::numeric_limits<float>::epsilon() * scale, kSmallest);
@@ -38,7 +38,7 @@ void expect_same_turn(float actual, float expected, float ulps, const char* plan
   expect_near(turn, 0, 4, ulps, plane, pillar);
 }
 
-/// Where functions of a library take part: 8 ULP of the value, of a half turn for phi.
+/// Tolerance with library functions: 8 ULP of the value, of a half turn for phi.
 void expect_same_uncertainty(const ForceFieldView& actual, const ForceFieldView& expected) {
   constexpr float kUlps = 8;
   for (std::size_t index = 0; index < kUncertaintyPlanes; ++index) {
@@ -57,7 +57,7 @@ void expect_same_uncertainty(const ForceFieldView& actual, const ForceFieldView&
   }
 }
 
-/// Where functions of a library come first: so many ULP of the force's magnitude.
+/// Tolerance with library functions before the solve: ULP of the force's magnitude.
 void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected, float ulps) {
   for (std::size_t i = 0; i < actual.normal.size(); ++i) {
     const float scale = std::hypot(expected.shear_x[i], expected.shear_y[i], expected.normal[i]);
@@ -68,7 +68,7 @@ void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expe
   }
 }
 
-/// A skin whose columns leave a rest for every lane width, and one that is smaller than any.
+/// A skin whose columns are no multiple of any lane width, and one smaller than all of them.
 struct Path {
   SenselType type;
   int lanes;
@@ -112,7 +112,7 @@ class EveryPath : public testing::TestWithParam<Path> {
   }
 };
 
-/// Stages that are whole programs more: not on all paths, for compiling takes its time.
+/// Stages that need further programs: not on all paths, because compiling is slow.
 class FurtherStages : public EveryPath {};
 
 TEST_P(EveryPath, BareSolveHasTheBitsOfTheHost) {
@@ -154,7 +154,7 @@ TEST_P(FurtherStages, PaperSolveIsThatOfTheHost) {
   }
 }
 
-/// Of random readings few exceed this: many pillars are untouched.
+/// A threshold that few random readings exceed: many pillars are untouched.
 SolverPlan following_plan(std::uint32_t rows, std::uint32_t cols, SenselType type) {
   SolverPlan plan = full_plan(rows, cols, type, 11);
   const double largest = type == SenselType::u16 ? 4095 : (type == SenselType::u8 ? 255 : 300);

@@ -23,7 +23,8 @@ double distance(const Force& a, const Force& b) {
 template <class Precision>
 class DirectSolveSegment : public testing::Test {
  protected:
-  /// Calls `check(truth, readings)` for random forces that lift two adjacent sensels.
+  /// Calls `check(truth, readings)` for random forces under which two adjacent sensels are
+  /// inactive.
   template <class Check>
   static void for_random_region_three(int cases, Check check) {
     Random random(51);
@@ -82,7 +83,7 @@ TYPED_TEST(DirectSolveSegment, HoldsTheTruthAndTheForceAtItsPoint) {
   }
 }
 
-/// The normal force of a pillar of counts_per_newton 1/2, whose parity sum that is.
+/// The normal force of a pillar with counts_per_newton 1/2: equal to its parity sum.
 template <class Precision>
 double sum_of(const PillarOf<Precision>& pillar, double segment_point) {
   return static_cast<double>(solve<Precision>(pillar, 0.5, segment_point).force.normal);
@@ -104,10 +105,10 @@ TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheM
     EXPECT_EQ(at(usable, usable, inactive, inactive, part), part * 44);
     EXPECT_EQ(at(saturated, saturated, inactive, inactive, part), part * 64);
     EXPECT_EQ(at(usable, saturated, inactive, inactive, part), part * 44);
-    // One is missing: the other diagonal bounds the sum.
+    // One sensel is missing: the other diagonal bounds the sum.
     EXPECT_EQ(at(usable, usable, missing, inactive, part), part * 44);
     EXPECT_EQ(at(usable, inactive, inactive, missing, part), part * 44);
-    // Thresholds alone, or the smallest force, set the end of the others.
+    // Thresholds or the smallest force set the upper end.
     EXPECT_EQ(at(usable, inactive, inactive, inactive, part), 4);
     EXPECT_EQ(at(usable, inactive, missing, inactive, part), 4);
     EXPECT_NEAR(at(usable, usable, missing, missing, part), 160 / 3.0, 1e-4);

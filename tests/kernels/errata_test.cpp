@@ -1,5 +1,5 @@
-// The paper's printed equations are wrong where docs/derivations/pillar_model.md says so, and what
-// it puts in their place is right.
+// The paper's printed equations have the errors that docs/derivations/pillar_model.md lists, and
+// its corrections are right.
 
 #include "evaluation/errata.h"
 

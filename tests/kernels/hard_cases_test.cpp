@@ -21,8 +21,8 @@
 namespace pillarfield::hard_cases {
 namespace {
 
-/// How far a component may be from the exact answer, in epsilons of the magnitude
-/// (docs/derivations/conditioning.md, C4 and C5).
+/// Largest error of a component, in epsilons of the magnitude (docs/derivations/conditioning.md, C4
+/// and C5).
 double allowed_error(Estimator estimator, double condition) {
   if (estimator == Estimator::direct) return 3;
   return 42 + (std::isnan(condition) ? 0 : condition / 2);
@@ -95,7 +95,7 @@ TEST(AllHardCases, HaveNamesOfTheirOwn) {
   }
 }
 
-/// Any reading: absurd, at a limit, or ordinary.
+/// Any reading: out of range, at a limit, or ordinary.
 double any_reading(std::mt19937_64& engine) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// The paper's estimator: right where the force is determined, half way along the contour in
+// The paper's estimator: exact where the force is determined, the midpoint of the contour in
 // region 3.
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class PaperSolve : public testing::Test {
     return solve<Precision>(pillar, kCountsPerNewton).force;
   }
 
-  /// Distance of two forces as a share of the second.
+  /// Distance of two forces as a fraction of the second.
   template <class Actual, class Expected>
   static double error(const Actual& actual, const Expected& expected) {
     const auto of = [](auto x) { return static_cast<double>(x); };

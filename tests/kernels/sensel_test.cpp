@@ -70,7 +70,7 @@ TYPED_TEST(SenselStages, AbsurdReadingsAreMissing) {
   }
 }
 
-TYPED_TEST(SenselStages, AThresholdIsNotAboveItselfAndHidesUnderSilence) {
+TYPED_TEST(SenselStages, AThresholdIsNotAboveItselfAndBoundsInactiveSensels) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   for (const Real threshold : {Real{0}, Limits::denorm_min(), Real{3}, Real{250.5}}) {
@@ -175,7 +175,7 @@ TYPED_TEST(SenselStages, SaturationBelowTheThresholdTellsNothing) {
   TestFixture::expect_missing(classify(marked, Real{10}));
 }
 
-TYPED_TEST(SenselStages, ADeadZoneIsGivenBackAndHidesUnderSilence) {
+TYPED_TEST(SenselStages, ADeadZoneIsAddedAndBoundsInactiveSensels) {
   using Real = RealOf<TypeParam>;
   using Sensel = SenselOf<TypeParam>;
   const auto filled = [](const Sensel& sensel) { return fill_dead_zone(sensel, Real{4}); };

@@ -50,8 +50,8 @@ TYPED_TEST(Deviations, AreTheClosedFormsOfRegionsOneToThree) {
   EXPECT_NEAR(region_2[2], unit / std::numbers::sqrt2, 1e-8);
 }
 
-/// 30 counts are the largest parity sum, 30 / 2k the largest normal force. Noise alone, as the
-/// derivatives of the force say: those of s_y are 1 - part and 1 over sqrt(2) k, of N part / 2k.
+/// 30 counts are the largest parity sum, 30 / 2k the largest normal force. Noise alone, by the
+/// derivatives of the force: those of s_y are 1 - part and 1 over sqrt(2) k, of N part / 2k.
 TYPED_TEST(Deviations, OfRegionThreeHoldWhatFrictionLeavesOfTheSegmentToo) {
   const double unit = 2 / kCountsOfOneNewton;
   const double high = 30 / (2 * kCountsOfOneNewton);
@@ -77,7 +77,7 @@ TYPED_TEST(Deviations, OfRegionFourAreThoseOfTheWholeInterval) {
   EXPECT_NEAR(region_4[1], region_4[2] / std::numbers::sqrt2, 1e-8);
 }
 
-/// What the ambiguity of the parity sum adds: the force moves along with it.
+/// Deviation due to the ambiguity of the parity sum: the force is linear in it.
 Components deviations_by_ambiguity(const Solved<Double>& solved, double spread) {
   const auto low = components(solved.low());
   const auto high = components(solved.high());
@@ -133,7 +133,8 @@ TEST(Deviations, AreThoseOfTheEstimateForAllStates) {
   }
 }
 
-/// A force that explains readings, in the terms of docs/derivations/pillar_model.md (M4, M5).
+/// A force that is consistent with readings, as parity sum and differences
+/// (docs/derivations/pillar_model.md, M4, M5).
 struct Explanation {
   double sum;
   double rising;
@@ -149,7 +150,7 @@ struct Explanation {
   }
 };
 
-constexpr double kHidden = 20;  // what silence hides: a threshold of 8 and a dead zone of 12
+constexpr double kHidden = 20;  // bound of inactive sensels: a threshold of 8 and a dead zone of 12
 
 template <class Precision>
 PillarOf<Precision> hiding_pillar(const std::array<double, 4>& readings) {
@@ -173,7 +174,7 @@ struct Ends {
                                   solved.scale);
   }
 
-  /// How far phi lies counter-clockwise of phi_low, and how far phi_high does.
+  /// Counter-clockwise angles of phi and of phi_high from phi_low.
   [[nodiscard]] double turn(double phi) const {
     const double angle = std::remainder(phi - static_cast<double>(interval.phi_low), 2 * kHalfTurn);
     return angle < -slack ? angle + 2 * kHalfTurn : angle;
@@ -193,7 +194,7 @@ class DirectionIntervals : public testing::Test {
     EXPECT_LE(truth.theta(), static_cast<double>(interval.theta_high) + ends.slack);
     EXPECT_GE(truth.magnitude(), static_cast<double>(interval.magnitude_low) * (1 - ends.slack));
     EXPECT_LE(truth.magnitude(), static_cast<double>(interval.magnitude_high) * (1 + ends.slack));
-    if (truth.theta() < 1e-3) return;  // phi means nothing.
+    if (truth.theta() < 1e-3) return;  // phi is undefined.
     EXPECT_LE(ends.turn(truth.phi()), ends.turn_high() + ends.slack / truth.theta());
   }
 };
@@ -206,7 +207,7 @@ Explanation random_truth(Random& random) {
           std::numbers::sqrt2 * k * (force.shear_y - force.shear_x)};
 }
 
-TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsSilent) {
+TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsInactive) {
   Random random(72);
   std::array<int, 5> usable{};
   for (int i = 0; i < 100'000; ++i) {
@@ -219,7 +220,7 @@ TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsSilent) {
   for (const int cases : usable) EXPECT_GT(cases, 1'000);
 }
 
-/// The extremes that explanations reach: those with the same usable readings and silence elsewhere.
+/// The extremes over consistent forces: equal usable readings, the other sensels inactive.
 struct Reached {
   double theta_low = kHalfTurn;
   double theta_high = 0;
@@ -238,7 +239,7 @@ struct Reached {
   }
 };
 
-/// Whether a force gives the usable readings back and leaves the others silent.
+/// True if a force has the usable readings and leaves the other sensels inactive.
 bool explains(const Explanation& force, const std::array<double, 4>& readings) {
   const auto back = force.readings();
   for (std::size_t n = 0; n < 4; ++n) {
@@ -248,8 +249,8 @@ bool explains(const Explanation& force, const std::array<double, 4>& readings) {
   return true;
 }
 
-/// Scans the forces that explain readings: every parity sum, and where a diagonal is silent every
-/// difference.
+/// Scans the forces that are consistent with readings: parity sums, and differences of inactive
+/// diagonals.
 Reached scan(const std::array<double, 4>& readings, const Ends<Double>& ends) {
   constexpr int kSteps = 400;
   Reached reached;
