@@ -44,21 +44,23 @@ struct SegmentEnd {
 [[nodiscard]] inline FeasibleSegment segment_of(const single_precision::Force& point, bool vertical,
                                                 const SegmentEnd& end) {
   constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
-  const float fixed = std::abs(vertical ? point.shear_x : point.shear_y);
-  const float moving = std::abs(vertical ? point.shear_y : point.shear_x) + kRoot2 * point.normal;
-  const float high = end.point > 0 ? point.normal / end.point
-                                   : std::max(moving - fixed, 0.0F) / (2 * kRoot2) + end.hidden_n;
-  return {fixed, moving, high};
+  const float known_shear = std::abs(vertical ? point.shear_x : point.shear_y);
+  const float free_shear =
+      std::abs(vertical ? point.shear_y : point.shear_x) + kRoot2 * point.normal;
+  const float high = end.point > 0
+                         ? point.normal / end.point
+                         : std::max(free_shear - known_shear, 0.0F) / (2 * kRoot2) + end.hidden_n;
+  return {known_shear, free_shear, high};
 }
 
 /// The force with the normal force `normal`, N, on the segment through `point` (F2).
 [[nodiscard]] inline single_precision::Force force_on_segment(const single_precision::Force& point,
                                                               bool vertical, float normal) {
   const float grown = std::numbers::sqrt2_v<float> * (normal - point.normal);
-  const float moved = vertical ? point.shear_y : point.shear_x;
-  const float moving = moved - std::copysign(1.0F, moved) * grown;
-  if (vertical) return {point.shear_x, moving, normal};
-  return {moving, point.shear_y, normal};
+  const float shear = vertical ? point.shear_y : point.shear_x;
+  const float free_shear = shear - std::copysign(1.0F, shear) * grown;
+  if (vertical) return {point.shear_x, free_shear, normal};
+  return {free_shear, point.shear_y, normal};
 }
 
 }  // namespace pillarfield

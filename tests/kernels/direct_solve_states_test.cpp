@@ -198,9 +198,11 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
 
 TYPED_TEST(DirectSolveStates, ABoundedParitySumHoldsTheTruth) {
   const auto bounded = [](const States& states) {
-    const auto tells = [&](std::size_t n) { return states[n] == usable || states[n] == inactive; };
+    const auto is_bounded = [&](std::size_t n) {
+      return states[n] == usable || states[n] == inactive;
+    };
     const bool measured = std::ranges::count(states, saturated) == 0;
-    return measured && ((tells(0) && tells(2)) || (tells(1) && tells(3)));
+    return measured && ((is_bounded(0) && is_bounded(2)) || (is_bounded(1) && is_bounded(3)));
   };
   Random random(65);
   for (const States& states : all_states()) {
@@ -279,13 +281,13 @@ TYPED_TEST(DirectSolveStates, NothingBoundsTheSmallestForce) {
 
 TYPED_TEST(DirectSolveStates, UnequalDeadZonesAloneAreNoContact) {
   using Real = RealOf<TypeParam>;
-  const auto inactive = [](Real dead_zone) {
+  const auto unloaded = [](Real dead_zone) {
     return fill_dead_zone(sensel_in<TypeParam>(inactive, 0), dead_zone);
   };
   const auto gone = sensel_in<TypeParam>(missing, 9);
   for (const auto& pillar :
-       {PillarOf<TypeParam>{inactive(1), inactive(2), inactive(3), inactive(4)},
-        PillarOf<TypeParam>{inactive(1), inactive(2), gone, gone}}) {
+       {PillarOf<TypeParam>{unloaded(1), unloaded(2), unloaded(3), unloaded(4)},
+        PillarOf<TypeParam>{unloaded(1), unloaded(2), gone, gone}}) {
     const auto solved = solve<TypeParam>(pillar, 50);
     EXPECT_TRUE(TestFixture::is_zero(solved.force));
     EXPECT_EQ(solved.status & (status::kAmbiguous | status::kUsable), 0);

@@ -98,8 +98,8 @@ TEST(FeasibleSegment, IsTheSameOfEachOfItsForces) {
     for (const float part : {0.01F, 0.3F, 1.0F}) {
       const maths::Force other = force_on_segment(pillar.point, vertical, part * segment.high);
       const FeasibleSegment again = pillarfield::segment_of(other, vertical, {});
-      ASSERT_NEAR(again.fixed, segment.known_shear, 1e-4);
-      ASSERT_NEAR(again.moving, segment.free_shear, 1e-4);
+      ASSERT_NEAR(again.known_shear, segment.known_shear, 1e-4);
+      ASSERT_NEAR(again.free_shear, segment.free_shear, 1e-4);
       ASSERT_NEAR(again.high, segment.high, 1e-4);
     }
   });
@@ -129,8 +129,8 @@ TEST(FeasibleSegment, ScalesWithTheForce) {
   for (const float scale : {1e-12F, 1e-3F, 1e6F, 1e15F}) {
     const FeasibleSegment other = pillarfield::segment_of(
         {scale * force.shear_x, scale * force.shear_y, scale * force.normal}, true, {});
-    EXPECT_NEAR(other.fixed / scale, one.fixed, 1e-6);
-    EXPECT_NEAR(other.moving / scale, one.moving, 1e-6);
+    EXPECT_NEAR(other.known_shear / scale, one.known_shear, 1e-6);
+    EXPECT_NEAR(other.free_shear / scale, one.free_shear, 1e-6);
     EXPECT_NEAR(other.high / scale, one.high, 1e-6);
   }
 }
