@@ -39,8 +39,7 @@
  * programs of whole numbers + - and comparisons alone; if (any_lane(mask)) where the skipped code
  * changes no bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan,
  * atan2, pow. No contraction: the device and a host built with -ffp-contract=off then agree bit for
- * bit in all but the last six.
- */
+ * bit in all but the last six. */
 #ifndef __cplusplus /* OpenCL C */
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -108,8 +107,7 @@ static inline bool any_bits(Bits bits) {
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 /* PoCL does not inline by itself, and passes structures of lanes through memory. Other drivers
- * inline, or, like Oclgrind, lack the attribute.
- */
+ * inline; Oclgrind lacks the attribute. */
 #ifdef POCL_DEVICE_ADDRESS_BITS
 #define PF_INLINE static inline __attribute__((always_inline))
 #else

@@ -35,7 +35,7 @@ constexpr bool kShadowMemory = false;
 constexpr bool kShadowMemory = false;
 #endif
 
-constexpr int kAnswerDescriptor = 3;  // the child's end of the pipe
+constexpr int kOutputDescriptor = 3;  // the child's end of the pipe
 
 /// `resource` is an enumeration in some C libraries, and an int in others.
 template <class Resource>
@@ -80,13 +80,13 @@ void reset_signals() {
 
 /// Closes all files but the pipe, and replaces the standard streams by /dev/null: a file inherited
 /// from the parent would share its position.
-void leave_only(int answer) {
-  answer = fcntl(answer, F_DUPFD, kAnswerDescriptor + 1);
+void leave_only(int output) {
+  output = fcntl(output, F_DUPFD, kOutputDescriptor + 1);
   const int nothing = open("/dev/null", O_RDWR);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
-  dup2(answer, kAnswerDescriptor);
+  dup2(output, kOutputDescriptor);
 #if defined(__linux__) && defined(SYS_close_range)
-  syscall(SYS_close_range, kAnswerDescriptor + 1, ~0U, 0);
+  syscall(SYS_close_range, kOutputDescriptor + 1, ~0U, 0);
 #endif
 }
 
@@ -98,30 +98,30 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-[[noreturn]] void be_child(int answer, const ChildLimits& limits,
+[[noreturn]] void be_child(int output, const ChildLimits& limits,
                            const std::function<std::string()>& work) {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
   reset_signals();
-  leave_only(answer);
+  leave_only(output);
   limit_child(limits);
-  write_all(kAnswerDescriptor, work() + '\0');
+  write_all(kOutputDescriptor, work() + '\0');
   _exit(0);
 }
 
 /// Reads to the end of the pipe; false if `deadline` came first.
-bool read_answer(int answer, ChildClock::time_point deadline, std::string& text) {
+bool read_output(int output, ChildClock::time_point deadline, std::string& text) {
   for (;;) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - ChildClock::now());
     if (left.count() <= 0) return false;
-    pollfd waiting = {answer, POLLIN, 0};
+    pollfd waiting = {output, POLLIN, 0};
     const int ready = poll(&waiting, 1, static_cast<int>(left.count()));
     if (ready < 0 && errno != EINTR) return false;
     if (ready <= 0) continue;
     char block[512];
-    const ssize_t got = read(answer, block, sizeof block);
+    const ssize_t got = read(output, block, sizeof block);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return true;
     text.append(block, static_cast<std::size_t>(got));
@@ -159,7 +159,7 @@ ChildEnd run_in_child(const std::string& where, const ChildLimits& limits,
     fail_to_start(where);
   }
   ChildEnd end;
-  end.in_time = read_answer(ends[0], ChildClock::now() + limits.time, end.text);
+  end.in_time = read_output(ends[0], ChildClock::now() + limits.time, end.text);
   close(ends[0]);
   if (!end.in_time) kill(child, SIGKILL);
   end.signal = signal_of_end(child);

@@ -16,7 +16,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kLongestComplaint = 400;
+constexpr std::size_t kLongestLine = 400;
 
 /// Standard streams of the program.
 class FileActions {
@@ -70,7 +70,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::str
   }
   fcntl(fileno(errors_.get()), F_SETFD, FD_CLOEXEC);
   input_ = ends[0];
-  const FileActions actions(ends[1], output == kAnswer ? ends[1] : output, fileno(errors_.get()));
+  const FileActions actions(ends[1], output == kPipe ? ends[1] : output, fileno(errors_.get()));
   const int failure = spawn(words, actions, process_);
   close(ends[1]);
   if (failure == 0) return;
@@ -125,11 +125,11 @@ std::string ChildProgram::errors() const {
   return text;
 }
 
-std::string ChildProgram::complaint() const {
+std::string ChildProgram::error_line() const {
   std::string text = errors();
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  if (text.size() > kLongestComplaint) {
-    text = "... " + text.substr(text.size() - kLongestComplaint);
+  if (text.size() > kLongestLine) {
+    text = "... " + text.substr(text.size() - kLongestLine);
   }
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
     text.replace(end, 1, "; ");

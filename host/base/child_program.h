@@ -16,10 +16,10 @@ namespace pillarfield {
 class ChildProgram {
  public:
   static constexpr int kDiscard = -1;
-  static constexpr int kAnswer = -2;
+  static constexpr int kPipe = -2;
 
   /// `words`: the program, found in PATH, and its arguments. `output`: file descriptor of its
-  /// standard output; kDiscard: none; kAnswer: read_line(). Throws Error if it cannot be started,
+  /// standard output; kDiscard: none; kPipe: read_line(). Throws Error if it cannot be started,
   /// with the remedy `mend` if it is not installed.
   ChildProgram(const std::vector<std::string>& words, const std::string& mend,
                int output = kDiscard);
@@ -44,7 +44,7 @@ class ChildProgram {
   [[nodiscard]] std::string errors() const;
 
   /// Its standard error as one line of at most 400 characters, the last ones.
-  [[nodiscard]] std::string complaint() const;
+  [[nodiscard]] std::string error_line() const;
 
  private:
   struct Close {

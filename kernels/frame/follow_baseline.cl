@@ -38,8 +38,7 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
  * every get_global_size(0)-th block of PF_LANES pillars in its band of rows.
  *
  * raw, calibration, results   those of solve_frame; tares and activation thresholds are written
- * rate                        fraction of the difference between reading and tare that is added to
- * the tare, 0..1 */
+ * rate                        fraction of reading - tare that is added to the tare, 0..1 */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration,
                             global const uchar* restrict results, Layout layout, float rate,

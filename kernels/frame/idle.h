@@ -26,9 +26,9 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
 #endif
   const Real lowest = (Real)(PF_ACTIVATION_LOWEST);
   const Real highest = (Real)(PF_ACTIVATION_HIGHEST);
-  const Real level = activation_threshold(tare, gain, (Real)(PF_ACTIVATION_CUT),
-                                          (Real)(PF_ACTIVATION_STEP), lowest);
-  const Real bounded = level < lowest ? lowest : (level < highest ? level : highest);
+  const Real threshold = activation_threshold(tare, gain, (Real)(PF_ACTIVATION_CUT),
+                                              (Real)(PF_ACTIVATION_STEP), lowest);
+  const Real bounded = threshold < lowest ? lowest : (threshold < highest ? threshold : highest);
 #ifdef PF_MASK
   return at.good == (Real)(0.0f) ? (Real)(PF_ACTIVATION_NEVER) : bounded;
 #else
@@ -38,10 +38,10 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
 #endif
 
 #ifdef PF_LARGEST_READING
-#define PF_IS_ACTIVE(reading, level) \
-  (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
+#define PF_IS_ACTIVE(reading, threshold) \
+  (!((reading) < (threshold)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
 #else
-#define PF_IS_ACTIVE(reading, level) ((reading) >= (level))
+#define PF_IS_ACTIVE(reading, threshold) ((reading) >= (threshold))
 #endif
 
 /* True if no sensel under PF_LANES pillars is active. `activation` points to the first sensel's

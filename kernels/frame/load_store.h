@@ -35,8 +35,7 @@ PF_DEFINE_PACKED(float)
   ((global PF_JOIN(packed_, type)*)(place))->value = (lanes)
 #endif
 
-/* load_<name>(row): sensels under PF_LANES neighbouring pillars, as Real; readings as Counts.
- */
+/* load_<name>(row): sensels under PF_LANES pillars, as Real; readings as Counts. */
 #if PF_LANES == 1
 #define PF_DEFINE_LOAD(name, type, Pair, split)        \
   PF_INLINE Pair load_##name(global const type* row) { \

@@ -5,13 +5,12 @@
  * compiles all of them and tests PF_NAMED at run time.
  *
  * Where a new stage goes:
- * - Correction of one sensel: in correct_sensel; its effect on noise in corrected_noise. A
- * parameter per sensel is a calibration plane and a member of Correction.
+ * - Correction of one sensel: in correct_sensel, its effect on noise in corrected_noise. A
+ *   parameter per sensel is a calibration plane and a member of Correction.
  * - Quantity of one pillar: in solve_pillar. Its results are lines of result_planes.h.
  * - Stage with neighbours: an entry point of its own, since a work-item of solve_frame.cl reads
- * only the sensels of its block. Crosstalk between sensels runs before solve_frame.cl and writes
- * the readings that it loads; a stage on neighbouring pillars runs after it, as follow_baseline.cl
- * does.
+ *   only the sensels of its block. It runs before solve_frame.cl, as crosstalk between sensels
+ *   would, or after it, as follow_baseline.cl does.
  * - Stage with state: a plane that a frame reads like the tare and that an entry point after
  *   solve_frame.cl updates for the next frame. Frames then wait for each other on the device.
  * The host's table gives the kind of each stage, and whether idle blocks may be skipped: whether
@@ -160,8 +159,8 @@ PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stag
   Bits status = direct_status(pillar, diagonals, sum, PF_CONSTANT(Counts, PF_MARGIN));
 #ifdef PF_PARITY_TOLERANCE
   if (PF_NAMED(parity_test)) {
-    const Mask at_odds = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
-    status = status | (bits_of(at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
+    const Mask contradictory = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
+    status = status | (bits_of(contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
   }
 #endif
   return status;

@@ -175,7 +175,8 @@ static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
 /* True if the inactive fourth sensel may carry load while three are usable: its upper bound is
  * above zero, and parity predicts more than -`margin` counts for it (D9). Usable sensels are above
  * zero, so the minimum over all four decides. */
-static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Counts sum, Counts margin) {
+static inline Mask fourth_may_be_loaded(Pillar pillar, Diagonals diagonals, Counts sum,
+                                        Counts margin) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Counts least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),
@@ -220,15 +221,16 @@ static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum s
   const Bits three_usable =
       (rising & one_inactive_of(s2, s4)) | (falling & one_inactive_of(s1, s3));
   const Bits one_or_two =
-      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.point, margin));
+      three_usable & bits_of(fourth_may_be_loaded(pillar, diagonals, sum.point, margin));
   const Bits ambiguous = bits_of(sum.ambiguous) | one_or_two;
   const Bits saturated = s1.saturated | s2.saturated | s3.saturated | s4.saturated;
   const Bits missing = s1.missing | s2.missing | s3.missing | s4.missing;
-  const Bits at_odds = (rising & s2.inactive & s4.inactive) | (falling & s1.inactive & s3.inactive);
+  const Bits contradictory =
+      (rising & s2.inactive & s4.inactive) | (falling & s1.inactive & s3.inactive);
   return (s1.usable & PF_BITS(PF_STATUS_SENSEL_1)) | (s2.usable & PF_BITS(PF_STATUS_SENSEL_2)) |
          (s3.usable & PF_BITS(PF_STATUS_SENSEL_3)) | (s4.usable & PF_BITS(PF_STATUS_SENSEL_4)) |
          (ambiguous & PF_BITS(PF_STATUS_AMBIGUOUS)) | (saturated & PF_BITS(PF_STATUS_SATURATED)) |
-         ((missing | at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
+         ((missing | contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
 }
 
 /* True if one of two opposite sensels is usable and the other inactive. */
@@ -244,10 +246,10 @@ static inline Mask fails_parity(Pillar pillar, ParitySum sum, Counts tolerance) 
   const Mask falling_usable = pillar.s2.usable && pillar.s4.usable;
   const Counts rising = pillar.s1.reading + pillar.s3.reading;
   const Counts falling = pillar.s2.reading + pillar.s4.reading;
-  const Mask rising_hides = falling_usable && one_inactive(pillar.s1, pillar.s3);
-  const Mask falling_hides = rising_usable && one_inactive(pillar.s2, pillar.s4);
+  const Mask rising_predicted = falling_usable && one_inactive(pillar.s1, pillar.s3);
+  const Mask falling_predicted = rising_usable && one_inactive(pillar.s2, pillar.s4);
   const Mask residual_fails = (rising - falling > tolerance) || (falling - rising > tolerance);
   return (rising_usable && falling_usable && residual_fails) ||
-         (rising_hides && (sum.high - rising > tolerance)) ||
-         (falling_hides && (sum.high - falling > tolerance));
+         (rising_predicted && (sum.high - rising > tolerance)) ||
+         (falling_predicted && (sum.high - falling > tolerance));
 }

@@ -60,8 +60,7 @@ static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real referenc
   return sensel;
 }
 
-/* dV / dr of the power law, the factor on small noise; at most a million, so that its square is
- * finite.
+/* dV / dr of the power law, the factor on small noise; at most 1e6, so that its square is finite.
  */
 static inline Real power_law_slope(Real reading, Real exponent, Real reference) {
   const Real most = PF_REAL(1e6);

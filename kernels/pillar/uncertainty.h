@@ -48,8 +48,7 @@ static inline DifferenceWeights difference_weights(Diagonal d) {
   return weights;
 }
 
-/* Variance of a reading, counts^2. An inactive or missing sensel enters the estimate as a constant
- * without noise. */
+/* Variance of a reading, counts^2; zero for an inactive or missing sensel, a constant. */
 static inline Real variance_of(Sensel sensel, Real noise) {
   return is_pressed(sensel) ? noise * noise : PF_REAL(0.0);
 }
@@ -113,12 +112,10 @@ typedef struct {
   Real magnitude_high;
 } DirectionInterval;
 
-/* True if both sensels of a diagonal are inactive, so that parity does not divide the sum between
- * them. */
+/* True if parity does not divide the sum between the two sensels of a diagonal. */
 static inline Mask is_unconstrained(Sensel p, Sensel q) { return is_inactive(p) && is_inactive(q); }
 
-/* True if both ends equal the estimate: the parity sum is a point, and neither diagonal is
- * unconstrained. */
+/* True if the parity sum is a point and neither diagonal is unconstrained. */
 static inline Mask is_determined(Pillar pillar, ParitySum sum) {
   return !(sum.ambiguous || is_unconstrained(pillar.s1, pillar.s3) ||
            is_unconstrained(pillar.s2, pillar.s4));
@@ -148,8 +145,7 @@ static inline DirectionInterval either_interval(Mask condition, DirectionInterva
   return interval;
 }
 
-/* Readings and parity interval of a pillar, counts, scaled so that no product overflows or
- * underflows. */
+/* Readings and parity interval of a pillar, scaled against overflow and underflow, counts. */
 typedef struct {
   Diagonal a; /* rising */
   Diagonal b; /* falling */
@@ -211,8 +207,7 @@ static inline Real size_at(DifferenceLine line, Real sum) {
 
 static inline Real signed_as(DifferenceLine line, Real size) { return line.turned ? -size : size; }
 
-/* Largest difference of two inactive sensels in one direction (U5); the estimate, zero, lies
- * between. */
+/* Largest difference of two inactive sensels in one direction (U5). */
 static inline Real most_difference(Real reading, Real sum) {
   return larger_of((reading + reading) - sum, PF_REAL(0.0));
 }
@@ -229,11 +224,11 @@ static inline Real longest_shear(ScaledPillar e, Real a_size, Real b_size) {
 /* The interval of a pillar without measured sensels, up to the bounds of its inactive ones (U8). */
 static inline DirectionInterval inactive_interval(ScaledPillar e) {
   const Real zero = PF_REAL(0.0);
-  const Mask hides = e.high > zero;
-  const Real pi = hides ? PF_REAL(3.14159265358979323846) : zero;
+  const Mask may_be_loaded = e.high > zero;
+  const Real pi = may_be_loaded ? PF_REAL(3.14159265358979323846) : zero;
   DirectionInterval interval;
   interval.theta_low = zero;
-  interval.theta_high = hides ? PF_REAL(1.57079632679489661923) : zero;
+  interval.theta_high = may_be_loaded ? PF_REAL(1.57079632679489661923) : zero;
   interval.phi_low = zero - pi;
   interval.phi_high = pi;
   interval.magnitude_low = zero;
@@ -263,8 +258,7 @@ static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real 
   return phi;
 }
 
-/* The interval between the ends of a segment, or of an unconstrained diagonal at the smallest sum.
- */
+/* phi between the ends of a segment, or of an unconstrained diagonal at the smallest sum. */
 static inline PhiInterval phi_interval(ScaledPillar e, Real a_flat, Real b_flat, Real a_steep,
                                        Real b_steep) {
   const Mask unconstrained = e.a_unconstrained || e.b_unconstrained;

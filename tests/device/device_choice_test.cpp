@@ -62,7 +62,7 @@ TEST(Programs, AreBuiltOncePerDeviceAndSource) {
   EXPECT_NE(first(), device.state().program(source + "\n")());
 }
 
-TEST(Programs, ThatDoNotCompileSayWhy) {
+TEST(Programs, ThatDoNotCompileHaveALog) {
   try {
     open_device().state().program("kernel void broken() { undeclared = 1; }");
     FAIL() << "it compiled";

@@ -82,7 +82,7 @@ class KernelCacheTest : public testing::Test {
   std::unique_ptr<TemporaryDirectory> temporary_;
 };
 
-TEST_F(KernelCacheTest, WhatIsMissingIsMadeForThisUserAlone) {
+TEST_F(KernelCacheTest, MissingDirectoriesAreCreatedForThisUserAlone) {
   const mode_t before = umask(0);
   for (const char* variable : {"HOME", "XDG_CACHE_HOME"}) {  // The second goes before the first.
     set(variable, folder_ / variable);
@@ -108,7 +108,7 @@ TEST_F(KernelCacheTest, WithoutAHomeItIsNotKept) {
   EXPECT_FALSE(fs::exists("relative"));
 }
 
-TEST_F(KernelCacheTest, WhatOthersCanWriteIsPassedOver) {
+TEST_F(KernelCacheTest, DirectoriesThatOthersCanWriteAreSkipped) {
   set("XDG_CACHE_HOME", directory("writable", 0777));
   expect_temporary("others can write " + (folder_ / "writable").string());
   EXPECT_TRUE(fs::is_empty(folder_ / "writable"));
@@ -141,7 +141,7 @@ TEST_F(KernelCacheTest, InAStickyDirectoryOnesOwnIsSafe) {
   expect_refused(folder_ / "sticky", "others can write");
 }
 
-TEST_F(KernelCacheTest, DirectoriesOfOthersArePassedOver) {
+TEST_F(KernelCacheTest, DirectoriesOfOthersAreSkipped) {
   const fs::path theirs = directory("theirs", 0755);
   if (chown(theirs.c_str(), kNobody, kNobody) != 0) GTEST_SKIP() << "only root gives files away";
   set("HOME", theirs);
@@ -159,7 +159,7 @@ TEST_F(KernelCacheTest, AGroupOfOthersIsOthers) {
   expect_refused(shared, "others can write");
 }
 
-TEST_F(KernelCacheTest, WhatTheUserAsksForIsTakenOrRefused) {
+TEST_F(KernelCacheTest, TheUsersDirectoryIsUsedOrRefused) {
   expect_refused(directory("writable", 0777), "others can write");
   std::ofstream(folder_ / "file") << "text";
   expect_refused(folder_ / "file", "is not a directory");
@@ -185,7 +185,7 @@ TEST_F(KernelCacheTest, AHomeThatCannotBeWrittenIsNoFailure) {
   EXPECT_EQ(choose().directory.parent_path(), folder_ / "mine");
 }
 
-TEST_F(KernelCacheTest, AFullDiskIsSaid) {
+TEST_F(KernelCacheTest, AFullDiskIsReported) {
   const PrivateDirectory found = private_directory(folder_ / "kernels", UINTMAX_MAX);
   EXPECT_TRUE(found.path.empty());
   EXPECT_NE(found.refused.find("KiB left"), std::string::npos) << found.refused;

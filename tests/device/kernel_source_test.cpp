@@ -41,7 +41,7 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
   }
 }
 
-TEST(KernelSource, EveryWishOfAPlanIsAStage) {
+TEST(KernelSource, EveryOptionOfAPlanIsAStage) {
   SolverPlan plan = full_plan(8, 8, SenselType::f32, 1);
   plan.angles = true;
   plan.uncertainty = true;
@@ -63,7 +63,7 @@ TEST(KernelSource, TheMarginIsFiveDeviationsOfThreeReadings) {
   const auto margin = [&] {
     return std::strtof(macro(kernel_source(plan, 1), "PF_MARGIN").c_str(), nullptr);
   };
-  EXPECT_EQ(margin(), 0) << "the noise is not known";
+  EXPECT_EQ(margin(), 0) << "the noise is unknown";
   plan.noise_counts = 2;
   EXPECT_FLOAT_EQ(margin(), 5 * std::sqrt(3.0F) * 2);
   plan.calibration.noise.assign(64, 4.0F);

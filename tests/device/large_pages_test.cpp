@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
 
-TEST(LargePages, BeginOnALargePageAndHoldWhatWasAskedFor) {
+TEST(LargePages, BeginOnALargePageAndHoldTheRequestedBytes) {
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{4095}, std::size_t{4097}, kLargePage,
                                   kLargePage + 1, 3 * kLargePage}) {
     const LargePages memory = allocate_large_pages(bytes);

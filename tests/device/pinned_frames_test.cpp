@@ -118,7 +118,7 @@ TEST_P(PinnedFrames, GivingBackFreesTheSlot) {
   EXPECT_EQ(ring.pinned(), 0);
 }
 
-TEST_P(PinnedFrames, ExhaustionIsOneClearLineAndCanBeMended) {
+TEST_P(PinnedFrames, ExhaustionIsOneClearLineAndRecoverable) {
   const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
   Processor ring = processor(plan, 2);
   const std::vector<RandomFrame> frames = frames_of(plan, 2);
@@ -222,7 +222,7 @@ TEST_P(PinnedFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST_P(PinnedFrames, OnlyTheLastReceivedCanBeKept) {
+TEST_P(PinnedFrames, OnlyTheLastReceivedCanBePinned) {
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   Processor ring = processor(plan, 2);
   const RandomFrame frame(plan, 0, 1);
@@ -236,7 +236,7 @@ TEST_P(PinnedFrames, OnlyTheLastReceivedCanBeKept) {
 }
 
 /// The lifetime of results that are not pinned.
-TEST(SlotScheduler, ASlotIsUsedAgainAfterAsManyFramesAsAreNotKept) {
+TEST(SlotScheduler, ASlotIsUsedAgainAfterAsManyFramesAsAreNotPinned) {
   for (std::size_t slots = 1; slots <= 6; ++slots) {
     for (std::size_t pinned = 0; pinned < slots; ++pinned) {
       SlotScheduler turns(slots);

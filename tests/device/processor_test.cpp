@@ -124,12 +124,12 @@ TEST_P(EveryPath, AllStagesHaveTheBitsOfTheHost) {
 }
 
 TEST_P(FurtherStages, UncertaintyIsThatOfTheHost) {
-  SolverPlan known = full_plan(14, 2 * 21, GetParam().type, 9);
-  known.uncertainty = true;
+  SolverPlan with_uncertainty = full_plan(14, 2 * 21, GetParam().type, 9);
+  with_uncertainty.uncertainty = true;
   SolverPlan plain = bare_plan(12, 2 * 19, GetParam().type);
   plain.uncertainty = true;
   plain.noise_counts = 0.7;
-  for (const SolverPlan& plan : {known, plain}) {
+  for (const SolverPlan& plan : {with_uncertainty, plain}) {
     Processor processor(test_device(), plan, {.memory = GetParam().memory},
                         {.lanes = GetParam().lanes});
     const RandomFrame frame(plan, 3, 1);
@@ -363,7 +363,7 @@ TEST(Processor, AFullRingRefusesAnotherFrame) {
   expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
 }
 
-TEST(Processor, AProcessorMayGoWhileFramesAreInFlight) {
+TEST(Processor, AProcessorMayBeDestroyedWhileFramesAreInFlight) {
   const SolverPlan plan = bare_plan(512, 512, SenselType::u8);
   const RandomFrame frame(plan, 0, 1);
   for (const Memory memory : {Memory::automatic, Memory::staged}) {
@@ -375,7 +375,7 @@ TEST(Processor, AProcessorMayGoWhileFramesAreInFlight) {
   }
 }
 
-TEST(Processor, RefusesWhatDoesNotFit) {
+TEST(Processor, RefusesFramesThatDoNotFit) {
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   Processor processor(test_device(), plan);
   const RandomFrame frame(plan, 0, 1);

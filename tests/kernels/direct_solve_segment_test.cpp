@@ -89,7 +89,8 @@ double sum_of(const PillarOf<Precision>& pillar, double segment_point) {
   return static_cast<double>(solve<Precision>(pillar, 0.5, segment_point).force.normal);
 }
 
-TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheMiddleElsewhere) {
+TYPED_TEST(DirectSolveSegment,
+           HasItsPointWhereASenselOfEachDiagonalIsMeasuredAndTheMidpointElsewhere) {
   using Real = RealOf<TypeParam>;
   const auto usable = TypeParam::raw_sensel(40);
   const auto inactive = TypeParam::raw_sensel(0);
@@ -119,7 +120,7 @@ TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheM
   }
 }
 
-TYPED_TEST(DirectSolveSegment, ExplainsTheReadingsAllAlong) {
+TYPED_TEST(DirectSolveSegment, IsConsistentWithTheReadings) {
   using Real = RealOf<TypeParam>;
   TestFixture::for_random_region_three(2'000, [](const auto&, const auto& readings) {
     const auto solved =
@@ -141,7 +142,7 @@ TYPED_TEST(DirectSolveSegment, ExplainsTheReadingsAllAlong) {
   });
 }
 
-TYPED_TEST(DirectSolveSegment, KnowsTheShearAlongThePressedSideExactly) {
+TYPED_TEST(DirectSolveSegment, HasTheExactShearAlongThePressedSide) {
   TestFixture::for_random_region_three(20'000, [](const auto& truth, const auto& readings) {
     const auto solved =
         solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton);
@@ -192,12 +193,13 @@ TYPED_TEST(DirectSolveSegment, HoldsTheTruthBehindADeadZone) {
     const double k = TestFixture::kCountsPerNewton;
     const auto truth = random.force(random.decades(0.05, 2));
     const auto readings = rounded_readings<TypeParam>(truth, k);
-    const auto answer = [&](Real reading) {
+    const auto response = [&](Real reading) {
       return fill_dead_zone(classify(TypeParam::raw_sensel(reading - dead_zone), Real{0}),
                             dead_zone);
     };
-    const auto solved = solve<TypeParam>(
-        {answer(readings[0]), answer(readings[1]), answer(readings[2]), answer(readings[3])}, k);
+    const auto solved = solve<TypeParam>({response(readings[0]), response(readings[1]),
+                                          response(readings[2]), response(readings[3])},
+                                         k);
     if (!(solved.sum.low < solved.sum.high)) continue;
     EXPECT_NE(solved.status & status::kAmbiguous, 0);
     ++ambiguous;

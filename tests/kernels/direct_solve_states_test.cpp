@@ -69,8 +69,8 @@ class DirectSolveStates : public testing::Test {
   }
 
   /// True if sensels in these states would show the readings of `force`.
-  static void expect_explained(const ForceOf<Precision>& force, const States& states,
-                               const FourReadings<Precision>& readings) {
+  static void expect_consistent(const ForceOf<Precision>& force, const States& states,
+                                const FourReadings<Precision>& readings) {
     const oracle::Readings implied = oracle::readings_of(to_exact(force), kCountsPerNewton);
     RealOf<Precision> largest = 0;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -169,7 +169,7 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsFiniteAndHasItsBits) {
   }
 }
 
-TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
+TYPED_TEST(DirectSolveStates, EveryForceIsConsistent) {
   Random random(63);
   const std::array<States, 256> all = all_states();
   std::array<int, 256> seen{};
@@ -184,7 +184,7 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
       const auto shown = TestFixture::clipped(random, states, readings);
       const auto solved =
           solve<TypeParam>(pillar_in<TypeParam>(states, shown), TestFixture::kCountsPerNewton);
-      TestFixture::expect_explained(solved.force, states, shown);
+      TestFixture::expect_consistent(solved.force, states, shown);
     }
   }
   // A diagonal that is inactive at both ends has no parity sum above zero: no force has that.
@@ -294,7 +294,7 @@ TYPED_TEST(DirectSolveStates, UnequalDeadZonesAloneAreNoContact) {
   }
 }
 
-TYPED_TEST(DirectSolveStates, HostileReadingsAreMissingOrHarmless) {
+TYPED_TEST(DirectSolveStates, ExtremeReadingsAreMissingOrHarmless) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   const std::array<Real, 10> hostile = {Limits::quiet_NaN(),

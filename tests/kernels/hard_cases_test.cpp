@@ -64,7 +64,7 @@ TEST_P(HardCases, AreSolvedAsExactlyAsTheirConditionAllows) {
   }
 }
 
-TEST_P(HardCases, HaveFiniteOutputsAndAStatusThatSaysSo) {
+TEST_P(HardCases, HaveFiniteOutputsAndTheirStatus) {
   const auto& [hard_case, estimator, precision] = GetParam();
   for (const Example& example : hard_case.examples(precision)) {
     SCOPED_TRACE(text_of(example));
@@ -107,7 +107,7 @@ double any_reading(std::mt19937_64& engine) {
   return std::exp(static_cast<double>(engine() % 1000) / 50 - 8);
 }
 
-TEST(AllHardCases, AndAnyReadingsAtAllHaveFiniteOutputs) {
+TEST(AllHardCases, AnyReadingsHaveFiniteOutputs) {
   std::mt19937_64 engine(71);
   for (int i = 0; i < 200'000; ++i) {
     Example example;

@@ -162,7 +162,7 @@ TEST(Oracle, ThePapersEquationsFindTheForceOfRegionsOneAndTwo) {
   EXPECT_GT(cases, 500);
 }
 
-TEST(Oracle, ThePapersForceOfRegionThreeExplainsTheReadingsHalfWayInTheta) {
+TEST(Oracle, ThePapersForceOfRegionThreeIsTheMidpointInTheta) {
   int cases = 0;
   for_directions([&](const Force&, const SomeReadings& usable) {
     if (count_of(usable) != 2) return;
@@ -182,7 +182,7 @@ TEST(Oracle, ThePapersForceOfRegionThreeExplainsTheReadingsHalfWayInTheta) {
   EXPECT_GT(cases, 100);
 }
 
-TEST(Oracle, ConditionOfTheDirectSolveIsWhatItsLinearFormSays) {
+TEST(Oracle, ConditionOfTheDirectSolveFollowsFromItsLinearForm) {
   int cases = 0;
   for_directions([&](const Force& force, const SomeReadings& usable) {
     const auto estimate = [](const SomeReadings& some) { return direct_force(some, 5); };

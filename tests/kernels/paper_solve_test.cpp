@@ -151,7 +151,7 @@ TYPED_TEST(PaperSolve, MissingIsUnusableAndSaturatedUsable) {
   }
 }
 
-TYPED_TEST(PaperSolve, WhatThePaperDoesNotKnowIsSolvedDirectly) {
+TYPED_TEST(PaperSolve, OppositeSenselsAloneAreSolvedDirectly) {
   using Readings = FourReadings<TypeParam>;
   for (const Readings& readings : {Readings{10, 0, 30, 0}, Readings{0, 7, 0, 5}}) {
     const auto pillar = pillar_of<TypeParam>(readings);

@@ -44,7 +44,7 @@ TYPED_TEST(Parity, ResidualPassesUpToItsTolerance) {
   }
 }
 
-TYPED_TEST(Parity, SurplusPassesUpToThresholdAndTolerance) {
+TYPED_TEST(Parity, ExcessPassesUpToThresholdAndTolerance) {
   using Real = RealOf<TypeParam>;
   // Sensel 1 is inactive although parity predicts 20 + 24 - 33 = 11 counts for it.
   for (std::size_t turns = 0; turns < 4; ++turns) {
@@ -57,7 +57,7 @@ TYPED_TEST(Parity, SurplusPassesUpToThresholdAndTolerance) {
   }
 }
 
-TYPED_TEST(Parity, AnInactiveSenselMayLackAnyAmount) {
+TYPED_TEST(Parity, ANegativePredictionPasses) {
   // Parity predicts 20 + 24 - 90 = -46 counts for sensel 1, as under a pillar that lifts off.
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto pillar = pillar_of<TypeParam>(TestFixture::turned({0, 20, 90, 24}, turns));
@@ -65,7 +65,7 @@ TYPED_TEST(Parity, AnInactiveSenselMayLackAnyAmount) {
   }
 }
 
-TYPED_TEST(Parity, ADeadZoneExcusesAnInactiveSensel) {
+TYPED_TEST(Parity, ADeadZoneRaisesTheBoundOfAnInactiveSensel) {
   using Real = RealOf<TypeParam>;
   auto pillar = pillar_of<TypeParam>({0, 20, 33, 24});
   EXPECT_TRUE(TestFixture::fails(pillar, 6));
@@ -73,7 +73,7 @@ TYPED_TEST(Parity, ADeadZoneExcusesAnInactiveSensel) {
   EXPECT_FALSE(TestFixture::fails(pillar, 6));
 }
 
-TYPED_TEST(Parity, AnInactiveSenselThatMayPressLeavesTheRegionAmbiguous) {
+TYPED_TEST(Parity, AnInactiveSenselThatMayBeLoadedLeavesTheRegionAmbiguous) {
   using Real = RealOf<TypeParam>;
   const auto ambiguous = [](const PillarOf<TypeParam>& pillar, Real margin) {
     const auto diagonals = pillar_diagonals(pillar);

@@ -135,7 +135,7 @@ TEST(Deviations, AreThoseOfTheEstimateForAllStates) {
 
 /// A force that is consistent with readings, as parity sum and differences
 /// (docs/derivations/pillar_model.md, M4, M5).
-struct Explanation {
+struct ConsistentForce {
   double sum;
   double rising;
   double falling;
@@ -188,7 +188,7 @@ struct Ends {
 template <class Precision>
 class DirectionIntervals : public testing::Test {
  protected:
-  static void expect_holds(const Ends<Precision>& ends, const Explanation& truth) {
+  static void expect_holds(const Ends<Precision>& ends, const ConsistentForce& truth) {
     const auto& interval = ends.interval;
     EXPECT_GE(truth.theta(), static_cast<double>(interval.theta_low) - ends.slack);
     EXPECT_LE(truth.theta(), static_cast<double>(interval.theta_high) + ends.slack);
@@ -200,7 +200,7 @@ class DirectionIntervals : public testing::Test {
 };
 TYPED_TEST_SUITE(DirectionIntervals, Precisions, PrecisionNames);
 
-Explanation random_truth(Random& random) {
+ConsistentForce random_truth(Random& random) {
   const auto force = random.force(random.decades(0.05, 4));
   const double k = kCountsOfOneNewton;
   return {2 * k * force.normal, std::numbers::sqrt2 * k * (force.shear_x + force.shear_y),
@@ -211,7 +211,7 @@ TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsInactive) {
   Random random(72);
   std::array<int, 5> usable{};
   for (int i = 0; i < 100'000; ++i) {
-    const Explanation truth = random_truth(random);
+    const ConsistentForce truth = random_truth(random);
     const auto readings = truth.readings();
     ++usable[static_cast<std::size_t>(
         std::ranges::count_if(readings, [](double v) { return v > kHidden; }))];
@@ -229,7 +229,7 @@ struct Reached {
   double magnitude_low = std::numeric_limits<double>::infinity();
   double magnitude_high = 0;
 
-  void add(const Explanation& force, const Ends<Double>& ends) {
+  void add(const ConsistentForce& force, const Ends<Double>& ends) {
     theta_low = std::min(theta_low, force.theta());
     theta_high = std::max(theta_high, force.theta());
     magnitude_low = std::min(magnitude_low, force.magnitude());
@@ -240,7 +240,7 @@ struct Reached {
 };
 
 /// True if a force has the usable readings and leaves the other sensels inactive.
-bool explains(const Explanation& force, const std::array<double, 4>& readings) {
+bool is_consistent(const ConsistentForce& force, const std::array<double, 4>& readings) {
   const auto back = force.readings();
   for (std::size_t n = 0; n < 4; ++n) {
     const bool usable = readings[n] > kHidden;
@@ -266,15 +266,15 @@ Reached scan(const std::array<double, 4>& readings, const Ends<Double>& ends) {
     const double sum = 4.0 * kHidden * i / kSteps;
     for (const double rising : differences(sum, readings[0], readings[2])) {
       for (const double falling : differences(sum, readings[1], readings[3])) {
-        const Explanation force = {sum, rising, falling};
-        if (explains(force, readings)) reached.add(force, ends);
+        const ConsistentForce force = {sum, rising, falling};
+        if (is_consistent(force, readings)) reached.add(force, ends);
       }
     }
   }
   return reached;
 }
 
-TEST(DirectionIntervals, EndWhereTheExplanationsEnd) {
+TEST(DirectionIntervals, EndWhereConsistentForcesEnd) {
   const std::array<std::array<double, 4>, 7> idle_somewhere = {{
       {30, 40, 0, 0},
       {0, 50, 21, 0},
