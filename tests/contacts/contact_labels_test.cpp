@@ -238,7 +238,7 @@ TEST(ContactLabels, DoesNotLookIntoSilentBlocks) {
   Mask mask(3, 40);
   Marks marks(mask, 16);
   for (std::uint32_t col = 0; col < 40; ++col) mask.set(1, col, true);
-  marks.flags[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
+  marks.marks[marks.stride + 1] = 0;  // the second block of row 1, which begins 8 places before it
   ContactLabels map;
   map.find(mask.status, 3, 40, marks.view());
   ASSERT_EQ(map.runs().size(), 1U);
