@@ -7,14 +7,12 @@
 
 namespace pillarfield {
 
-/// Resource limits of a child process.
 struct ChildLimits {
   unsigned processor_s = 2;
   std::chrono::milliseconds time{10'000};           ///< wall time
   std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond the parent's address space
 };
 
-/// Result of a child process.
 struct ChildEnd {
   std::string text;       ///< returned by the function
   bool returned = false;  ///< the function returned, and `text` is complete

@@ -4,7 +4,6 @@
 
 namespace pillarfield {
 
-/// An interval of numbers.
 struct Range {
   double low;
   double high;

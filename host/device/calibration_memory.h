@@ -8,7 +8,6 @@
 
 namespace pillarfield {
 
-/// Calibration planes of the kernels.
 enum class CalibrationPlane : std::uint8_t { tare, gain, dead_zone, noise, mask, activation };
 
 /// The macro that holds the plane's index.

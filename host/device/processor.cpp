@@ -57,7 +57,6 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
-/// Message while kernels are compiled.
 std::string line_on_compiling(const DeviceInfo& device) {
   if (!device.kernel_cache.empty()) {
     return fmt::format("Compiling the kernels for {}; the next start finds them in {}", device.name,

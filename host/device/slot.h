@@ -42,7 +42,6 @@ class Slot {
   /// Starts solving the frame; the slot must not be in flight.
   void submit(const FrameView& frame);
 
-  /// Waits for the frame.
   void wait();
 
   /// Estimates the ambiguous pillars of the frame, after wait().
@@ -51,7 +50,6 @@ class Slot {
   /// Results of the frame, after wait().
   [[nodiscard]] ForceFieldView results() const;
 
-  /// The pages of the results.
   [[nodiscard]] std::span<const std::byte> pages() const { return memory_->pages(); }
 
  private:

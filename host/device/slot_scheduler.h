@@ -56,7 +56,6 @@ class SlotScheduler {
   /// give it back.
   std::optional<std::size_t> next();
 
-  /// Marks the slot as in flight.
   void submit(std::size_t slot) { in_flight_.push(slot); }
 
   /// The slot of the oldest frame in flight. Requires one.

@@ -5,7 +5,6 @@
 
 namespace pillarfield {
 
-/// Status bytes processed at once.
 inline constexpr std::size_t kWordBytes = sizeof(std::uint64_t);
 inline constexpr std::uint64_t kEachByte = 0x0101010101010101u;  ///< the lowest bit of each byte
 

@@ -15,7 +15,6 @@ namespace {
 
 namespace maths = single_precision;
 
-/// Solves the pillars of a frame into a force field.
 class PillarSolver {
  public:
   PillarSolver(const SolverPlan& plan, const FrameView& frame, ForceField& field)

@@ -6,7 +6,6 @@
 
 namespace pillarfield {
 
-/// Code that runs a stage.
 enum class StagePlace : std::uint8_t {
   pillar,  ///< kernels/frame/stages.h: reads the sensels of one pillar in one frame
   frame,   ///< an entry point of its own in kernels/frame: reads the frame

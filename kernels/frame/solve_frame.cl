@@ -30,7 +30,6 @@
  * A stage without its macro is not compiled. Constants are exact (hexadecimal); with PF_WHOLE those
  * in counts are multiples of its unit. */
 
-/* Readings and calibration of a frame. */
 typedef struct {
   global const PF_SENSEL* raw;
   size_t row_stride;

@@ -134,7 +134,6 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
 }
 #endif
 
-/* Results of a pillar. */
 typedef struct {
   Force force;
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)

@@ -101,7 +101,6 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
   }
 }
 
-/// Parameters of a run.
 struct Path {
   const char* name;
   Memory memory;

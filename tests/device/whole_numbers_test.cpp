@@ -51,7 +51,6 @@ class WholeNumbers : public testing::Test {
     return plan;
   }
 
-  /// Compares the device with the host.
   static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
     const ForceField expected = solve_on_host(plan, frame_.view());
     Processor processor(*device_, plan, {}, {.lanes = lanes});

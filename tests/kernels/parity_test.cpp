@@ -21,7 +21,6 @@ class Parity : public testing::Test {
     return fails_parity(pillar, sum, tolerance) != 0;
   }
 
-  /// Turned by `turns` quarter turns.
   static FourReadings<Precision> turned(const FourReadings<Precision>& readings,
                                         std::size_t turns) {
     FourReadings<Precision> result;

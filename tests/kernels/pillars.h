@@ -88,7 +88,6 @@ struct Solved {
   ForceOf<Precision> force;
   int status;
 
-  /// The ends of the feasible segment.
   [[nodiscard]] ForceOf<Precision> low() const { return force_at(diagonals, sum.low, scale); }
   [[nodiscard]] ForceOf<Precision> high() const { return force_at(diagonals, sum.high, scale); }
 };
@@ -107,7 +106,6 @@ Solved<Precision> solve(const PillarOf<Precision>& pillar, double k,
   return solved;
 }
 
-/// Random numbers with a fixed seed.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
