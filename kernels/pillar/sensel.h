@@ -77,8 +77,8 @@ static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate)
 #endif
 
 /* Classifies a reading: above `threshold` counts (zero or more) the sensel is usable or saturated.
- * Below, it is inactive and reads the threshold, the upper bound of V, or missing and reads zero. A
- * saturated sensel whose corrected reading is below the threshold is missing. */
+ * Otherwise it is inactive and reads the threshold, the upper bound of V, or missing and reads
+ * zero. A saturated sensel whose corrected reading is not above the threshold is missing. */
 static inline Sensel classify(Sensel sensel, Counts threshold) {
   const Mask is_active = (sensel.reading > threshold) && !sensel.missing;
   const Mask is_uninformative = sensel.missing || (sensel.saturated && !is_active);
