@@ -125,7 +125,7 @@ void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& idle
   const std::size_t skew =
       std::size_t{row} * cols % size;  // pillars of the first block in the row above
   const std::size_t blocks = (skew + cols + size - 1) / size;
-  const auto marks = idle.marks.subspan(row * idle.stride, blocks);
+  const auto marks = idle.flags.subspan(row * idle.stride, blocks);
   const auto skip = [&](std::size_t at) {
     while (at + kWordBytes <= blocks && word_at(marks.data() + at) == kEachByte) at += kWordBytes;
     return at;
@@ -196,13 +196,13 @@ void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t row
   }
   active_.clear();
   for (std::uint32_t row = 0; row < rows; ++row) {
-    if (idle.marks.empty()) {
+    if (idle.flags.empty()) {
       active_.push_back({row, 0, cols, 0});
     } else {
       append_active(row, cols, idle, active_);
     }
   }
-  if (!idle.marks.empty()) prefetch(status, cols, active_);
+  if (!idle.flags.empty()) prefetch(status, cols, active_);
   find_runs(status, cols);
   label_contacts();
   sort_runs();
