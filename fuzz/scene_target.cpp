@@ -7,11 +7,11 @@
 namespace pillarfield::fuzz {
 namespace {
 
-/// Largest scene that is simulated, in sensels, and in sensels times contacts.
+/// Largest simulated scene, in sensels and in sensels times contacts.
 constexpr std::uint64_t kMostSensels = 1 << 12;
 constexpr std::uint64_t kMostWork = 1 << 14;
 
-/// Whether a body's contact is of a few pillars, solved in a few steps, and no file is its shape.
+/// Whether a body's contact has few pillars and few steps, and its shape is not in a file.
 bool is_small(const Body& body, const Scene& scene) {
   constexpr double kMostPillars = 8;
   constexpr double kMostSteps = 2;

@@ -21,7 +21,7 @@
 namespace pillarfield {
 namespace {
 
-/// A history has some ten steps; a damaged file must not make anyone read for ever.
+/// Limit for damaged files; a real history has about ten steps.
 constexpr int kMostSteps = 10000;
 
 Skin size_of_skin(const SkinCalibration& calibration) {
@@ -109,7 +109,7 @@ CalibrationStep read_step(const hdf5::File& file, const std::string& name) {
   step.sources = lines_of(text(calibration_format::kSources));
   const double frames =
       hdf5::read_number(file, group.get(), calibration_format::kStepFrames).value_or(0);
-  // Beyond 2^53 it is no count, and NaN is none either.
+  // NaN and values above 2^53 are not counts.
   step.frames = frames >= 0 && frames < 0x1p53 ? static_cast<std::uint64_t>(frames) : 0;
   step.parameters = text(calibration_format::kParameters);
   step.date_utc = text(calibration_format::kDate);

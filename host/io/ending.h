@@ -5,7 +5,7 @@
 
 namespace pillarfield {
 
-/// The ending of a file's name in small letters, ".csv"; empty where it has none.
+/// The extension of a file name in lower case, ".csv"; empty if it has none.
 [[nodiscard]] std::string ending_of(const std::filesystem::path& path);
 
 }  // namespace pillarfield

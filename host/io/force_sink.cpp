@@ -24,7 +24,7 @@ SinkFormat contact_json_format();
 
 namespace {
 
-/// All formats, in the order in which messages name their endings.
+/// All formats, in the order in which messages list their extensions.
 std::span<const SinkFormat> sink_formats() {
   static const std::array formats = {force_hdf5_format(), force_csv_format(), force_npy_format(),
                                      contact_csv_format(), contact_json_format()};
@@ -34,9 +34,9 @@ std::span<const SinkFormat> sink_formats() {
 const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) {
   if (const SinkFormat* const format = format_by_ending(path, kind)) return *format;
   throw Error(path.string(),
-              kind == OutputKind::forces ? "its ending is not that of a force file"
-                                         : "its ending names no table of contacts",
-              "end it in " + endings_of(kind));
+              kind == OutputKind::forces ? "its extension is not that of a force file"
+                                         : "its extension is not that of a table of contacts",
+              "use " + endings_of(kind));
 }
 
 void check_time(const SolvedFrame& frame, const std::string& where) {
@@ -65,12 +65,12 @@ void check(const SolvedFrame& frame, const ForceFileInfo& info, const std::strin
   if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.shear_x) ||
       !complete(forces.shear_y) || !complete(forces.normal) || forces.status.size() != pillars) {
     throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
-                fmt::format("the file takes whole frames of {} x {}", info.rows, info.cols));
+                fmt::format("the file needs frames of {} x {}", info.rows, info.cols));
   }
   for (const ResultPlane& plane : planes_of(info)) {
     if (plane.index >= kSolvedPlanes || complete(plane_of(forces, plane.index))) continue;
     throw Error(where, fmt::format("a frame without {}", plane.field()),
-                "solve with all outputs that the file shall have");
+                "solve with all outputs that the file needs");
   }
   check_time(frame, where);
   if (info.contacts) static_cast<void>(contacts_of(frame, where));
@@ -125,8 +125,8 @@ std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
   check(info, path.string());
   const SinkFormat& format = format_of(path, OutputKind::forces);
   if (info.contacts && format.recognises != nullptr) {
-    throw Error(path.string(), "only HDF5 files hold contacts beside the forces",
-                "end it in .h5, or write the contacts to a file of their own");
+    throw Error(path.string(), "only HDF5 files can hold contacts beside forces",
+                "use .h5, or write the contacts to a separate file");
   }
   return format.create(path, info, replace);
 }

@@ -173,7 +173,7 @@ const Damage kDamages[] = {
        H5Gclose(H5Gcreate2(f, "/history/1", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
        set_number(f, "/history/1", "step", 1);
      },
-     {"'step' is no string"}},
+     {"'step' must be a string"}},
 };
 
 TEST(CalibrationFile, DamageIsToldInOneClearError) {

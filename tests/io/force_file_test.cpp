@@ -166,7 +166,7 @@ TEST(ForceSink, RefusesWhatItCannotWrite) {
   ForceFileInfo no_pitch = info_of(2, 3);
   no_pitch.pillar_pitch_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has_all(refused(directory / "f.txt", info_of(2, 3)), {"f.txt", ".h5", ".csv"}));
-  EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"ending"}));
+  EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"extension"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(0, 3)), {"0 x 3"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(2, 32768)), {"2 x 32768"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", no_pitch), {"pillar_pitch_mm is nan"}));

@@ -177,7 +177,7 @@ TEST(KilledRecording, WithABrokenByteNeitherCrashesNorHangs) {
   }
 }
 
-TEST(GrowingRecording, IsReadWhileItIsWritten) {
+TEST(UnfinishedRecording, IsReadWhileItIsWritten) {
   const TemporaryDirectory directory;
   Writer writer({"recording", (directory / "r.h5").string(), "20", "20", "1000000000"});
   std::string line;

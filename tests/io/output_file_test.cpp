@@ -261,7 +261,7 @@ TEST(OutputFile, APartThatIsALinkIsRefused) {
   fs::create_hard_link(directory / "victim", directory / "a.csv.part");
   EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "several names"}));
   ASSERT_EQ(mkfifo((directory / "a.csv.part").c_str(), 0600), 0);
-  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "no regular file"}));
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "not a regular file"}));
 }
 
 TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
@@ -304,7 +304,7 @@ TEST(OutputFile, WithoutLeaveOnlyEarlierResultsOfItsKindAreReplaced) {
   write_bytes(path, "");
   write_text(path, kTableHead, Replace::results);
   write_bytes(path, "my,own,notes\n");
-  refused("no earlier output");
+  refused("not an earlier output");
   write_bytes(path, "\x89PNG\r\n\x1a\n and more");
   refused("is a picture");
   write_recording(path, 1);
@@ -466,7 +466,7 @@ TEST(CheckOutputs, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
     return error_of([&] { check_outputs({}, {{path, OutputKind::svg}}, Replace::anything); });
   };
   EXPECT_TRUE(has_all(refused(directory / "none" / "a.svg"), {"none/a.svg", "No such file"}));
-  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "no regular file"}));
+  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "not a regular file"}));
   EXPECT_TRUE(has_all(refused("-"), {"standard output"}));
   EXPECT_TRUE(has_all(refused(""), {"empty"}));
   EXPECT_EQ(directory.names(), Names{});

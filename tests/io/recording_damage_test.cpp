@@ -116,7 +116,7 @@ const float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
 
 const RecordingDamage kRecordingDamages[] = {
-    {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no 'format'"}},
+    {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no attribute 'format'"}},
     {"other format", [](hid_t f) { set_text(f, "/", "format", "cheese"); }, {"'cheese'"}},
     {"a force file by its format alone",
      [](hid_t f) { set_text(f, "/", "format", "pillarfield-forces"); },
@@ -171,10 +171,10 @@ const RecordingDamage kRecordingDamages[] = {
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_C_S1, {1, 6, 6});
      },
-     {"/frames/raw is no number but a string"}},
+     {"/frames/raw must be a number, not a string"}},
     {"time integer",
      [](hid_t f) { replace(f, "/frames/time", H5T_STD_I64LE, {5}); },
-     {"/frames/time holds no floats"}},
+     {"/frames/time must hold floats"}},
     {"one row",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {1, 1, 6});
@@ -215,7 +215,7 @@ const RecordingDamage kRecordingDamages[] = {
      {"full_scale_counts is 250"}},
     {"pitch a text",
      [](hid_t f) { set_text(f, "/skin", "sensel_pitch_mm", "wide"); },
-     {"'sensel_pitch_mm' is no number"}},
+     {"'sensel_pitch_mm' must be a number"}},
     {"tare of other size",
      [](hid_t f) {
        replace(f, "/calibration/tare", H5T_IEEE_F32LE, {6, 5});
@@ -228,7 +228,7 @@ const RecordingDamage kRecordingDamages[] = {
      [](hid_t f) {
        replace(f, "/calibration/gain", H5T_C_S1, {6, 6});
      },
-     {"/calibration/gain is no number but a string"}},
+     {"/calibration/gain must be a number, not a string"}},
     {"tare NaN",
      [](hid_t f) { set_first(f, "/calibration/tare", kFloatNan); },
      {"tare", "row 1, column 1", "nan"}},
@@ -262,7 +262,7 @@ const RecordingDamage kRecordingDamages[] = {
        replace(f, "/frames/raw", type, {1, 6, 6});
        H5Tclose(type);
      },
-     {"/frames/raw is no number but", "another layout"}},
+     {"/frames/raw must be a number, not", "non-standard layout"}},
     {"noise negative", [](hid_t f) { set_first(f, "/calibration/noise", -1); }, {"noise", "is -1"}},
     {"half a power law",
      [](hid_t f) { set_number_in(f, "/skin", "power_law_exponent", 1.2); },
@@ -285,7 +285,7 @@ const RecordingDamage kRecordingDamages[] = {
      [](hid_t f) {
        replace(f, "/truth/normal", H5T_STD_I32LE, {5, 3, 3});
      },
-     {"/truth/normal holds no floats"}},
+     {"/truth/normal must hold floats"}},
 };
 
 TEST(RecordingDamage, IsToldInOneClearError) {
@@ -404,8 +404,8 @@ TEST(FileKinds, ThatAreNoneOfOursAreToldApart) {
   EXPECT_TRUE(has_all(error_for("binary"), {"neither an HDF5 recording nor a Tekscan"}));
   EXPECT_TRUE(has_all(error_for("signature.h5"), {"cannot be opened as HDF5"}));
   EXPECT_TRUE(has_all(error_for("folder"), {"is a directory"}));
-  EXPECT_TRUE(has_all(error_for("pipe"), {"no regular file"}));
-  EXPECT_TRUE(has_all(error_of([] { (void)open_frames("/dev/null"); }), {"no regular file"}));
+  EXPECT_TRUE(has_all(error_for("pipe"), {"not a regular file"}));
+  EXPECT_TRUE(has_all(error_of([] { (void)open_frames("/dev/null"); }), {"not a regular file"}));
 }
 
 }  // namespace

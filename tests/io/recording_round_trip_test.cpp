@@ -250,7 +250,7 @@ TEST(RecordingWriter, RefusesWhatDoesNotFitAndGoesOn) {
   EXPECT_TRUE(has_all(refused(FrameBuffer(SenselType::u16, 4, 4).view(), 0, &truth), {"uint16"}));
   EXPECT_TRUE(has_all(refused({}, 0, &truth), {"0 x 0"}));
   EXPECT_TRUE(has_all(refused(frame.view(), nan, &truth), {"frame 0", "nan"}));
-  EXPECT_TRUE(has_all(refused(frame.view(), 0, nullptr), {"without its truth"}));
+  EXPECT_TRUE(has_all(refused(frame.view(), 0, nullptr), {"has no truth"}));
   EXPECT_TRUE(has_all(refused(frame.view(), 0, &small_truth), {"1 x 2"}));
   writer.append(frame.view(), 0, &truth);
   writer.finish();
@@ -281,8 +281,8 @@ TEST(RecordingWriter, RefusesPlacesThatCannotBeWritten) {
   };
   std::filesystem::create_directory(directory / "folder");
   EXPECT_TRUE(has_all(refused(directory / "none" / "r.h5"), {"none/r.h5", "No such file"}));
-  EXPECT_TRUE(has_all(refused(directory / "folder"), {"folder", "no regular file"}));
-  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "no regular file"}));
+  EXPECT_TRUE(has_all(refused(directory / "folder"), {"folder", "not a regular file"}));
+  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "not a regular file"}));
   EXPECT_EQ(directory.names(), Names{"folder"});
 }
 

@@ -127,7 +127,7 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->skin().full_scale_counts, 255);
   EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
-  EXPECT_TRUE(warnings(*source, "counts a newton"));
+  EXPECT_TRUE(warnings(*source, "counts per newton"));
   EXPECT_TRUE(warnings(*source, "last of the 3 sensel rows"));
   EXPECT_FALSE(source->has_truth());
   EXPECT_TRUE(source->calibration().empty());
@@ -170,7 +170,7 @@ TEST_F(Tekscan, MasksSenselsThatAnyFrameLacks) {
   EXPECT_EQ(source->calibration().mask, mask);
   written.frames[0][0] = written.frames[1][0] = written.frames[1][5] = 0;
   EXPECT_EQ(readings(*source), written.frames);
-  EXPECT_TRUE(warnings(*source, "2 of 12 places hold no sensel"));
+  EXPECT_TRUE(warnings(*source, "2 of 12 cells have no sensel"));
 }
 
 TEST_F(Tekscan, WidensToSixteenBitsAnywhere) {
@@ -240,7 +240,7 @@ TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
 TEST_F(Tekscan, RemarksOnFramesThatAreAnnouncedAndNotThere) {
   Export written;
   written.set("END_FRAME", "END_FRAME 9");
-  EXPECT_TRUE(warnings(*open(written.text()), "announces 9 frames, and the file holds 2"));
+  EXPECT_TRUE(warnings(*open(written.text()), "announces 9 frames, but the file holds 2"));
 }
 
 TEST_F(Tekscan, PrefersTheTimesOfTheFrames) {
@@ -283,13 +283,13 @@ const Mistake kMistakes[] = {
     {"COLS huge", [](Export& e) { e.set("COLS", "COLS 65534"); }, {":15:", "4 of 65534 columns"}},
     {"ROWS too many",
      [](Export& e) { e.set("ROWS", "ROWS 4"); },
-     {":19:", "frame 1 ends after 3 of 4 rows"}},
+     {":19:", "frame 1 has only 3 of 4 rows"}},
     {"ROWS too few", [](Export& e) { e.set("ROWS", "ROWS 2"); }, {":17:", "more than 2 rows"}},
     {"COLS too many", [](Export& e) { e.set("COLS", "COLS 5"); }, {":15:", "4 of 5 columns"}},
     {"COLS too few", [](Export& e) { e.set("COLS", "COLS 3"); }, {":15:", "more than 3 columns"}},
     {"spacing in feet",
      [](Export& e) { e.set("ROW_SPACING", "ROW_SPACING 0.1 feet"); },
-     {":5:", "ROW_SPACING is '0.1 feet'", "mm, cm, inches"}},
+     {":5:", "ROW_SPACING is '0.1 feet'", "mm, cm or inches"}},
     {"spacing without unit",
      [](Export& e) { e.set("ROW_SPACING", "ROW_SPACING 0.1"); },
      {":5:", "unit"}},
@@ -315,7 +315,7 @@ const Mistake kMistakes[] = {
      {":16, column 2:", "'65536'", "[0, 65535]"}},
     {"last frame cut",
      [](Export& e) { e.frames[1].resize(8); },
-     {":22:", "frame 2 ends after 2 of 3 rows"}},
+     {":22:", "frame 2 has only 2 of 3 rows"}},
     {"last row cut",
      [](Export& e) {
        e.frames[1].resize(10);
@@ -327,7 +327,7 @@ const Mistake kMistakes[] = {
        e.frames.clear();
        e.end = "";
      },
-     {"ends before its first frame"}},
+     {"the export has no frame"}},
 };
 
 TEST_F(Tekscan, NamesTheLineOfEveryMistake) {

@@ -6,8 +6,8 @@
 
 namespace pillarfield {
 
-/// What is known of the friction coefficient of every contact before any reading: a log-normal
-/// prior (docs/derivations/contact.md, C1).
+/// Prior of the friction coefficient of every contact, log-normal (docs/derivations/contact.md,
+/// C1).
 struct FrictionKnowledge {
   double median = 1;    ///< [0.1, 9.9]
   double spread = 0.5;  ///< standard deviation of the logarithm, [0.01, 3]

@@ -80,8 +80,8 @@ struct ProcessorTuning;  // tuning.h
 /// receive() waits for the oldest frame in flight and returns a view of the slot's memory. Call
 /// pin() to hold a result beyond the ring's lifetime, as a display does that draws it in place.
 ///
-/// Results are bit for bit those of solve_on_host(), save the power law and the estimator `paper`,
-/// which call library functions.
+/// Results agree bit for bit with solve_on_host(), except for the power law and the estimator
+/// `paper`, which call library functions.
 ///
 /// Threads: one at a time. A PinnedResult may be destroyed in any thread.
 class Processor {
@@ -153,7 +153,7 @@ class Processor {
 
   [[nodiscard]] int in_flight() const;       ///< frames submitted and not yet received
   [[nodiscard]] int pinned() const;          ///< results held now
-  [[nodiscard]] bool shares_memory() const;  ///< whether frames and results are not copied
+  [[nodiscard]] bool shares_memory() const;  ///< whether frames and results stay in place
   [[nodiscard]] const Device& device() const;
 
  private:

@@ -12,11 +12,11 @@
 
 namespace pillarfield {
 
-/// One step of a calibration's history, as its file keeps it.
+/// One step of a calibration's history.
 struct CalibrationStep {
   std::string step;                  ///< "tare", "equilibrate", "load" or "faults"
   std::vector<std::string> sources;  ///< names of the files of frames
-  std::uint64_t frames = 0;          ///< in all of them
+  std::uint64_t frames = 0;          ///< total of all sources
   std::string parameters;            ///< "threshold_factor = 4, ..."
   std::string date_utc;              ///< "2026-01-31T12:34:56Z"
   std::string program_version;

@@ -30,7 +30,7 @@ inline constexpr double kSegmentPoint = 0.875;
 struct SolverPlan {
   Skin skin;  ///< set at least `rows`, `cols` and `counts_per_newton`
   SenselType sensel_type = SenselType::u8;
-  Calibration calibration;  ///< empty planes: raw readings are taken as they are
+  Calibration calibration;  ///< empty planes: no correction
   /// Tolerance of the parity test V1 + V3 = V2 + V4, counts, >= 0: a pillar whose residual, or the
   /// surplus of whose inactive sensel, is larger gets status::kInconsistent. Unset: no test.
   std::optional<double> parity_tolerance_counts;
@@ -49,8 +49,9 @@ struct SolverPlan {
   /// each frame, (0, 1]; see baseline_rate(). Unset: the tare is fixed. A sensel is untouched if
   /// neither its pillar nor the eight around it have a usable or saturated sensel.
   std::optional<double> baseline_rate;
-  /// The tare moves in one of so many pillar rows after each frame, by turns, 1 to 1024. It follows
-  /// as fast as with 1, and the cost divides by this number.
+  /// Number of frames over which the update of the tare is spread, 1 to 1024: each frame updates
+  /// every baseline_interval-th pillar row. The tare follows as fast as with 1 at a fraction of the
+  /// cost.
   int baseline_interval = 1;
   bool angles = false;       ///< also compute magnitude, theta and phi
   bool uncertainty = false;  ///< also compute the planes of Uncertainty; needs the noise of the

@@ -6,9 +6,9 @@
 
 #include "pillarfield/solver_plan.h"
 
-/// @file
-/// What tests and benchmarks turn and the layers of the library share. Programs need none of it,
-/// pillarfield.h does not include it, and it may change with every version.
+/// @file Settings for tests and benchmarks, and functions that layers of the library share.
+/// Programs do not need them, pillarfield.h does not include them, and they may change with every
+/// version.
 namespace pillarfield {
 
 /// How a kernel writes its results to memory.
