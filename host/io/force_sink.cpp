@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "io/ending.h"
+#include "io/extension.h"
 #include "io/force_planes.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
@@ -32,11 +32,11 @@ std::span<const SinkFormat> sink_formats() {
 }
 
 const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) {
-  if (const SinkFormat* const format = format_by_ending(path, kind)) return *format;
+  if (const SinkFormat* const format = format_by_extension(path, kind)) return *format;
   throw Error(path.string(),
               kind == OutputKind::forces ? "its extension is not that of a force file"
                                          : "its extension is not that of a table of contacts",
-              "use " + endings_of(kind));
+              "use " + extensions_of(kind));
 }
 
 void check_time(const SolvedFrame& frame, const std::string& where) {
@@ -82,12 +82,13 @@ const FrameContacts& contacts_of(const SolvedFrame& frame, const std::string& wh
   throw Error(where, "a frame without its contacts", "track them, or write forces alone");
 }
 
-const SinkFormat* format_by_ending(const std::filesystem::path& path, OutputKind kind) {
-  const std::string ending = ending_of(path);
+const SinkFormat* format_by_extension(const std::filesystem::path& path, OutputKind kind) {
+  const std::string extension = extension_of(path);
   for (const SinkFormat& format : sink_formats()) {
-    const auto& endings = format.endings;
-    const bool has_ending = std::find(endings.begin(), endings.end(), ending) != endings.end();
-    if (format.kind == kind && !ending.empty() && has_ending) return &format;
+    const auto& extensions = format.extensions;
+    const bool has_extension =
+        std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+    if (format.kind == kind && !extension.empty() && has_extension) return &format;
   }
   return nullptr;
 }
@@ -99,17 +100,17 @@ const SinkFormat* format_by_beginning(std::string_view head) {
   return nullptr;
 }
 
-std::string endings_of(OutputKind kind) {
-  std::vector<std::string_view> endings;
+std::string extensions_of(OutputKind kind) {
+  std::vector<std::string_view> extensions;
   for (const SinkFormat& format : sink_formats()) {
-    for (const std::string_view ending : format.endings) {
-      if (format.kind == kind && !ending.empty()) endings.push_back(ending);
+    for (const std::string_view extension : format.extensions) {
+      if (format.kind == kind && !extension.empty()) extensions.push_back(extension);
     }
   }
-  if (endings.empty()) return "";
-  const std::string_view last = endings.back();
-  endings.pop_back();
-  return fmt::format("{} or {}", fmt::join(endings, ", "), last);
+  if (extensions.empty()) return "";
+  const std::string_view last = extensions.back();
+  extensions.pop_back();
+  return fmt::format("{} or {}", fmt::join(extensions, ", "), last);
 }
 
 PlannedOutput planned_force_file(const std::filesystem::path& path) {

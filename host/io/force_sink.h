@@ -12,9 +12,9 @@ namespace pillarfield {
 
 /// A file format of solved frames, defined beside its sink and listed in force_sink.cpp.
 struct SinkFormat {
-  OutputKind kind = OutputKind::forces;     ///< or `contacts`
-  std::array<std::string_view, 2> endings;  ///< in lower case; the second may be empty
-  const char* content = "";                 ///< for messages: "is a table of forces"
+  OutputKind kind = OutputKind::forces;        ///< or `contacts`
+  std::array<std::string_view, 2> extensions;  ///< in lower case; the second may be empty
+  const char* content = "";                    ///< for messages: "is a table of forces"
   /// Whether a file with this beginning has the format. Null for HDF5, whose attributes name it.
   bool (*recognises)(std::string_view head) = nullptr;
   /// Creates the sink. ForceFileInfo::contacts enables contacts; sinks of contacts require it.
@@ -30,8 +30,8 @@ template <class Sink>
 }
 
 /// The format of this kind by the extension of `path`; null if there is none.
-[[nodiscard]] const SinkFormat* format_by_ending(const std::filesystem::path& path,
-                                                 OutputKind kind);
+[[nodiscard]] const SinkFormat* format_by_extension(const std::filesystem::path& path,
+                                                    OutputKind kind);
 
 /// The format of a text or NPY file by its first 1024 bytes; null if unknown.
 [[nodiscard]] const SinkFormat* format_by_beginning(std::string_view head);

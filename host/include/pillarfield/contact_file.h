@@ -18,8 +18,8 @@ struct ContactFileInfo {
 };
 
 /// Creates a sink of contacts alone in the format of the extension of `path` (docs/formats.md;
-/// endings_of() lists them). Each frame must have contacts. `replace` limits which existing file it
-/// may replace. Throws Error for another extension or a path that cannot be written.
+/// extensions_of() lists them). Each frame must have contacts. `replace` limits which existing file
+/// it may replace. Throws Error for another extension or a path that cannot be written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path,
                                                              const ContactFileInfo& info,
                                                              Replace replace = Replace::results);

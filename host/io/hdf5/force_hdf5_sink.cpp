@@ -150,7 +150,7 @@ void Hdf5Sink::finish() {
 
 SinkFormat force_hdf5_format() {
   return {.kind = OutputKind::forces,
-          .endings = {".h5", ".hdf5"},
+          .extensions = {".h5", ".hdf5"},
           .content = "holds force fields",
           .create = [](const std::filesystem::path& path, const ForceFileInfo& info,
                        Replace replace) -> std::unique_ptr<ForceSink> {

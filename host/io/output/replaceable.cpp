@@ -37,7 +37,7 @@ FoundContent hdf5_content(const std::filesystem::path& path) {
   if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
   if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};
   if (format == force_format::kName) {
-    const SinkFormat* const written = format_by_ending("forces.h5", OutputKind::forces);
+    const SinkFormat* const written = format_by_extension("forces.h5", OutputKind::forces);
     return {OutputKind::forces, written->content, written};
   }
   return {std::nullopt, "is an HDF5 file of another kind"};
@@ -125,7 +125,7 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
   } catch (const Error&) {
     found.words = "cannot be read";
   }
-  const SinkFormat* const asked = format_by_ending(path, kind);
+  const SinkFormat* const asked = format_by_extension(path, kind);
   const bool is_of_its_format = asked == nullptr || asked == found.format;
   if (found.kind == kind && is_result(kind) && is_of_its_format) return;
   throw Error(path.string(), "exists and " + found.words,

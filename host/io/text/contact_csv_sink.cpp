@@ -73,7 +73,7 @@ void ContactCsvSink::append(const SolvedFrame& frame) {
 
 SinkFormat contact_csv_format() {
   return {.kind = OutputKind::contacts,
-          .endings = {".csv"},
+          .extensions = {".csv"},
           .content = "is a table of contacts",
           .recognises = [](std::string_view head) { return head.starts_with(kContactCsvHead); },
           .create = create_sink<ContactCsvSink>};

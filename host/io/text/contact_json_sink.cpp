@@ -105,7 +105,7 @@ void JsonSink::finish() {
 
 SinkFormat contact_json_format() {
   return {.kind = OutputKind::contacts,
-          .endings = {".json"},
+          .extensions = {".json"},
           .content = "is a list of contacts",
           .recognises = [](std::string_view head) { return head.starts_with(kContactJsonHead); },
           .create = create_sink<JsonSink>};

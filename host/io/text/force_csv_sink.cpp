@@ -80,7 +80,7 @@ void ForceCsvSink::append(const SolvedFrame& frame) {
 
 SinkFormat force_csv_format() {
   return {.kind = OutputKind::forces,
-          .endings = {".csv"},
+          .extensions = {".csv"},
           .content = "is a table of forces",
           .recognises = [](std::string_view head) { return head.starts_with(kForceCsvHead); },
           .create = create_sink<ForceCsvSink>};

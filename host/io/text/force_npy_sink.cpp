@@ -113,7 +113,7 @@ void NpySink::finish() {
 
 SinkFormat force_npy_format() {
   return {.kind = OutputKind::forces,
-          .endings = {".npy"},
+          .extensions = {".npy"},
           .content = "is an array of forces",
           .recognises =
               [](std::string_view head) {
