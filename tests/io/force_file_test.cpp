@@ -22,7 +22,7 @@ using io_test::write_bytes;
 
 using Names = std::vector<std::string>;
 
-/// Forces with angles of their own, so that no plane is like another.
+/// Forces with unrelated angles, so that all planes differ.
 struct Field {
   ForceField forces;
   std::vector<float> magnitude, theta, phi;
@@ -90,7 +90,8 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
   }
 }
 
-/// The cells of a line; each number must be the shortest text that reads back as the same value.
+/// The cells of a line; checks that each number is the shortest text that reads back as the same
+/// value.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream stream(line);

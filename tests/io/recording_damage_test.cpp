@@ -22,10 +22,10 @@ using io_test::write_bytes;
 constexpr std::uint32_t kSize = 6;  // sensel rows and columns
 constexpr std::uint64_t kDamagedFrames = 5;
 
-/// Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
+/// The checksums of our own files keep HDF5 from crashing in the test process.
 constexpr ReadOptions kTrusted = {.trust = true};
 
-/// A recording that has all a recording can have.
+/// A recording with every optional object.
 void write_full_recording(const std::filesystem::path& path) {
   Skin skin;
   skin.rows = kSize;
@@ -44,7 +44,7 @@ void write_full_recording(const std::filesystem::path& path) {
   writer.finish();
 }
 
-// What the cases below do to the file, in the words of the HDF5 library.
+// Edits of the cases below, by calls of HDF5.
 
 void set_number_in(hid_t file, const char* object, const char* name, double value) {
   H5Adelete_by_name(file, object, name, H5P_DEFAULT);
@@ -69,8 +69,7 @@ void set_text(hid_t file, const char* object, const char* name, const std::strin
   H5Sclose(space);
 }
 
-/// Replaces a dataset by one of other size and type without values; in chunks where these are
-/// given.
+/// Replaces a dataset by an empty one of another size and type; chunked if `chunk` is given.
 void replace(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& extent,
              const std::vector<hsize_t>& chunk = {}) {
   H5Ldelete(file, name, H5P_DEFAULT);
@@ -288,12 +287,12 @@ const RecordingDamage kRecordingDamages[] = {
      {"/truth/normal must hold floats"}},
 };
 
-TEST(RecordingDamage, IsToldInOneClearError) {
+TEST(RecordingDamage, EndsInOneError) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   for (const RecordingDamage& damage : kRecordingDamages) {
     SCOPED_TRACE(damage.name);
-    std::filesystem::remove(path);  // What is no recording any more is not replaced unasked.
+    std::filesystem::remove(path);  // A file that is no longer a recording is not replaced.
     write_full_recording(path);
     change(path, damage.action);
     const std::string error = error_of([&] { (void)open_frames(path); });
@@ -302,7 +301,7 @@ TEST(RecordingDamage, IsToldInOneClearError) {
   }
 }
 
-TEST(RecordingDamage, OfATimeIsToldWhenItsFrameIsRead) {
+TEST(RecordingDamage, OfATimeIsReportedWithItsFrame) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_full_recording(path);
@@ -318,7 +317,7 @@ TEST(RecordingDamage, OfATimeIsToldWhenItsFrameIsRead) {
   EXPECT_TRUE(has_all(error_of([&] { source->read(2, frame); }), {"frame 2", "nan"}));
 }
 
-TEST(RecordingDefaults, StandInForWhatIsMissingAndAreRemarked) {
+TEST(RecordingDefaults, ReplaceMissingConstantsWithAWarning) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_full_recording(path);
@@ -366,7 +365,7 @@ TEST(RecordingDamage, ATruncatedFileIsAnErrorAtEveryLength) {
   }
 }
 
-/// Whatever is broken, the answer is an Error or frames, and nothing worse.
+/// A damaged file gives an Error or frames, never a crash.
 TEST(RecordingDamage, ABrokenByteNeverCrashes) {
   const TemporaryDirectory directory;
   write_full_recording(directory / "whole.h5");
@@ -387,7 +386,7 @@ TEST(RecordingDamage, ABrokenByteNeverCrashes) {
   }
 }
 
-TEST(FileKinds, ThatAreNoneOfOursAreToldApart) {
+TEST(FileKinds, OfOthersAreRefused) {
   const TemporaryDirectory directory;
   const auto error_for = [&](const std::string& name) {
     return error_of([&] { (void)open_frames(directory / name); });

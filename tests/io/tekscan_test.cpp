@@ -18,7 +18,7 @@ using io_test::number_at;
 using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
-/// An export to be written, with all that varies from one to the next. A reading of -1 is a B.
+/// An export and all its variants of layout. A reading of -1 is written as B.
 struct Export {
   std::vector<std::string> header = {"DATA_TYPE MOVIE",
                                      "VERSION Some Measurement System 1.0",
@@ -37,7 +37,7 @@ struct Export {
                                           {0, 0, 0, 0, 0, 60, 70, 0, 0, 0, 255, 0}};
   std::size_t cols = 4;
   std::string line_end = "\n";
-  std::string row_end;         // behind the last cell of each row
+  std::string row_end;         // after the last cell of each row
   std::string between = "\n";  // before each frame
   std::string end = "@@\n";
 
@@ -80,7 +80,7 @@ class Tekscan : public testing::Test {
     return error_of([&] { (void)open(text); });
   }
 
-  /// The readings of all frames as the source gives them.
+  /// The readings of all frames of a source.
   static std::vector<std::vector<int>> readings(FrameSource& source) {
     std::vector<std::vector<int>> all;
     const bool bytes = source.sensel_type() == SenselType::u8;
@@ -133,7 +133,7 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_TRUE(source->calibration().empty());
 }
 
-/// However lines end and frames are set apart, the frames are the same.
+/// All line ends and separators of frames give the same frames.
 TEST_F(Tekscan, ReadsEveryLayoutAlike) {
   for (const std::string line_end : {"\n", "\r\n"}) {
     for (const std::string row_end : {"", ",", ",, ", " "}) {
@@ -215,7 +215,7 @@ TEST_F(Tekscan, KnowsTheUnitsOfSpacing) {
   }
 }
 
-TEST_F(Tekscan, RemarksOnUnequalSpacingAndKeepsTheArea) {
+TEST_F(Tekscan, WarnsOfUnequalSpacingAndKeepsTheArea) {
   Export written;
   written.set("ROW_SPACING", "ROW_SPACING 2 mm");
   const auto source = open(written.text());
@@ -223,7 +223,7 @@ TEST_F(Tekscan, RemarksOnUnequalSpacingAndKeepsTheArea) {
   EXPECT_TRUE(warnings(*source, "Rows are 2 mm apart and columns 0.5 mm"));
 }
 
-TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
+TEST_F(Tekscan, WarnsOfAssumptions) {
   Export written;
   for (const char* key :
        {"ROW_SPACING", "COL_SPACING", "SECONDS_PER_FRAME", "UNITS", "NOISE_THRESHOLD"}) {
@@ -237,7 +237,7 @@ TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
   EXPECT_EQ(times(*source), (std::vector<double>{0, 1}));
 }
 
-TEST_F(Tekscan, RemarksOnFramesThatAreAnnouncedAndNotThere) {
+TEST_F(Tekscan, WarnsOfAnnouncedFramesThatAreMissing) {
   Export written;
   written.set("END_FRAME", "END_FRAME 9");
   EXPECT_TRUE(warnings(*open(written.text()), "announces 9 frames, but the file holds 2"));
@@ -351,13 +351,13 @@ TEST_F(Tekscan, NamesTheColumnOfEveryBadCell) {
   }
 }
 
-TEST_F(Tekscan, RefusesALineWithoutEnd) {
+TEST_F(Tekscan, RefusesAnEndlessLine) {
   std::string text = Export().text();
   text.insert(text.find("Frame 1"), std::string(3 << 20, 'x'));
   EXPECT_TRUE(has_all(refused(text), {"export.asf:14", "longer"}));
 }
 
-/// Cut anywhere, an export is an Error or gives whole frames of what was written.
+/// An export truncated anywhere gives an Error or whole frames that were written.
 TEST_F(Tekscan, TruncatedAnywhereIsAnErrorOrWholeFrames) {
   Export written;
   written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,78", "Frame 2, 1,, now,,,Raw Sum=,,385"};
@@ -387,7 +387,7 @@ TEST(RealTekscan, AgreesWithTheRawSumsOfItsSoftware) {
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->sensel_type(), SenselType::u8);
 
-  // An oracle of its own: the sums in the text, and where the text says B.
+  // An independent oracle: the sums in the text, and the positions of B.
   std::ifstream text(path);
   FrameBuffer frame(SenselType::u8, 28, 28);
   std::uint64_t index = 0;
