@@ -222,7 +222,7 @@ TEST(ForceSink, LeavesAnHdf5PartWithFlushedFrames) {
   EXPECT_GE(ForceFileReader(directory / "f.h5.part").frames(), 16u);
 }
 
-TEST(ForceFileReader, RefusesWhatIsNoForceFile) {
+TEST(ForceFileReader, RefusesOtherFiles) {
   const TemporaryDirectory directory;
   Skin skin;
   skin.rows = skin.cols = 2;
@@ -236,7 +236,7 @@ TEST(ForceFileReader, RefusesWhatIsNoForceFile) {
   EXPECT_TRUE(has_all(refused("text.h5"), {"text.h5", "not an HDF5 file"}));
   EXPECT_TRUE(has_all(refused("none.h5"), {"none.h5", "No such file"}));
   EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(directory / "f.h5"); }),
-                      {"f.h5", "pillarfield-forces", "recording they were solved from"}));
+                      {"f.h5", "pillarfield-forces", "recording that they were solved from"}));
   const std::string whole = bytes_of(directory / "f.h5");
   for (std::size_t part = 0; part < 100; ++part) {
     write_bytes(directory / "cut.h5", whole.substr(0, whole.size() * part / 100));
