@@ -54,7 +54,7 @@ void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
 
 /// Runs in the child; writes its message to the pipe `message`.
 int read_under_limits(const Target& target, const std::filesystem::path& path, int message) {
-  const auto tell = [&](const char* text) {
+  const auto report = [&](const char* text) {
     if (write(message, text, std::strlen(text)) < 0) _exit(kOtherException);
   };
   limit(RLIMIT_CORE, 0);
@@ -64,10 +64,10 @@ int read_under_limits(const Target& target, const std::filesystem::path& path, i
     target.read(path, {.trust = false});
     return kRead;
   } catch (const Error& error) {
-    tell(error.what());
+    report(error.what());
     return kRefused;
   } catch (const std::exception& error) {
-    tell(error.what());
+    report(error.what());
     return kOtherException;
   }
 }

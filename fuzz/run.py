@@ -129,7 +129,7 @@ def kind_of(report):
     return "a failure"
 
 
-def judge(report):
+def classify(report):
     """Owner, kind and place of a failure, and our calling function. An access of libhdf5 beyond memory
     that our code allocated is ours."""
     kind = kind_of(report)
@@ -155,7 +155,7 @@ def collect(program, target, folders):
         report = failure_of(program, artifact)
         if report is None and not artifact.name.startswith("crash"):
             continue  # slow or large only after many inputs in one process
-        owner, kind, place, caller = (judge(report) if report is not None
+        owner, kind, place, caller = (classify(report) if report is not None
                                       else (UNKNOWN, "a crash", "not when run alone", ""))
         key = (owner, kind, place)
         if key in found:

@@ -241,7 +241,7 @@ TEST(Pipeline, EndsWithTheErrorOfASink) {
   Notebook healthy;
   Notebook full;
   full.before = [](std::size_t frames) {
-    if (frames == 4) throw Error("forces.csv", "No space left on device", "make room");
+    if (frames == 4) throw Error("forces.csv", "No space left on device", "free some space");
   };
   Pipeline pipeline(stream, processor, {&healthy, &full});
   EXPECT_TRUE(has_all(error_of([&] { pipeline.run(); }), {"forces.csv", "No space left"}));

@@ -57,7 +57,7 @@
 /// `pillarfield::core` alone, which needs neither OpenCL nor HDF5, with `pillarfield::io` (HDF5)
 /// for files.
 
-// What a frame is and how it is solved.
+// Frames and solvers.
 #include "pillarfield/calibration.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_field.h"

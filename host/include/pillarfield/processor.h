@@ -23,7 +23,7 @@ enum class Memory : std::uint8_t {
   staged,     ///< copies to and from buffers of the device
 };
 
-/// An OpenCL device, as `pillarfield info --devices` prints it.
+/// Properties of an OpenCL device, printed by `pillarfield info --devices`.
 struct DeviceInfo {
   int index = 0;  ///< for open_device()
   std::string name;
@@ -48,7 +48,7 @@ struct DeviceInfo {
 /// written.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
-/// An open device and the programs compiled for it so far. Copies share both.
+/// A device and the programs compiled for it so far. Copies share both.
 class Device {
  public:
   [[nodiscard]] const DeviceInfo& info() const;
@@ -70,7 +70,7 @@ class Device {
 
 struct ProcessorTuning;  // tuning.h
 
-/// Solves frames on an OpenCL device, as a SolverPlan says.
+/// Solves frames on an OpenCL device according to a SolverPlan.
 ///
 ///     Processor processor(open_device(), plan);
 ///     processor.submit(frame.view());

@@ -38,10 +38,10 @@ struct SolverPlan {
   /// the converter. Used for sensels without a noise plane. Unset: unknown.
   std::optional<double> noise_counts;
   Estimator estimator = Estimator::direct;
-  /// Where Estimator::direct puts the force of a pillar with two adjacent usable sensels, whose
-  /// readings leave a segment open: a fraction, (0, 1], of the largest normal force on it. In
-  /// simulated contacts of friction 1.6 and 2.2 the true force lies at 0.94 and 0.85, and the RMS
-  /// error is 6 and 4 counts with 0.875, 25 and 19 counts with 0.5, the minimax choice
+  /// Position of the force that Estimator::direct reports on the segment of a pillar with two
+  /// adjacent usable sensels: a fraction, (0, 1], of the largest normal force on it. In simulated
+  /// contacts of friction 1.6 and 2.2 the true force lies at 0.94 and 0.85, and the RMS error is 6
+  /// and 4 counts with 0.875, 25 and 19 counts with 0.5, the minimax choice
   /// (docs/derivations/direct_solve.md, section 5).
   double segment_point = kSegmentPoint;
   FrictionKnowledge friction;  ///< prior for Estimator::contact

@@ -27,7 +27,7 @@ class CompactReadings {
 /// Content of a Tekscan ASCII export.
 struct TekscanExport {
   TekscanHeader header;
-  CompactReadings readings;            ///< frame by frame, row by row; 0 where there is no sensel
+  CompactReadings readings;            ///< frame by frame, row by row; 0: no sensel
   std::vector<std::uint64_t> numbers;  ///< of the frames, increasing
   std::vector<double> times_s;         ///< of the frames; empty if they have none
   std::vector<std::uint8_t> mask;      ///< [rows, cols]; 0 where any frame has no sensel
