@@ -66,7 +66,7 @@ class ContactLabels {
 
 /// A view of the contacts of a frame as a Processor found them.
 struct FoundContacts {
-  const ContactLabels* map = nullptr;         ///< null: contacts were not searched
+  const ContactLabels* map = nullptr;         ///< null: none were looked for
   std::span<const ContactFriction> friction;  ///< by label; empty if it was not estimated
 };
 
