@@ -31,14 +31,14 @@ import time
 import make_corpus
 import mutations
 
-MOST_SECONDS = 5
+MAX_SECONDS = 5
 # Hard limit of a run. On a busy computer a run may exceed 5 s, so it is repeated up to twice and the
 # fastest run counts.
 KILLED_AFTER = 20
-MOST_KILOBYTES = 1 << 20
+MAX_KILOBYTES = 1 << 20
 # Limits that protect the computer from a runaway command.
-MOST_WRITTEN = 512 << 20
-MOST_ADDRESSES = 16 << 30
+MAX_WRITTEN = 512 << 20
+MAX_ADDRESSES = 16 << 30
 
 # Commands for each kind: IN is the mutant, GOOD a valid recording with truth, FORCES its forces, OUT an
 # output of any extension.
@@ -72,8 +72,8 @@ class Runner:
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=options.scratch))
         self.out = self.folder / "out"
         self.child = 0
-        for what, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_FSIZE, MOST_WRITTEN),
-                           (resource.RLIMIT_AS, MOST_ADDRESSES)):
+        for what, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_FSIZE, MAX_WRITTEN),
+                           (resource.RLIMIT_AS, MAX_ADDRESSES)):
             resource.setrlimit(what, (most, most))
         signal.signal(signal.SIGALRM, self.kill)
 
@@ -120,7 +120,7 @@ class Runner:
         """The run, or its fastest repetition if it exceeds the time limit."""
         for _ in range(3):
             run = self.run(words, **environment)
-            if run.seconds <= MOST_SECONDS:
+            if run.seconds <= MAX_SECONDS:
                 break
         return run
 
@@ -140,11 +140,11 @@ def fault_of_text(run, file):
 
 def fault_of(run, file, left):
     """The fault of a run, or None."""
-    if run.seconds > MOST_SECONDS:
-        return f"over {MOST_SECONDS} s"
+    if run.seconds > MAX_SECONDS:
+        return f"over {MAX_SECONDS} s"
     if run.signal is not None:
         return f"killed by {signal.Signals(run.signal).name}"
-    if run.kilobytes > MOST_KILOBYTES:
+    if run.kilobytes > MAX_KILOBYTES:
         return "over 1 GB"
     if run.status not in (0, 1):
         return f"status {run.status}"

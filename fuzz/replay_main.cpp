@@ -38,9 +38,9 @@ constexpr bool kSanitized = false;
 namespace pillarfield::fuzz {
 namespace {
 
-constexpr unsigned kMostSeconds = kSanitized ? 20 : 5;  ///< processor time
-constexpr unsigned kMostWait = 60;                      ///< wall time, seconds
-constexpr rlim_t kMostBytes = 1 << 30;
+constexpr unsigned kMaxSeconds = kSanitized ? 20 : 5;  ///< processor time
+constexpr unsigned kMaxWait = 60;                      ///< wall time, seconds
+constexpr rlim_t kMaxBytes = 1 << 30;
 
 // Exit statuses of a child that no sanitizer uses.
 constexpr int kRead = 10;
@@ -58,8 +58,8 @@ int read_under_limits(const Target& target, const std::filesystem::path& path, i
     if (write(message, text, std::strlen(text)) < 0) _exit(kOtherException);
   };
   limit(RLIMIT_CORE, 0);
-  if (!kSanitized) limit(RLIMIT_AS, kMostBytes);
-  alarm(kMostWait);
+  if (!kSanitized) limit(RLIMIT_AS, kMaxBytes);
+  alarm(kMaxWait);
   try {
     target.read(path, {.trust = false});
     return kRead;
@@ -89,10 +89,10 @@ double seconds_of(const rusage& used) {
 Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::string& message) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMostWait)};
+    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMaxWait)};
     return {true, false, fmt::format("killed by signal {}, {}", signal, strsignal(signal))};
   }
-  if (seconds_of(used) > kMostSeconds) {
+  if (seconds_of(used) > kMaxSeconds) {
     return {true, false, fmt::format("takes {:.1f} s of processor time", seconds_of(used))};
   }
   switch (WEXITSTATUS(status)) {

@@ -27,7 +27,7 @@ TARGETS = ("recording", "forces", "calibration", "tekscan", "scene")
 # Above the 5 s and 1 GB of the commands, since sanitizers need more.
 TIMEOUT_S = 15
 MEMORY_MB = 2048
-MOST_BYTES = 65536
+MAX_BYTES = 65536
 
 ENVIRONMENT = {
     **os.environ,
@@ -53,7 +53,7 @@ def fuzz(program, target, seconds, folders):
         seeds.append(ROOT / "scenes")
     command = [program, "-fork=1", "-print_funcs=0", "-ignore_crashes=1", "-ignore_timeouts=1", "-ignore_ooms=1",
                f"-max_total_time={seconds}", f"-timeout={TIMEOUT_S}",
-               f"-rss_limit_mb={MEMORY_MB}", f"-max_len={MOST_BYTES}", "-detect_leaks=0",
+               f"-rss_limit_mb={MEMORY_MB}", f"-max_len={MAX_BYTES}", "-detect_leaks=0",
                f"-artifact_prefix={folders['raw']}/", folders["grown"], *seeds]
     with open(folders["log"], "wb") as log:
         subprocess.run([str(word) for word in command], stdout=log, stderr=log, env=ENVIRONMENT,

@@ -13,9 +13,9 @@ inline std::set<std::uint64_t> some_frames(std::uint64_t frames) {
 }
 
 /// Largest frame that is read, in sensels or pillars; a fuzzer needs many small files.
-inline constexpr std::uint64_t kMostRead = 1 << 20;
+inline constexpr std::uint64_t kMaxRead = 1 << 20;
 
 /// Largest frame that is solved, in sensels.
-inline constexpr std::uint64_t kMostSolved = 1 << 14;
+inline constexpr std::uint64_t kMaxSolved = 1 << 14;
 
 }  // namespace pillarfield::fuzz

@@ -26,10 +26,10 @@ FilteredChunks::FilteredChunks(const std::filesystem::path& file, std::string na
       rank_(storage.extent.size()),
       filters_(storage.filters),
       value_bytes_(storage.value_bytes) {
-  if (storage.chunk_bytes() > static_cast<double>(kMostChunkBytes)) {
+  if (storage.chunk_bytes() > static_cast<double>(kMaxChunkBytes)) {
     throw Error(file_.string(),
                 fmt::format("{} is compressed in chunks of {} values, more than {} MiB each", name_,
-                            fmt::join(storage.chunk, " x "), kMostChunkBytes >> 20),
+                            fmt::join(storage.chunk, " x "), kMaxChunkBytes >> 20),
                 "store it in smaller chunks");
   }
   if (rank_ > extent_.size()) {

@@ -11,14 +11,14 @@
 namespace pillarfield::hdf5 {
 
 /// Largest unfiltered chunk that is read, bytes.
-inline constexpr std::size_t kMostChunkBytes = std::size_t{128} << 20;
+inline constexpr std::size_t kMaxChunkBytes = std::size_t{128} << 20;
 
 /// Reads frames of a dataset [frames, rows, cols], [frames, values] or [frames] that is stored in
 /// filtered chunks. Caches up to 32 MiB of inflated frames, at least one, so that a chunk of many
 /// frames is not inflated for each of them.
 class FilteredChunks {
  public:
-  /// Throws Error if a chunk exceeds kMostChunkBytes or the dataset has more than three dimensions.
+  /// Throws Error if a chunk exceeds kMaxChunkBytes or the dataset has more than three dimensions.
   FilteredChunks(const std::filesystem::path& file, std::string name, const Storage& storage);
 
   /// Copies `count` frames from `first` on, in their stored type. Throws Error if a chunk is

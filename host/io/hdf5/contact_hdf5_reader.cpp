@@ -16,7 +16,7 @@ namespace pillarfield {
 namespace {
 
 /// Limit per frame, so that a damaged file causes an allocation of at most a few hundred megabytes.
-constexpr std::uint64_t kMostContacts = 1'000'000;
+constexpr std::uint64_t kMaxContacts = 1'000'000;
 
 /// Indices into kPatchRows.
 enum PatchRow : std::uint8_t { kFirstContact, kContactCount, kFirstEnded, kEndedCount };
@@ -117,7 +117,7 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   const std::uint64_t ended = count_at(kEndedCount, index);
   require_rows(contacts_, first_contact, contacts);
   require_rows(ended_, first_ended, ended);
-  if (std::max(contacts, ended) > kMostContacts) {
+  if (std::max(contacts, ended) > kMaxContacts) {
     throw Error(
         path_.string(),
         fmt::format("frame {} claims to have {} contacts", index, std::max(contacts, ended)),

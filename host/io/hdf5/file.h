@@ -20,7 +20,7 @@ struct File {
 };
 
 /// Opens a file for reading, as a SWMR reader if its writer has not closed it. With `probing`, for
-/// the child process of probe_file(), datasets refuse frames above kMostProbedValues and read their
+/// the child process of probe_file(), datasets refuse frames above kMaxProbedValues and read their
 /// first and last values on opening.
 [[nodiscard]] File open_to_read(const std::filesystem::path& path, bool probing = false);
 

@@ -10,7 +10,7 @@ namespace pillarfield::hdf5 {
 namespace {
 
 constexpr hsize_t kChunkBytes = 256 << 10;
-constexpr hsize_t kMostFramesOfChunk = 1024;
+constexpr hsize_t kMaxFramesOfChunk = 1024;
 constexpr hsize_t kLargestChunkBytes = 1 << 30;  // HDF5 allows less than 4 GiB
 
 std::vector<hsize_t> with_frames(hsize_t frames, const FrameShape& shape) {
@@ -24,7 +24,7 @@ std::vector<hsize_t> chunk_of(const FrameShape& shape, hsize_t value_bytes) {
   hsize_t frame_bytes = value_bytes;
   for (const hsize_t size : shape) frame_bytes *= size;
   std::vector<hsize_t> chunk =
-      with_frames(std::clamp<hsize_t>(kChunkBytes / frame_bytes, 1, kMostFramesOfChunk), shape);
+      with_frames(std::clamp<hsize_t>(kChunkBytes / frame_bytes, 1, kMaxFramesOfChunk), shape);
   if (frame_bytes > kLargestChunkBytes) {
     chunk[1] = std::max<hsize_t>(1, shape[0] * kLargestChunkBytes / frame_bytes);
   }

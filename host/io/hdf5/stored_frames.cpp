@@ -27,10 +27,10 @@ Handle number_type(const std::filesystem::path& path, const std::string& name,
 }  // namespace
 
 void require_probe_limit(const File& file, const std::string& name, double values) {
-  if (!file.probing || values <= static_cast<double>(kMostProbedValues)) return;
+  if (!file.probing || values <= static_cast<double>(kMaxProbedValues)) return;
   throw Error(file.path.string(),
               fmt::format("{} has {} values in a frame or plane, more than {}", name, values,
-                          kMostProbedValues),
+                          kMaxProbedValues),
               "read larger ones from a trusted file, with --trust-input");
 }
 

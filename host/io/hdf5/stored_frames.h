@@ -13,7 +13,7 @@ namespace pillarfield::hdf5 {
 
 /// Largest number of values of a frame or plane in an untrusted file. All planes and results of
 /// such a skin stay below 1 GB together.
-inline constexpr std::size_t kMostProbedValues = std::size_t{1} << 23;
+inline constexpr std::size_t kMaxProbedValues = std::size_t{1} << 23;
 
 /// Throws Error if a probed file has more `values` in a frame or plane.
 void require_probe_limit(const File& file, const std::string& name, double values);
@@ -25,7 +25,7 @@ class StoredFrames {
 
   /// Throws Error if the dataset does not have `frame_rank` dimensions beside the frames, does not
   /// hold plain numbers, or claims more than its file stores. For a probed file it checks
-  /// kMostProbedValues and reads the first and last value.
+  /// kMaxProbedValues and reads the first and last value.
   StoredFrames(const File& file, const std::string& name, std::size_t frame_rank);
 
   [[nodiscard]] const std::string& name() const { return name_; }

@@ -54,12 +54,12 @@ bool is_same_file(const struct stat& a, const struct stat& b) {
 LockedPart::LockedPart(OutputPlace place) : place_(std::move(place)) {
   // A part that is renamed to its final name between open() and the lock is a finished file: leave
   // it and try again.
-  constexpr int kMostTries = 100;
+  constexpr int kMaxTries = 100;
   try {
     for (int tries = 0; !open_and_lock(); ++tries) {
       close(descriptor_);
       descriptor_ = -1;
-      if (tries == kMostTries) fail_as_locked(place_);
+      if (tries == kMaxTries) fail_as_locked(place_);
     }
     require_unused();
   } catch (...) {

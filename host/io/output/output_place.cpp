@@ -11,7 +11,7 @@ namespace pillarfield {
 namespace {
 
 /// Limit of Linux.
-constexpr int kMostLinks = 40;
+constexpr int kMaxLinks = 40;
 
 std::filesystem::path output_folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -35,7 +35,7 @@ std::filesystem::path end_of_links(const std::filesystem::path& path) {
   std::error_code error;
   for (int links = 0; std::filesystem::is_symlink(std::filesystem::symlink_status(end, error));
        ++links) {
-    if (links == kMostLinks) {
+    if (links == kMaxLinks) {
       throw Error(path.string(), "is a symbolic link that leads nowhere", "choose another name");
     }
     require_own_link(end);
