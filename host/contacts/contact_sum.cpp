@@ -163,7 +163,7 @@ PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, dou
     read(from.shear_y, present, values, shear_y);
     read(from.normal, present, values, normal);
     read(from.status, present, status);
-    peaks = present & (values > peaks) ? values : peaks;
+    peaks = (present & (values > peaks)) ? values : peaks;
     sum_x += shear_x;
     sum_y += shear_y;
     sum_n += normal;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "pillarfield/host_solve.h"
+#include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
