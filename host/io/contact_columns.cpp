@@ -16,8 +16,8 @@ constexpr int kWords = 4;  // in each list
 
 /// Clamps to the counts that a double holds exactly.
 std::uint64_t as_count(double value) {
-  constexpr double kMost = 0x1p53;
-  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMost)) : 0;
+  constexpr double kMaxExact = 0x1p53;
+  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMaxExact)) : 0;
 }
 
 std::optional<std::uint64_t> as_identity(double value) {

@@ -84,8 +84,8 @@ bool ContactTablesReader::has_rows_of(std::uint64_t index) const {
 void ContactTablesReader::read_options(const hdf5::File& file) {
   const hdf5::Handle group = hdf5::open_object(file, force_format::kContacts);
   const auto minimum = hdf5::read_number(file, group.get(), force_format::kMinimumPillars);
-  constexpr double kMost = 0x1p53;
-  if (minimum && *minimum >= 0 && *minimum <= kMost) {
+  constexpr double kMaxExact = 0x1p53;
+  if (minimum && *minimum >= 0 && *minimum <= kMaxExact) {
     options_.minimum_pillars = static_cast<std::uint64_t>(*minimum);
   }
   options_.friction.given = hdf5::read_number(file, group.get(), force_format::kGivenFriction);
