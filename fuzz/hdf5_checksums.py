@@ -79,7 +79,7 @@ def find_blocks(data):
     return blocks
 
 
-def mend(data, original, blocks):
+def correct(data, original, blocks):
     """Sets the checksum of each block that differs from `original`."""
     for begin, end in blocks:
         if data[begin:end] != original[begin:end]:

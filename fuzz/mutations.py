@@ -112,12 +112,12 @@ OF_TEXT = (change_word,) * 4 + (change_line,) * 2 + OF_BYTES
 def mutant_of(random, seed):
     """A mutant of the seed. Four of five HDF5 files keep their size and get correct checksums."""
     data = bytearray(seed.data)
-    mended = not seed.is_text and random.random() < 0.8
-    changes = OF_TEXT if seed.is_text else IN_PLACE if mended else OF_BYTES
+    checksummed = not seed.is_text and random.random() < 0.8
+    changes = OF_TEXT if seed.is_text else IN_PLACE if checksummed else OF_BYTES
     for _ in range(random.choice((1, 1, 1, 2) if seed.is_text else (1, 1, 1, 2, 3, 6))):
         random.choice(changes)(random, data, seed)
         if not data:
             data += b"\0"
-    if mended:
-        hdf5_checksums.mend(data, seed.data, seed.blocks)
+    if checksummed:
+        hdf5_checksums.correct(data, seed.data, seed.blocks)
     return bytes(data)
