@@ -152,7 +152,7 @@ Json coverage_json() {
   return scenes;
 }
 
-// --- What region 3 leaves open ---
+// --- The ambiguity of region 3 ---
 
 /// The largest half-width of an angle, and the ratio of the two readings there.
 struct Worst {

@@ -1,4 +1,4 @@
-#include "bench/timing/ceiling.h"
+#include "bench/timing/copy_kernel.h"
 
 #include <algorithm>
 #include <utility>
@@ -56,7 +56,7 @@ CopyKernel::Planes CopyKernel::make_planes(std::size_t bytes) const {
   return {std::move(pages), std::move(buffer)};
 }
 
-/// So many values, none of them zero.
+/// A buffer of `count` nonzero values.
 template <class Value>
 CopyKernel::Planes CopyKernel::numbered(std::size_t count) const {
   std::vector<Value> values(std::max<std::size_t>(count, 1));

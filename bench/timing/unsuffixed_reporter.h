@@ -6,17 +6,16 @@
 
 namespace pillarfield::bench {
 
-/// The reporter that the command line asks for, with the names of the rows as they were given:
-/// without "/manual_time".
-class PlainNames final : public benchmark::BenchmarkReporter {
+/// The reporter that the command line selects, without the suffix "/manual_time" of names.
+class UnsuffixedReporter final : public benchmark::BenchmarkReporter {
  public:
-  PlainNames();
+  UnsuffixedReporter();
 
   bool ReportContext(const Context& context) override;
   void ReportRuns(const std::vector<Run>& runs) override;
   void Finalize() override;
 
-  /// Whether a row had an error, other than that what it needs is not installed.
+  /// True after a case failed; skipped ones do not count.
   [[nodiscard]] bool any_failed() const { return any_failed_; }
 
  private:
@@ -24,7 +23,7 @@ class PlainNames final : public benchmark::BenchmarkReporter {
   bool any_failed_ = false;
 };
 
-/// What the error of a row begins with that was left out.
+/// Prefix of the error of a skipped case.
 inline constexpr const char* kSkipped = "skipped: ";
 
 }  // namespace pillarfield::bench

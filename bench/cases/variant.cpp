@@ -1,14 +1,14 @@
-// Every way to solve, on frames of a sensor with noise whose forces are known.
+// Every solve variant, on frames of a sensor with noise under known forces.
 
 #include <fmt/format.h>
 
 #include <memory>
 
-#include "bench/cases/rows.h"
+#include "bench/cases/cases.h"
 #include "bench/force_error.h"
 #include "bench/noisy_frame_store.h"
 #include "bench/solve_variant.h"
-#include "bench/timing/solve_race.h"
+#include "bench/timing/solve_timing.h"
 #include "bench/variant_solver.h"
 
 namespace pillarfield::bench {
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kFrames = 32;  ///< 80 MB of uint8 sensels: more than caches hold
 
-void tell(const ForceError& error, Measurement& measured) {
+void report(const ForceError& error, Measurement& measured) {
   measured.counters["error_counts"] = error.counts;
   measured.counters["error_over_bound"] = error.over_bound;
   measured.counters["error_pillars"] = static_cast<double>(error.pillars);
@@ -24,8 +24,8 @@ void tell(const ForceError& error, Measurement& measured) {
   measured.counters["ambiguous"] = error.ambiguous;
 }
 
-/// `over_bare_copy` is the time over that of the copy of the bare uint8 solve: 17 bytes a pillar.
-Measurement race_variant(const Session& session, const SolveVariant& variant,
+/// `over_bare_copy` is the time over that of the copy of the bare uint8 solve, 17 bytes per pillar.
+Measurement time_variant(const Session& session, const SolveVariant& variant,
                          NoisyFrameStore& store) {
   const SolverPlan plan = plan_of(variant, kSquareMetre);
   const SolverPlan bare = plan_of(SolveVariant{}, kSquareMetre);
@@ -33,27 +33,27 @@ Measurement race_variant(const Session& session, const SolveVariant& variant,
   const Frames& frames = noisy.frames();
   const int in_flight = Processor::Options{}.frames_in_flight;
   VariantSolver solver(session.device, variant, plan, frames);
-  Race race;
-  const std::size_t solve = race.add([&](int count) { solver.run(count); });
-  CeilingEntry ceiling(race, session.device, plan, frames, in_flight);
-  CeilingEntry bare_copy(race, session.device, bare, store.bare().frames(), in_flight);
-  race.run(session.length);
-  Measurement measured = measurement_of(race, solve, plan);
-  measured.counters["of_ceiling"] = race.ratio(ceiling.fastest(race), solve);
-  measured.counters["over_bare_copy"] = race.ratio(solve, bare_copy.fastest(race));
-  ceiling.tell(race, measured);
-  tell(measure_force_error(session.device, variant, plan, noisy, 1), measured);
+  InterleavedTiming timing;
+  const std::size_t solve = timing.add([&](int count) { solver.run(count); });
+  CopyEntries copies(timing, session.device, plan, frames, in_flight);
+  CopyEntries bare_copy(timing, session.device, bare, store.bare().frames(), in_flight);
+  timing.run(session.length);
+  Measurement measured = measurement_of(timing, solve, plan);
+  measured.counters["of_copy"] = timing.ratio(copies.fastest(timing), solve);
+  measured.counters["over_bare_copy"] = timing.ratio(solve, bare_copy.fastest(timing));
+  copies.report(timing, measured);
+  report(measure_force_error(session.device, variant, plan, noisy, 1), measured);
   measured.label = fmt::format("{} frames", frames.size());
   return measured;
 }
 
 }  // namespace
 
-void add_variant_rows(const Session& session) {
+void add_variant_cases(const Session& session) {
   const auto store = std::make_shared<NoisyFrameStore>(kSquareMetre, kFrames);
   for (const SolveVariant& variant : solve_variants()) {
-    add_row(fmt::format("variant/{}", name_of(variant)),
-            [&session, variant, store] { return race_variant(session, variant, *store); });
+    add_case(fmt::format("variant/{}", name_of(variant)),
+             [&session, variant, store] { return time_variant(session, variant, *store); });
   }
 }
 

@@ -1,16 +1,16 @@
-#include "bench/timing/plain_names.h"
+#include "bench/timing/unsuffixed_reporter.h"
 
 namespace pillarfield::bench {
 
-PlainNames::PlainNames() : inner_(benchmark::CreateDefaultDisplayReporter()) {}
+UnsuffixedReporter::UnsuffixedReporter() : inner_(benchmark::CreateDefaultDisplayReporter()) {}
 
-bool PlainNames::ReportContext(const Context& context) {
+bool UnsuffixedReporter::ReportContext(const Context& context) {
   inner_->SetOutputStream(&GetOutputStream());
   inner_->SetErrorStream(&GetErrorStream());
   return inner_->ReportContext(context);
 }
 
-void PlainNames::ReportRuns(const std::vector<Run>& runs) {
+void UnsuffixedReporter::ReportRuns(const std::vector<Run>& runs) {
   std::vector<Run> plain = runs;
   for (Run& run : plain) {
     run.run_name.time_type.clear();
@@ -19,6 +19,6 @@ void PlainNames::ReportRuns(const std::vector<Run>& runs) {
   inner_->ReportRuns(plain);
 }
 
-void PlainNames::Finalize() { inner_->Finalize(); }
+void UnsuffixedReporter::Finalize() { inner_->Finalize(); }
 
 }  // namespace pillarfield::bench

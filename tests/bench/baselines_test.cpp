@@ -1,4 +1,4 @@
-// The opponents in C++ solve what we solve, bit for bit.
+// The C++ baselines equal the solve on the host bit for bit.
 
 #include <gtest/gtest.h>
 
@@ -18,14 +18,14 @@
 namespace pillarfield::bench {
 namespace {
 
-struct Opponent {
+struct Baseline {
   std::string name;
   SolveRows solve_rows;
 };
 
-/// All that this processor can run.
-std::vector<Opponent> opponents() {
-  std::vector<Opponent> all = {{"plain", solve_rows_plainly}};
+/// All baselines that this processor can run.
+std::vector<Baseline> baselines() {
+  std::vector<Baseline> all = {{"plain", solve_rows_plainly}};
   for (const Vectorised& each : vectorised()) {
     all.push_back({each.instructions, each.cached});
     all.push_back({std::string(each.instructions) + "_streaming", each.streaming});
@@ -41,7 +41,7 @@ SolverPlan small_plan(std::uint32_t rows, std::uint32_t cols, double threshold) 
   return plan;
 }
 
-/// Bytes of which many are small, so that all patterns of usable and inactive sensels are there.
+/// Random bytes, many of them small, so that all patterns of usable sensels occur.
 FrameBuffer random_frame(const Skin& skin, std::uint32_t seed) {
   std::mt19937 random(seed);
   FrameBuffer frame(SenselType::u8, skin.rows, skin.cols);
@@ -52,7 +52,7 @@ FrameBuffer random_frame(const Skin& skin, std::uint32_t seed) {
   return frame;
 }
 
-class EveryOpponent : public testing::TestWithParam<Opponent> {
+class EveryBaseline : public testing::TestWithParam<Baseline> {
  protected:
   static void expect_host_bits(const SolverPlan& plan, const FrameView& frame, int threads = 1) {
     LoopSolver solver(plan, GetParam().solve_rows, threads);
@@ -61,23 +61,23 @@ class EveryOpponent : public testing::TestWithParam<Opponent> {
   }
 };
 
-TEST_P(EveryOpponent, SolvesFramesOfAllRegions) {
-  for (const Touch touch : {Touch::mixed, Touch::worst, Touch::silent}) {
+TEST_P(EveryBaseline, SolvesFramesOfAllRegions) {
+  for (const Touch touch : {Touch::mixed, Touch::worst, Touch::idle}) {
     const SolverPlan plan = bare_plan(131);
     const Frames frames(plan.skin, plan.sensel_type, {touch, 1});
     for (std::size_t i = 0; i < 3; ++i) expect_host_bits(plan, frames[i]);
   }
 }
 
-TEST_P(EveryOpponent, SolvesSkinsOfEveryWidth) {
+TEST_P(EveryBaseline, SolvesSkinsOfEveryWidth) {
   for (std::uint32_t cols = 2; cols <= 300; ++cols) {
     const SolverPlan plan = small_plan(7, cols, 0);
     expect_host_bits(plan, random_frame(plan.skin, cols).view());
   }
 }
 
-/// Of silent sensels under a threshold, and with what margin, the status byte tells.
-TEST_P(EveryOpponent, SolvesWithThresholdAndNoise) {
+/// Threshold and margin decide the status of pillars with inactive sensels.
+TEST_P(EveryBaseline, SolvesWithThresholdAndNoise) {
   for (const double threshold : {1.0, 5.0, 11.0, 200.0, 254.0}) {
     for (const double noise : {-1.0, 0.0, 0.4, 3.0, 1000.0}) {
       SolverPlan plan = small_plan(60, 401, threshold);
@@ -88,13 +88,13 @@ TEST_P(EveryOpponent, SolvesWithThresholdAndNoise) {
   }
 }
 
-TEST_P(EveryOpponent, ThreadsShareTheRows) {
+TEST_P(EveryBaseline, ThreadsShareTheRows) {
   const SolverPlan plan = small_plan(2 * 11, 2 * 70, 0);
   const FrameBuffer frame = random_frame(plan.skin, 5);
   for (const int threads : {2, 3, 16}) expect_host_bits(plan, frame.view(), threads);
 }
 
-TEST_P(EveryOpponent, RunSolvesFrameAfterFrame) {
+TEST_P(EveryBaseline, RunSolvesFrameAfterFrame) {
   const SolverPlan plan = bare_plan(50);
   const Frames frames(plan.skin, plan.sensel_type, {});
   LoopSolver solver(plan, GetParam().solve_rows, 2);
@@ -104,8 +104,8 @@ TEST_P(EveryOpponent, RunSolvesFrameAfterFrame) {
   EXPECT_NO_THROW(require_same_bits(GetParam().name, solver.last(), expected.view()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Opponents, EveryOpponent, testing::ValuesIn(opponents()),
-                         [](const auto& opponent) { return opponent.param.name; });
+INSTANTIATE_TEST_SUITE_P(Baselines, EveryBaseline, testing::ValuesIn(baselines()),
+                         [](const auto& baseline) { return baseline.param.name; });
 
 TEST(Vectorised, TakesWholeThresholdsOnly) {
   EXPECT_NO_THROW(require_whole_threshold(bare_solve(small_plan(2, 2, 3))));
@@ -113,7 +113,7 @@ TEST(Vectorised, TakesWholeThresholdsOnly) {
   EXPECT_THROW(require_whole_threshold(bare_solve(small_plan(2, 2, 256))), Error);
 }
 
-TEST(BareSolve, RefusesWhatOpponentsCannot) {
+TEST(BareSolve, RefusesOtherPlans) {
   for (const std::string_view stage : stage_names()) {
     SolverPlan plan = bare_plan(4);
     add_stage(plan, stage);
@@ -126,7 +126,6 @@ TEST(BareSolve, RefusesWhatOpponentsCannot) {
   EXPECT_THROW(bare_solve(bare_plan(4, SenselType::u16)), Error);
 }
 
-/// What holds opponents to our result notices when they differ.
 TEST(Agreement, NoticesASingleBit) {
   const SolverPlan plan = small_plan(20, 20, 0);
   const FrameBuffer frame = random_frame(plan.skin, 1);

@@ -1,7 +1,6 @@
-// The copy kernels need every byte that they are said to read, and write every one that they are
-// said to write.
+// The copy kernels read every input byte and write every output byte of a plan's solve.
 
-#include "bench/timing/ceiling.h"
+#include "bench/timing/copy_kernel.h"
 
 #include <gtest/gtest.h>
 
@@ -26,15 +25,16 @@ class Copy {
         kernel_(test_device(), plan, frames_, kind, 1),
         queue_(test_device().state().context, test_device().state().device) {}
 
-  /// What the first frame becomes.
+  /// The output for the first frame.
   std::vector<std::byte> of_first_frame() {
-    // The kernel goes on where it stopped.
+    // Each run continues the series of frames.
     kernel_.run(copied_ == 0 ? 1 : static_cast<int>(frames_.size()));
     ++copied_;
     return kernel_.results();
   }
 
-  /// The lowest bit of a byte, which is that of a value: devices are little-endian.
+  /// Flips the lowest bit of a byte, which is the lowest bit of its value: devices are
+  /// little-endian.
   void flip(const cl::Buffer& buffer, std::size_t byte) {
     std::uint8_t value = 0;
     queue_.enqueueReadBuffer(buffer, CL_TRUE, byte, 1, &value);
@@ -53,7 +53,8 @@ class Copy {
   int copied_ = 0;
 };
 
-/// How many values of `size` bytes from byte `first` on differ in a row of pillars, and elsewhere.
+/// Number of differing values of `size` bytes, from byte `first`, in one row of pillars and
+/// elsewhere.
 struct Moved {
   int in_row = 0;
   int elsewhere = 0;
@@ -69,7 +70,7 @@ Moved moved(const std::vector<std::byte>& before, const std::vector<std::byte>& 
   return count;
 }
 
-/// Expects that a bit of each sensel of some pillars moves one value of each plane, in their row.
+/// Expects that one bit of a sensel changes exactly one value of each plane, in the pillar's row.
 void expect_all_moved(Copy& copy, const cl::Buffer& input, std::size_t first_byte,
                       std::size_t value_size) {
   const Skin& skin = copy.plan().skin;
@@ -93,8 +94,7 @@ void expect_all_moved(Copy& copy, const cl::Buffer& input, std::size_t first_byt
   }
 }
 
-/// Of this many pillars a row begins with a whole block, ends with the rest of one, and begins
-/// anywhere in a cache line.
+/// 53 pillars a row: rows begin anywhere in a cache line and end with a partial block.
 Skin odd_skin() {
   Skin skin;
   skin.rows = 10;
@@ -162,18 +162,19 @@ INSTANTIATE_TEST_SUITE_P(Copies, EveryCopy,
                                   std::get<CopyKind>(copy.param).name;
                          });
 
-TEST(Ceiling, BytesAreThoseOfThePlan) {
+TEST(Streams, BytesAreThoseOfThePlan) {
   SolverPlan plan = bare_plan(8);
   EXPECT_EQ(streams_of(plan).bytes_per_pillar(), 4U + 12 + 1);
   add_stage(plan, "all");
-  // Four floats of tare, gain and dead zone, the mask; three forces, angles, nine of uncertainty.
+  // Tare, gain and dead zone (four floats each), mask; three forces, three angles, nine of
+  // uncertainty.
   EXPECT_EQ(streams_of(plan).bytes_per_pillar(), 4U + 3 * 16 + 4 + (3 + 3 + 9) * 4 + 1);
   SolverPlan following = bare_plan(8, SenselType::f32);
   add_stage(following, "baseline");
   EXPECT_EQ(streams_of(following).bytes_per_pillar(), 16U + 2 * 16 + 12 + 1);
 }
 
-TEST(Ceiling, KindsAreProgramsOfTheirOwn) {
+TEST(CopySource, KindsDiffer) {
   std::set<std::string> sources;
   for (const CopyKind& kind : kCopyKinds) sources.insert(copy_source({}, 16, kind));
   EXPECT_EQ(sources.size(), std::size(kCopyKinds));

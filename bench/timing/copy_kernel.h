@@ -10,30 +10,30 @@
 
 namespace pillarfield::bench {
 
-/// What no solve can be faster than: a kernel that reads and writes what the solve of a plan does,
-/// launched like it, and computes nothing. Where the device shares the host's memory it reads the
-/// frames in place; elsewhere they are on the device from the start, and no transfer is timed.
+/// The copy bandwidth limit of a plan's solve: a kernel of the solve's launch geometry that reads
+/// and writes the bytes of the solve and computes nothing. It reads the frames in place where the
+/// device shares the host's memory; elsewhere they are on the device beforehand, and no transfer is
+/// timed.
 ///
-/// As many frames are in flight as the solver has, each with a queue and results of its own.
-/// `frames` must outlive it.
+/// Each of the `frames_in_flight` slots has its own queue and results. `frames` must outlive it.
 class CopyKernel {
  public:
   CopyKernel(const Device& device, const SolverPlan& plan, const Frames& frames,
              const CopyKind& kind, int frames_in_flight);
 
-  /// Copies so many frames.
+  /// Copies the next `frames` frames.
   void run(int frames);
 
-  /// What the last frame became: the result planes one after the other, then the status bytes.
+  /// Output of the last frame: the result planes one after the other, then the status bytes.
   [[nodiscard]] std::vector<std::byte> results() const;
 
-  /// What the kernel reads.
+  // Inputs of the kernel.
   [[nodiscard]] const cl::Buffer& frame(std::size_t index) const { return frames_.at(index); }
   [[nodiscard]] const cl::Buffer& calibration() const { return calibration_.buffer; }
   [[nodiscard]] const cl::Buffer& mask() const { return mask_.buffer; }
 
  private:
-  /// Memory in pages as the solver has them, which outlives the buffer on it.
+  /// A buffer in large pages, as in the solver.
   struct Planes {
     LargePages pages;  ///< null where the device does not share the host's memory
     cl::Buffer buffer;
@@ -64,7 +64,7 @@ class CopyKernel {
   std::size_t started_ = 0;
 };
 
-/// What a launch costs: a kernel that does nothing, started and waited for.
+/// Launches a kernel that does nothing, and waits for it.
 class EmptyLaunch {
  public:
   explicit EmptyLaunch(const Device& device);
