@@ -295,13 +295,13 @@ void add_solve(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   input.file("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export");
   add_output(command, *options,
-             "Force fields; the ending chooses: " + extensions_of(OutputKind::forces));
+             "Force fields; the ending chooses: " + endings_of(OutputKind::forces));
   add_sensor(command, options->plan);
   add_solver(command, options->plan);
   Group contacts(command, "Contacts");
   CLI::Option* const file = contacts.text(
       "--contacts", options->contacts.file, "FILE",
-      "Find and follow contacts, and write them: " + extensions_of(OutputKind::contacts) +
+      "Find and follow contacts, and write them: " + endings_of(OutputKind::contacts) +
           ", or the .h5 of --output, which holds "
           "them in any case");
   ContactOptions& found = options->contacts.contacts;

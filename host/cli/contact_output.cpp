@@ -11,7 +11,7 @@
 namespace pillarfield::cli {
 namespace {
 
-std::string extension_of(const std::string& file) {
+std::string ending_of(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
     return static_cast<char>(std::tolower(letter));
@@ -20,7 +20,7 @@ std::string extension_of(const std::string& file) {
 }
 
 bool is_hdf5(const std::string& file) {
-  const std::string ending = extension_of(file);
+  const std::string ending = ending_of(file);
   return ending == ".h5" || ending == ".hdf5";
 }
 
@@ -43,7 +43,7 @@ void check(const ContactOutputOptions& options, const std::string& output) {
   if (!same && is_hdf5(options.file)) {
     throw Error(options.file, "its ending names no table of contacts",
                 fmt::format("end it in {}, or name the .h5 file of forces",
-                            extensions_of(OutputKind::contacts)));
+                            endings_of(OutputKind::contacts)));
   }
   static_cast<void>(planned_table(options, output));
 }

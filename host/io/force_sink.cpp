@@ -36,7 +36,7 @@ const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) 
   throw Error(path.string(),
               kind == OutputKind::forces ? "its extension is not that of a force file"
                                          : "its extension is not that of a table of contacts",
-              "use " + extensions_of(kind));
+              "use " + endings_of(kind));
 }
 
 void check_time(const SolvedFrame& frame, const std::string& where) {
@@ -100,7 +100,7 @@ const SinkFormat* format_by_beginning(std::string_view head) {
   return nullptr;
 }
 
-std::string extensions_of(OutputKind kind) {
+std::string endings_of(OutputKind kind) {
   std::vector<std::string_view> extensions;
   for (const SinkFormat& format : sink_formats()) {
     for (const std::string_view extension : format.extensions) {

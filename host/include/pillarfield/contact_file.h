@@ -18,7 +18,7 @@ struct ContactFileInfo {
 };
 
 /// Creates a sink of contacts alone in the format of the extension of `path` (docs/formats.md;
-/// extensions_of() lists them). Each frame must have contacts. `replace` limits which existing file
+/// endings_of() lists them). Each frame must have contacts. `replace` limits which existing file
 /// it may replace. Throws Error for another extension or a path that cannot be written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path,
                                                              const ContactFileInfo& info,

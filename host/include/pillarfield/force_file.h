@@ -31,7 +31,7 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
 };
 
-/// Creates a sink in the format of the extension of `path` (docs/formats.md; extensions_of() lists
+/// Creates a sink in the format of the extension of `path` (docs/formats.md; endings_of() lists
 /// them). `replace` limits which existing file it may replace. Throws Error for another extension
 /// or a path that cannot be written.
 ///

@@ -26,7 +26,7 @@ enum class OutputKind : std::uint8_t {
 };
 
 /// The file name extensions of forces or of contacts: ".csv or .json".
-[[nodiscard]] std::string extensions_of(OutputKind kind);
+[[nodiscard]] std::string endings_of(OutputKind kind);
 
 /// Which existing file an output may replace. All but `nothing` replace an empty file.
 enum class Replace : std::uint8_t {
