@@ -83,7 +83,7 @@ bool NumpyProcess::starts(const char* python, const SolverPlan& plan) {
             fmt::format("{}", plan.skin.rows), fmt::format("{}", plan.skin.cols),
             fmt::format("{}", plan.skin.threshold_counts),
             fmt::format("{}", plan.skin.counts_per_newton), (folder_ / "result").string()},
-        "", ChildProgram::kAnswer);
+        "", ChildProgram::kPipe);
   } catch (const Error&) {
     return false;
   }
