@@ -28,7 +28,7 @@ void main() {
   const float inside = clamp(0.5 - distance, 0.0, 1.0);
   const float outlined = clamp(1.6 - distance, 0.0, 1.0);
   if (outlined <= 0.0) discard;
-  const vec4 fill = colour_of_word(scene.ink.x);
-  const vec4 outline = colour_of_word(scene.ink.y);
+  const vec4 fill = colour_of_word(scene.layer_colours.x);
+  const vec4 outline = colour_of_word(scene.layer_colours.y);
   colour = vec4(mix(outline.rgb, fill.rgb, inside), outlined * mix(outline.a, fill.a, inside));
 }

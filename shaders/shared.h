@@ -62,13 +62,13 @@ PF_CONSTANT uint kIdle = 0u;
 PF_CONSTANT uint kSaturated = 1u;
 PF_CONSTANT uint kInconsistent = 2u;
 PF_CONSTANT uint kAmbiguous = 3u;
-PF_CONSTANT uint kFromNeighbours = 4u;
+PF_CONSTANT uint kFromContact = 4u;
 PF_CONSTANT uint kRegion1 = 5u;
 PF_CONSTANT uint kRegion2 = 6u;
 PF_CONSTANT uint kRegion3 = 7u;
 PF_CONSTANT uint kRegion4 = 8u;
 PF_CONSTANT uint kOpposite = 9u;
-PF_CONSTANT uint kSound = 10u;
+PF_CONSTANT uint kDetermined = 10u;
 
 // A plane that a field does not have.
 PF_CONSTANT uint kNoPlane = 0xffffffffu;
@@ -97,7 +97,7 @@ struct Scene {
   uvec4 block;      // pillars along a cell; 1 where the skin is seen from above; none
   vec4 arrow;       // mm per newton, shortest and half a width: pixels; share of its length that
                     // lies before its place
-  uvec4 ink;        // colours of an arrow's fill, its outline, a fan; none
+  uvec4 layer_colours;  // colours of an arrow's fill, its outline, a fan; none
 };
 
 // A table of 256 colours, and from kFirstSpecial on those of Special, so that a pixel looks up

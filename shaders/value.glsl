@@ -88,8 +88,8 @@ uint special_of(uint status) {
   if (is_saturated(status)) return kSaturated;
   if (usable == 0u) return kIdle;
   if (kQuantity != kStatus) return kQuantity == kRegion ? kIdle : kMapped;
-  if (is_from_neighbours(status)) return kFromNeighbours;
-  return is_ambiguous(status) ? kAmbiguous : kSound;
+  if (is_from_contact(status)) return kFromContact;
+  return is_ambiguous(status) ? kAmbiguous : kDetermined;
 }
 
 #endif

@@ -193,7 +193,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       "--light", [&] { options.theme = Theme::light; }, "Dark on white");
   app.add_flag_callback(
       "--no-arrows", [&] { options.arrows = false; }, "No arrows");
-  app.add_flag("--fans", options.fans, "Show what ambiguous shear may be, where pillars are large");
+  app.add_flag("--sectors", options.sectors,
+               "Show what ambiguous shear may be, where pillars are large");
   app.add_flag_callback(
       "--no-hatch", [&] { options.hatch = false; }, "Ambiguous pillars are not hatched");
   app.add_flag("--contacts", options.contacts,

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
@@ -36,7 +36,7 @@ struct Options {
   std::optional<Vec2> centre_mm;
   Surface surface;
   bool arrows = true;
-  bool fans = false;
+  bool sectors = false;
   bool hatch = true;
   bool contacts = false;
   bool legend = true;
@@ -56,7 +56,8 @@ struct Options {
 /// How the first picture looks: what the options say, and what fits the source for the rest; its
 /// view is not set. A few frames, evenly spread, are produced for that. Throws Error where the
 /// source has not what is to be shown.
-[[nodiscard]] Look first_look(const Options& options, FieldProducer& producer, double scale);
+[[nodiscard]] RenderSettings default_settings(const Options& options, FieldProducer& producer,
+                                              double scale);
 
 /// Ends of the colour bar that fit what a few frames, evenly spread, hold of a quantity.
 [[nodiscard]] Range range_that_fits(FieldProducer& producer, Quantity quantity);

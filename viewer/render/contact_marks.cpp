@@ -34,27 +34,27 @@ bool overlap(const Viewport& a, const Viewport& b) {
 }
 
 /// A point `right` and `up` of another on the skin along its tangents there, mm.
-std::optional<Vec2> seen(const SourceInfo& source, const Look& look, const Viewport& plot,
-                         const PatchPlace& place, double right, double up) {
-  const bool from_above = std::holds_alternative<TopView>(look.view);
+std::optional<Vec2> seen(const SourceInfo& source, const RenderSettings& settings,
+                         const Viewport& plot, const PatchPlace& place, double right, double up) {
+  const bool from_above = std::holds_alternative<TopView>(settings.view);
   const SurfaceFrame frame =
-      frame_at(from_above ? Surface{} : look.surface, {place.x_mm, place.y_mm});
+      frame_at(from_above ? Surface{} : settings.surface, {place.x_mm, place.y_mm});
   const Vec3& x = frame.tangent_x;
   const Vec3& y = frame.tangent_y;
   return project(
-      look.view, look.surface, skin_size(source), plot,
+      settings.view, settings.surface, skin_size(source), plot,
       {frame.position.x + right * x.x + up * y.x, frame.position.y + right * x.y + up * y.y,
        frame.position.z + right * x.z + up * y.z});
 }
 
 std::optional<Vec2> tip_of(const ContactQuantities& contact, const SourceInfo& source,
-                           const Look& look, const Viewport& plot) {
+                           const RenderSettings& settings, const Viewport& plot) {
   const double shear = std::hypot(contact.shear_x_n, contact.shear_y_n);
   if (!(contact.normal_n > 0) || shear < kLeastRatio * contact.normal_n) return std::nullopt;
   const double pixels =
-      kContactArrowPixels * look.scale * std::min(shear / contact.normal_n, kMostRatio);
-  const double mm_per_newton = pixels / pixels_per_mm(look.view, plot) / shear;
-  return seen(source, look, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
+      kContactArrowPixels * settings.scale * std::min(shear / contact.normal_n, kMostRatio);
+  const double mm_per_newton = pixels / pixels_per_mm(settings.view, plot) / shear;
+  return seen(source, settings, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
               mm_per_newton * contact.shear_y_n);
 }
 
@@ -140,18 +140,18 @@ void write_words(const Brush& brush, const std::vector<ContactMark>& marks, cons
 }  // namespace
 
 std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const SourceInfo& source,
-                                       const Look& look, const Viewport& plot) {
+                                       const RenderSettings& settings, const Viewport& plot) {
   std::vector<ContactMark> marks;
   const std::size_t count = std::min(contacts.heaviest.size(), kMostContactsDrawn);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = contacts.heaviest[i];
     const TrackedContact& contact = contacts.found.contacts[place];
     const ContactQuantities& quantities = contact.quantities;
-    auto outline = outline_of(contacts.extents[place], source, look, plot);
+    auto outline = outline_of(contacts.extents[place], source, settings, plot);
     if (outline.empty() || !overlap(box_about(outline), plot)) continue;
-    const auto centre = seen(source, look, plot, quantities.centre_of_pressure, 0, 0);
+    const auto centre = seen(source, settings, plot, quantities.centre_of_pressure, 0, 0);
     if (!centre) continue;
-    marks.push_back({std::move(outline), *centre, tip_of(quantities, source, look, plot),
+    marks.push_back({std::move(outline), *centre, tip_of(quantities, source, settings, plot),
                      fmt::format("{}  {} N", contact.id, three_digits(quantities.normal_n))});
   }
   return marks;
@@ -164,16 +164,16 @@ std::string contacts_left_out(const ShownContacts& contacts) {
 }
 
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,
-                        const Look& look, const Viewport& plot) {
-  const auto marks = contact_marks(contacts, source, look, plot);
-  const Brush brush(list, look.scale);
+                        const RenderSettings& settings, const Viewport& plot) {
+  const auto marks = contact_marks(contacts, source, settings, plot);
+  const Brush brush(list, settings.scale);
   list.PushClipRect(to_imgui({plot.x, plot.y}),
                     to_imgui({plot.x + plot.width, plot.y + plot.height}));
   for (const ContactMark& mark : marks) brush.outline(mark);
   for (const ContactMark& mark : marks) brush.force(mark);
-  write_words(brush, marks, plot, look.scale);
+  write_words(brush, marks, plot, settings.scale);
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
-    const double gap = 4 * look.scale;
+    const double gap = 4 * settings.scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
     brush.words(brush.room_of(warning, corner, plot), warning);
   }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "viewer/source/field_producer.h"
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 struct ImDrawList;
 
@@ -29,7 +29,8 @@ struct ContactMark {
 /// The heaviest kMostContactsDrawn contacts of a field, heaviest first. Of a contact that is out of
 /// sight or partly behind the eye there is none. Arrows end at three times kContactArrowPixels.
 [[nodiscard]] std::vector<ContactMark> contact_marks(const ShownContacts& contacts,
-                                                     const SourceInfo& source, const Look& look,
+                                                     const SourceInfo& source,
+                                                     const RenderSettings& settings,
                                                      const Viewport& plot);
 
 /// "256 of 1031 contacts are drawn, the heaviest"; empty where all are.
@@ -37,6 +38,6 @@ struct ContactMark {
 
 /// Draws them into the plot. A text that would cover that of a heavier contact is left out.
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,
-                        const Look& look, const Viewport& plot);
+                        const RenderSettings& settings, const Viewport& plot);
 
 }  // namespace pillarfield::viewer

@@ -6,11 +6,11 @@
 #include "shaders/arrow_frag.h"
 #include "shaders/arrow_vert.h"
 #include "shaders/cells_comp.h"
-#include "shaders/fan_frag.h"
-#include "shaders/fan_vert.h"
 #include "shaders/heat_frag.h"
 #include "shaders/heat_vert.h"
 #include "shaders/shared.h"
+#include "shaders/uncertainty_sector_frag.h"
+#include "shaders/uncertainty_sector_vert.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -112,8 +112,9 @@ Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
                               vk::ComputePipelineCreateInfo({}, stage, *layout_));
   arrows_ = make_pipeline(device, *layout_, render_pass, make_module(device, arrow_vert),
                           make_module(device, arrow_frag), Depth::tested);
-  fans_ = make_pipeline(device, *layout_, render_pass, make_module(device, fan_vert),
-                        make_module(device, fan_frag), Depth::tested);
+  sectors_ =
+      make_pipeline(device, *layout_, render_pass, make_module(device, uncertainty_sector_vert),
+                    make_module(device, uncertainty_sector_frag), Depth::tested);
 }
 
 vk::Pipeline Pipelines::heat(const HeatKind& kind) {

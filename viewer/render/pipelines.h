@@ -41,7 +41,7 @@ class Pipelines {
   /// Made when it is first asked for, and kept.
   [[nodiscard]] vk::Pipeline heat(const HeatKind& kind);
   [[nodiscard]] vk::Pipeline arrows() const { return *arrows_; }
-  [[nodiscard]] vk::Pipeline fans() const { return *fans_; }
+  [[nodiscard]] vk::Pipeline sectors() const { return *sectors_; }
 
  private:
   const gpu::Device* device_;
@@ -55,7 +55,7 @@ class Pipelines {
   vk::raii::ShaderModule heat_fragment_;
   std::map<HeatKind, vk::raii::Pipeline> heat_;
   vk::raii::Pipeline arrows_ = nullptr;
-  vk::raii::Pipeline fans_ = nullptr;
+  vk::raii::Pipeline sectors_ = nullptr;
 };
 
 }  // namespace pillarfield::viewer

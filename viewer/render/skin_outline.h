@@ -4,7 +4,7 @@
 
 #include "viewer/source/field_producer.h"
 #include "viewer/source/selection.h"
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
@@ -12,6 +12,6 @@ namespace pillarfield::viewer {
 /// at the end. Where the skin is bent its sides have points in between. Empty where a part of it is
 /// behind the eye.
 [[nodiscard]] std::vector<Vec2> outline_of(const PillarRect& rect, const SourceInfo& source,
-                                           const Look& look, const Viewport& plot);
+                                           const RenderSettings& settings, const Viewport& plot);
 
 }  // namespace pillarfield::viewer

@@ -84,7 +84,7 @@ ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
 
 ShownField ForceFileProducer::produce(std::uint64_t index) {
   if (!reader_) open(file_.path());
-  const std::shared_ptr<PlaneBlock> block = blocks_.lend();
+  const std::shared_ptr<PlaneBlock> block = blocks_.acquire();
   if (block == nullptr) throw_too_many_shown();
   const double time_s = reader_->read(index, forces_);
   fill(*block, forces_);

@@ -6,7 +6,7 @@
 #include "pillarfield/force_file.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/growing_file.h"
-#include "viewer/source/lending_pool.h"
+#include "viewer/source/object_pool.h"
 #include "viewer/source/plane_block.h"
 
 namespace pillarfield::viewer {
@@ -30,7 +30,7 @@ class ForceFileProducer final : public FieldProducer {
   std::optional<ForceFileReader> reader_;  ///< none where it could not be opened again
   SourceInfo info_;
   ForceField forces_;  ///< as read last
-  LendingPool<PlaneBlock> blocks_;
+  ObjectPool<PlaneBlock> blocks_;
   ContactLabels map_;
 };
 

@@ -15,11 +15,11 @@ constexpr std::chrono::milliseconds kSettled(20);
 
 }  // namespace
 
-GrowingFile::GrowingFile(std::filesystem::path path) : path_(std::move(path)), seen_(look()) {}
+GrowingFile::GrowingFile(std::filesystem::path path) : path_(std::move(path)), seen_(settings()) {}
 
-GrowingFile::Look GrowingFile::look() const {
+GrowingFile::RenderSettings GrowingFile::settings() const {
   std::error_code failed;  // A file that is away for a moment is no reason to end.
-  Look found;
+  RenderSettings found;
   found.bytes = std::filesystem::file_size(path_, failed);
   if (!failed) found.written = std::filesystem::last_write_time(path_, failed);
   if (failed) return {};
@@ -51,9 +51,9 @@ bool GrowingFile::reopen(const std::function<void(const std::filesystem::path&)>
 
 bool GrowingFile::may_have_changed() {
   static_cast<void>(path());
-  const Look found = look();
+  const RenderSettings found = settings();
   if (found.bytes == 0) return false;
-  const Look before = std::exchange(seen_, found);
+  const RenderSettings before = std::exchange(seen_, found);
   return !before.is_settled || before.bytes != found.bytes || before.written != found.written;
 }
 

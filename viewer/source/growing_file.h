@@ -25,15 +25,15 @@ class GrowingFile {
   [[nodiscard]] const std::filesystem::path& path();
 
  private:
-  struct Look {
+  struct RenderSettings {
     std::uintmax_t bytes = 0;
     std::filesystem::file_time_type written;
     bool is_settled = false;  ///< a later write would have a later time
   };
-  [[nodiscard]] Look look() const;
+  [[nodiscard]] RenderSettings settings() const;
 
   std::filesystem::path path_;
-  Look seen_;
+  RenderSettings seen_;
 };
 
 }  // namespace pillarfield::viewer

@@ -2,15 +2,15 @@
 
 #include "pillarfield/error.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 #include "viewer/source/growing_file.h"
-#include "viewer/source/lending_pool.h"
+#include "viewer/source/object_pool.h"
 #include "viewer/source/too_many_shown.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-class RecordedFrames final : public FrameSupply {
+class RecordedFrames final : public FrameProvider {
  public:
   RecordedFrames(const std::filesystem::path& path, std::unique_ptr<FrameSource> source)
       : file_(path),
@@ -24,9 +24,9 @@ class RecordedFrames final : public FrameSupply {
 
   [[nodiscard]] std::uint64_t frames() const override { return frames_; }
 
-  [[nodiscard]] SuppliedFrame frame(std::uint64_t index) override {
+  [[nodiscard]] FrameHandle frame(std::uint64_t index) override {
     if (source_ == nullptr) open(file_.path());
-    const std::shared_ptr<FrameBuffer> buffer = buffers_.lend();
+    const std::shared_ptr<FrameBuffer> buffer = buffers_.acquire();
     if (buffer == nullptr) throw_too_many_shown();
     const double time_s = source_->read(index, *buffer);
     return {buffer, time_s};
@@ -56,13 +56,13 @@ class RecordedFrames final : public FrameSupply {
   Skin skin_;
   SenselType sensel_type_;
   std::uint64_t frames_;
-  LendingPool<FrameBuffer> buffers_;
+  ObjectPool<FrameBuffer> buffers_;
 };
 
 }  // namespace
 
-std::unique_ptr<FrameSupply> recorded_frames(const std::filesystem::path& path,
-                                             std::unique_ptr<FrameSource> source) {
+std::unique_ptr<FrameProvider> recorded_frames(const std::filesystem::path& path,
+                                               std::unique_ptr<FrameSource> source) {
   return std::make_unique<RecordedFrames>(path, std::move(source));
 }
 

@@ -76,7 +76,7 @@ class Adding {
     if ((state & status::kUsable) != 0 && is_finite(forces_, at)) add_force(pillar, at);
   }
 
-  [[nodiscard]] RegionSums finish() {
+  [[nodiscard]] SelectionSums finish() {
     const auto touched = static_cast<double>(sums_.in_contact);
     sums_.area_mm2 = touched * pitch_mm_ * pitch_mm_;
     sums_.mean_normal = sums_.in_contact == 0 ? 0 : sums_.normal / touched;
@@ -109,7 +109,7 @@ class Adding {
 
   const ForceFieldView& forces_;
   double pitch_mm_;
-  RegionSums sums_;
+  SelectionSums sums_;
   double first_x_ = 0;  ///< first moments of the normal force, N mm
   double first_y_ = 0;
   double turn_ = 0;  ///< moment of the shear, N mm
@@ -135,7 +135,7 @@ PillarValues values_at(const ShownField& field, PillarIndex pillar) {
   return values;
 }
 
-RegionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
+SelectionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
   Adding adding(field.forces, pillar_pitch_mm);
   const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);

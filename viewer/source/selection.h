@@ -39,7 +39,7 @@ struct PillarValues {
 
 /// What a rectangle of pillars adds up to. Pillars whose status has no usable sensel, or whose
 /// force is not finite, add no force and are not in contact.
-struct RegionSums {
+struct SelectionSums {
   double shear_x = 0, shear_y = 0, normal = 0;  ///< total force, N
   /// Of the shear about the centre of pressure, N mm, counter-clockwise; NaN without load.
   double moment_z = 0;
@@ -54,8 +54,8 @@ struct RegionSums {
 };
 
 /// Of the part of `rect` that lies in the field.
-[[nodiscard]] RegionSums sums_over(const ShownField& field, const PillarRect& rect,
-                                   double pillar_pitch_mm);
+[[nodiscard]] SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
+                                      double pillar_pitch_mm);
 
 /// Values of pinned pillars and regions over time, as many as `capacity` frames back.
 class History {

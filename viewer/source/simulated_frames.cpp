@@ -7,12 +7,12 @@
 #include <thread>
 #include <vector>
 
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-using Frames = std::vector<SuppliedFrame>;
+using Frames = std::vector<FrameHandle>;
 
 /// Several threads that render frames, each the next one that nobody took.
 class Rendering {
@@ -79,11 +79,11 @@ class Rendering {
   std::vector<std::jthread> threads_;  ///< last: they use the others
 };
 
-class SimulatedFrames final : public FrameSupply {
+class SimulatedFrames final : public FrameProvider {
  public:
   explicit SimulatedFrames(Frames frames) : frames_(std::move(frames)) {}
   [[nodiscard]] std::uint64_t frames() const override { return frames_.size(); }
-  [[nodiscard]] SuppliedFrame frame(std::uint64_t index) override { return frames_.at(index); }
+  [[nodiscard]] FrameHandle frame(std::uint64_t index) override { return frames_.at(index); }
 
  private:
   Frames frames_;
@@ -91,8 +91,8 @@ class SimulatedFrames final : public FrameSupply {
 
 }  // namespace
 
-std::unique_ptr<FrameSupply> simulate_frames(const Simulator& simulator, std::uint64_t frames,
-                                             const std::function<void(double)>& progress) {
+std::unique_ptr<FrameProvider> simulate_frames(const Simulator& simulator, std::uint64_t frames,
+                                               const std::function<void(double)>& progress) {
   Frames made(frames);
   Rendering(simulator, made).wait(progress);
   return std::make_unique<SimulatedFrames>(std::move(made));

@@ -30,19 +30,19 @@ SolverPlan shown_plan(SolverPlan plan) {
   return plan;
 }
 
-SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> supply,
+SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> provider,
                                const SolverPlan& plan, Processor processor)
-    : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
-  info_.frames = supply_->frames();
+    : info_(std::move(info)), provider_(std::move(provider)), processor_(std::move(processor)) {
+  info_.frames = provider_->frames();
   if (plan.estimator == Estimator::direct) direct_point_ = plan.segment_point;
   if (!remembers(plan.estimator, plan.friction)) return;
-  silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  idle_frame_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
 
-void SolvedProducer::forget_the_frame_before() {
+void SolvedProducer::clear_prior() {
   // What was known of a pillar or a contact is of use in the next frame alone, and an idle one has
   // neither.
-  processor_.submit(silence_->view());
+  processor_.submit(idle_frame_->view());
   static_cast<void>(processor_.receive());
 }
 
@@ -52,8 +52,8 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
                 fmt::format("it has {} frames, counted from 0", info_.frames));
   }
   if (processor_.pinned() == kMostShown) throw_too_many_shown();
-  SuppliedFrame frame = supply_->frame(index);
-  if (silence_ && index != next_) forget_the_frame_before();
+  FrameHandle frame = provider_->frame(index);
+  if (idle_frame_ && index != next_) clear_prior();
   const FrameView raw = frame.readings->view();
   processor_.submit(raw);
   const ForceFieldView forces = processor_.receive();
@@ -69,8 +69,8 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
 }
 
 bool SolvedProducer::refresh() {
-  if (!supply_->refresh()) return false;
-  info_.frames = supply_->frames();
+  if (!provider_->refresh()) return false;
+  info_.frames = provider_->frames();
   return true;
 }
 

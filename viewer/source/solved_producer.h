@@ -7,7 +7,7 @@
 #include "pillarfield/frame.h"
 #include "pillarfield/processor.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 
 namespace pillarfield::viewer {
 
@@ -18,14 +18,15 @@ namespace pillarfield::viewer {
 /// where the noise is known and the estimator can tell.
 [[nodiscard]] SolverPlan shown_plan(SolverPlan plan);
 
-/// Solves the frames of a supply, each when it is asked for. A field lies where the processor wrote
-/// it, and keeps the frame that it was solved from. Where the plan says that frames are close, one
-/// that is asked for right after the frame before it knows of that, and any other of none.
+/// Solves the frames of a provider, each when it is asked for. A field lies where the processor
+/// wrote it, and keeps the frame that it was solved from. Where the plan says that frames are
+/// close, one that is asked for right after the frame before it knows of that, and any other of
+/// none.
 class SolvedProducer final : public FieldProducer {
  public:
-  /// `processor` has kMostShown slots and is that of `plan`, which `supply`'s frames fit. Of `info`
-  /// the number of frames is set here.
-  SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> supply, const SolverPlan& plan,
+  /// `processor` has kMostShown slots and is that of `plan`, which `provider`'s frames fit. Of
+  /// `info` the number of frames is set here.
+  SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> provider, const SolverPlan& plan,
                  Processor processor);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
@@ -33,14 +34,14 @@ class SolvedProducer final : public FieldProducer {
   bool refresh() override;
 
  private:
-  void forget_the_frame_before();
+  void clear_prior();
 
   SourceInfo info_;
-  std::unique_ptr<FrameSupply> supply_;
+  std::unique_ptr<FrameProvider> provider_;
   Processor processor_;
-  std::optional<double> direct_point_;  ///< of the plan, where its estimator is direct
-  std::optional<FrameBuffer> silence_;  ///< a frame of it, where frames are close
-  std::uint64_t next_ = 0;              ///< the frame that would come after the last one solved
+  std::optional<double> direct_point_;     ///< of the plan, where its estimator is direct
+  std::optional<FrameBuffer> idle_frame_;  ///< a frame of it, where frames are close
+  std::uint64_t next_ = 0;                 ///< the frame that would come after the last one solved
 };
 
 }  // namespace pillarfield::viewer

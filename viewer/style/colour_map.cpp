@@ -11,11 +11,11 @@ namespace {
 
 // Chosen among all colours far from the maps so that those of one legend, and the skin's, are as
 // far from each other as can be for normal sight and for the three kinds of colour blindness.
-constexpr Colour kSound = colour_from(0x96b478);
+constexpr Colour kDetermined = colour_from(0x96b478);
 constexpr Colour kAmbiguous = colour_from(0xff7800);
 constexpr Colour kInconsistent = colour_from(0x870f87);
 constexpr Colour kSaturated = colour_from(0xd21e0f);
-constexpr Colour kFromNeighbours = colour_from(0x2dc3e1);
+constexpr Colour kFromContact = colour_from(0x2dc3e1);
 constexpr Colour kRegion2 = colour_from(0x4bd2ff);
 constexpr Colour kRegion4 = colour_from(0x8769f0);
 
@@ -26,8 +26,8 @@ Special special_of(StatusClass status) {
       return Special::sound;
     case StatusClass::ambiguous:
       return Special::ambiguous;
-    case StatusClass::from_neighbours:
-      return Special::from_neighbours;
+    case StatusClass::from_contact:
+      return Special::from_contact;
     case StatusClass::saturated:
       return Special::saturated;
     case StatusClass::inconsistent:
@@ -91,8 +91,8 @@ Colour colour_of(Special special, Theme theme) {
     case Special::ambiguous:
     case Special::region_3:
       return kAmbiguous;
-    case Special::from_neighbours:
-      return kFromNeighbours;
+    case Special::from_contact:
+      return kFromContact;
     case Special::region_2:
       return kRegion2;
     case Special::region_4:
@@ -101,7 +101,7 @@ Colour colour_of(Special special, Theme theme) {
     case Special::sound:
       break;
   }
-  return kSound;
+  return kDetermined;
 }
 
 const char* name_of(Special special) {

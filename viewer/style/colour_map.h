@@ -37,7 +37,7 @@ enum class Special : std::uint8_t {
   saturated,
   inconsistent,
   ambiguous,
-  from_neighbours,
+  from_contact,
   region_1,
   region_2,
   region_3,

@@ -143,7 +143,7 @@ std::optional<Quantity> quantity_named(std::string_view name) {
 StatusClass status_class(std::uint8_t status) {
   if ((status & status::kInconsistent) != 0) return StatusClass::inconsistent;
   if ((status & status::kSaturated) != 0) return StatusClass::saturated;
-  if ((status & status::kFromNeighbours) != 0) return StatusClass::from_neighbours;
+  if ((status & status::kFromNeighbours) != 0) return StatusClass::from_contact;
   return (status & status::kAmbiguous) != 0 ? StatusClass::ambiguous : StatusClass::sound;
 }
 
@@ -198,8 +198,8 @@ Range fitting_range(Quantity quantity, float largest_value) {
 
 float value_of(Quantity quantity, const ShownField& field, std::uint32_t row, std::uint32_t col) {
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
-  const bool told_by_status = quantity == Quantity::region || quantity == Quantity::status;
-  if (!told_by_status && !is_pressed(status)) return kNothing;
+  const bool has_status_class = quantity == Quantity::region || quantity == Quantity::status;
+  if (!has_status_class && !is_pressed(status)) return kNothing;
   return pressed_value(quantity, field, row, col);
 }
 

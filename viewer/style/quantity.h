@@ -39,13 +39,7 @@ struct QuantityInfo {
 [[nodiscard]] std::optional<Quantity> quantity_named(std::string_view name);
 
 /// Values of `status`, by what is worst.
-enum class StatusClass : std::uint8_t {
-  sound,
-  ambiguous,
-  from_neighbours,
-  saturated,
-  inconsistent
-};
+enum class StatusClass : std::uint8_t { sound, ambiguous, from_contact, saturated, inconsistent };
 inline constexpr int kStatusClasses = 5;
 [[nodiscard]] StatusClass status_class(std::uint8_t status);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "viewer/app/session.h"
+#include "viewer/app/app_state.h"
 
 namespace pillarfield::viewer {
 

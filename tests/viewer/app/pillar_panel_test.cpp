@@ -3,9 +3,9 @@
 #include <imgui.h>
 
 #include "tests/viewer/app/made_field.h"
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/region_sums.h"
+#include "viewer/app/panels/selection_sums.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -30,9 +30,9 @@ class PillarPanel : public testing::Test {
     io.DisplaySize = ImVec2(400, 800);
     unsigned char* pixels = nullptr;
     io.Fonts->GetTexDataAsAlpha8(&pixels, nullptr, nullptr);
-    session_.player = &player_;
-    session_.field = made_.shown();
-    for (std::uint32_t i = 0; i < 3; ++i) session_.pins.push_back({{10 + i, 20}, History()});
+    state_.player = &player_;
+    state_.field = made_.shown();
+    for (std::uint32_t i = 0; i < 3; ++i) state_.pins.push_back({{10 + i, 20}, History()});
   }
   ~PillarPanel() override { ImGui::DestroyContext(context_); }
 
@@ -42,7 +42,7 @@ class PillarPanel : public testing::Test {
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(kWidth, 700));
     ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
-    pillar_panel(session_);
+    pillar_panel(state_);
     side_ = ImGui::GetTextLineHeight() + 6;
     ImGui::End();
     ImGui::Render();
@@ -71,7 +71,7 @@ class PillarPanel : public testing::Test {
   }
   [[nodiscard]] std::vector<int> numbers() const {
     std::vector<int> found;
-    for (const Pin& pin : session_.pins) found.push_back(pin.number);
+    for (const Pin& pin : state_.pins) found.push_back(pin.number);
     return found;
   }
 
@@ -81,7 +81,7 @@ class PillarPanel : public testing::Test {
   float side_ = 0;
   MadeField made_;
   Player player_{std::make_unique<NoFields>(made_)};
-  Session session_;
+  AppState state_;
 };
 
 TEST_F(PillarPanel, AClickOnANumberInspectsItsPin) {
@@ -101,31 +101,31 @@ TEST_F(PillarPanel, TheCrossRemovesTheInspectedPinUntilNoneIsLeft) {
   EXPECT_EQ(numbers(), (std::vector<int>{1}));
   click_remove();
   frame();
-  EXPECT_TRUE(session_.pins.empty());
+  EXPECT_TRUE(state_.pins.empty());
 }
 
 TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
-  session_.pins.push_back({{1000, 1000}, History()});
+  state_.pins.push_back({{1000, 1000}, History()});
   frame();
-  session_.field.reset();
+  state_.field.reset();
   frame();
-  EXPECT_EQ(session_.pins.size(), 4u);
+  EXPECT_EQ(state_.pins.size(), 4u);
 }
 
 TEST_F(PillarPanel, SumsOfTheRegionFollowRectangleAndFrame) {
-  session_.region = MarkedRegion{{4, 20, 8, 30}, History()};
+  state_.selection = Selection{{4, 20, 8, 30}, History()};
   const double pitch_mm = made_.skin.pillar_pitch_mm();
-  const double first = region_sums(session_).normal;
-  EXPECT_EQ(first, sums_over(*session_.field, {4, 20, 8, 30}, pitch_mm).normal);
-  session_.region->rect.row_end = 14;
-  const double second = region_sums(session_).normal;
-  EXPECT_EQ(second, sums_over(*session_.field, {4, 14, 8, 30}, pitch_mm).normal);
+  const double first = selection_sums(state_).normal;
+  EXPECT_EQ(first, sums_over(*state_.field, {4, 20, 8, 30}, pitch_mm).normal);
+  state_.selection->rect.row_end = 14;
+  const double second = selection_sums(state_).normal;
+  EXPECT_EQ(second, sums_over(*state_.field, {4, 14, 8, 30}, pitch_mm).normal);
   EXPECT_LT(second, first);
 
   for (float& normal : made_.forces.normal) normal *= 2;
-  EXPECT_EQ(region_sums(session_).normal, second);  // The same frame is not added up again.
-  ++session_.field->index;
-  EXPECT_NEAR(region_sums(session_).normal, 2 * second, 1e-6);
+  EXPECT_EQ(selection_sums(state_).normal, second);  // The same frame is not added up again.
+  ++state_.field->index;
+  EXPECT_NEAR(selection_sums(state_).normal, 2 * second, 1e-6);
 }
 
 }  // namespace

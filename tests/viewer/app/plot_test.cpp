@@ -9,18 +9,18 @@
 #include <numeric>
 #include <random>
 
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 
 namespace pillarfield::viewer {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-PanelInk ink_of(double scale) {
-  PanelInk ink{};
-  ink.unit = scale;
-  ink.line = 16 * scale;
-  return ink;
+PanelStyle style_of(double scale) {
+  PanelStyle style{};
+  style.unit = scale;
+  style.line = 16 * scale;
+  return style;
 }
 
 TEST(PlotArea, ValuesAtTheEndsLieInTheCorners) {
@@ -147,21 +147,21 @@ TEST(SharesOf, FillTheWidthInProportionAndHideNobody) {
 TEST(InsideAxes, LeavesRoomForLabelsAndGrowsWithTheScale) {
   for (const double scale : {1.0, 1.5, 2.0}) {
     const Viewport outer{5, 7, 300 * scale, 120 * scale};
-    const Viewport box = inside_axes(outer, 30 * scale, ink_of(scale));
+    const Viewport box = inside_axes(outer, 30 * scale, style_of(scale));
     EXPECT_GE(box.x, outer.x + 30 * scale);
     EXPECT_LE(box.x + box.width, outer.x + outer.width);
     EXPECT_LE(box.y + box.height + 16 * scale, outer.y + outer.height);
     EXPECT_GT(box.width, 240 * scale);
     EXPECT_GT(box.height, 80 * scale);
   }
-  EXPECT_GE(inside_axes({0, 0, 3, 3}, 30, ink_of(1)).width, 1);
+  EXPECT_GE(inside_axes({0, 0, 3, 3}, 30, style_of(1)).width, 1);
 }
 
 TEST(TicksOf, AreFewerWhereThereIsLessRoom) {
   const PlotArea wide{{0, 0, 600, 300}, {0, 10}, {0, 1}};
   const PlotArea narrow{{0, 0, 130, 40}, {0, 10}, {0, 1}};
-  const PlotTicks many = ticks_of(wide, ink_of(1));
-  const PlotTicks few = ticks_of(narrow, ink_of(1));
+  const PlotTicks many = ticks_of(wide, style_of(1));
+  const PlotTicks few = ticks_of(narrow, style_of(1));
   EXPECT_GT(many.x.size(), few.x.size());
   EXPECT_GT(many.y.size(), few.y.size());
   EXPECT_GE(few.x.size(), 1u);

@@ -185,20 +185,20 @@ TEST(FullBar, IsTheFullScaleOrRoomForAllReadings) {
 }
 
 TEST(Pins, KeepTheirNumbersWhileOthersComeAndGo) {
-  Session session;
-  for (std::uint32_t i = 0; i < 4; ++i) session.pins.push_back({{i, i}, History()});
-  number_pins(session);
-  inspect_pin(session, 1);
-  EXPECT_EQ(session.pins.back().number, 2);
-  EXPECT_EQ(session.pins.back().pillar, (PillarIndex{1, 1}));
-  remove_pin(session, 0);
-  session.pins.push_back({{9, 9}, History()});
-  number_pins(session);
+  AppState state;
+  for (std::uint32_t i = 0; i < 4; ++i) state.pins.push_back({{i, i}, History()});
+  number_pins(state);
+  inspect_pin(state, 1);
+  EXPECT_EQ(state.pins.back().number, 2);
+  EXPECT_EQ(state.pins.back().pillar, (PillarIndex{1, 1}));
+  remove_pin(state, 0);
+  state.pins.push_back({{9, 9}, History()});
+  number_pins(state);
   std::vector<int> numbers;
-  for (const Pin& pin : session.pins) numbers.push_back(pin.number);
+  for (const Pin& pin : state.pins) numbers.push_back(pin.number);
   EXPECT_EQ(numbers, (std::vector<int>{3, 4, 2, 1}));
-  remove_pin(session, 77);
-  EXPECT_EQ(session.pins.size(), 4u);
+  remove_pin(state, 77);
+  EXPECT_EQ(state.pins.size(), 4u);
 }
 
 TEST(Pins, HaveColoursOfTheirOwn) {

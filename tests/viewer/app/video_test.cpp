@@ -159,9 +159,9 @@ TEST_F(Video, FfmpegWritesVideosOfOddSizes) {
     for (std::uint8_t level = 0; level < 12; ++level) video.add(grey(65, 33, level));
     video.finish();
     EXPECT_GT(fs::file_size(folder_ / name), 500u);
-    const std::string look = "ffmpeg -loglevel error -i " + (folder_ / name).string() +
-                             " -f rawvideo -pix_fmt gray " + (folder_ / "raw").string();
-    ASSERT_EQ(std::system(look.c_str()), 0);
+    const std::string settings = "ffmpeg -loglevel error -i " + (folder_ / name).string() +
+                                 " -f rawvideo -pix_fmt gray " + (folder_ / "raw").string();
+    ASSERT_EQ(std::system(settings.c_str()), 0);
     EXPECT_EQ(fs::file_size(folder_ / "raw"), 12u * 66 * 34);
     fs::remove(folder_ / "raw");
   }

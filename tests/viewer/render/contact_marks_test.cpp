@@ -25,10 +25,10 @@ SourceInfo source() {
 }
 
 /// Ten pixels a millimetre, and the middle of the skin in that of the plot: pixel (230, 120).
-Look top_look() {
-  Look look;
-  look.view = TopView{{0, 0}, 10};
-  return look;
+RenderSettings top_look() {
+  RenderSettings settings;
+  settings.view = TopView{{0, 0}, 10};
+  return settings;
 }
 
 ShownContacts contacts_of(std::initializer_list<Touch> touches) {
@@ -58,16 +58,16 @@ TEST(ContactMarks, AreWhereTheContactIs) {
 }
 
 TEST(ContactMarks, ArrowsPointUpWhereShearDoesAndGrowWithTheScaleAndNotForEver) {
-  Look look = top_look();
+  RenderSettings settings = top_look();
   const auto tip_of = [&](float shear_y) {
     const auto marks =
-        contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}), source(), look, kPlot);
+        contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}), source(), settings, kPlot);
     return marks.front().tip;
   };
   expect_point(tip_of(1).value(), 280, 80 - kContactArrowPixels);
   expect_point(tip_of(100).value(), 280, 80 - 3 * kContactArrowPixels);
   EXPECT_FALSE(tip_of(0.02F));
-  look.scale = 2;
+  settings.scale = 2;
   expect_point(tip_of(-1).value(), 280, 80 + 2 * kContactArrowPixels);
 }
 
@@ -79,21 +79,21 @@ TEST(ContactMarks, HeaviestFirstAndNoneOutOfSight) {
   EXPECT_EQ(marks[0].words, "2  12.0 N");
   EXPECT_EQ(marks[1].words, "3  8.00 N");
   EXPECT_EQ(marks[2].words, "1  4.00 N");
-  Look near = top_look();
+  RenderSettings near = top_look();
   near.view = TopView{{-10, 1}, 100};
   EXPECT_EQ(contact_marks(contacts, source(), near, kPlot).size(), 1U);
 }
 
 TEST(ContactMarks, OnACylinderFollowTheSurface) {
-  Look look = top_look();
-  look.surface = {SurfaceKind::cylinder, 10};
-  look.view = fit_orbit({kCols, kRows}, look.surface, kPlot);
+  RenderSettings settings = top_look();
+  settings.surface = {SurfaceKind::cylinder, 10};
+  settings.view = fit_orbit({kCols, kRows}, settings.surface, kPlot);
   const ShownContacts contacts = contacts_of({{{4, 8, 18, 24}, 1, 0.5F, 0}});
-  const auto marks = contact_marks(contacts, source(), look, kPlot);
+  const auto marks = contact_marks(contacts, source(), settings, kPlot);
   ASSERT_EQ(marks.size(), 1U);
   EXPECT_EQ(marks[0].outline.size(), 4U * 32U);
-  const auto middle = project(look.view, look.surface, {kCols, kRows}, kPlot,
-                              frame_at(look.surface, {1, 4}).position);
+  const auto middle = project(settings.view, settings.surface, {kCols, kRows}, kPlot,
+                              frame_at(settings.surface, {1, 4}).position);
   ASSERT_TRUE(middle);
   expect_point(marks[0].centre, middle->x, middle->y);
   EXPECT_TRUE(marks[0].tip);
@@ -114,9 +114,9 @@ TEST(ContactMarks, AFewHundredAreDrawnAndTheRestIsTold) {
   const ShownContacts many = ContactWatch(1).contacts_of(field);
   SourceInfo wide = source();
   wide.skin.rows = wide.skin.cols = 200;
-  Look look = top_look();
-  look.view = fit_top({100, 100}, kPlot);
-  const auto marks = contact_marks(many, wide, look, kPlot);
+  RenderSettings settings = top_look();
+  settings.view = fit_top({100, 100}, kPlot);
+  const auto marks = contact_marks(many, wide, settings, kPlot);
   EXPECT_EQ(marks.size(), kMostContactsDrawn);
   EXPECT_EQ(marks.front().words, "2500  990 N");
   EXPECT_EQ(contacts_left_out(many), "256 of 2500 contacts are drawn, the heaviest");

@@ -55,7 +55,7 @@ const std::vector<GoldenPicture>& golden_pictures() {
        with(look_at(Quantity::uncertainty),
             [](Options& o) {
               o.zoom = 5;
-              o.fans = true;
+              o.sectors = true;
               o.centre_mm = Vec2{6, 1};
             })},
       {"demo_contacts", "demo", 30,
@@ -123,16 +123,16 @@ class Golden : public testing::TestWithParam<GoldenPicture> {
     const auto producer = open_producer(
         std::filesystem::path(PILLARFIELD_SCENES) / (std::string(picture.scene) + ".toml"), {});
     const double scale = picture.options.scale > 0 ? picture.options.scale : 1;
-    Look look = first_look(picture.options, *producer, scale);
-    look.view =
-        first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, look).plot);
-    if (other_map) look.map = *other_map;
+    RenderSettings settings = default_settings(picture.options, *producer, scale);
+    settings.view =
+        first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, settings).plot);
+    if (other_map) settings.map = *other_map;
     Drawing drawing;
     ShownField field = producer->produce(picture.frame);
-    if (look.contacts) {
+    if (settings.contacts) {
       field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
     }
-    Pixels pixels = drawing.draw(field, producer->info(), look, kWidth, kHeight);
+    Pixels pixels = drawing.draw(field, producer->info(), settings, kWidth, kHeight);
     EXPECT_EQ(drawing.validation_messages(), 0);
     return pixels;
   }

@@ -29,8 +29,8 @@ constexpr Theme kThemes[] = {Theme::dark, Theme::light};
 /// What one legend can hold.
 const std::vector<std::vector<Special>>& legends() {
   static const std::vector<std::vector<Special>> legends = {
-      {Special::idle, Special::sound, Special::ambiguous, Special::from_neighbours,
-       Special::saturated, Special::inconsistent},
+      {Special::idle, Special::sound, Special::ambiguous, Special::from_contact, Special::saturated,
+       Special::inconsistent},
       {Special::idle, Special::region_1, Special::region_2, Special::region_3, Special::region_4,
        Special::opposite, Special::saturated},
   };
@@ -125,7 +125,7 @@ TEST(SpecialOf, RegionAndStatusAreClasses) {
   EXPECT_EQ(special_of(Quantity::status, kUsable), Special::sound);
   EXPECT_EQ(special_of(Quantity::status, kSensel1 | kSensel2 | kAmbiguous), Special::ambiguous);
   EXPECT_EQ(special_of(Quantity::status, kSensel1 | kSensel2 | kFromNeighbours),
-            Special::from_neighbours);
+            Special::from_contact);
   EXPECT_EQ(special_of(Quantity::status, kUsable | kSaturated | kInconsistent),
             Special::inconsistent);
   EXPECT_EQ(special_of(Quantity::status, 0), Special::idle);

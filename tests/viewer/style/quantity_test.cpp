@@ -91,7 +91,7 @@ TEST(Availability, FollowsWhatTheSourceHas) {
 TEST(StatusClasses, TellTheWorst) {
   EXPECT_EQ(status_class(kUsable), StatusClass::sound);
   EXPECT_EQ(status_class(kSensel1 | kSensel2 | kAmbiguous), StatusClass::ambiguous);
-  EXPECT_EQ(status_class(kAmbiguous | kFromNeighbours), StatusClass::from_neighbours);
+  EXPECT_EQ(status_class(kAmbiguous | kFromNeighbours), StatusClass::from_contact);
   EXPECT_EQ(status_class(kUsable | kAmbiguous | kFromNeighbours | kSaturated),
             StatusClass::saturated);
   EXPECT_EQ(status_class(0xFF), StatusClass::inconsistent);

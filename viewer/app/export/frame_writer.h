@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "viewer/app/app_state.h"
 #include "viewer/app/export/export.h"
-#include "viewer/app/session.h"
 
 namespace pillarfield::viewer {
 
@@ -15,7 +15,7 @@ class FrameWriter {
   enum class Kind : std::uint8_t { pictures, video };
 
   /// Begins with the first frame. Throws Error where a video cannot be begun.
-  FrameWriter(Session& session, Kind kind, std::filesystem::path path, std::uint32_t width,
+  FrameWriter(AppState& state, Kind kind, std::filesystem::path path, std::uint32_t width,
               std::uint32_t height);
   ~FrameWriter();
   FrameWriter(const FrameWriter&) = delete;
@@ -28,7 +28,7 @@ class FrameWriter {
   bool add(const Pixels& pixels);
 
  private:
-  Session* session_;
+  AppState* state_;
   std::filesystem::path path_;
   std::unique_ptr<VideoWriter> video_;
   std::uint64_t next_ = 0;

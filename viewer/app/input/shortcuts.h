@@ -3,14 +3,14 @@
 #include <array>
 #include <span>
 
+#include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/input.h"
-#include "viewer/app/session.h"
 
 namespace pillarfield::viewer {
 
 /// What was asked of the program rather than of the session.
-struct Requests {
+struct PendingActions {
   bool quit = false;
   bool picture = false;   ///< write the picture on display
   bool sequence = false;  ///< write pictures of all frames
@@ -21,9 +21,9 @@ struct Requests {
 
 /// What a shortcut acts upon.
 struct Command {
-  Session& session;
+  AppState& state;
   const FieldPlace& place;
-  Requests& requests;
+  PendingActions& pending;
 };
 
 /// A key as GLFW counts it, with what is held down beside it. Key 0: none.
@@ -33,7 +33,7 @@ struct Chord {
   friend bool operator==(const Chord&, const Chord&) = default;
 };
 
-enum class ShortcutGroup : std::uint8_t { play, show, look, mark, write };
+enum class ShortcutGroup : std::uint8_t { play, show, settings, mark, write };
 inline constexpr int kShortcutGroups = 5;
 [[nodiscard]] const char* title_of(ShortcutGroup group);
 

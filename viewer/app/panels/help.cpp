@@ -63,7 +63,7 @@ void help_overlay(const Viewport& area) {
   if (ImGui::Begin("help", nullptr, kFlags | ImGuiWindowFlags_HorizontalScrollbar)) {
     ImGui::BeginGroup();
     group(ShortcutGroup::play);
-    group(ShortcutGroup::look);
+    group(ShortcutGroup::settings);
     ImGui::EndGroup();
     ImGui::SameLine(kBlock * em);
     ImGui::BeginGroup();

@@ -12,7 +12,7 @@ struct ImDrawList;
 
 namespace pillarfield::viewer {
 
-struct PanelInk;
+struct PanelStyle;
 
 /// A stretch of values, from < to.
 struct Span {
@@ -48,18 +48,20 @@ struct PlotTicks {
 };
 
 /// As many as there is room for.
-[[nodiscard]] PlotTicks ticks_of(const PlotArea& area, const PanelInk& ink);
+[[nodiscard]] PlotTicks ticks_of(const PlotArea& area, const PanelStyle& style);
 
 /// The part of `outer` that is left for the values once the ticks' labels have their place.
-[[nodiscard]] Viewport inside_axes(const Viewport& outer, double label_width, const PanelInk& ink);
+[[nodiscard]] Viewport inside_axes(const Viewport& outer, double label_width,
+                                   const PanelStyle& style);
 
 /// Ground, grid lines and labels left of and below the box.
-void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks, const PanelInk& ink);
+void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
+               const PanelStyle& style);
 
 void draw_curve(ImDrawList& list, const PlotArea& area, std::span<const Vec2> curve,
                 std::uint32_t colour, double width);
 
 /// The play head: a line at x.
-void draw_head(ImDrawList& list, const PlotArea& area, double x, const PanelInk& ink);
+void draw_head(ImDrawList& list, const PlotArea& area, double x, const PanelStyle& style);
 
 }  // namespace pillarfield::viewer

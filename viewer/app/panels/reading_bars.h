@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/selection.h"
 
@@ -30,6 +30,6 @@ inline constexpr Vec2 kReadingBarsSize{124, 178};
 /// Four bars where the sensels lie under their pillar: 2 upper left, 1 upper right, 3 lower left,
 /// 4 lower right.
 void draw_reading_bars(ImDrawList& list, Vec2 corner, const std::array<ReadingBar, 4>& bars,
-                       double full, ImU32 colour, const PanelInk& ink);
+                       double full, ImU32 colour, const PanelStyle& style);
 
 }  // namespace pillarfield::viewer

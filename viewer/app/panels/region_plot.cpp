@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "viewer/app/panels/format_value.h"
 #include "viewer/app/panels/status_line.h"
-#include "viewer/app/panels/value_words.h"
 #include "viewer/source/direction.h"
 #include "viewer/style/region_diagram.h"
 
@@ -64,11 +64,11 @@ const Borders& borders() {
 /// Drawing in one plot for one pillar.
 class Drawing {
  public:
-  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme,
+  Drawing(ImDrawList& list, const PlotArea& area, const PanelStyle& style, Theme theme,
           const PillarValues& values)
       : list_(list),
         area_(area),
-        ink_(ink),
+        style_(style),
         theme_(theme),
         usable_(values.status & status::kUsable),
         point_{in_degrees(values.phi), std::min(in_degrees(values.theta), 90.0)} {}
@@ -86,14 +86,14 @@ class Drawing {
   [[nodiscard]] ImU32 tint_of(int usable) const {
     const Region region = region_of(static_cast<std::uint8_t>(usable));
     const double share = usable == usable_ ? 0.5 : 0.13;
-    return mixed(ink_.ground, packed(region_colour(region, theme_)), share);
+    return mixed(style_.ground, packed(region_colour(region, theme_)), share);
   }
   void strip(double left, double right, Span from, Span to, int usable) const;
   void number(const char* words, Vec2 place, int inactive, Align align = Align::middle) const;
 
   ImDrawList& list_;
   const PlotArea& area_;
-  const PanelInk& ink_;
+  const PanelStyle& style_;
   Theme theme_;
   int usable_;  ///< sensels, as in a status byte
   Vec2 point_;  ///< phi and theta, degrees
@@ -135,7 +135,7 @@ void Drawing::draw_borders() const {
       for (const Vec2& radians : piece) {
         line.push_back({radians.x * kDegreesPerRadian, radians.y * kDegreesPerRadian});
       }
-      draw_line(line, mixed(ink_.ground, ink_.text, 0.5), 1.2 * ink_.unit);
+      draw_line(line, mixed(style_.ground, style_.text, 0.5), 1.2 * style_.unit);
     }
   }
 }
@@ -144,9 +144,9 @@ void Drawing::number(const char* words, Vec2 place, int inactive, Align align) c
   const Vec2 pixel = area_.at(place);
   const bool here = (status::kUsable & ~inactive) == usable_;
   const Vec2 taken = area_.at(point_);
-  if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * ink_.line) return;
-  draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},
-            here ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
+  if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * style_.line) return;
+  draw_text(list_, {pixel.x, pixel.y - 0.5 * style_.line},
+            here ? style_.text : mixed(style_.ground, style_.text, 0.45), words, align);
 }
 
 /// As in the paper: behind the point the sensels that are not usable.
@@ -162,7 +162,7 @@ void Drawing::draw_numbers() const {
   number("3.12", {90, 80}, status::kSensel1 | status::kSensel2);
   // Half of this one is at either edge, which may be too narrow for its number.
   const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
-  if (width_of("3.23") + 3 * ink_.unit > half_width) return;
+  if (width_of("3.23") + 3 * style_.unit > half_width) return;
   number("3.23", {-179, 80}, status::kSensel2 | status::kSensel3, Align::left);
   number("3.23", {179, 80}, status::kSensel2 | status::kSensel3, Align::right);
 }
@@ -177,8 +177,8 @@ void Drawing::draw_corners() const {
   for (const auto& [phi, usable] : corners) {
     const bool here = usable_ == usable;
     list_.AddCircleFilled(point(area_.at({phi, 90})),
-                          static_cast<float>((here ? 4.5 : 3) * ink_.unit),
-                          here ? packed(region_colour(Region::four, theme_)) : ink_.faint, 16);
+                          static_cast<float>((here ? 4.5 : 3) * style_.unit),
+                          here ? packed(region_colour(Region::four, theme_)) : style_.faint, 16);
   }
 }
 
@@ -192,7 +192,7 @@ void Drawing::draw_line(const std::vector<Vec2>& line, ImU32 colour, double widt
 
 void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
   // Smaller than the point it would not be seen.
-  const ImVec2 least = point({1.5 * ink_.unit, 1.5 * ink_.unit});
+  const ImVec2 least = point({1.5 * style_.unit, 1.5 * style_.unit});
   for (const double turn : {-360.0, 0.0, 360.0}) {
     ImVec2 low = point(area_.at({box.phi.from + turn, box.theta.to}));
     ImVec2 high = point(area_.at({box.phi.to + turn, box.theta.from}));
@@ -200,7 +200,7 @@ void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
     if (high.y - low.y < least.y) high.y = low.y + least.y;
     list_.AddRectFilled(low, high, with_alpha(colour, 0.22));
     list_.AddRect(low, high, with_alpha(colour, 0.9), 0, ImDrawFlags_None,
-                  static_cast<float>(ink_.unit));
+                  static_cast<float>(style_.unit));
   }
 }
 
@@ -213,7 +213,7 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
     for (std::size_t i = 1; i < piece.size(); ++i) {
       const double age = static_cast<double>(seen + i) / static_cast<double>(all);
       list_.AddLine(point(area_.at(piece[i - 1])), point(area_.at(piece[i])),
-                    with_alpha(colour, 0.75 * age), static_cast<float>(1.6 * ink_.unit));
+                    with_alpha(colour, 0.75 * age), static_cast<float>(1.6 * style_.unit));
     }
     seen += piece.size();
   }
@@ -221,8 +221,8 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
 
 void Drawing::draw_point(ImU32 colour) const {
   const ImVec2 place = point(area_.at(point_));
-  const auto radius = static_cast<float>(4.5 * ink_.unit);
-  list_.AddCircleFilled(place, radius + static_cast<float>(2 * ink_.unit), ink_.ground, 24);
+  const auto radius = static_cast<float>(4.5 * style_.unit);
+  list_.AddCircleFilled(place, radius + static_cast<float>(2 * style_.unit), style_.ground, 24);
   list_.AddCircleFilled(place, radius, colour, 24);
 }
 
@@ -305,11 +305,11 @@ RegionLimits region_limits(double phi) {
 }
 
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      const History& history, const PanelInk& ink, ImU32 colour, Theme theme) {
-  const PlotArea area{inside_axes(outer, width_of("90"), ink), {-180, 180}, {0, 90}};
+                      const History& history, const PanelStyle& style, ImU32 colour, Theme theme) {
+  const PlotArea area{inside_axes(outer, width_of("90"), style), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
-  const Drawing drawing(list, area, ink, theme, values);
-  draw_axes(list, area, angle_ticks(), ink);
+  const Drawing drawing(list, area, style, theme, values);
+  draw_axes(list, area, angle_ticks(), style);
   list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
   drawing.tint();
   drawing.draw_borders();
@@ -319,7 +319,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
   for (const double turn : {-360.0, 0.0, 360.0}) {
     std::vector<Vec2> contour = contour_of(values);
     for (Vec2& direction : contour) direction.x += turn;
-    drawing.draw_line(contour, ink.text, 1.8 * ink.unit);
+    drawing.draw_line(contour, style.text, 1.8 * style.unit);
   }
   list.PopClipRect();
   drawing.draw_corners();

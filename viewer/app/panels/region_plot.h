@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/plot.h"
 #include "viewer/source/selection.h"
 
@@ -43,6 +43,6 @@ struct RegionLimits {
 
 /// The paper's Figure 3 with a pillar in it.
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      const History& history, const PanelInk& ink, ImU32 colour, Theme theme);
+                      const History& history, const PanelStyle& style, ImU32 colour, Theme theme);
 
 }  // namespace pillarfield::viewer

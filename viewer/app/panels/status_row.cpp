@@ -50,9 +50,9 @@ class Row {
   float x_ = ImGui::GetStyle().WindowPadding.x;
 };
 
-void add_measures(Row& row, const Session& session) {
-  const PlayerStatistics solved = session.player->statistics();
-  const DrawStatistics& drawn = session.draw;
+void add_measures(Row& row, const AppState& state) {
+  const PlayerStatistics solved = state.player->statistics();
+  const DrawStatistics& drawn = state.draw;
   row.add("solve", fmt::format("{:.0f} Hz", solved.produced_hz), "0000 Hz");
   row.add("", fmt::format("{:.1f} ms", solved.produce_ms_median), "000.0 ms");
   row.add("show", fmt::format("{:.0f} Hz", drawn.frames_hz), "000 Hz");
@@ -69,15 +69,15 @@ bool fits_beside_measures(const std::string& words) {
 
 }  // namespace
 
-void status_row(const Session& session, const std::string& gpu) {
+void status_row(const AppState& state, const std::string& gpu) {
   Row row;
-  const std::string& notice = session.notice;
-  if (notice.empty() || fits_beside_measures(notice)) add_measures(row, session);
+  const std::string& notice = state.notice;
+  if (notice.empty() || fits_beside_measures(notice)) add_measures(row, state);
   if (!notice.empty()) {
     if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
     return;
   }
-  const std::string& solver = session.player->info().solver;
+  const std::string& solver = state.player->info().solver;
   if (!row.finish(fmt::format("{}  ·  {}", solver, gpu), ImGuiCol_TextDisabled)) {
     row.finish(gpu, ImGuiCol_TextDisabled);
   }

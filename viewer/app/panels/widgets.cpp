@@ -44,7 +44,7 @@ void labelled(const char* label) {
   ImGui::SetNextItemWidth(-1);
 }
 
-bool segments(const char* id, std::span<const char* const> words, int& chosen) {
+bool toggle_group(const char* id, std::span<const char* const> words, int& chosen) {
   ImGui::PushID(id);
   const float gap = 1;
   const auto count = static_cast<float>(words.size());
@@ -69,7 +69,7 @@ bool segments(const char* id, std::span<const char* const> words, int& chosen) {
   return changed;
 }
 
-bool sign_button(const char* id, Sign sign, bool lit, const char* help) {
+bool icon_button(const char* id, Icon icon, bool lit, const char* help) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const bool pressed = ImGui::InvisibleButton(id, ImVec2(side, side));
@@ -77,13 +77,13 @@ bool sign_button(const char* id, Sign sign, bool lit, const char* help) {
   const ImU32 back = ground(lit, ImGui::IsItemHovered(), ImGui::IsItemActive());
   list.AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side), back,
                      ImGui::GetStyle().FrameRounding);
-  const ImU32 ink = ImGui::GetColorU32(lit ? ImGuiCol_CheckMark : ImGuiCol_Text);
-  sign(list, ImVec2(corner.x + side / 2, corner.y + side / 2), side * 0.42f, ink);
+  const ImU32 colour = ImGui::GetColorU32(lit ? ImGuiCol_CheckMark : ImGuiCol_Text);
+  icon(list, ImVec2(corner.x + side / 2, corner.y + side / 2), side * 0.42f, colour);
   tip(help);
   return pressed;
 }
 
-namespace sign {
+namespace icon {
 namespace {
 
 /// A triangle that points right (way 1) or left (-1).
@@ -158,5 +158,5 @@ void question(ImDrawList& list, const ImVec2& middle, float /*side*/, unsigned c
                "?");
 }
 
-}  // namespace sign
+}  // namespace icon
 }  // namespace pillarfield::viewer

@@ -17,15 +17,15 @@ namespace pillarfield::viewer {
 void labelled(const char* label);
 
 /// Words side by side of which one holds; true where another was chosen.
-bool segments(const char* id, std::span<const char* const> words, int& chosen);
+bool toggle_group(const char* id, std::span<const char* const> words, int& chosen);
 
 /// Draws a sign in a square of `side` pixels whose middle is `middle`.
-using Sign = void (*)(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
+using Icon = void (*)(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 
 /// A square button with a sign; lit where what it stands for is on.
-bool sign_button(const char* id, Sign sign, bool lit, const char* help);
+bool icon_button(const char* id, Icon icon, bool lit, const char* help);
 
-namespace sign {
+namespace icon {
 void play(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void pause(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void step_on(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
@@ -35,6 +35,6 @@ void follow(ImDrawList& list, const ImVec2& middle, float side, unsigned colour)
 void less(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void more(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void question(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
-}  // namespace sign
+}  // namespace icon
 
 }  // namespace pillarfield::viewer

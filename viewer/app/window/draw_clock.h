@@ -4,7 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "viewer/app/session.h"
+#include "viewer/app/app_state.h"
 
 namespace pillarfield::viewer {
 

@@ -43,8 +43,8 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
       device_(&device),
       chain_(device, surface),
       render_pass_(make_front_pass(device, chain_.format())),
-      painter_(instance, device, {1, 1}, scale),
-      front_(std::make_unique<Interface>(instance, device, *render_pass_, scale)),
+      renderer_(instance, device, {1, 1}, scale),
+      gui_(std::make_unique<GuiContext>(instance, device, *render_pass_, scale)),
       pool_(device.handle(),
             {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
       buffers_(device.handle(),
@@ -58,10 +58,10 @@ bool Presenter::resize(vk::Extent2D window, vk::Extent2D picture, double scale) 
   framebuffers_.clear();
   if (!chain_.resize(window)) return false;
   make_framebuffers();
-  if (picture != painter_.image().size()) has_picture_ = false;
-  painter_.resize(picture, scale);
-  if (scale != front_->scale()) {
-    front_ = std::make_unique<Interface>(*instance_, *device_, *render_pass_, scale);
+  if (picture != renderer_.image().size()) has_picture_ = false;
+  renderer_.resize(picture, scale);
+  if (scale != gui_->scale()) {
+    gui_ = std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale);
   }
   return true;
 }
@@ -91,11 +91,11 @@ void Presenter::record(std::uint32_t index, const Picture* picture) {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   if (picture != nullptr) {
-    painter_.record(commands, picture->field, picture->source, picture->look);
+    renderer_.record(commands, picture->field, picture->source, picture->settings);
     has_picture_ = true;
   }
   copy_picture(chain_.image(index));
-  draw_front(index);
+  draw_gui(index);
   commands.end();
 }
 
@@ -113,7 +113,7 @@ void Presenter::copy_picture(vk::Image image) const {
                              kWholeColour);
     return;
   }
-  const gpu::Image& picture = painter_.image();
+  const gpu::Image& picture = renderer_.image();
   const vk::Extent2D size{std::min(picture.size().width, chain_.size().width),
                           std::min(picture.size().height, chain_.size().height)};
   if (chain_.format() == Target::kFormat) {
@@ -128,12 +128,12 @@ void Presenter::copy_picture(vk::Image image) const {
   }
 }
 
-void Presenter::draw_front(std::uint32_t index) const {
+void Presenter::draw_gui(std::uint32_t index) const {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   commands.beginRenderPass(
       vk::RenderPassBeginInfo(*render_pass_, *framebuffers_.at(index), {{0, 0}, chain_.size()}),
       vk::SubpassContents::eInline);
-  front_->draw(commands);
+  gui_->draw(commands);
   commands.endRenderPass();
 }
 

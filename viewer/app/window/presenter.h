@@ -1,7 +1,7 @@
 #pragma once
 
 #include "viewer/gpu/swap_chain.h"
-#include "viewer/render/painter.h"
+#include "viewer/render/renderer.h"
 
 namespace pillarfield::viewer {
 
@@ -24,7 +24,7 @@ class Presenter {
   struct Picture {
     const ShownField& field;
     const SourceInfo& source;
-    const Look& look;
+    const RenderSettings& settings;
   };
 
   /// Draws the picture anew or keeps it, puts it at the upper left corner, draws the frame that
@@ -33,8 +33,8 @@ class Presenter {
   bool draw(const Picture* picture);
 
   /// The ImGui of the panels.
-  [[nodiscard]] const Interface& front() const { return *front_; }
-  [[nodiscard]] Painter& painter() { return painter_; }
+  [[nodiscard]] const GuiContext& gui() const { return *gui_; }
+  [[nodiscard]] Renderer& renderer() { return renderer_; }
 
   /// Waits until the device is done with everything.
   void finish() const { device_->handle().waitIdle(); }
@@ -42,7 +42,7 @@ class Presenter {
  private:
   void record(std::uint32_t index, const Picture* picture);
   void copy_picture(vk::Image image) const;
-  void draw_front(std::uint32_t index) const;
+  void draw_gui(std::uint32_t index) const;
   void submit(std::uint32_t index);
   void make_framebuffers();
 
@@ -50,9 +50,9 @@ class Presenter {
   const gpu::Device* device_;
   gpu::SwapChain chain_;
   vk::raii::RenderPass render_pass_;
-  Painter painter_;
+  Renderer renderer_;
   bool has_picture_ = false;
-  std::unique_ptr<Interface> front_;
+  std::unique_ptr<GuiContext> gui_;
   std::vector<vk::raii::Framebuffer> framebuffers_;
   vk::raii::CommandPool pool_;
   vk::raii::CommandBuffers buffers_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
@@ -12,7 +12,7 @@ struct Palette {
   unsigned background;  ///< behind everything
   unsigned panel;       ///< column and transport
   unsigned line;        ///< between parts
-  unsigned ink;
+  unsigned text;
   unsigned faint;
   unsigned accent;
 };

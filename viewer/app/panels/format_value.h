@@ -16,30 +16,30 @@ struct DirectionDeviation {
 [[nodiscard]] DirectionDeviation direction_deviation(const PillarValues& values);
 
 /// "row 12, column 34".
-[[nodiscard]] std::string pillar_words(PillarIndex pillar);
+[[nodiscard]] std::string format_pillar(PillarIndex pillar);
 
 /// "x 12.65, y −3.79 mm": the middle of a pillar, from that of the skin.
-[[nodiscard]] std::string place_words(const ForceFieldView& forces, PillarIndex pillar,
-                                      double pillar_pitch_mm);
+[[nodiscard]] std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
+                                       double pillar_pitch_mm);
 
 /// "12", and "12.3" of what is no whole number.
-[[nodiscard]] std::string count_words(double counts);
+[[nodiscard]] std::string format_count(double counts);
 
 /// "12  34  0  7  counts": the four readings in the order of the sensels.
-[[nodiscard]] std::string readings_words(const std::array<float, 4>& readings);
+[[nodiscard]] std::string format_readings(const std::array<float, 4>& readings);
 
 /// "region 3, ambiguous", "no contact", "region 1, saturated": what a status byte says.
-[[nodiscard]] std::string status_words(std::uint8_t status);
+[[nodiscard]] std::string format_status(std::uint8_t status);
 
 /// A number with as many decimals as two digits of its deviation have ("0.1234" of 0.0056), with
 /// three_digits() where that is no number or zero.
-[[nodiscard]] std::string value_words(double value, double deviation);
+[[nodiscard]] std::string format_value(double value, double deviation);
 
 /// "± 0.0056": two digits. Empty where it is no number.
-[[nodiscard]] std::string deviation_words(double deviation);
+[[nodiscard]] std::string format_deviation(double deviation);
 
 /// "0.12 … 0.34": ends with as many decimals as two digits of what is between them have.
-[[nodiscard]] std::string interval_words(double low, double high);
+[[nodiscard]] std::string format_interval(double low, double high);
 
 /// A quantity of a pillar as it is displayed.
 struct ShownValue {

@@ -1,4 +1,4 @@
-#include "viewer/app/panels/value_words.h"
+#include "viewer/app/panels/format_value.h"
 
 #include <fmt/format.h>
 
@@ -40,12 +40,13 @@ double plane(const PillarValues& values, Uncertainty which) {
 bool is_ambiguous(const PillarValues& values) { return (values.status & status::kAmbiguous) != 0; }
 
 ShownValue with_deviation(const char* label, double value, double deviation, const char* unit) {
-  return {label, value_words(value, deviation), deviation_words(deviation), unit};
+  return {label, format_value(value, deviation), format_deviation(deviation), unit};
 }
 
 /// A value that may be anything between two ends.
 ShownValue with_interval(const char* label, double value, Span ends, const char* unit) {
-  return {label, value_words(value, ends.to - ends.from), interval_words(ends.from, ends.to), unit};
+  return {label, format_value(value, ends.to - ends.from), format_interval(ends.from, ends.to),
+          unit};
 }
 
 /// Phi runs from low to high; where it passes pi, the far end is told beyond 180 degrees.
@@ -74,28 +75,28 @@ DirectionDeviation direction_deviation(const PillarValues& values) {
   return {magnitude, std::hypot(n * along, shear * sn) / (force * force), across / shear};
 }
 
-std::string pillar_words(PillarIndex pillar) {
+std::string format_pillar(PillarIndex pillar) {
   return fmt::format("row {}, column {}", pillar.row, pillar.col);
 }
 
-std::string place_words(const ForceFieldView& forces, PillarIndex pillar, double pillar_pitch_mm) {
+std::string format_place(const ForceFieldView& forces, PillarIndex pillar, double pillar_pitch_mm) {
   const double x = (pillar.col + 0.5 - 0.5 * forces.cols) * pillar_pitch_mm;
   const double y = (0.5 * forces.rows - pillar.row - 0.5) * pillar_pitch_mm;
   return fmt::format("x {}, y {} mm", fixed(x, 2), fixed(y, 2));
 }
 
-std::string count_words(double counts) {
+std::string format_count(double counts) {
   if (!std::isfinite(counts) || counts != std::round(counts)) return three_digits(counts);
   return fixed(counts, 0);
 }
 
-std::string readings_words(const std::array<float, 4>& readings) {
+std::string format_readings(const std::array<float, 4>& readings) {
   std::string words;
-  for (const float reading : readings) words += count_words(static_cast<double>(reading)) + "  ";
+  for (const float reading : readings) words += format_count(static_cast<double>(reading)) + "  ";
   return words + "counts";
 }
 
-std::string status_words(std::uint8_t status) {
+std::string format_status(std::uint8_t status) {
   const Region region = region_of(status);
   std::string words;
   if (region == Region::none) {
@@ -115,17 +116,17 @@ std::string status_words(std::uint8_t status) {
   return words;
 }
 
-std::string value_words(double value, double deviation) {
+std::string format_value(double value, double deviation) {
   if (!tells(deviation)) return three_digits(value);
   return fixed(value, decimals_of(deviation, 2));
 }
 
-std::string deviation_words(double deviation) {
+std::string format_deviation(double deviation) {
   if (!tells(deviation)) return {};
   return "± " + fixed(deviation, decimals_of(deviation, 2));
 }
 
-std::string interval_words(double low, double high) {
+std::string format_interval(double low, double high) {
   if (!std::isfinite(low) || !std::isfinite(high)) return {};
   const double width = high - low;
   const int decimals = width > 0 ? decimals_of(width, 2) : 3;

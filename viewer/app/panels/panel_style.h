@@ -10,7 +10,7 @@
 namespace pillarfield::viewer {
 
 /// Colours and sizes of what a panel draws itself, from the current style of Dear ImGui.
-struct PanelInk {
+struct PanelStyle {
   ImU32 text;    ///< words, numbers, and lines that matter
   ImU32 faint;   ///< labels, axes
   ImU32 grid;    ///< barely there
@@ -19,7 +19,7 @@ struct PanelInk {
   double unit;   ///< pixels that a pixel of a plain display is here
   double line;   ///< height of a line of text, pixels
 };
-[[nodiscard]] PanelInk panel_ink(double scale);
+[[nodiscard]] PanelStyle panel_style(double scale);
 
 [[nodiscard]] ImU32 packed(const Colour& colour);
 
@@ -46,12 +46,12 @@ void draw_block(ImDrawList& list, const Viewport& box, ImU32 colour);
 [[nodiscard]] Viewport take_room(double width, double height);
 
 /// An empty space in the height of the panel.
-void leave_gap(const PanelInk& ink, double pixels);
+void leave_gap(const PanelStyle& style, double pixels);
 
 /// Words that tell that there is nothing to show.
-void faint_words(const PanelInk& ink, const char* words);
+void faint_words(const PanelStyle& style, const char* words);
 
 /// The title of a panel's part, with further words in faint ink.
-void heading(const PanelInk& ink, const std::string& words, const std::string& further = {});
+void heading(const PanelStyle& style, const std::string& words, const std::string& further = {});
 
 }  // namespace pillarfield::viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/source/player.h"
 #include "viewer/source/selection.h"
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
@@ -19,17 +19,17 @@ struct Pin {
 };
 
 /// What a rectangle added up to in one frame.
-struct KeptSums {
+struct CachedSums {
   std::uint64_t frame;
   PillarRect rect;
-  RegionSums sums;
+  SelectionSums sums;
 };
 
 /// A rectangle that was dragged, and what its sum did since.
-struct MarkedRegion {
+struct Selection {
   PillarRect rect;
   History history;
-  std::optional<KeptSums> kept = {};  ///< see region_sums()
+  std::optional<CachedSums> kept = {};  ///< see selection_sums()
 };
 
 /// What was measured of drawing, lately (the last second or so).
@@ -41,13 +41,13 @@ struct DrawStatistics {
 };
 
 /// Everything that the window's panels show and change. One thread.
-struct Session {
+struct AppState {
   Player* player = nullptr;
-  Look look;
+  RenderSettings settings;
   std::optional<ShownField> field;  ///< the one on display
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< kMostPins at most, the last one is inspected
-  std::optional<MarkedRegion> region;
+  std::optional<Selection> region;
   DrawStatistics draw;
   bool show_help = false;
   bool show_panels = true;

@@ -1,4 +1,4 @@
-#include "viewer/app/input/interface_input.h"
+#include "viewer/app/input/gui_input.h"
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -36,7 +36,7 @@ void take_key(ImGuiIO& io, const KeyEvent& event) {
 
 }  // namespace
 
-void InterfaceInput::take(const InputEvent& event) {
+void GuiInput::take(const InputEvent& event) {
   ImGuiIO& io = ImGui::GetIO();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
     take_key(io, *key);
@@ -60,16 +60,16 @@ void InterfaceInput::take(const InputEvent& event) {
   }
 }
 
-bool InterfaceInput::has_open_list() {
+bool GuiInput::has_open_list() {
   return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
 // ImGui closes them by keys only where keys move its focus, which here are shortcuts.
-void InterfaceInput::close_lists() {
+void GuiInput::close_lists() {
   if (has_open_list()) ImGui::ClosePopupToLevel(0, true);
 }
 
-void InterfaceInput::begin_frame(double seconds_since_last) {
+void GuiInput::begin_frame(double seconds_since_last) {
   ImGuiIO& io = ImGui::GetIO();
   for (const auto& [name, key] : kImGuiKeys) io.KeyMap[name] = key;
   io.DeltaTime = static_cast<float>(std::clamp(seconds_since_last, 1e-4, 0.1));

@@ -1,4 +1,4 @@
-#include "viewer/app/window/front.h"
+#include "viewer/app/window/gui.h"
 
 #include <imgui.h>
 
@@ -34,13 +34,13 @@ bool begin(const char* name, const Viewport& box, int more_flags = 0) {
 constexpr int kStill = ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
 void column(const Command& command) {
-  Session& session = command.session;
+  AppState& state = command.state;
   if (section("View")) view_panel(command);
-  if (section("Under the cursor")) hover_panel(session);
-  if (section("Pillar")) pillar_panel(session);
-  if (section("Region")) region_panel(session);
-  if (section("Contacts")) contacts_panel(session, command.place);
-  if (section("Over time")) time_panel(session);
+  if (section("Under the cursor")) hover_panel(state);
+  if (section("Pillar")) pillar_panel(state);
+  if (section("Region")) selection_panel(state);
+  if (section("Contacts")) contacts_panel(state, command.place);
+  if (section("Over time")) time_panel(state);
   if (section("Write")) write_panel(command);
 }
 
@@ -63,10 +63,10 @@ void draw_seams(const Screen& screen, Theme theme) {
 
 }  // namespace
 
-void draw_front(const Command& command, const Screen& screen, const std::string& gpu) {
-  Session& session = command.session;
+void draw_gui(const Command& command, const Screen& screen, const std::string& gpu) {
+  AppState& state = command.state;
   const float padding = ImGui::GetStyle().WindowPadding.x;
-  draw_marks(session, command.place);
+  draw_marks(state, command.place);
 
   if (screen.column.width > 0) {
     if (begin("column", screen.column)) column(command);
@@ -80,15 +80,15 @@ void draw_front(const Command& command, const Screen& screen, const std::string&
   ImGui::End();
   ImGui::PopStyleVar();
 
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, palette_of(session.look.theme).background);
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, palette_of(state.settings.theme).background);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-  if (begin("status", screen.status, kStill)) status_row(session, gpu);
+  if (begin("status", screen.status, kStill)) status_row(state, gpu);
   ImGui::End();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
 
-  draw_seams(screen, session.look.theme);
-  if (session.show_help) help_overlay(screen.field);
+  draw_seams(screen, state.settings.theme);
+  if (state.show_help) help_overlay(screen.field);
 }
 
 }  // namespace pillarfield::viewer

@@ -9,7 +9,7 @@
 namespace pillarfield::viewer {
 
 /// How a field is to look: everything that a picture depends on but the field and its size.
-struct Look {
+struct RenderSettings {
   Quantity quantity = Quantity::normal;
   Range range;  ///< ends of the colour bar, in the quantity's own unit
   ColourMap map = ColourMap::cividis;
@@ -17,7 +17,7 @@ struct Look {
   View view = TopView{};
   Surface surface;
   bool arrows = true;
-  bool fans = false;      ///< what ambiguous shear may be, once a pillar has a cell of its own
+  bool sectors = false;   ///< what ambiguous shear may be, once a pillar has a cell of its own
   bool hatch = true;      ///< ambiguous pillars are hatched
   bool contacts = false;  ///< marks of contacts, where the field has them
   /// Mean force per pillar whose arrow is as long as its cell and a half; from above arrows are
@@ -28,7 +28,7 @@ struct Look {
   double scale = 1;        ///< pixels of the display over those the sizes here are meant for
   bool legend = true;      ///< axes, colour bar, legends and title
   std::string title;
-  friend bool operator==(const Look&, const Look&) = default;
+  friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
 };
 
 /// Where the parts of a picture of `width` x `height` pixels are.
@@ -37,7 +37,7 @@ struct Layout {
   Viewport bar;     ///< the colour bar
   Viewport legend;  ///< the meaning of colours and arrows
 };
-[[nodiscard]] Layout layout_of(double width, double height, const Look& look);
+[[nodiscard]] Layout layout_of(double width, double height, const RenderSettings& settings);
 
 /// Pillars along an arrow's cell: of 1, 2, 3, 4, 6, 8, 12, 16, ... the least that makes the cell so
 /// many pixels wide.

@@ -1,4 +1,4 @@
-#include "viewer/app/panels/region_sums.h"
+#include "viewer/app/panels/selection_sums.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -10,12 +10,12 @@ bool is_same(const PillarRect& a, const PillarRect& b) {
 
 }  // namespace
 
-const RegionSums& region_sums(Session& session) {
-  MarkedRegion& region = *session.region;
-  const std::uint64_t frame = session.field->index;
+const SelectionSums& selection_sums(AppState& state) {
+  Selection& region = *state.selection;
+  const std::uint64_t frame = state.field->index;
   if (!region.kept || region.kept->frame != frame || !is_same(region.kept->rect, region.rect)) {
-    const double pitch_mm = session.player->info().skin.pillar_pitch_mm();
-    region.kept = {frame, region.rect, sums_over(*session.field, region.rect, pitch_mm)};
+    const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+    region.kept = {frame, region.rect, sums_over(*state.field, region.rect, pitch_mm)};
   }
   return region.kept->sums;
 }

@@ -1,12 +1,12 @@
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 #include <algorithm>
 
 namespace pillarfield::viewer {
 
-Layout layout_of(double width, double height, const Look& look) {
-  if (!look.legend) return {{0, 0, width, height}, {}, {}};
-  const double unit = look.scale;
+Layout layout_of(double width, double height, const RenderSettings& settings) {
+  if (!settings.legend) return {{0, 0, width, height}, {}, {}};
+  const double unit = settings.scale;
   const double top = 34 * unit;
   const double bottom = 40 * unit;
   const double left = 58 * unit;

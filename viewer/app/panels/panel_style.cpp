@@ -1,4 +1,4 @@
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +14,18 @@ ImVec4 opaque(ImGuiCol index, const ImVec4& under) {
 
 }  // namespace
 
-PanelInk panel_ink(double scale) {
+PanelStyle panel_style(double scale) {
   const ImVec4 ground = opaque(ImGuiCol_WindowBg, ImVec4(0, 0, 0, 1));
-  PanelInk ink{};
-  ink.ground = ImGui::ColorConvertFloat4ToU32(ground);
-  ink.text = ImGui::ColorConvertFloat4ToU32(opaque(ImGuiCol_Text, ground));
+  PanelStyle style{};
+  style.ground = ImGui::ColorConvertFloat4ToU32(ground);
+  style.text = ImGui::ColorConvertFloat4ToU32(opaque(ImGuiCol_Text, ground));
   // A style's colour of disabled text can be too weak for what is to be read.
-  ink.faint = mixed(ink.ground, ink.text, 0.66);
-  ink.grid = mixed(ink.ground, ink.text, 0.16);
-  ink.raised = mixed(ink.ground, ink.text, 0.055);
-  ink.unit = scale;
-  ink.line = static_cast<double>(ImGui::GetTextLineHeight());
-  return ink;
+  style.faint = mixed(style.ground, style.text, 0.66);
+  style.grid = mixed(style.ground, style.text, 0.16);
+  style.raised = mixed(style.ground, style.text, 0.055);
+  style.unit = scale;
+  style.line = static_cast<double>(ImGui::GetTextLineHeight());
+  return style;
 }
 
 ImU32 packed(const Colour& colour) { return IM_COL32(colour.red, colour.green, colour.blue, 255); }
@@ -70,25 +70,25 @@ Viewport take_room(double width, double height) {
           height};
 }
 
-void leave_gap(const PanelInk& ink, double pixels) {
-  ImGui::Dummy(point({1, std::round(pixels * ink.unit)}));
+void leave_gap(const PanelStyle& style, double pixels) {
+  ImGui::Dummy(point({1, std::round(pixels * style.unit)}));
 }
 
-void faint_words(const PanelInk& ink, const char* words) {
-  ImGui::PushStyleColor(ImGuiCol_Text, ink.faint);
+void faint_words(const PanelStyle& style, const char* words) {
+  ImGui::PushStyleColor(ImGuiCol_Text, style.faint);
   ImGui::TextWrapped("%s", words);
   ImGui::PopStyleColor();
 }
 
-void heading(const PanelInk& ink, const std::string& words, const std::string& further) {
+void heading(const PanelStyle& style, const std::string& words, const std::string& further) {
   ImGui::TextUnformatted(words.c_str());
   if (further.empty()) return;
   // On the same line where there is room, at the panel's right edge.
   const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (width_of(words) + width_of(further) + 12 * ink.unit < room) {
+  if (width_of(words) + width_of(further) + 12 * style.unit < room) {
     ImGui::SameLine(0, static_cast<float>(room - width_of(words) - width_of(further)));
   }
-  ImGui::PushStyleColor(ImGuiCol_Text, ink.faint);
+  ImGui::PushStyleColor(ImGuiCol_Text, style.faint);
   ImGui::TextUnformatted(further.c_str());
   ImGui::PopStyleColor();
 }

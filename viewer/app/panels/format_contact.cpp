@@ -1,4 +1,4 @@
-#include "viewer/app/panels/contact_words.h"
+#include "viewer/app/panels/format_contact.h"
 
 #include <fmt/format.h>
 
@@ -9,19 +9,19 @@
 namespace pillarfield::viewer {
 namespace {
 
-std::string percent_words(std::uint64_t part, std::uint64_t all) {
+std::string format_percent(std::uint64_t part, std::uint64_t all) {
   if (all == 0) return "–";
   return fmt::format("{:.0f} %", 100 * static_cast<double>(part) / static_cast<double>(all));
 }
 
 /// "42 %", and "42 % / 90 %" where their contact resolved some of them.
-std::string ambiguous_words(const ContactQuantities& contact) {
-  std::string share = percent_words(contact.ambiguous, contact.pillars);
+std::string format_ambiguous(const ContactQuantities& contact) {
+  std::string share = format_percent(contact.ambiguous, contact.pillars);
   if (contact.resolved == 0) return share;
-  return share + " / " + percent_words(contact.resolved, contact.ambiguous);
+  return share + " / " + format_percent(contact.resolved, contact.ambiguous);
 }
 
-std::string friction_words(const ContactQuantities& contact) {
+std::string format_friction(const ContactQuantities& contact) {
   if (!contact.friction) return "–";
   if (!contact.friction_deviation) return fmt::format("{:.2f}", *contact.friction);
   return fmt::format("{:.2f} ± {:.2f}", *contact.friction, *contact.friction_deviation);
@@ -45,14 +45,14 @@ const std::array<ContactColumn, kContactColumns>& contact_columns() {
   return kColumns;
 }
 
-std::array<std::string, kContactColumns> contact_words(const std::string& name,
-                                                       const ContactQuantities& contact) {
+std::array<std::string, kContactColumns> format_contact(const std::string& name,
+                                                        const ContactQuantities& contact) {
   return {name,
           three_digits(contact.normal_n),
           three_digits(std::hypot(contact.shear_x_n, contact.shear_y_n)),
-          friction_words(contact),
+          format_friction(contact),
           name_of(contact.slip),
-          ambiguous_words(contact),
+          format_ambiguous(contact),
           three_digits(contact.mean_pressure_kpa),
           three_digits(contact.area_mm2),
           three_digits(contact.peak_n)};

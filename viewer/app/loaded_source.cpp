@@ -1,4 +1,4 @@
-#include "viewer/app/opening.h"
+#include "viewer/app/loaded_source.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -49,7 +49,7 @@ ProducerOptions producer_options(const Options& options) {
   return wanted;
 }
 
-Opened open_source(const Options& options, double scale) {
+LoadedSource load_source(const Options& options, double scale) {
   std::unique_ptr<FieldProducer> producer;
   {
     Progress progress;
@@ -60,10 +60,10 @@ Opened open_source(const Options& options, double scale) {
     fmt::print(stderr, "pillarfield-viewer: {}\n",
                printable(fmt::format("{}: {}", producer->info().name, warning)));
   }
-  Opened opened;
-  opened.look = first_look(options, *producer, scale);
-  opened.player = std::make_unique<Player>(std::move(producer));
-  return opened;
+  LoadedSource loaded;
+  loaded.settings = default_settings(options, *producer, scale);
+  loaded.player = std::make_unique<Player>(std::move(producer));
+  return loaded;
 }
 
 }  // namespace pillarfield::viewer

@@ -9,7 +9,7 @@ namespace pillarfield::viewer {
 
 /// Tells Dear ImGui what the hand did. A button that goes down and up between two frames is held
 /// for one, so that no click is lost.
-class InterfaceInput {
+class GuiInput {
  public:
   void take(const InputEvent& event);
 

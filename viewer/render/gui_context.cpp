@@ -1,4 +1,4 @@
-#include "viewer/render/interface.h"
+#include "viewer/render/gui_context.h"
 
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
@@ -43,8 +43,8 @@ void load_font(ImGuiIO& io, double scale) {
 
 }  // namespace
 
-Interface::Interface(const gpu::Instance& instance, const gpu::Device& device,
-                     vk::RenderPass render_pass, double scale)
+GuiContext::GuiContext(const gpu::Instance& instance, const gpu::Device& device,
+                       vk::RenderPass render_pass, double scale)
     : scale_(scale), context_(ImGui::CreateContext()), pool_(make_texture_pool(device)) {
   use();
   ImGuiIO& io = ImGui::GetIO();
@@ -70,15 +70,15 @@ Interface::Interface(const gpu::Instance& instance, const gpu::Device& device,
   ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-Interface::~Interface() {
+GuiContext::~GuiContext() {
   use();
   ImGui_ImplVulkan_Shutdown();
   ImGui::DestroyContext(context_);
 }
 
-void Interface::use() const { ImGui::SetCurrentContext(context_); }
+void GuiContext::use() const { ImGui::SetCurrentContext(context_); }
 
-void Interface::draw(const vk::raii::CommandBuffer& commands) const {
+void GuiContext::draw(const vk::raii::CommandBuffer& commands) const {
   use();
   ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), *commands);
 }

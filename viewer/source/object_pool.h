@@ -12,16 +12,16 @@ namespace pillarfield::viewer {
 /// Things that are costly to make, lent and used again. One thread borrows; any thread may let the
 /// last copy of what it got go, also when the pool is gone.
 template <class Thing>
-class LendingPool {
+class ObjectPool {
  public:
   /// Makes things with `make`, when they are needed and `most` of them.
-  LendingPool(std::size_t most, std::function<std::unique_ptr<Thing>()> make)
+  ObjectPool(std::size_t most, std::function<std::unique_ptr<Thing>()> make)
       : most_(most), make_(std::move(make)), shelf_(std::make_shared<Shelf>()) {
     shelf_->things.reserve(most);  // Giving back must not fail.
   }
 
   /// As it was when it was given back; null where all are lent.
-  [[nodiscard]] std::shared_ptr<Thing> lend() {
+  [[nodiscard]] std::shared_ptr<Thing> acquire() {
     std::unique_ptr<Thing> thing = shelf_->take();
     if (thing == nullptr) {
       if (made_ == most_) return nullptr;

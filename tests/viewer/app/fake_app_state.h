@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "viewer/app/input/changes.h"
+#include "viewer/app/input/actions.h"
 #include "viewer/app/input/shortcuts.h"
 
 namespace pillarfield::viewer {
@@ -45,24 +45,24 @@ class FakeProducer final : public FieldProducer {
 };
 
 /// A session in a window of 1000 x 700 pixels whose picture has 800 x 600.
-struct FakeSession {
+struct FakeAppState {
   Player player{std::make_unique<FakeProducer>()};
-  Session session;
+  AppState state;
   FieldPlace place{{0, 0, 800, 600}, &player.info()};
-  Requests requests;
+  PendingActions pending;
 
-  FakeSession() {
-    session.player = &player;
-    take_field(session, FakeProducer().produce(0));
-    reset_view(session, place);
+  FakeAppState() {
+    state.player = &player;
+    take_field(state, FakeProducer().produce(0));
+    reset_view(state, place);
   }
-  [[nodiscard]] Command command() { return {session, place, requests}; }
+  [[nodiscard]] Command command() { return {state, place, pending}; }
 
   /// The middle of a pillar in the window.
   [[nodiscard]] Vec2 pixel(std::uint32_t row, std::uint32_t col) const {
     const Vec2 corner = corner_of(place, row, col);
     const double half = 0.5 * player.info().skin.pillar_pitch_mm();
-    return pixel_of(place, session.look, {corner.x + half, corner.y - half}).value();
+    return pixel_of(place, state.settings, {corner.x + half, corner.y - half}).value();
   }
 };
 

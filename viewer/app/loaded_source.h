@@ -2,15 +2,15 @@
 
 #include <memory>
 
-#include "viewer/app/session.h"
+#include "viewer/app/app_state.h"
 #include "viewer/options.h"
 
 namespace pillarfield::viewer {
 
 /// A source that is ready to be played, and how it looks first; the view is not set.
-struct Opened {
+struct LoadedSource {
   std::unique_ptr<Player> player;
-  Look look;
+  RenderSettings settings;
 };
 
 /// How the source is opened; that kernels are compiled is said on standard error where that is a
@@ -19,6 +19,6 @@ struct Opened {
 
 /// Opens the source of the options; on a terminal, tells how far a scene is simulated. Warnings of
 /// the source go to standard error. Throws Error.
-[[nodiscard]] Opened open_source(const Options& options, double scale);
+[[nodiscard]] LoadedSource load_source(const Options& options, double scale);
 
 }  // namespace pillarfield::viewer

@@ -20,7 +20,7 @@ struct ContactColumn {
 
 /// A line of the table: `name`, then as contact_columns(). Numbers have three digits; "–" stands
 /// for what is not known or not there.
-[[nodiscard]] std::array<std::string, kContactColumns> contact_words(
+[[nodiscard]] std::array<std::string, kContactColumns> format_contact(
     const std::string& name, const ContactQuantities& contact);
 
 }  // namespace pillarfield::viewer

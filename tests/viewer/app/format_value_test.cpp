@@ -1,5 +1,5 @@
 // Values in words: numbers with what is known of them, directions, states.
-#include "viewer/app/panels/value_words.h"
+#include "viewer/app/panels/format_value.h"
 
 #include <gtest/gtest.h>
 
@@ -77,35 +77,35 @@ TEST(DirectionDeviation, IsNoNumberWhereTheDirectionIsNone) {
 }
 
 TEST(StatusWords, NameRegionAndFault) {
-  EXPECT_EQ(status_words(0), "no contact");
-  EXPECT_EQ(status_words(status::kUsable), "region 1");
-  EXPECT_EQ(status_words(status::kSensel1 | status::kSensel2 | status::kAmbiguous),
+  EXPECT_EQ(format_status(0), "no contact");
+  EXPECT_EQ(format_status(status::kUsable), "region 1");
+  EXPECT_EQ(format_status(status::kSensel1 | status::kSensel2 | status::kAmbiguous),
             "region 3, ambiguous");
-  EXPECT_EQ(status_words(status::kSensel1 | status::kSensel2 | status::kAmbiguous |
-                         status::kFromNeighbours),
+  EXPECT_EQ(format_status(status::kSensel1 | status::kSensel2 | status::kAmbiguous |
+                          status::kFromNeighbours),
             "region 3, resolved by its contact");
-  EXPECT_EQ(status_words(status::kUsable | status::kSaturated), "region 1, saturated");
-  EXPECT_EQ(status_words(status::kSensel1 | status::kSensel3 | status::kInconsistent),
+  EXPECT_EQ(format_status(status::kUsable | status::kSaturated), "region 1, saturated");
+  EXPECT_EQ(format_status(status::kSensel1 | status::kSensel3 | status::kInconsistent),
             "opposite sensels, inconsistent");
-  EXPECT_EQ(status_words(status::kSaturated), "no usable sensel, saturated");
+  EXPECT_EQ(format_status(status::kSaturated), "no usable sensel, saturated");
 }
 
 TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {
-  EXPECT_EQ(value_words(0.123456, 0.0056), "0.1235");
-  EXPECT_EQ(deviation_words(0.0056), "± 0.0056");
-  EXPECT_EQ(value_words(-123.456, 2.3), "−123.5");
-  EXPECT_EQ(value_words(-0.00001, 0.01), "0.000");
-  EXPECT_EQ(value_words(123.456, 230), "123");
-  EXPECT_EQ(value_words(0.123456, kNotANumber), "0.123");
-  EXPECT_EQ(deviation_words(kNotANumber), "");
-  EXPECT_EQ(deviation_words(0), "");
+  EXPECT_EQ(format_value(0.123456, 0.0056), "0.1235");
+  EXPECT_EQ(format_deviation(0.0056), "± 0.0056");
+  EXPECT_EQ(format_value(-123.456, 2.3), "−123.5");
+  EXPECT_EQ(format_value(-0.00001, 0.01), "0.000");
+  EXPECT_EQ(format_value(123.456, 230), "123");
+  EXPECT_EQ(format_value(0.123456, kNotANumber), "0.123");
+  EXPECT_EQ(format_deviation(kNotANumber), "");
+  EXPECT_EQ(format_deviation(0), "");
 }
 
 TEST(IntervalWords, TellTheEndsApart) {
-  EXPECT_EQ(interval_words(0.12, 0.34), "0.12 … 0.34");
-  EXPECT_EQ(interval_words(60, 73.3), "60 … 73");
-  EXPECT_EQ(interval_words(-5, -5), "−5.000 … −5.000");
-  EXPECT_EQ(interval_words(kNotANumber, 1), "");
+  EXPECT_EQ(format_interval(0.12, 0.34), "0.12 … 0.34");
+  EXPECT_EQ(format_interval(60, 73.3), "60 … 73");
+  EXPECT_EQ(format_interval(-5, -5), "−5.000 … −5.000");
+  EXPECT_EQ(format_interval(kNotANumber, 1), "");
 }
 
 TEST(ShownDirection, HasIntervalsWhereItIsAmbiguousAndDeviationsElsewhere) {
@@ -133,13 +133,13 @@ TEST(PlaceWords, CountFromTheMiddleOfTheSkin) {
   ForceFieldView forces;
   forces.rows = 4;
   forces.cols = 6;
-  EXPECT_EQ(place_words(forces, {0, 0}, 2), "x −5.00, y 3.00 mm");
-  EXPECT_EQ(place_words(forces, {3, 5}, 2), "x 5.00, y −3.00 mm");
-  EXPECT_EQ(pillar_words({3, 5}), "row 3, column 5");
+  EXPECT_EQ(format_place(forces, {0, 0}, 2), "x −5.00, y 3.00 mm");
+  EXPECT_EQ(format_place(forces, {3, 5}, 2), "x 5.00, y −3.00 mm");
+  EXPECT_EQ(format_pillar({3, 5}), "row 3, column 5");
 }
 
 TEST(ReadingsWords, AreInTheOrderOfTheSensels) {
-  EXPECT_EQ(readings_words({12, 34.5f, 0, 250}), "12  34.5  0  250  counts");
+  EXPECT_EQ(format_readings({12, 34.5f, 0, 250}), "12  34.5  0  250  counts");
 }
 
 }  // namespace

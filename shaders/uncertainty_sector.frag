@@ -17,5 +17,5 @@ void main() {
   float direction = atan(local.y, local.x);
   direction += 2.0 * pi * ceil((directions.x - air - direction) / (2.0 * pi));
   if (radius < inner || radius > radii.y || direction > directions.y + air) discard;
-  colour = colour_of_word(scene.ink.z);
+  colour = colour_of_word(scene.layer_colours.z);
 }

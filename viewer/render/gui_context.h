@@ -10,16 +10,16 @@ namespace pillarfield::viewer {
 
 /// Dear ImGui on a render pass: one for what is written into pictures, another for the panels of
 /// the window. Each has a context, fonts and buffers of its own.
-class Interface {
+class GuiContext {
  public:
-  /// `scale`: see Look. Text is DejaVu Sans where it is installed.
-  Interface(const gpu::Instance& instance, const gpu::Device& device, vk::RenderPass render_pass,
-            double scale);
-  ~Interface();
-  Interface(const Interface&) = delete;
-  Interface& operator=(const Interface&) = delete;
-  Interface(Interface&&) = delete;
-  Interface& operator=(Interface&&) = delete;
+  /// `scale`: see RenderSettings. Text is DejaVu Sans where it is installed.
+  GuiContext(const gpu::Instance& instance, const gpu::Device& device, vk::RenderPass render_pass,
+             double scale);
+  ~GuiContext();
+  GuiContext(const GuiContext&) = delete;
+  GuiContext& operator=(const GuiContext&) = delete;
+  GuiContext(GuiContext&&) = delete;
+  GuiContext& operator=(GuiContext&&) = delete;
 
   /// Makes this context the current one.
   void use() const;

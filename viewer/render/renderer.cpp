@@ -1,4 +1,4 @@
-#include "viewer/render/painter.h"
+#include "viewer/render/renderer.h"
 
 #include <algorithm>
 #include <array>
@@ -37,28 +37,28 @@ void set_viewport(const vk::raii::CommandBuffer& commands, const Viewport& plot)
 
 }  // namespace
 
-Painter::Painter(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
-                 double scale)
+Renderer::Renderer(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
+                   double scale)
     : instance_(&instance),
       device_(&device),
       render_pass_(Target::make_render_pass(device)),
       target_(device, *render_pass_, size),
       pipelines_(device, *render_pass_),
       memory_(device),
-      overlay_(std::make_unique<Interface>(instance, device, *render_pass_, scale)),
+      overlay_(std::make_unique<GuiContext>(instance, device, *render_pass_, scale)),
       scene_(uniform_buffer<shader::Scene>(device)),
       colours_(uniform_buffer<shader::Colours>(device)) {}
 
-void Painter::resize(vk::Extent2D size, double scale) {
+void Renderer::resize(vk::Extent2D size, double scale) {
   if (size != target_.image().size()) target_ = Target(*device_, *render_pass_, size);
   if (scale != overlay_->scale()) {
-    overlay_ = std::make_unique<Interface>(*instance_, *device_, *render_pass_, scale);
+    overlay_ = std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale);
   }
 }
 
-void Painter::update(const shader::Scene& scene, const Look& look) {
+void Renderer::update(const shader::Scene& scene, const RenderSettings& settings) {
   std::memcpy(scene_.data(), &scene, sizeof scene);
-  const shader::Colours colours = colours_of(look);
+  const shader::Colours colours = colours_of(settings);
   std::memcpy(colours_.data(), &colours, sizeof colours);
   const std::size_t bytes =
       std::max(std::size_t{scene.cells.z} * scene.cells.w, std::size_t{1}) * sizeof(shader::Cell);
@@ -67,20 +67,20 @@ void Painter::update(const shader::Scene& scene, const Look& look) {
   }
 }
 
-void Painter::record(const vk::raii::CommandBuffer& commands, const ShownField& field,
-                     const SourceInfo& source, const Look& look) {
+void Renderer::record(const vk::raii::CommandBuffer& commands, const ShownField& field,
+                      const SourceInfo& source, const RenderSettings& settings) {
   const vk::Extent2D size = target_.image().size();
-  const Layout layout = layout_of(size.width, size.height, look);
-  const shader::Scene scene = scene_of(field, source, look, layout.plot);
-  update(scene, look);
-  const bool wants_readings = look.quantity == Quantity::parity;
+  const Layout layout = layout_of(size.width, size.height, settings);
+  const shader::Scene scene = scene_of(field, source, settings, layout.plot);
+  update(scene, settings);
+  const bool wants_readings = settings.quantity == Quantity::parity;
   pipelines_.bind({scene_.handle(), colours_.handle(), memory_.take(field, commands),
                    memory_.take_readings(wants_readings ? field.raw : FrameView{}),
                    cells_.handle()});
 
   const vk::DescriptorSet set = pipelines_.set();
   const std::uint32_t cells = scene.cells.z * scene.cells.w;
-  if (look.arrows && cells != 0) {
+  if (settings.arrows && cells != 0) {
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipelines_.cells());
     commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipelines_.layout(), 0, set,
                                 nullptr);
@@ -89,8 +89,9 @@ void Painter::record(const vk::raii::CommandBuffer& commands, const ShownField& 
                  {PipelineStage::eVertexShader, vk::AccessFlagBits::eShaderRead});
   }
 
-  write_overlay(*overlay_, field, source, look, layout, size);
-  const std::array<vk::ClearValue, 2> clear{paper(look.theme), vk::ClearDepthStencilValue(1, 0)};
+  write_overlay(*overlay_, field, source, settings, layout, size);
+  const std::array<vk::ClearValue, 2> clear{paper(settings.theme),
+                                            vk::ClearDepthStencilValue(1, 0)};
   commands.beginRenderPass(
       vk::RenderPassBeginInfo(*render_pass_, target_.framebuffer(), {{0, 0}, size}, clear),
       vk::SubpassContents::eInline);
@@ -98,13 +99,13 @@ void Painter::record(const vk::raii::CommandBuffer& commands, const ShownField& 
   commands.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_.layout(), 0, set,
                               nullptr);
   commands.bindPipeline(vk::PipelineBindPoint::eGraphics,
-                        pipelines_.heat(heat_kind_of(field, source, look, layout.plot)));
+                        pipelines_.heat(heat_kind_of(field, source, settings, layout.plot)));
   commands.draw(6 * scene.grid.z * scene.grid.w, 1, 0, 0);
-  if (look.fans && scene.block.x == 1 && scene.span.x != shader::kNoPlane && cells != 0) {
-    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.fans());
+  if (settings.sectors && scene.block.x == 1 && scene.span.x != shader::kNoPlane && cells != 0) {
+    commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.sectors());
     commands.draw(6, cells, 0, 0);
   }
-  if (look.arrows && cells != 0) {
+  if (settings.arrows && cells != 0) {
     commands.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_.arrows());
     commands.draw(6, cells, 0, 0);
   }

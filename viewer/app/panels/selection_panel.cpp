@@ -6,7 +6,7 @@
 
 #include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/plot.h"
-#include "viewer/app/panels/region_sums.h"
+#include "viewer/app/panels/selection_sums.h"
 #include "viewer/app/panels/status_line.h"
 #include "viewer/app/panels/value_table.h"
 
@@ -28,7 +28,7 @@ ShownValue shown(const char* label, double value, const char* unit, std::string 
 }
 
 /// The force that the whole region bears.
-std::vector<ShownValue> force_lines(const RegionSums& sums) {
+std::vector<ShownValue> force_lines(const SelectionSums& sums) {
   return {shown("normal", sums.normal, "N"),
           shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"),
           shown("shear x", sums.shear_x, "N"), shown("shear y", sums.shear_y, "N"),
@@ -36,7 +36,7 @@ std::vector<ShownValue> force_lines(const RegionSums& sums) {
 }
 
 /// Where it acts, and how it is spread.
-std::vector<ShownValue> spread_lines(const RegionSums& sums) {
+std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
   std::vector<ShownValue> lines{
       shown("centre x", sums.centre_x_mm, "mm"), shown("centre y", sums.centre_y_mm, "mm"),
       shown("area", sums.area_mm2, "mm²"), shown("mean", sums.mean_normal, "N"),
@@ -48,23 +48,23 @@ std::vector<ShownValue> spread_lines(const RegionSums& sums) {
 }
 
 /// Two tables beside each other where there is room.
-void draw_tables(const PanelInk& ink, const RegionSums& sums) {
+void draw_tables(const PanelStyle& style, const SelectionSums& sums) {
   const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  value_table(ink, force_lines(sums));
-  const double second = value_table_width(ink) - 60 * ink.unit;
-  if (second + value_table_width(ink) <= room) {
+  value_table(style, force_lines(sums));
+  const double second = value_table_width(style) - 60 * style.unit;
+  if (second + value_table_width(style) <= room) {
     ImGui::SameLine(0, 0);
     ImGui::SetCursorPosX(ImGui::GetCursorStartPos().x + static_cast<float>(second));
   } else {
-    leave_gap(ink, 2);
+    leave_gap(style, 2);
   }
-  value_table(ink, spread_lines(sums));
+  value_table(style, spread_lines(sums));
 }
 
 constexpr std::array<Region, 5> kShown{Region::one, Region::two, Region::three, Region::four,
                                        Region::opposite};
 
-std::array<std::uint64_t, 5> shown_counts(const RegionSums& sums) {
+std::array<std::uint64_t, 5> shown_counts(const SelectionSums& sums) {
   std::array<std::uint64_t, 5> counts{};
   for (std::size_t i = 0; i < counts.size(); ++i) {
     counts[i] = sums.by_region[static_cast<std::size_t>(kShown[i])];
@@ -72,10 +72,10 @@ std::array<std::uint64_t, 5> shown_counts(const RegionSums& sums) {
   return counts;
 }
 
-void draw_shares(const PanelInk& ink, const RegionSums& sums, Theme theme) {
-  const Viewport room = take_room(0, std::round(10 * ink.unit));
+void draw_shares(const PanelStyle& style, const SelectionSums& sums, Theme theme) {
+  const Viewport room = take_room(0, std::round(10 * style.unit));
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_block(list, room, mixed(ink.ground, ink.text, 0.12));
+  draw_block(list, room, mixed(style.ground, style.text, 0.12));
   const auto widths = shares_of(shown_counts(sums), static_cast<int>(room.width));
   double x = room.x;
   for (std::size_t i = 0; i < widths.size(); ++i) {
@@ -93,9 +93,9 @@ std::string share_words(std::uint64_t count, std::uint64_t all) {
 }
 
 /// What the colours of the shares mean: as many in a line as fit.
-void draw_legend(const PanelInk& ink, const RegionSums& sums, Theme theme) {
+void draw_legend(const PanelStyle& style, const SelectionSums& sums, Theme theme) {
   const auto counts = shown_counts(sums);
-  const double cell = 76 * ink.unit;
+  const double cell = 76 * style.unit;
   const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
   double used = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
@@ -105,7 +105,7 @@ void draw_legend(const PanelInk& ink, const RegionSums& sums, Theme theme) {
     } else {
       used = 0;
     }
-    swatch(ink, packed(region_colour(kShown[i], theme)));
+    swatch(style, packed(region_colour(kShown[i], theme)));
     const std::string words =
         fmt::format("{}  {}", name_of(kShown[i]), share_words(counts[i], sums.in_contact));
     ImGui::TextUnformatted(words.c_str());
@@ -113,32 +113,32 @@ void draw_legend(const PanelInk& ink, const RegionSums& sums, Theme theme) {
   }
 }
 
-std::string fault_words(const RegionSums& sums) {
+std::string fault_words(const SelectionSums& sums) {
   return fmt::format("{} ambiguous, {} saturated, {} inconsistent", sums.ambiguous, sums.saturated,
                      sums.inconsistent);
 }
 
 }  // namespace
 
-void region_panel(Session& session) {
-  const PanelInk ink = panel_ink(session.look.scale);
-  if (!session.region || !session.field) {
-    faint_words(ink, "No region is marked.");
+void selection_panel(AppState& state) {
+  const PanelStyle style = panel_style(state.settings.scale);
+  if (!state.selection || !state.field) {
+    faint_words(style, "No region is marked.");
     return;
   }
-  const PillarRect& rect = session.region->rect;
-  const double pitch_mm = session.player->info().skin.pillar_pitch_mm();
-  const RegionSums& sums = region_sums(session);
-  heading(ink, rect_words(rect), size_words(rect, pitch_mm));
-  leave_gap(ink, 2);
-  draw_tables(ink, sums);
-  leave_gap(ink, 4);
-  heading(ink, "Regions of usable sensels",
+  const PillarRect& rect = state.selection->rect;
+  const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+  const SelectionSums& sums = selection_sums(state);
+  heading(style, rect_words(rect), size_words(rect, pitch_mm));
+  leave_gap(style, 2);
+  draw_tables(style, sums);
+  leave_gap(style, 4);
+  heading(style, "Regions of usable sensels",
           fmt::format("{} of {} in contact", sums.in_contact, sums.pillars));
   if (sums.in_contact == 0) return;
-  draw_shares(ink, sums, session.look.theme);
-  draw_legend(ink, sums, session.look.theme);
-  faint_words(ink, fault_words(sums).c_str());
+  draw_shares(style, sums, state.settings.theme);
+  draw_legend(style, sums, state.settings.theme);
+  faint_words(style, fault_words(sums).c_str());
 }
 
 }  // namespace pillarfield::viewer

@@ -2,25 +2,25 @@
 
 #include "shaders/shared.h"
 #include "viewer/render/field_memory.h"
-#include "viewer/render/interface.h"
+#include "viewer/render/gui_context.h"
 #include "viewer/render/pipelines.h"
 #include "viewer/render/target.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
 /// Draws pictures of fields: heat map, arrows, axes and legends, into an image of its own. A window
 /// copies that image, a file takes its pixels: the picture is the same.
-class Painter {
+class Renderer {
  public:
-  Painter(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
-          double scale);
+  Renderer(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
+           double scale);
 
   /// Records the drawing of a picture. `field` must stay alive until the commands are done, and
   /// those recorded before must be done.
   void record(const vk::raii::CommandBuffer& commands, const ShownField& field,
-              const SourceInfo& source, const Look& look);
+              const SourceInfo& source, const RenderSettings& settings);
 
   /// Another size or scale; nothing recorded may be running.
   void resize(vk::Extent2D size, double scale);
@@ -31,7 +31,7 @@ class Painter {
   [[nodiscard]] FieldMemory& memory() { return memory_; }
 
  private:
-  void update(const shader::Scene& scene, const Look& look);
+  void update(const shader::Scene& scene, const RenderSettings& settings);
 
   const gpu::Instance* instance_;
   const gpu::Device* device_;
@@ -39,7 +39,7 @@ class Painter {
   Target target_;
   Pipelines pipelines_;
   FieldMemory memory_;
-  std::unique_ptr<Interface> overlay_;
+  std::unique_ptr<GuiContext> overlay_;
   gpu::Buffer scene_;
   gpu::Buffer colours_;
   gpu::Buffer cells_;

@@ -84,25 +84,25 @@ View first_view(const Options& options, const SourceInfo& source, const Viewport
   return view;
 }
 
-Look first_look(const Options& options, FieldProducer& producer, double scale) {
+RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
   const SourceInfo& source = producer.info();
   require_available(options.quantity, source);
-  Look look;
-  look.quantity = options.quantity;
-  look.range = options.range ? in_own_unit(*options.range, options.quantity)
-                             : range_that_fits(producer, options.quantity);
-  look.map = options.map.value_or(default_map(info_of(options.quantity).scale));
-  look.theme = options.theme;
-  look.surface = options.surface;
-  look.arrows = options.arrows;
-  look.fans = options.fans;
-  look.hatch = options.hatch;
-  look.contacts = options.contacts;
-  look.legend = options.legend;
-  look.scale = scale;
-  look.full_force_n = full_arrow(producer, Quantity::magnitude);
-  look.full_shear_n = full_arrow(producer, Quantity::shear);
-  return look;
+  RenderSettings settings;
+  settings.quantity = options.quantity;
+  settings.range = options.range ? in_own_unit(*options.range, options.quantity)
+                                 : range_that_fits(producer, options.quantity);
+  settings.map = options.map.value_or(default_map(info_of(options.quantity).scale));
+  settings.theme = options.theme;
+  settings.surface = options.surface;
+  settings.arrows = options.arrows;
+  settings.sectors = options.sectors;
+  settings.hatch = options.hatch;
+  settings.contacts = options.contacts;
+  settings.legend = options.legend;
+  settings.scale = scale;
+  settings.full_force_n = full_arrow(producer, Quantity::magnitude);
+  settings.full_shear_n = full_arrow(producer, Quantity::shear);
+  return settings;
 }
 
 }  // namespace pillarfield::viewer
