@@ -22,9 +22,9 @@ constexpr double kContact = 0.1;
 constexpr std::uint64_t kFields = 4;  ///< more than the caches hold, of a square metre
 
 /// Frames of readings, copied from those of other rows.
-class Frames final : public viewer::FrameProvider {
+class FrameCopies final : public viewer::FrameProvider {
  public:
-  Frames(const SolverPlan& plan, std::uint64_t count) {
+  FrameCopies(const SolverPlan& plan, std::uint64_t count) {
     const Frames frames(plan.skin, plan.sensel_type, {Touch::mixed, kContact});
     for (std::uint64_t i = 0; i < count; ++i) {
       auto copy = std::make_shared<FrameBuffer>(plan.sensel_type, plan.skin.rows, plan.skin.cols);
@@ -50,7 +50,7 @@ std::unique_ptr<viewer::FieldProducer> make_producer(const Device& solver, std::
   info.has_readings = true;
   info.has_angles = true;
   return std::make_unique<viewer::SolvedProducer>(
-      info, std::make_unique<Frames>(plan, kFields), plan,
+      info, std::make_unique<FrameCopies>(plan, kFields), plan,
       Processor(solver, plan, {.frames_in_flight = viewer::FieldProducer::kMostShown}));
 }
 

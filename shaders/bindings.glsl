@@ -1,4 +1,4 @@
-// The descriptor set, and how planes of the field are read.
+// The descriptor set and access to the planes of a field.
 #ifndef PILLARFIELD_SHADERS_BINDINGS
 #define PILLARFIELD_SHADERS_BINDINGS
 

@@ -1,5 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
+// Fills an annular sector.
 #include "bindings.glsl"
 
 layout(location = 0) in vec2 local;
@@ -13,9 +14,9 @@ void main() {
   const float pixel = fwidth(radius);
   // At least two pixels thick, and two wide at its end.
   const float inner = min(radii.x, radii.y - 2.0 * pixel);
-  const float air = pixel / max(radius, 1e-6);
+  const float margin = pixel / max(radius, 1e-6);
   float direction = atan(local.y, local.x);
-  direction += 2.0 * pi * ceil((directions.x - air - direction) / (2.0 * pi));
-  if (radius < inner || radius > radii.y || direction > directions.y + air) discard;
+  direction += 2.0 * pi * ceil((directions.x - margin - direction) / (2.0 * pi));
+  if (radius < inner || radius > radii.y || direction > directions.y + margin) discard;
   colour = colour_of_word(scene.layer_colours.z);
 }

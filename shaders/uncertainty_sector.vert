@@ -1,19 +1,19 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// What the shear of an ambiguous pillar may be: a piece of a ring in the skin's tangent plane,
-// between the two ends of its directions and of its lengths. One pillar a cell.
+// The uncertainty sector of an ambiguous pillar's shear: an annular sector in the tangent plane
+// between the ends of its direction and length. Cells are single pillars.
 #include "bindings.glsl"
 #include "surface.glsl"
 
 layout(location = 0) out vec2 local;                // mm from the arrow's tail, in the tangent plane
 layout(location = 1) flat out vec2 radii;           // mm
-layout(location = 2) flat out vec2 directions;      // rad; the second is not below the first
+layout(location = 2) flat out vec2 directions;      // rad, ascending
 
 void main() {
   const uvec2 size = scene.cells.wz;
   const uvec2 index = scene.cells.yx + uvec2(gl_InstanceIndex % size.x, gl_InstanceIndex / size.x);
   const uint pillar = index.y * scene.grid.y + index.x;
-  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // Outside: no fan.
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // Outside: no sector.
   if (!is_ambiguous(status_of(pillar))) return;
 
   const float pi = 3.14159265358979;

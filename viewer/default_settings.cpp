@@ -11,21 +11,21 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr std::uint64_t kMostSurveyed = 16;
+constexpr std::uint64_t kMostSampled = 16;
 
-// Of the values seen: the colour bar ends where few lie above, so that a spike at the edge of a
-// punch does not darken all the rest; few arrows are longer than a cell and a half.
-constexpr double kShareInRange = 0.995;
-constexpr double kShareOfArrow = 0.95;
+// Quantiles of the sampled values: the upper end of the colour bar, so that the pressure peak at
+// the edge of a punch does not darken the rest; the force of an arrow of 1.5 cells.
+constexpr double kRangeQuantile = 0.995;
+constexpr double kArrowQuantile = 0.95;
 
-/// Absolute values of a quantity in frames spread evenly over a source, of sound pillars.
+/// Absolute values of a quantity over valid pillars of evenly spaced frames.
 std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
   std::vector<float> values;
   const std::uint64_t frames = producer.info().frames;
-  const std::uint64_t looked_at = std::min(frames, kMostSurveyed);
-  for (std::uint64_t i = 0; i < looked_at; ++i) {
-    // The middles of equal parts: at the very first frame nothing may touch yet.
-    const ShownField field = producer.produce((2 * i + 1) * frames / (2 * looked_at));
+  const std::uint64_t sampled = std::min(frames, kMostSampled);
+  for (std::uint64_t i = 0; i < sampled; ++i) {
+    // Midpoints of equal intervals, since the first frame may be without contact.
+    const ShownField field = producer.produce((2 * i + 1) * frames / (2 * sampled));
     for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
       for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
         const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
@@ -38,7 +38,7 @@ std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
   return values;
 }
 
-/// The value that `share` of them do not exceed; zero of none.
+/// The `share` quantile; 0 without values.
 float quantile(std::vector<float> values, double share) {
   if (values.empty()) return 0;
   const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -47,7 +47,7 @@ float quantile(std::vector<float> values, double share) {
 }
 
 double full_arrow(FieldProducer& producer, Quantity quantity) {
-  const float typical = quantile(survey(producer, quantity), kShareOfArrow);
+  const float typical = quantile(survey(producer, quantity), kArrowQuantile);
   return typical > 0 ? round_ceiling(typical) : 1;
 }
 
@@ -58,14 +58,14 @@ Range in_own_unit(const Range& shown, Quantity quantity) {
 
 void require_available(Quantity quantity, const SourceInfo& source) {
   if (is_available(quantity, source)) return;
-  throw Error(source.name, std::string("it has nothing to show as ") + info_of(quantity).name,
-              "choose another --layer; readings and noise are not in every file");
+  throw Error(source.name, std::string("it has no data for ") + info_of(quantity).name,
+              "choose another --layer; not every file holds readings and noise");
 }
 
 }  // namespace
 
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
-  return fitting_range(quantity, quantile(survey(producer, quantity), kShareInRange));
+  return fitting_range(quantity, quantile(survey(producer, quantity), kRangeQuantile));
 }
 
 View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {

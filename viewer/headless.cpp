@@ -17,7 +17,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Draws pictures one after the other and reads each back.
+/// Draws pictures and reads their pixels back.
 class HeadlessRenderer {
  public:
   explicit HeadlessRenderer(const Options& options)
@@ -62,7 +62,7 @@ bool asks_for_sequence(const Options& options) {
   return options.end_frame > options.first_frame + 1;
 }
 
-/// Pictures that are asked for: one, or one of each frame.
+/// File names of the pictures: one, or one for each frame.
 std::vector<std::filesystem::path> png_names(const Options& options, const FrameRange& span,
                                              std::uint64_t frames) {
   if (options.png.empty()) return {};
@@ -82,10 +82,10 @@ void check_exports(const Options& options, const std::vector<std::filesystem::pa
   if (!options.video.empty()) outputs.push_back({options.video, OutputKind::video});
   check_outputs({options.source}, outputs, replace);
   if (options.csv.empty() || options.csv.extension() == ".csv") return;
-  throw Error(options.csv.string(), "its ending names no table", "end it in .csv");
+  throw Error(options.csv.string(), "a table must end in .csv", "rename it");
 }
 
-/// Pictures that are complete stay; a video is there whole or not at all.
+/// Complete pictures stay; an incomplete video is removed.
 void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
   if (!is_interrupted()) return;
   throw Error(options.source.string(), fmt::format("interrupted after {} pictures", pictures),
@@ -96,7 +96,7 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
 
 void run_headless(const Options& options) {
   const Replace replace = options.overwrite ? Replace::anything : Replace::results;
-  // What needs no look into the source is checked before it is opened.
+  // Check the options before opening the source, which may take long.
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);

@@ -30,7 +30,7 @@ vk::Extent2D extent_of(const Viewport& box) {
   return {static_cast<std::uint32_t>(box.width), static_cast<std::uint32_t>(box.height)};
 }
 
-/// Whether nobody asked for another view than that of the whole skin.
+/// True if the options set no view other than the whole skin.
 bool asks_for_whole_skin(const Options& options) {
   return options.zoom == 1 && !options.centre_mm && !options.azimuth && !options.elevation;
 }
@@ -39,7 +39,7 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The window and everything behind it. Members go in the reverse of the order in which they came.
+/// The window and all that it needs; the order of members is the order of construction.
 class Application {
  public:
   explicit Application(const Options& options);
@@ -74,7 +74,7 @@ class Application {
 
   const Options& options_;
   Window window_;
-  std::atomic<double> produced_s_ = 0;  ///< when the newest field came, told by the player's thread
+  std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
   LoadedSource loaded_;
   gpu::Instance instance_;
   vk::raii::SurfaceKHR surface_;
@@ -95,7 +95,7 @@ class Application {
   std::string last_notice_;
   std::optional<RenderSettings> drawn_settings_;
   bool field_is_new_ = false;
-  double taken_s_ = 0;  ///< when the one on display had come
+  double taken_s_ = 0;  ///< produced_s_ of the field on display
   double last_frame_s_ = 0;
 };
 
@@ -127,7 +127,7 @@ void Application::listen_to_player() {
 void Application::run() {
   window_.show();
   if (options_.first_frame != 0) state_.player->seek(options_.first_frame);
-  // Not before: contacts are followed from the frame that is seen first.
+  // After seek(): contacts are tracked from the first shown frame on.
   state_.player->set_contacts(state_.settings.contacts);
   if (!options_.paused) state_.player->play();
   while (!window_.closes() && !pending_.quit && !is_interrupted()) {
@@ -141,7 +141,7 @@ void Application::run() {
   if (options_.statistics) print_statistics();
 }
 
-/// A signal wakes no wait for events, so none is long.
+/// Waits for events; briefly, since a signal does not end a wait.
 void Application::wait() {
   constexpr double kLongestWaitS = 0.25;
   const bool minimised = window_.size().width == 0;
@@ -164,8 +164,8 @@ void Application::take_input() {
   for (const InputEvent& event : events) route(event);
 }
 
-/// What is typed into a field of the panels is no shortcut; what lies over the field takes the
-/// mouse.
+/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups over the
+/// field take the mouse.
 void Application::route(const InputEvent& event) {
   const bool types = ImGui::GetIO().WantTextInput;
   const bool covered = GuiInput::has_open_list();
@@ -204,7 +204,7 @@ void Application::take_newest_field() {
   redraws_.field();
 }
 
-/// Divides the window as it is now.
+/// Computes the layout for the current window.
 void Application::arrange() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return;
@@ -264,7 +264,7 @@ void Application::draw_front_frame() {
 void Application::measure(double begin_s, bool new_picture) {
   const double now_s = Window::now_s();
   std::optional<double> latency_ms;
-  // When the very first field came nobody listened yet.
+  // The first field may precede on_new_field().
   if (new_picture && field_is_new_ && taken_s_ > 0) latency_ms = 1e3 * (steady_s() - taken_s_);
   clock_.add(now_s, 1e3 * (now_s - begin_s), latency_ms);
   state_.draw = clock_.lately(now_s);
@@ -284,7 +284,7 @@ void Application::watch_notice() {
   last_notice_ = state_.notice;
 }
 
-/// What cannot be written is told, and the window goes on.
+/// Performs the pending actions; an Error becomes a notice.
 void Application::serve() {
   const PendingActions asked = std::exchange(pending_, PendingActions{.quit = pending_.quit});
   if (!state_.field) return;
@@ -345,7 +345,7 @@ void Application::continue_frames() {
   redraws_.field();
 }
 
-/// The picture reads the player's memory in place: it goes before the player does.
+/// Releases imported memory of the player before the player is destroyed.
 void Application::finish() {
   state_.player->on_new_field({});
   presenter_.finish();

@@ -9,8 +9,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Pillars [first, second) of `count` that [low, high] touches, in pillars from the first one's
-/// edge.
+/// Pillars [first, second) of `count` that overlap [low, high], in pillar pitches.
 std::pair<std::uint32_t, std::uint32_t> touched(double low, double high, std::uint32_t count) {
   const double most = count;
   return {static_cast<std::uint32_t>(std::clamp(std::floor(low), 0.0, most)),
@@ -21,7 +20,7 @@ PillarRect everything(const SourceInfo& source) {
   return {0, source.skin.pillar_rows(), 0, source.skin.pillar_cols()};
 }
 
-/// Around the pillars under a grid of pixels: what a view in perspective shows has no simpler form.
+/// Bounding rectangle of the pillars under a grid of pixels, for perspective views.
 PillarRect sampled(const FieldPlace& place, const RenderSettings& settings) {
   constexpr int kSteps = 48;
   const Viewport plot = place.plot(settings);

@@ -12,7 +12,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Percents of a simulation on the terminal's last line, which is empty again at the end.
+/// Shows the percentage of a simulation on the terminal's last line; clears it at the end.
 class Progress {
  public:
   Progress() : shown_(isatty(STDERR_FILENO) == 1) {}

@@ -7,18 +7,17 @@
 
 namespace pillarfield::viewer {
 
-/// A source that is ready to be played, and how it looks first; the view is not set.
+/// A source ready to play, with its initial settings; the view is not set.
 struct LoadedSource {
   std::unique_ptr<Player> player;
   RenderSettings settings;
 };
 
-/// How the source is opened; that kernels are compiled is said on standard error where that is a
-/// terminal.
+/// Options for opening the source; on a terminal, standard error reports kernel compilation.
 [[nodiscard]] ProducerOptions producer_options(const Options& options);
 
-/// Opens the source of the options; on a terminal, tells how far a scene is simulated. Warnings of
-/// the source go to standard error. Throws Error.
+/// Opens the source; shows simulation progress on a terminal and prints the source's warnings to
+/// standard error. Throws Error.
 [[nodiscard]] LoadedSource load_source(const Options& options, double scale);
 
 }  // namespace pillarfield::viewer

@@ -14,15 +14,15 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kLeastRatio = 0.03;  ///< of shear to normal force that has an arrow
+constexpr double kLeastRatio = 0.03;  ///< least shear / normal force with an arrow
 constexpr double kMostRatio = 3;
 
-constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< lets the lines be seen on any colour
+constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< keeps lines visible on any colour
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
-constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< unlike the arrows of cells
-constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< of texts
+constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< distinct from the arrows of cells
+constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< behind labels
 
-/// A box about points, pixels.
+/// Bounding box of points, pixels.
 Viewport box_about(const std::vector<Vec2>& points) {
   const auto [left, right] = std::ranges::minmax(points, {}, &Vec2::x);
   const auto [top, bottom] = std::ranges::minmax(points, {}, &Vec2::y);
@@ -33,7 +33,7 @@ bool overlap(const Viewport& a, const Viewport& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// A point `right` and `up` of another on the skin along its tangents there, mm.
+/// Pixel of the point `right` and `up`, in mm, along the tangents from another.
 std::optional<Vec2> seen(const SourceInfo& source, const RenderSettings& settings,
                          const Viewport& plot, const PatchPlace& place, double right, double up) {
   const bool from_above = std::holds_alternative<TopView>(settings.view);
@@ -58,7 +58,7 @@ std::optional<Vec2> tip_of(const ContactQuantities& contact, const SourceInfo& s
               mm_per_newton * contact.shear_y_n);
 }
 
-/// Draws with lines of one picture.
+/// Draws the lines and labels of one picture.
 class Brush {
  public:
   Brush(ImDrawList& list, double scale) : list_(list), unit_(static_cast<float>(scale)) {}
@@ -88,9 +88,8 @@ class Brush {
     list_.AddText(to_imgui({box.x + margin(), box.y}), kLine, words.c_str());
   }
 
-  /// Of words whose lower left corner is at a place, brought into the plot.
-  [[nodiscard]] Viewport room_of(const std::string& words, Vec2 corner,
-                                 const Viewport& plot) const {
+  /// Box of a label with a given lower left corner, moved into the plot.
+  [[nodiscard]] Viewport box_of(const std::string& words, Vec2 corner, const Viewport& plot) const {
     const ImVec2 size = ImGui::CalcTextSize(words.c_str());
     const double width = std::ceil(static_cast<double>(size.x) + 2 * margin());
     const double height = std::ceil(static_cast<double>(size.y));
@@ -103,7 +102,7 @@ class Brush {
  private:
   [[nodiscard]] double margin() const { return std::round(4.0 * static_cast<double>(unit_)); }
 
-  /// `more` pixels larger all around.
+  /// Enlarged by `more` pixels on all sides.
   void arrow(Vec2 from, Vec2 to, double more, ImU32 colour) const {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
     if (length < 1) return;
@@ -122,18 +121,18 @@ class Brush {
   float unit_;
 };
 
-/// Beside the heaviest contacts first, where no other text stands.
+/// Places labels, heaviest contacts first, where they cover no other.
 void write_words(const Brush& brush, const std::vector<ContactMark>& marks, const Viewport& plot,
                  double scale) {
   std::vector<Viewport> taken;
   for (const ContactMark& mark : marks) {
     const Viewport box = box_about(mark.outline);
-    const Viewport room = brush.room_of(mark.words, {box.x, box.y - 3 * scale}, plot);
-    if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(room, other); })) {
+    const Viewport label = brush.box_of(mark.words, {box.x, box.y - 3 * scale}, plot);
+    if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(label, other); })) {
       continue;
     }
-    brush.words(room, mark.words);
-    taken.push_back(room);
+    brush.words(label, mark.words);
+    taken.push_back(label);
   }
 }
 
@@ -175,7 +174,7 @@ void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const S
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     const double gap = 4 * settings.scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
-    brush.words(brush.room_of(warning, corner, plot), warning);
+    brush.words(brush.box_of(warning, corner, plot), warning);
   }
   list.PopClipRect();
 }

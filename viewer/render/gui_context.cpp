@@ -17,7 +17,7 @@ constexpr float kFontSize = 14;
 void check_result(VkResult result) {
   if (result == VK_SUCCESS) return;
   throw Error("Vulkan", vk::to_string(static_cast<vk::Result>(result)),
-              "start the viewer again; if it comes back, choose another device with --gpu");
+              "start the viewer again; if the error persists, choose another device with --gpu");
 }
 
 vk::raii::DescriptorPool make_texture_pool(const gpu::Device& device) {
@@ -26,7 +26,7 @@ vk::raii::DescriptorPool make_texture_pool(const gpu::Device& device) {
                                vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 4, size)};
 }
 
-/// What a mathematical text needs beyond Latin: Greek, minus, dashes, arrows, superscripts.
+/// Glyph ranges beyond Latin: Greek, minus, dashes, arrows, superscripts.
 constexpr std::array<ImWchar, 13> kGlyphs{0x0020, 0x00ff, 0x0391, 0x03c9, 0x2010, 0x2027, 0x2030,
                                           0x205e, 0x2190, 0x21ff, 0x2200, 0x22ff, 0};
 
@@ -48,7 +48,7 @@ GuiContext::GuiContext(const gpu::Instance& instance, const gpu::Device& device,
     : scale_(scale), context_(ImGui::CreateContext()), pool_(make_texture_pool(device)) {
   use();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // Remembers nothing.
+  io.IniFilename = nullptr;  // No settings file.
   io.LogFilename = nullptr;
   load_font(io, scale);
 

@@ -8,8 +8,8 @@ struct ImGuiContext;
 
 namespace pillarfield::viewer {
 
-/// Dear ImGui on a render pass: one for what is written into pictures, another for the panels of
-/// the window. Each has a context, fonts and buffers of its own.
+/// A Dear ImGui context with its fonts and buffers on a render pass: one for the overlay of
+/// pictures, one for the panels of the window.
 class GuiContext {
  public:
   /// `scale`: see RenderSettings. Text is DejaVu Sans where it is installed.
@@ -24,7 +24,7 @@ class GuiContext {
   /// Makes this context the current one.
   void use() const;
 
-  /// The frame that ImGui::Render() finished is drawn, inside the render pass.
+  /// Records the frame of ImGui::Render() inside the render pass.
   void draw(const vk::raii::CommandBuffer& commands) const;
 
   [[nodiscard]] double scale() const { return scale_; }

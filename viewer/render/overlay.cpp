@@ -19,7 +19,7 @@ ImU32 packed_colour(const Colour& colour, int alpha = 255) {
   return IM_COL32(colour.red, colour.green, colour.blue, alpha);
 }
 
-/// One picture's writing: where to, and in which colours and sizes.
+/// Draw list, colours and sizes of one picture's overlay.
 struct Canvas {
   ImDrawList& list;
   const RenderSettings& settings;
@@ -37,7 +37,7 @@ struct Canvas {
     return ImGui::CalcTextSize(text.c_str());
   }
   void line(double x0, double y0, double x1, double y1, ImU32 colour) const {
-    // Filled, not stroked: whole pixels.
+    // A filled rectangle covers whole pixels.
     const float width = std::max(std::round(unit()), 1.0f);
     const float left = std::round(static_cast<float>(std::min(x0, x1)));
     const float top = std::round(static_cast<float>(std::min(y0, y1)));
@@ -97,7 +97,7 @@ void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout)
               plot.y + plot.height + 22 * canvas.unit(), words, canvas.faint_colour);
 }
 
-/// The directions of the sheet's axes, seen from where the picture is seen.
+/// The sheet's axes as seen in the picture.
 void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
   const Surface& surface = canvas.settings.surface;
   const SkinSize size = skin_size(source);
@@ -162,7 +162,7 @@ void write_bar(const Canvas& canvas, const Layout& layout) {
   }
 }
 
-/// The legend of a direction: a wheel.
+/// The colour wheel of phi.
 void write_wheel(const Canvas& canvas, const Layout& layout) {
   constexpr int kSectors = 128;
   constexpr double kTurn = 2 * std::numbers::pi;
@@ -214,7 +214,7 @@ class LegendList {
     } else {
       canvas_.list.AddRectFilled(ImVec2(left, top), corner, colour);
     }
-    canvas_.list.AddRect(ImVec2(left, top), corner, canvas_.faint);
+    canvas_.list.AddRect(ImVec2(left, top), corner, canvas_.faint_colour);
     canvas_.text(x_ + 20 * canvas_.unit(), y_, words);
     y_ += 20 * canvas_.unit();
   }
@@ -264,11 +264,11 @@ void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& 
     list.add(Special::region_4, "4: one usable");
     list.add(Special::opposite, "two opposite");
   } else {
-    if (settings.quantity == Quantity::status) list.add(Special::sound, "sound");
+    if (settings.quantity == Quantity::status) list.add(Special::determined, "determined");
     list.add(Special::ambiguous, "ambiguous",
              settings.quantity != Quantity::status && settings.hatch);
     if (settings.quantity == Quantity::status) {
-      list.add(Special::from_contact, "from neighbours");
+      list.add(Special::from_contact, "from contact");
     }
     list.add(Special::saturated, "saturated");
     list.add(Special::inconsistent, "inconsistent");
@@ -319,7 +319,7 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
     }
     Layout shifted = layout;
     if (scale == Scale::classes) {
-      shifted.legend.y = layout.bar.y;  // No bar: the legend takes its place.
+      shifted.legend.y = layout.bar.y;  // The legend replaces the bar.
     }
     write_legend(canvas, source, shifted);
   }

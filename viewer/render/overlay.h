@@ -7,9 +7,8 @@
 
 namespace pillarfield::viewer {
 
-/// Writes what stands around and upon the field: title, axes in millimetres, the colour bar with
-/// its numbers and unit, the meaning of colours and arrows, and contacts. `interface.draw()` then
-/// draws it.
+/// Composes the overlay: title, axes in millimetres, colour bar, legends and contacts. `gui.draw()`
+/// then draws it.
 void write_overlay(const GuiContext& gui, const ShownField& field, const SourceInfo& source,
                    const RenderSettings& settings, const Layout& layout, vk::Extent2D size);
 

@@ -24,7 +24,7 @@ struct Binding {
   vk::ShaderStageFlags stages;
 };
 
-/// The one table of what shaders see.
+/// Descriptor bindings of all shaders.
 constexpr std::array<Binding, 5> kBindings{{
     {shader::kSceneBinding, Type::eUniformBuffer,
      ShaderStage::eVertex | ShaderStage::eFragment | ShaderStage::eCompute},
@@ -57,7 +57,7 @@ vk::raii::ShaderModule make_module(const gpu::Device& device, const std::uint32_
   return {device.handle(), vk::ShaderModuleCreateInfo({}, sizeof(code), code)};
 }
 
-/// How a pipeline meets the depth of what was drawn before.
+/// Use of the depth buffer.
 enum class Depth { written, tested };
 
 vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout layout,

@@ -10,22 +10,22 @@
 
 namespace pillarfield::viewer {
 
-/// Draws pictures of fields: heat map, arrows, axes and legends, into an image of its own. A window
-/// copies that image, a file takes its pixels: the picture is the same.
+/// Draws pictures of fields (heat map, arrows, axes, legends) into an image, for a window or a
+/// file.
 class Renderer {
  public:
   Renderer(const gpu::Instance& instance, const gpu::Device& device, vk::Extent2D size,
            double scale);
 
-  /// Records the drawing of a picture. `field` must stay alive until the commands are done, and
-  /// those recorded before must be done.
+  /// Records the drawing of a picture. `field` must stay alive until the commands are complete;
+  /// commands recorded earlier must be complete.
   void record(const vk::raii::CommandBuffer& commands, const ShownField& field,
               const SourceInfo& source, const RenderSettings& settings);
 
-  /// Another size or scale; nothing recorded may be running.
+  /// Changes size and scale; recorded commands must be complete.
   void resize(vk::Extent2D size, double scale);
 
-  /// Where it was drawn; ready to be copied from once the commands are done.
+  /// The picture, ready to be copied once the commands are complete.
   [[nodiscard]] const gpu::Image& image() const { return target_.image(); }
 
   [[nodiscard]] FieldMemory& memory() { return memory_; }

@@ -8,18 +8,19 @@ namespace {
 
 using shader::uint;
 
-constexpr float kSmallestForceShare = 0.01f;  ///< of the full force: below it no arrow
+constexpr float kSmallestForceFraction =
+    0.01f;  ///< of the full force; smaller forces have no arrow
 
-/// Pixels along a pillar beyond which the heat map's shader takes no mean, with some air: there it
-/// is 1 / 1.5.
-constexpr double kPixelsOfOne = 0.7;
+/// From this many pixels per pillar the heat map shows single pillars; the shader's own limit is
+/// 1 / 1.5.
+constexpr double kSinglePillarPixels = 0.7;
 
 uint pack(const Colour& colour, unsigned alpha = 255) {
   return static_cast<uint>(colour.red) | static_cast<uint>(colour.green) << 8u |
          static_cast<uint>(colour.blue) << 16u | alpha << 24u;
 }
 
-/// Where a plane begins in the field's memory, in words.
+/// Offset of a plane in the field's memory, in words.
 template <class Value>
 uint plane_of(const ShownField& field, std::span<const Value> plane) {
   if (plane.empty()) return shader::kNoPlane;
@@ -37,7 +38,7 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
   uint col_end = cols;
   if (const auto* top = std::get_if<TopView>(&settings.view)) {
     const double pitch = source.skin.pillar_pitch_mm();
-    // One cell more at each side: an arrow may be longer than its cell.
+    // One more cell at each side, since arrows may be longer than a cell.
     const auto clamped = [&](double value, uint most) {
       return static_cast<uint>(std::clamp(value, 0.0, static_cast<double>(most)));
     };
@@ -49,7 +50,7 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& set
     row_begin = clamped((-top->centre_mm.y - half_height) / pitch + 0.5 * rows - air, rows);
     row_end = clamped((-top->centre_mm.y + half_height) / pitch + 0.5 * rows + air + 1, rows);
   }
-  // Cells stay where they are on the skin while the view moves.
+  // Align cells to the skin, so that they do not move with the view.
   row_begin = row_begin / block * block;
   col_begin = col_begin / block * block;
   const auto cells = [&](uint begin, uint end) {
@@ -112,7 +113,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   const double hatch = std::max(std::round(5 * settings.scale), 4.0);
   scene.shown = {settings.hatch ? 1u : 0u, static_cast<uint>(hatch), 0, 0};
   scene.range = {settings.range.low, settings.range.high - settings.range.low,
-                 kSmallestForceShare * narrow(full_arrow_n(settings)), 0};
+                 kSmallestForceFraction * narrow(full_arrow_n(settings)), 0};
   scene.viewport = {narrow(plot.x), narrow(plot.y), narrow(plot.width), narrow(plot.height)};
   scene.cells = cells_in_sight(source, settings, plot, block);
   scene.block = {block, from_above ? 1u : 0u, 0, 0};
@@ -127,9 +128,9 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
 HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
                       const RenderSettings& settings, const Viewport& plot) {
   const Scale scale = info_of(settings.quantity).scale;
-  // Directions and classes have no mean, and seen from above all pixels cover as many pillars.
+  // Directions and classes have no mean; in a top view all pixels cover equally many pillars.
   const double pixels = source.skin.pillar_pitch_mm() * pixels_per_mm(settings.view, plot);
-  const bool near = std::holds_alternative<TopView>(settings.view) && pixels > kPixelsOfOne;
+  const bool near = std::holds_alternative<TopView>(settings.view) && pixels > kSinglePillarPixels;
   const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
   return {static_cast<uint>(settings.quantity), static_cast<uint>(scale),
           settings.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,

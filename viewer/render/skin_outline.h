@@ -8,9 +8,8 @@
 
 namespace pillarfield::viewer {
 
-/// The outline of pillars on the skin in pixels of `plot`'s picture, without the first point again
-/// at the end. Where the skin is bent its sides have points in between. Empty where a part of it is
-/// behind the eye.
+/// Outline of a rectangle of pillars, in pixels, as an open-ended polygon; sides on a curved skin
+/// have intermediate points. Empty where a part lies behind the eye.
 [[nodiscard]] std::vector<Vec2> outline_of(const PillarRect& rect, const SourceInfo& source,
                                            const RenderSettings& settings, const Viewport& plot);
 

@@ -11,32 +11,31 @@
 
 namespace pillarfield::viewer {
 
-/// Readings that stay as they are while a copy of this is alive.
+/// Readings, unchanged while a copy of the handle is alive.
 struct FrameHandle {
   std::shared_ptr<const FrameBuffer> readings;
   double time_s = 0;
 };
 
-/// Frames of readings in any order. For one thread.
+/// Provides frames of readings in any order. Not thread safe.
 class FrameProvider {
  public:
   virtual ~FrameProvider() = default;
   [[nodiscard]] virtual std::uint64_t frames() const = 0;
 
-  /// Throws Error where it cannot be read. At most FieldProducer::kMostShown may be alive.
+  /// At most FieldProducer::kMostShown handles may be alive. Throws Error where reading fails.
   [[nodiscard]] virtual FrameHandle frame(std::uint64_t index) = 0;
 
-  /// As FieldProducer's.
+  /// See FieldProducer::refresh().
   virtual bool refresh() { return false; }
 };
 
-/// The first `frames` frames of a scene, simulated now, by as many threads as there are cores.
-/// `progress` is called from this thread, about twenty times a second; what it throws stops the
-/// simulation.
+/// Simulates the first `frames` frames of a scene, with one thread per core. Calls `progress` from
+/// this thread about 20 times a second; an exception from it stops the simulation.
 [[nodiscard]] std::unique_ptr<FrameProvider> simulate_frames(
     const Simulator& simulator, std::uint64_t frames, const std::function<void(double)>& progress);
 
-/// Frames of a file, read when they are asked for. `path` is what `source` was opened from.
+/// Reads frames of a file on demand. `source` was opened from `path`.
 [[nodiscard]] std::unique_ptr<FrameProvider> recorded_frames(const std::filesystem::path& path,
                                                              std::unique_ptr<FrameSource> source);
 

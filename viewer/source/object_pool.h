@@ -9,18 +9,18 @@
 
 namespace pillarfield::viewer {
 
-/// Things that are costly to make, lent and used again. One thread borrows; any thread may let the
-/// last copy of what it got go, also when the pool is gone.
+/// Pool of reusable objects. One thread acquires; any thread may release the last copy of an
+/// object, also after the pool is destroyed.
 template <class Thing>
 class ObjectPool {
  public:
-  /// Makes things with `make`, when they are needed and `most` of them.
+  /// Makes at most `most` objects with `make`, on demand.
   ObjectPool(std::size_t most, std::function<std::unique_ptr<Thing>()> make)
       : most_(most), make_(std::move(make)), shelf_(std::make_shared<Shelf>()) {
-    shelf_->things.reserve(most);  // Giving back must not fail.
+    shelf_->things.reserve(most);  // Release must not throw.
   }
 
-  /// As it was when it was given back; null where all are lent.
+  /// Returns an object in the state of its last release; null where all are in use.
   [[nodiscard]] std::shared_ptr<Thing> acquire() {
     std::unique_ptr<Thing> thing = shelf_->take();
     if (thing == nullptr) {

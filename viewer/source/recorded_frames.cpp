@@ -34,7 +34,7 @@ class RecordedFrames final : public FrameProvider {
 
   bool refresh() override {
     if (!file_.may_have_changed()) return false;
-    source_.reset();  // HDF5 shows a file that it has open as it was.
+    source_.reset();  // HDF5 does not show new data in a file that it holds open.
     if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
     const std::uint64_t before = std::exchange(frames_, source_->frames());
     return frames_ != before;
@@ -42,17 +42,17 @@ class RecordedFrames final : public FrameProvider {
 
  private:
   void open(const std::filesystem::path& path) {
-    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // it was probed
+    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // probed before
     const Skin& skin = source->skin();
     if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {
-      throw Error(path.string(), "it became another recording", "open it anew");
+      throw Error(path.string(), "it was replaced by another recording", "open it again");
     }
     source_ = std::move(source);
   }
 
   GrowingFile file_;
-  std::unique_ptr<FrameSource> source_;  ///< null where it could not be opened again
+  std::unique_ptr<FrameSource> source_;  ///< null where reopening failed
   Skin skin_;
   SenselType sensel_type_;
   std::uint64_t frames_;

@@ -25,7 +25,7 @@ float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
   return static_cast<const float*>(raw.data)[at];
 }
 
-/// Sensels 1 to 4 lie upper right, upper left, lower left and lower right.
+/// Sensels 1 to 4: upper right, upper left, lower left, lower right.
 std::array<float, 4> readings_of(const FrameView& raw, PillarIndex pillar) {
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   if (raw.data == nullptr) return {kUnknown, kUnknown, kUnknown, kUnknown};
@@ -60,10 +60,11 @@ bool is_finite(const ForceFieldView& forces, std::size_t at) {
          std::isfinite(forces.normal[at]);
 }
 
-/// Adds pillars up; moments are about the middle of the skin until finish().
-class Adding {
+/// Accumulates SelectionSums; moments are about the middle of the skin until finish().
+class SumBuilder {
  public:
-  Adding(const ForceFieldView& forces, double pitch_mm) : forces_(forces), pitch_mm_(pitch_mm) {}
+  SumBuilder(const ForceFieldView& forces, double pitch_mm)
+      : forces_(forces), pitch_mm_(pitch_mm) {}
 
   void add(PillarIndex pillar) {
     const std::size_t at = std::size_t{pillar.row} * forces_.cols + pillar.col;
@@ -136,7 +137,7 @@ PillarValues values_at(const ShownField& field, PillarIndex pillar) {
 }
 
 SelectionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
-  Adding adding(field.forces, pillar_pitch_mm);
+  SumBuilder adding(field.forces, pillar_pitch_mm);
   const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);
   for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {

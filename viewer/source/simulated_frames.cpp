@@ -14,7 +14,7 @@ namespace {
 
 using Frames = std::vector<FrameHandle>;
 
-/// Several threads that render frames, each the next one that nobody took.
+/// Threads that each render the next unclaimed frame.
 class Rendering {
  public:
   Rendering(const Simulator& simulator, Frames& frames) : simulator_(simulator), frames_(frames) {
@@ -27,7 +27,7 @@ class Rendering {
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
 
-  /// Waits for all; rethrows what a thread threw.
+  /// Waits for all threads; rethrows the exception of one.
   void wait(const std::function<void(double)>& progress) {
     std::unique_lock lock(mutex_);
     while (working_ > 0) {
@@ -72,11 +72,11 @@ class Rendering {
   std::atomic<std::size_t> next_ = 0;
   std::atomic<std::size_t> done_ = 0;
   std::atomic<bool> stop_ = false;
-  std::mutex mutex_;  ///< of the two that follow
+  std::mutex mutex_;  ///< guards the next two members
   std::size_t working_ = 0;
   std::exception_ptr failed_;
   std::condition_variable ended_;
-  std::vector<std::jthread> threads_;  ///< last: they use the others
+  std::vector<std::jthread> threads_;  ///< last: use the other members
 };
 
 class SimulatedFrames final : public FrameProvider {

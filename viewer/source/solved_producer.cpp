@@ -10,15 +10,16 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// What a field lies in, and what it came from.
-struct Held {
+/// Keeps the memory and the readings of a field alive.
+struct FieldMemoryOwner {
   Processor::PinnedResult result;
-  std::shared_ptr<const FrameBuffer> readings;  ///< goes first: a free slot has a free frame
+  std::shared_ptr<const FrameBuffer>
+      readings;  ///< released first: a free slot implies a free frame
 };
 
 }  // namespace
 
-bool remembers(Estimator estimator, const FrictionKnowledge& friction) {
+bool carries_prior(Estimator estimator, const FrictionKnowledge& friction) {
   return estimator == Estimator::contact && friction.memory;
 }
 
@@ -26,7 +27,7 @@ SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   plan.angles = true;
   plan.uncertainty = knows_noise && plan.estimator != Estimator::paper;
-  plan.baseline_rate.reset();  // It would depend on which frames were looked at before.
+  plan.baseline_rate.reset();  // It would depend on the frames shown before.
   return plan;
 }
 
@@ -35,13 +36,12 @@ SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> p
     : info_(std::move(info)), provider_(std::move(provider)), processor_(std::move(processor)) {
   info_.frames = provider_->frames();
   if (plan.estimator == Estimator::direct) direct_point_ = plan.segment_point;
-  if (!remembers(plan.estimator, plan.friction)) return;
+  if (!carries_prior(plan.estimator, plan.friction)) return;
   idle_frame_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
 
 void SolvedProducer::clear_prior() {
-  // What was known of a pillar or a contact is of use in the next frame alone, and an idle one has
-  // neither.
+  // A prior lasts one frame, and an idle frame leaves none.
   processor_.submit(idle_frame_->view());
   static_cast<void>(processor_.receive());
 }
@@ -58,7 +58,8 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
   processor_.submit(raw);
   const ForceFieldView forces = processor_.receive();
   next_ = index + 1;
-  const auto held = std::make_shared<Held>(Held{processor_.pin(), std::move(frame.readings)});
+  const auto held = std::make_shared<FieldMemoryOwner>(
+      FieldMemoryOwner{processor_.pin(), std::move(frame.readings)});
   return {.forces = forces,
           .raw = raw,
           .time_s = frame.time_s,

@@ -8,9 +8,8 @@
 namespace pillarfield::viewer {
 
 void throw_too_many_shown() {
-  throw Error("FieldProducer",
-              fmt::format("{} fields are in use, as many as there are", FieldProducer::kMostShown),
-              "let one go before another is produced");
+  throw Error("FieldProducer", fmt::format("all {} fields are in use", FieldProducer::kMostShown),
+              "release one before producing another");
 }
 
 }  // namespace pillarfield::viewer

@@ -2,7 +2,7 @@
 
 namespace pillarfield::viewer {
 
-/// Throws the Error of a producer whose fields are all in use.
+/// Throws Error: all fields of the producer are in use.
 [[noreturn]] void throw_too_many_shown();
 
 }  // namespace pillarfield::viewer

@@ -1,4 +1,4 @@
-// What the table of contacts says, and what a click on a line and the key do.
+// Contents of the table of contacts; actions of a click on a row and of the key.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -73,7 +73,7 @@ TEST(ShowContacts, TheNextFieldHasThem) {
   EXPECT_EQ(next_field().contacts, nullptr);
 }
 
-/// An interface that nobody sees.
+/// An ImGui context without a display.
 class ContactsPanel : public testing::Test {
  public:
   ContactsPanel() : context_(ImGui::CreateContext()) {
@@ -85,14 +85,14 @@ class ContactsPanel : public testing::Test {
     state().settings.contacts = true;
     ShownField field = touched_field(0, FakeProducer::kRows, FakeProducer::kCols,
                                      {{{1, 3, 1, 3}, 1}, {{8, 12, 8, 12}, 3}, {{15, 17, 20, 22}}});
-    field.contacts = std::make_shared<const ShownContacts>(ContactWatch(1.2).contacts_of(field));
+    field.contacts = std::make_shared<const ShownContacts>(FieldContacts(1.2).contacts_of(field));
     state().field = field;
   }
   ~ContactsPanel() override { ImGui::DestroyContext(context_); }
 
   AppState& state() { return fake_.state; }
 
-  /// How far down the panel goes.
+  /// Draws a frame; returns the height of the panel.
   float frame() {
     ImGui::GetIO().DeltaTime = 0.02f;
     ImGui::NewFrame();
@@ -107,7 +107,7 @@ class ContactsPanel : public testing::Test {
     return end;
   }
 
-  /// In the line below so many others; the head is one.
+  /// Clicks the row below `line` others, the head included.
   void click(int line) {
     ImGuiIO& io = ImGui::GetIO();
     frame();
@@ -126,7 +126,7 @@ class ContactsPanel : public testing::Test {
 };
 
 TEST_F(ContactsPanel, AClickMarksTheContactOfTheLine) {
-  click(2);  // The heaviest, below the head and the sum of all.
+  click(2);  // The heaviest, below the head and the total.
   ASSERT_TRUE(state().selection);
   EXPECT_EQ(state().selection->rect.row_begin, 8U);
   EXPECT_EQ(state().selection->rect.col_end, 12U);

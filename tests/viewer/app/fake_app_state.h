@@ -9,7 +9,7 @@
 
 namespace pillarfield::viewer {
 
-/// Fields of 20 x 30 pillars: every pillar is pressed, the harder the further right it is.
+/// Fields of 20 x 30 pressed pillars, with forces that increase to the right.
 class FakeProducer final : public FieldProducer {
  public:
   static constexpr std::uint32_t kRows = 20;
@@ -44,7 +44,7 @@ class FakeProducer final : public FieldProducer {
   SourceInfo info_;
 };
 
-/// A session in a window of 1000 x 700 pixels whose picture has 800 x 600.
+/// The state of a window of 1000 x 700 pixels with a picture of 800 x 600.
 struct FakeAppState {
   Player player{std::make_unique<FakeProducer>()};
   AppState state;
@@ -58,7 +58,7 @@ struct FakeAppState {
   }
   [[nodiscard]] Command command() { return {state, place, pending}; }
 
-  /// The middle of a pillar in the window.
+  /// Window pixel of the centre of a pillar.
   [[nodiscard]] Vec2 pixel(std::uint32_t row, std::uint32_t col) const {
     const Vec2 corner = corner_of(place, row, col);
     const double half = 0.5 * player.info().skin.pillar_pitch_mm();

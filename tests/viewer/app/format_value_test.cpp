@@ -1,4 +1,4 @@
-// Values in words: numbers with what is known of them, directions, states.
+// Texts of values, uncertainties, directions and states.
 #include "viewer/app/panels/format_value.h"
 
 #include <gtest/gtest.h>
@@ -83,7 +83,7 @@ TEST(StatusWords, NameRegionAndFault) {
             "region 3, ambiguous");
   EXPECT_EQ(format_status(status::kSensel1 | status::kSensel2 | status::kAmbiguous |
                           status::kFromNeighbours),
-            "region 3, resolved by its contact");
+            "region 3, resolved from the contact");
   EXPECT_EQ(format_status(status::kUsable | status::kSaturated), "region 1, saturated");
   EXPECT_EQ(format_status(status::kSensel1 | status::kSensel3 | status::kInconsistent),
             "opposite sensels, inconsistent");

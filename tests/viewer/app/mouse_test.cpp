@@ -1,4 +1,4 @@
-// What the mouse does in the field, without a window.
+// Mouse gestures in the field, without a window.
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// A mouse on the mouse over a session.
+/// Simulated gestures.
 struct Mouse : FakeAppState {
   Controls controls;
   double time_s = 0;
@@ -66,7 +66,8 @@ TEST(Mouse, AClickPinsAndAnotherUnpins) {
 
 TEST(Mouse, PinsAreNotMoreThanThereMayBe) {
   Mouse mouse;
-  for (std::uint32_t col = 0; col < AppState::kMostPins + 2; ++col) mouse.click(mouse.pixel(1, col));
+  for (std::uint32_t col = 0; col < AppState::kMostPins + 2; ++col)
+    mouse.click(mouse.pixel(1, col));
   EXPECT_EQ(mouse.state.pins.size(), AppState::kMostPins);
   EXPECT_FALSE(mouse.state.notice.empty());
 }

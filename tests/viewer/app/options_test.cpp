@@ -1,4 +1,4 @@
-// The viewer's command line: numbers that are none are refused before anything is opened.
+// The viewer's command line rejects bad numbers before it opens anything.
 
 #include "viewer/options.h"
 
@@ -10,8 +10,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// The status that parsing `--headless --png a.png` and these words ends with; unset where the
-/// program goes on.
+/// Exit status of parsing `--headless --png a.png` and `words`; unset where the program continues.
 std::optional<int> status_of(std::vector<std::string> words, Options& options) {
   words.insert(words.begin(),
                {"pillarfield-viewer", "source.toml", "--headless", "--png", "a.png"});

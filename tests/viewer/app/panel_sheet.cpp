@@ -1,4 +1,4 @@
-// Draws all panels without a window, in both themes and at two scales, and keeps the pictures.
+// Draws all panels without a window, in both themes and at two scales, into files.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -26,7 +26,7 @@ class OneField final : public FieldProducer {
   SourceInfo info_;
 };
 
-/// The pillar most pressed of those in a region.
+/// The pillar of a region with the largest normal force.
 PillarIndex a_pillar(const MadeField& made, Region region, float left_of = 40) {
   PillarIndex found;
   float most = -1;
@@ -46,7 +46,7 @@ AppState make_state(const MadeField& made, Player& player) {
   state.field = made.shown();
   state.settings.contacts = true;
   state.field->contacts =
-      std::make_shared<const ShownContacts>(ContactWatch(1.265).contacts_of(*state.field));
+      std::make_shared<const ShownContacts>(FieldContacts(1.265).contacts_of(*state.field));
   state.hovered = a_pillar(made, Region::two);
   for (const PillarIndex pillar :
        {a_pillar(made, Region::one), a_pillar(made, Region::two), a_pillar(made, Region::three)}) {
@@ -76,7 +76,7 @@ void set_style(Theme theme, double scale) {
   imgui_style.ScaleAllSizes(static_cast<float>(scale));
 }
 
-/// A window of its own for a panel; places and sizes at scale 1.
+/// Draws a panel in its own ImGui window; position and size at scale 1.
 template <class Panel>
 void in_window(const char* name, const Viewport& box, double scale, Panel&& panel) {
   const auto sized = [scale](double x, double y) { return point({x * scale, y * scale}); };
@@ -90,11 +90,11 @@ void in_window(const char* name, const Viewport& box, double scale, Panel&& pane
 constexpr double kWidth = 1550;
 constexpr double kHeight = 1260;
 
-/// The column of the window is 340 wide; others may be wider.
+/// The column of the application is 340 wide; some panels are drawn wider.
 void draw_windows(AppState& state, double scale) {
   const FieldPlace place{{0, 0, 800, 600}, &state.player->info()};
   in_window("Cursor", {10, 10, 340, 220}, scale, [&] { hover_panel(state); });
-  in_window("Region", {10, 240, 340, 310}, scale, [&] { selection_panel(state); });
+  in_window("Selection", {10, 240, 340, 310}, scale, [&] { selection_panel(state); });
   in_window("Region 3", {360, 10, 340, 540}, scale, [&] { pillar_panel(state); });
   inspect_pin(state, 1);
   in_window("Region 2", {710, 10, 340, 540}, scale, [&] { pillar_panel(state); });
@@ -128,7 +128,7 @@ class PanelSheet : public testing::Test {
     const GuiContext gui(instance_, device_, *pass, scale);
     gui.use();
     set_style(theme, scale);
-    for (int frame = 0; frame < 2; ++frame) {  // Windows know their contents from the second on.
+    for (int frame = 0; frame < 2; ++frame) {  // ImGui lays windows out in the second frame.
       AppState state = make_state(made_, player_);
       state.settings.theme = theme;
       state.settings.scale = scale;

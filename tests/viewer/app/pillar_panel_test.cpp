@@ -1,4 +1,4 @@
-// The pins that can be chosen and removed in the panel of the inspected pillar, by mouse.
+// Choosing and removing pins by mouse in the pillar panel.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -21,7 +21,7 @@ class NoFields final : public FieldProducer {
   SourceInfo info_;
 };
 
-/// An interface that nobody sees.
+/// An ImGui context without a display.
 class PillarPanel : public testing::Test {
  public:
   PillarPanel() : context_(ImGui::CreateContext()) {
@@ -60,7 +60,7 @@ class PillarPanel : public testing::Test {
     io.MousePos = ImVec2(-1, -1);
     frame();
   }
-  void click_chip(int number) {
+  void click_button(int number) {
     frame();
     click(ImGui::GetStyle().WindowPadding.x + static_cast<float>(number - 1) * (side_ + 6) +
           side_ / 2);
@@ -87,14 +87,14 @@ class PillarPanel : public testing::Test {
 TEST_F(PillarPanel, AClickOnANumberInspectsItsPin) {
   frame();
   EXPECT_EQ(numbers(), (std::vector<int>{1, 2, 3}));
-  click_chip(1);
+  click_button(1);
   EXPECT_EQ(numbers(), (std::vector<int>{2, 3, 1}));
-  click_chip(3);  // Chips stay where they are.
+  click_button(3);  // Buttons keep their positions.
   EXPECT_EQ(numbers(), (std::vector<int>{2, 1, 3}));
 }
 
 TEST_F(PillarPanel, TheCrossRemovesTheInspectedPinUntilNoneIsLeft) {
-  click_chip(2);
+  click_button(2);
   click_remove();
   EXPECT_EQ(numbers(), (std::vector<int>{1, 3}));
   click_remove();
@@ -123,7 +123,7 @@ TEST_F(PillarPanel, SumsOfTheRegionFollowRectangleAndFrame) {
   EXPECT_LT(second, first);
 
   for (float& normal : made_.forces.normal) normal *= 2;
-  EXPECT_EQ(selection_sums(state_).normal, second);  // The same frame is not added up again.
+  EXPECT_EQ(selection_sums(state_).normal, second);  // Cached for the frame.
   ++state_.field->index;
   EXPECT_NEAR(selection_sums(state_).normal, 2 * second, 1e-6);
 }

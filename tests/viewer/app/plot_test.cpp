@@ -1,4 +1,4 @@
-// Where values lie in plots, and what is left of curves and shares on whole pixels.
+// Plots: positions of values; curves and shares on whole pixels.
 #include "viewer/app/panels/plot.h"
 
 #include <gtest/gtest.h>
@@ -55,7 +55,7 @@ TEST(RoundSpan, HoldsZeroAndAllValuesWithoutWastingRoom) {
     const double width = std::max(high, 0.0) - std::min(low, 0.0);
     EXPECT_LE(span.from, std::min(low, 0.0));
     EXPECT_GE(span.to, std::max(high, 0.0));
-    // A step at each end at most, and a step is at most half of what is there.
+    // At most one step at each end, and a step is at most half of the range.
     EXPECT_LE(span.to - span.from, 2.01 * width);
     EXPECT_GE(ticks(span.from, span.to, 8).size(), 3u);
   }

@@ -1,4 +1,4 @@
-// The paper's diagram of regions, what is drawn of a pillar in it, its bars, and the pins' numbers.
+// The paper's region diagram, its drawing of a pillar, reading bars, and pin numbers.
 #include "viewer/app/panels/region_plot.h"
 
 #include <gtest/gtest.h>
@@ -115,13 +115,13 @@ TEST(DirectionBox, IsNotThereWithoutUncertainty) {
   EXPECT_FALSE(direction_box(values));
 }
 
-TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutSilence) {
+TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutIdlePillars) {
   History history;
   for (int i = 0; i < 40; ++i) {
     const float angle = 0.1f + 0.2f * static_cast<float>(i);
-    const bool silent = i == 10;
-    history.add({i * 0.01, static_cast<std::uint64_t>(i), silent ? 0 : std::cos(angle),
-                 silent ? 0 : std::sin(angle), silent ? 0.f : 1.f});
+    const bool idle = i == 10;
+    history.add({i * 0.01, static_cast<std::uint64_t>(i), idle ? 0 : std::cos(angle),
+                 idle ? 0 : std::sin(angle), idle ? 0.f : 1.f});
   }
   std::size_t points = 0;
   const auto pieces = trail_of(history, 100);

@@ -1,4 +1,4 @@
-// The table of shortcuts: no key twice, and each does something.
+// The table of shortcuts: keys are unique, and each has an effect.
 
 #include "viewer/app/input/shortcuts.h"
 
@@ -15,7 +15,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Everything that a shortcut may change, to be compared.
+/// All state that a shortcut may change, for comparison.
 auto state_of(const FakeAppState& fake) {
   const AppState& state = fake.state;
   const PlayerState player = fake.player.state();
@@ -26,7 +26,7 @@ auto state_of(const FakeAppState& fake) {
                     pending.table, pending.stop);
 }
 
-/// A session in the middle of things: nothing is where a key would leave it.
+/// A state that every shortcut changes.
 void set_up(FakeAppState& fake, Quantity quantity) {
   show_quantity(fake.state, quantity);
   set_range(fake.state, {0, 7.5f});
@@ -50,7 +50,7 @@ TEST(Shortcuts, NoChordIsThereTwice) {
     for (const Chord& chord : chords_of(shortcut)) {
       const auto [key, modifiers] = chord;
       EXPECT_TRUE(seen.insert({key, modifiers.shift, modifiers.control}).second)
-          << shortcut.keys << ": " << shortcut.what;
+          << shortcut.keys << ": " << shortcut.description;
     }
   }
 }
@@ -58,17 +58,17 @@ TEST(Shortcuts, NoChordIsThereTwice) {
 TEST(Shortcuts, EachHasAKeyAndWordsAndIsToldApart) {
   std::set<std::string> words;
   for (const Shortcut& shortcut : shortcuts()) {
-    EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.what;
+    EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.description;
     EXPECT_NE(*shortcut.keys, '\0');
-    EXPECT_TRUE(words.insert(shortcut.what).second) << shortcut.what;
+    EXPECT_TRUE(words.insert(shortcut.description).second) << shortcut.description;
   }
 }
 
-TEST(Shortcuts, EachChordDoesSomethingToASession) {
+TEST(Shortcuts, EachChordChangesTheState) {
   for (const Shortcut& shortcut : shortcuts()) {
     for (const Chord& chord : chords_of(shortcut)) {
       bool changed = false;
-      // Of two quantities on display one at least is not the one that a key asks for.
+      // At least one of the two quantities differs from the one that a key selects.
       for (const Quantity quantity : {Quantity::normal, Quantity::shear}) {
         FakeAppState fake;
         set_up(fake, quantity);
@@ -76,7 +76,7 @@ TEST(Shortcuts, EachChordDoesSomethingToASession) {
         EXPECT_TRUE(dispatch(chord, fake.command()));
         changed |= state_of(fake) != before;
       }
-      EXPECT_TRUE(changed) << shortcut.keys << ": " << shortcut.what;
+      EXPECT_TRUE(changed) << shortcut.keys << ": " << shortcut.description;
     }
   }
 }

@@ -1,4 +1,4 @@
-// Videos, by ffmpeg where it is installed, and by stand-ins for what can go wrong with it.
+// Videos, by ffmpeg where installed, and failures, by stand-ins for ffmpeg.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -31,7 +31,7 @@ std::string complaint_about(const std::function<void()>& act) {
   return "no error";
 }
 
-/// Where programs are looked for.
+/// The search path of programs.
 std::string own_path() {
   const char* const path = std::getenv("PATH");
   return path == nullptr ? "" : path;
@@ -51,7 +51,7 @@ class Video : public testing::Test {
     fs::remove_all(folder_);
   }
 
-  /// From now on `ffmpeg` is this shell script; `$out` is the file that it is to write.
+  /// Replaces `ffmpeg` by a shell script; `$out` is its output file.
   void stand_in(const std::string& script) const {
     const fs::path name = folder_ / "bin" / "ffmpeg";
     std::ofstream(name) << "#!/bin/sh\nfor out; do :; done; out=${out#file:}\n" << script << "\n";
@@ -133,7 +133,7 @@ TEST_F(Video, AnUnfinishedVideoLeavesNothing) {
     video.add(grey(4, 4, 1));
   }
   EXPECT_TRUE(is_alone(""));
-  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // No child is left, not even a dead one.
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // No child is left, not even a zombie.
   EXPECT_EQ(errno, ECHILD);
 }
 

@@ -14,10 +14,10 @@ namespace {
 constexpr std::uint32_t kSide = 400;
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A shape by the moments of its bright pixels.
+/// Moments of the bright pixels.
 struct Shape {
-  double x = 0, y = 0;   ///< its middle; pixels, y down
-  double direction = 0;  ///< of its longer axis towards its thicker end; rad, y up
+  double x = 0, y = 0;   ///< mean; pixels, y down
+  double direction = 0;  ///< of the longer axis towards the thicker end; rad, y up
   double length = 0;     ///< along that axis, pixels
   std::size_t pixels = 0;
 };
@@ -68,7 +68,7 @@ Shape shape_of(const Pixels& pixels) {
     most = std::max(most, along);
   }
   shape.length = most - least;
-  // The middle of the pixels lies nearer to the head, where most of them are.
+  // The mean lies nearer to the head, which has most pixels.
   if (most > -least) shape.direction += std::numbers::pi;
   return shape;
 }
@@ -77,7 +77,7 @@ double turn_between(double a, double b) {
   return std::abs(std::remainder(a - b, 2 * std::numbers::pi));
 }
 
-/// One pillar of 3 x 3 pressed, seen from above; its arrow is 150 pixels long at full force.
+/// One pressed pillar of 3 x 3 in a top view; its arrow is 150 pixels long at full force.
 MadeUpField one_pillar(float shear_x, float shear_y, float normal = 0.5F) {
   return {3, 3, [=](std::uint32_t row, std::uint32_t col) {
             if (row != 1 || col != 1) return MadeUpPillar{0, 0, 0, 0};
@@ -86,10 +86,10 @@ MadeUpField one_pillar(float shear_x, float shear_y, float normal = 0.5F) {
 }
 
 RenderSettings arrow_look(const MadeUpField& field) {
-  RenderSettings settings = bare_look(field, kSide, kSide);
+  RenderSettings settings = bare_settings(field, kSide, kSide);
   settings.arrows = true;
   settings.full_shear_n = 1;
-  settings.range = {0, 100};  // Dark all over, so that only arrows are bright.
+  settings.range = {0, 100};  // Dark, so that only arrows are bright.
   settings.scale = 2;
   return settings;
 }
@@ -132,7 +132,7 @@ TEST(Arrows, HaveALeastLengthAndVanishWithoutForce) {
 }
 
 TEST(Arrows, FromAfarAddWhatLiesUnderTheirCell) {
-  // 96 x 96 pillars on 400 pixels: cells of several pillars. Shears cancel but for a quarter.
+  // 96 x 96 pillars on 400 pixels: cells of several pillars, whose shears cancel to a quarter.
   const auto mean_length = [](float other) {
     const MadeUpField field(96, 96, [other](std::uint32_t row, std::uint32_t col) {
       if (row < 40 || row >= 48 || col < 40 || col >= 48) return MadeUpPillar{0, 0, 0, 0};
@@ -151,8 +151,8 @@ TEST(Arrows, FromAfarAddWhatLiesUnderTheirCell) {
 }
 
 TEST(Arrows, AddNothingOfTheNextCell) {
-  // Cells of 3 x 3 pillars, which the words of four statuses are not aligned with. Beside the
-  // middle one lie two whose shears cancel: they have no arrow, but strong forces next to it.
+  // Cells of 3 x 3 pillars, not aligned with words of four statuses. The shears in the two cells
+  // beside the middle one cancel, so they have no arrow despite strong forces.
   const MadeUpField field(30, 30, [](std::uint32_t row, std::uint32_t col) {
     if (row < 9 || row >= 12 || col < 6 || col >= 15) return MadeUpPillar{0, 0, 0, 0};
     const std::array<float, 9> shears{-1, 0, 1, 0.5F, 0.5F, 0.5F, 1, 0, -1};
@@ -183,7 +183,7 @@ TEST(Arrows, InSpaceAreTheForceThatActsOnTheSkin) {
       settings.surface = surface;
       settings.view = fit_orbit(size, surface, plot);
       std::get<OrbitView>(settings.view).distance_mm *= 0.4;
-      const double mm = 1.5 / 3;  // A newton, in cells of one pillar that are 1 mm wide.
+      const double mm = 1.5 / 3;  // Length of 1 N in cells of one pillar, 1 mm wide.
       const auto tip = project(settings.view, surface, size, plot, {0, 0, 0});
       const auto tail = project(settings.view, surface, size, plot,
                                 {-mm * force.shear_x, -mm * force.shear_y, mm * force.normal});

@@ -44,7 +44,7 @@ Colour colour_at(const Pixels& pixels, std::uint32_t x, std::uint32_t y) {
   return {pixels.rgba.at(place), pixels.rgba.at(place + 1), pixels.rgba.at(place + 2)};
 }
 
-RenderSettings bare_look(const MadeUpField& field, std::uint32_t width, std::uint32_t height) {
+RenderSettings bare_settings(const MadeUpField& field, std::uint32_t width, std::uint32_t height) {
   RenderSettings settings;
   settings.arrows = false;
   settings.hatch = false;

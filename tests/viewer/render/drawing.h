@@ -6,8 +6,8 @@
 
 namespace pillarfield::viewer {
 
-/// A graphics device for tests: the one that is a program, where there is one, so that pictures are
-/// the same on every computer; watched by the validation layer where that is installed.
+/// A graphics device for tests, with the validation layer where installed. Prefers a software
+/// device, whose pictures do not depend on the computer.
 class Drawing {
  public:
   explicit Drawing(bool import_memory = true);
@@ -33,11 +33,11 @@ class Drawing {
 /// Colour of a pixel, without alpha.
 [[nodiscard]] Colour colour_at(const Pixels& pixels, std::uint32_t x, std::uint32_t y);
 
-/// The whole skin from above, without arrows and writing.
-[[nodiscard]] RenderSettings bare_look(const MadeUpField& field, std::uint32_t width,
-                                       std::uint32_t height);
+/// Top view of the whole skin without arrows and overlay.
+[[nodiscard]] RenderSettings bare_settings(const MadeUpField& field, std::uint32_t width,
+                                           std::uint32_t height);
 
-/// The pixel in the middle of a pillar, seen from above.
+/// Pixel at the centre of a pillar in a top view.
 struct PixelPlace {
   std::uint32_t x, y;
 };

@@ -1,4 +1,4 @@
-// Values and states go into the heat map's pixels, and must come out of them again.
+// Values and states decoded from the heat map's pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kMapWidth = 640;
 constexpr std::uint32_t kMapHeight = 480;
 
-/// Every pillar another force, in all directions.
+/// A different force on every pillar, in all directions.
 MadeUpField varied_field() {
   return {18, 24, [](std::uint32_t row, std::uint32_t col) {
             const float angle = 0.37F * static_cast<float>(row * 24 + col);
@@ -25,7 +25,7 @@ MadeUpField varied_field() {
 
 class HeatMap : public testing::TestWithParam<Quantity> {};
 
-/// Entries of a table that have this colour: neighbours may be equal.
+/// Entries of a table with this colour; neighbours may be equal.
 std::set<std::size_t> entries_with(ColourMap map, const Colour& colour) {
   std::set<std::size_t> entries;
   const auto table = table_of(map);
@@ -39,7 +39,7 @@ TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
   const Quantity quantity = GetParam();
   const MadeUpField field = varied_field();
   Drawing drawing;
-  RenderSettings settings = bare_look(field, kMapWidth, kMapHeight);
+  RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
   settings.quantity = quantity;
   settings.map = default_map(info_of(quantity).scale);
   settings.range = fitting_range(quantity, largest(quantity, field.shown()));
@@ -55,7 +55,7 @@ TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
       seen.insert(entries.begin(), entries.end());
     }
   }
-  EXPECT_GT(seen.size(), 15U);  // Not one colour all over.
+  EXPECT_GT(seen.size(), 15U);  // More than a single colour.
   EXPECT_EQ(drawing.validation_messages(), 0);
 }
 
@@ -74,7 +74,7 @@ TEST_P(States, HaveColoursOfTheirOwn) {
   });
   Drawing drawing;
   for (const Theme theme : {Theme::dark, Theme::light}) {
-    RenderSettings settings = bare_look(field, kMapWidth, kMapHeight);
+    RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
     settings.theme = theme;
     settings.quantity = quantity;
     const Pixels pixels = drawing.draw(field, settings, kMapWidth, kMapHeight);
@@ -102,9 +102,9 @@ TEST(HeatMapFromAfar, AveragesThoseInContact) {
                         static_cast<std::uint8_t>(col < 320 ? 15 : 0)};
   });
   Drawing drawing;
-  RenderSettings settings = bare_look(field, 160, 120);
+  RenderSettings settings = bare_settings(field, 160, 120);
   const Pixels pixels = drawing.draw(field, settings, 160, 120);
-  // Samples are few, so that a mean may be off by one of them.
+  // With few samples a mean may be off by one of them.
   const Colour left = colour_at(pixels, 40, 60);
   const auto table = table_of(settings.map);
   const auto close = std::find(table.begin() + 96, table.begin() + 160, left);
@@ -116,7 +116,7 @@ TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
   const MadeUpField field = varied_field();
   Drawing in_place;
   Drawing copied(false);
-  RenderSettings settings = bare_look(field, kMapWidth, kMapHeight);
+  RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
   settings.arrows = true;
   settings.legend = true;
   const Pixels first = in_place.draw(field, settings, kMapWidth, kMapHeight);
@@ -133,9 +133,9 @@ TEST(HeatMap, ReadInPlaceFollowsTheMemory) {
   const MadeUpField field = varied_field();
   Drawing drawing;
   if (!drawing.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
-  const RenderSettings settings = bare_look(field, kMapWidth, kMapHeight);
+  const RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
   const Pixels before = drawing.draw(field, settings, kMapWidth, kMapHeight);
-  // What a solver does: it writes where the device reads, and nobody copies.
+  // A solver writes into the imported memory, without a copy.
   auto* const normal = const_cast<float*>(field.shown().forces.normal.data());
   std::fill(normal, normal + field.shown().forces.normal.size(), 1.0F);
   const Pixels after = drawing.draw(field, settings, kMapWidth, kMapHeight);

@@ -1,4 +1,4 @@
-// The play head, by a clock that the test turns.
+// The play head under a simulated clock.
 
 #include "viewer/source/playback.h"
 
@@ -21,7 +21,7 @@ using std::chrono::seconds;
 
 constexpr Time kStart = seconds(1000);
 
-/// A head of which the first frame was given.
+/// A head after its first frame.
 Playback head(std::uint64_t frames, double rate_hz) {
   Playback playback(frames, rate_hz);
   EXPECT_EQ(playback.next(kStart), 0U);
@@ -57,7 +57,7 @@ TEST(Playback, LeavesNoFrameOutHoweverItIsAsked) {
       Time now = kStart;
       for (int i = 0; i < 3000; ++i) {
         now += microseconds(std::uniform_int_distribution(0, 3000)(random));
-        if (i % 500 == 499) now += seconds(3);  // Whoever asks was away.
+        if (i % 500 == 499) now += seconds(3);  // A pause of the caller.
         const auto frame = playback.next(now);
         if (!frame) continue;
         expected = (expected + 1) % 17;

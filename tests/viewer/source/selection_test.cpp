@@ -15,7 +15,7 @@ namespace {
 constexpr double kPitch = 1.25;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A field of random forces and status bytes, and readings of u16 that tell where they stand.
+/// A field of random forces and status bytes, with u16 readings that encode their position.
 class Sample {
  public:
   Sample(std::uint32_t rows, std::uint32_t cols)
@@ -46,7 +46,7 @@ class Sample {
   FrameBuffer raw_;
 };
 
-/// The definitions, one after the other.
+/// The sums by their definitions.
 SelectionSums plain_sums(const ShownField& field, const PillarRect& rect) {
   const ForceFieldView& f = field.forces;
   SelectionSums sums;
@@ -185,7 +185,7 @@ TEST(Selection, ForcesThatAreNoNumbersSpoilNothing) {
 TEST(Selection, ReadingsStandWhereTheSenselsAre) {
   const Sample sample(4, 5);
   const PillarValues values = values_at(sample.shown(), {2, 3});
-  const float stride = 11;  // An odd column more than the pillars need.
+  const float stride = 11;  // One column more than the pillars use.
   const float upper_left = 4 * stride + 6;
   EXPECT_EQ(values.readings[0], upper_left + 1);
   EXPECT_EQ(values.readings[1], upper_left);

@@ -89,7 +89,7 @@ TEST(Availability, FollowsWhatTheSourceHas) {
 }
 
 TEST(StatusClasses, TellTheWorst) {
-  EXPECT_EQ(status_class(kUsable), StatusClass::sound);
+  EXPECT_EQ(status_class(kUsable), StatusClass::determined);
   EXPECT_EQ(status_class(kSensel1 | kSensel2 | kAmbiguous), StatusClass::ambiguous);
   EXPECT_EQ(status_class(kAmbiguous | kFromNeighbours), StatusClass::from_contact);
   EXPECT_EQ(status_class(kUsable | kAmbiguous | kFromNeighbours | kSaturated),
@@ -190,7 +190,7 @@ TEST(Value, IsNoneWhereTheSourceLacksIt) {
   }
 }
 
-/// Readings of sensel n of the pillar at (r, c), all of them different.
+/// Distinct readings of sensel n of the pillar at (r, c).
 template <class Reading>
 Reading reading_at(std::uint32_t r, std::uint32_t c, int n) {
   return static_cast<Reading>((r * 3 + c) * 7 + static_cast<std::uint32_t>(n * n * n));
@@ -209,7 +209,7 @@ void expect_parity(SenselType type, std::size_t stride) {
       readings[upper_left + stride + 1] = reading_at<Reading>(r, c, 4);
     }
   }
-  // One of them alone, so that the pillars differ.
+  // Only one, so that the pillars differ.
   readings[3 * stride + 5] = Reading{200};
   ShownField field = made_up.shown();
   field.raw = {readings.data(), type, 4, 6, stride};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// What sensel 1..4 reads under a force of one newton and one count per newton, by kernels/pillar.
+/// Reading of sensel 1..4 under 1 N at 1 count per newton, by kernels/pillar.
 double reading_under(int sensel, Vec2 phi_theta) {
   const double sine = std::sin(phi_theta.y);
   const double_precision::Force force = {-sine * std::cos(phi_theta.x),

@@ -126,7 +126,7 @@ class WindowTest(unittest.TestCase):
         return pixels
 
     def assert_quiet(self, window):
-        """Closes the window; validation must have been silent."""
+        """Closes the window; expects no validation messages."""
         statistics = window.quit()
         text = window.error_text()
         self.assertNotIn("validation", text.lower())
@@ -167,7 +167,7 @@ class KeyTest(WindowTest):
         for (index, key) in enumerate(keys):
             window.key(key)
             time.sleep(0.1)
-            # Fans and views need a view that was changed: see below.
+            # Sectors and views need a view that was changed: see below.
             patience_s = 0 if key in ("u", "r") else 10
             after = self.shoot_changed(f"key_{index:02}_{key.replace('+', '_')}", before, patience_s)
             if patience_s > 0:

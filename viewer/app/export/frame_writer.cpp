@@ -7,7 +7,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// The first of NAME_DETAIL, NAME_DETAIL_2, ... whose file `looked_for` is not there.
+/// The first of NAME_DETAIL, NAME_DETAIL_2, ... for which the file `looked_for` does not exist.
 template <class LookedFor>
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
                                  const char* ending, const LookedFor& looked_for) {

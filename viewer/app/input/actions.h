@@ -6,45 +6,44 @@
 
 namespace pillarfield::viewer {
 
-// What keys, mouse and panels do to a session; each says in `notice` what a user could miss.
+// Actions of keys, mouse and panels. Each reports in `notice` what a user could miss.
 
-/// Shows a quantity, in the range it was last looked at, at first what fits the field on display.
-/// One that the source lacks stays unshown.
+/// Shows a quantity in its last range, at first fitted to the field on display; no effect where the
+/// source lacks it.
 void show_quantity(AppState& state, Quantity quantity);
 
 /// Fits the range to the field on display.
 void fit_range(AppState& state);
 
-/// A range set by hand, in the quantity's own unit. Ends in the wrong order or of a diverging
-/// quantity that are not symmetric are made so about `high`.
+/// Sets the range, in the unit of the value; corrects `low` where the order is wrong or the range
+/// of a diverging quantity is not symmetric.
 void set_range(AppState& state, Range range);
 
-/// Top view or 3-D. Each keeps where it was when the other was looked at.
+/// Switches between top view and 3-D; each keeps its position.
 void show_orbit(AppState& state, const FieldPlace& place, bool orbit);
 [[nodiscard]] bool shows_orbit(const RenderSettings& settings);
 
-/// Whether contacts are looked for and marked.
+/// Switches finding and marking contacts.
 void show_contacts(AppState& state, bool shown);
 
-/// The whole skin.
+/// Fits the view to the whole skin.
 void reset_view(AppState& state, const FieldPlace& place);
 
-/// Another surface; a 3-D view that nobody moved is fitted to it.
+/// Sets the surface; refits a view that the user has not moved.
 void set_surface(AppState& state, const FieldPlace& place, const Surface& surface);
 
-/// Pins a pillar, or takes its pin away.
+/// Pins or unpins a pillar.
 void toggle_pin(AppState& state, PillarIndex pillar);
 void select_pillars(AppState& state, const PillarRect& rect);
-/// Marks the pillars about a contact; where its centre of pressure is out of sight the view goes
-/// there.
+/// Selects the extent of a contact; moves the view if its centre of pressure is out of sight.
 void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
                   const PillarRect& extent);
 void clear_marks(AppState& state);
 
-/// Plays so much faster (or slower, -1) in steps of 1, 2, 5, 10.
+/// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);
 
-/// A field has come: it is on display, and the histories of pins and region go on.
+/// Displays a new field and extends the histories of pins and selection.
 void take_field(AppState& state, ShownField field);
 
 }  // namespace pillarfield::viewer

@@ -17,7 +17,7 @@ double distance(Vec2 a, Vec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 double shake_of(const Command& command) { return kShake * command.state.settings.scale; }
 
-/// Views are told of pixels in the picture, not in the window.
+/// The plot in pixels of the picture, which views use.
 Viewport plot_of(const Command& command) {
   return layout_of(command.place.area.width, command.place.area.height, command.state.settings)
       .plot;
@@ -27,7 +27,7 @@ Vec2 in_picture(const Command& command, Vec2 pixel) {
   return {pixel.x - command.place.area.x, pixel.y - command.place.area.y};
 }
 
-/// The view moved: it is kept on the skin, and no longer follows the window's size.
+/// After a move: clamps the view to the skin and detaches it from the window's size.
 void settle(const Command& command) {
   keep_on_skin(command.state.settings.view, command.place.skin());
   command.state.view_is_fitted = false;
@@ -112,7 +112,7 @@ void Controls::release(const ButtonEvent& event, const Command& command) {
 void Controls::click(const ButtonEvent& event, const Command& command) {
   const bool again = last_click_ && event.time_s - last_click_->time_s < kDoubleClickSeconds &&
                      distance(last_click_->pixel, event.pixel) <= shake_of(command);
-  // The second click undoes what the first did to the pin.
+  // Undoes the first click's change of the pin.
   if (const auto pillar = pillar_at(command.place, command.state.settings, event.pixel)) {
     toggle_pin(command.state, *pillar);
   }

@@ -64,7 +64,7 @@ bool GuiInput::has_open_list() {
   return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
-// ImGui closes them by keys only where keys move its focus, which here are shortcuts.
+// ImGui closes popups by keys only with keyboard navigation, which is off.
 void GuiInput::close_lists() {
   if (has_open_list()) ImGui::ClosePopupToLevel(0, true);
 }

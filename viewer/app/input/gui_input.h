@@ -7,17 +7,17 @@
 
 namespace pillarfield::viewer {
 
-/// Tells Dear ImGui what the hand did. A button that goes down and up between two frames is held
-/// for one, so that no click is lost.
+/// Passes input events to Dear ImGui. Holds a button pressed and released between two frames for
+/// one frame, so that no click is lost.
 class GuiInput {
  public:
   void take(const InputEvent& event);
 
-  /// Whether a list of choices lies open over the window, and closes it.
+  /// Queries and closes popup lists.
   [[nodiscard]] static bool has_open_list();
   static void close_lists();
 
-  /// Before each frame of ImGui, with its context current.
+  /// Call it before each ImGui frame, with its context current.
   void begin_frame(double seconds_since_last);
 
  private:

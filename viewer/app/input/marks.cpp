@@ -15,7 +15,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Draws on top of everything that the picture shows, with an edge that any colour lets see.
+/// Draws over the picture, with an edge visible on any colour.
 class Marker {
  public:
   Marker(const AppState& state, const FieldPlace& place)

@@ -5,8 +5,8 @@
 
 namespace pillarfield::viewer {
 
-/// Draws over the picture what is marked in it: numbered pins, the region, the pillar under the
-/// cursor. No part of the picture: files do not have it.
+/// Draws numbered pins, the selection and the pillar under the cursor over the picture; files do
+/// not include them.
 void draw_marks(const AppState& state, const FieldPlace& place);
 
 }  // namespace pillarfield::viewer

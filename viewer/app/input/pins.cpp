@@ -8,7 +8,7 @@ namespace {
 
 using PinColours = std::array<Colour, AppState::kMostPins>;
 
-// After Okabe and Ito; lighter on dark ground, darker on light ground.
+// After Okabe and Ito; lighter on a dark background, darker on a light one.
 constexpr PinColours kOnDark{{{86, 180, 233},
                               {240, 167, 50},
                               {38, 198, 150},

@@ -78,7 +78,7 @@ void toggle_contacts(const Command& command) {
   show_contacts(command.state, !command.state.settings.contacts);
 }
 
-/// What is open or under way ends first.
+/// Closes help, else stops writing, else clears the marks.
 void escape(const Command& command) {
   if (command.state.show_help) {
     command.state.show_help = false;
@@ -129,23 +129,23 @@ constexpr std::array kShortcuts{
              show<Quantity::uncertainty>},
     Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
 
-    Shortcut{Group::settings, plain(GLFW_KEY_A), "A", "arrows", toggle<&RenderSettings::arrows>},
-    Shortcut{Group::settings, plain(GLFW_KEY_U), "U", "sectors of the ambiguous",
+    Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows", toggle<&RenderSettings::arrows>},
+    Shortcut{Group::view, plain(GLFW_KEY_U), "U", "uncertainty sectors",
              toggle<&RenderSettings::sectors>},
-    Shortcut{Group::settings, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars",
+    Shortcut{Group::view, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars",
              toggle<&RenderSettings::hatch>},
-    Shortcut{Group::settings, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
-    Shortcut{Group::settings, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
-    Shortcut{Group::settings, plain(GLFW_KEY_R), "R", "the whole skin",
+    Shortcut{Group::view, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
+    Shortcut{Group::view, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
+    Shortcut{Group::view, plain(GLFW_KEY_R), "R", "the whole skin",
              [](const Command& command) { reset_view(command.state, command.place); }},
-    Shortcut{Group::settings, plain(GLFW_KEY_G), "G", "fit the range to this frame",
+    Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
              [](const Command& command) { fit_range(command.state); }},
-    Shortcut{Group::settings, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
+    Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
     Shortcut{
-        Group::settings, plain(GLFW_KEY_TAB), "Tab", "panels",
+        Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
         [](const Command& command) { command.state.show_panels = !command.state.show_panels; }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins, region", escape},
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and selection", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
              ask<&PendingActions::picture>},
@@ -153,7 +153,7 @@ constexpr std::array kShortcuts{
              ask<&PendingActions::sequence>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_M), "Ctrl+M", "write all frames (video)",
              ask<&PendingActions::video>},
-    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write what is in sight (CSV)",
+    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write visible pillars (CSV)",
              ask<&PendingActions::table>},
     Shortcut{Group::write,
              {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
@@ -165,8 +165,8 @@ constexpr std::array kShortcuts{
 
 constexpr std::array kMouseHelp{
     MouseHelp{"hover", "values under the cursor"},
-    MouseHelp{"click", "pin a pillar, or take its pin away"},
-    MouseHelp{"drag", "mark a region; in 3-D turn the view"},
+    MouseHelp{"click", "pin or unpin a pillar"},
+    MouseHelp{"drag", "select pillars; in 3-D turn the view"},
     MouseHelp{"right drag, Shift+drag", "move the view"},
     MouseHelp{"wheel", "zoom about the cursor"},
     MouseHelp{"double click", "the whole skin"},
@@ -175,7 +175,7 @@ constexpr std::array kMouseHelp{
 }  // namespace
 
 const char* title_of(ShortcutGroup group) {
-  constexpr std::array kTitles{"Play", "Show", "RenderSettings", "Marks", "Write"};
+  constexpr std::array kTitles{"Play", "Show", "View", "Marks", "Write"};
   return kTitles.at(static_cast<std::size_t>(group));
 }
 

@@ -12,13 +12,12 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Text in the middle of the row's height, in a place `width` wide, so that nothing moves with it;
-/// of the room that is left over, `share_left` is left of it.
-void text_in(const std::string& text, float width, float share_left) {
+/// Text in a field of fixed `width`, centred vertically; `align` is 0 for left, 1 for right.
+void text_in(const std::string& text, float width, float align) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  const float left = corner.x + share_left * (width - size.x);
+  const float left = corner.x + align * (width - size.x);
   ImGui::GetWindowDrawList()->AddText(
       ImVec2(std::round(left), std::round(corner.y + (side - size.y) / 2)),
       ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
@@ -57,7 +56,7 @@ void mode_buttons(AppState& state, const PlayerState& playback) {
   }
 }
 
-/// Where the head is, as a line to pull it along.
+/// The play head's slider.
 void scrub(Player& player, const PlayerState& playback, std::uint64_t shown, float width) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -74,7 +73,7 @@ void scrub(Player& player, const PlayerState& playback, std::uint64_t shown, flo
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float y = std::round(corner.y + side / 2);
   const float thick = std::max(std::round(0.1f * ImGui::GetFontSize()), 1.0f);
-  // Pulled, the knob is where the hand is; else it tells what is on display.
+  // While dragged, the knob shows the target; else the frame on display.
   const std::uint64_t at = ImGui::IsItemActive() ? player.state().frame : shown;
   const float x = begin + length * static_cast<float>(at) / last;
   list.AddRectFilled(ImVec2(begin, y - thick), ImVec2(begin + length, y + thick),
@@ -103,11 +102,11 @@ void transport(const Command& command) {
   const std::string widest = fmt::format("0000.000 s   {0} / {0}", playback.frames);
   const float time_width = ImGui::CalcTextSize(widest.c_str()).x;
   const float speed_width = 2 * side + ImGui::CalcTextSize("0.05×").x;
-  // A narrow window has no room for everything: where the head is comes last to go.
+  // A narrow window drops the speed first, then the time.
   const float least = 8 * side + 4 + 3 * gap;
-  const float room = ImGui::GetContentRegionAvail().x;
-  const bool has_time = room > least + time_width;
-  const bool has_speed = room > least + time_width + speed_width;
+  const float available = ImGui::GetContentRegionAvail().x;
+  const bool has_time = available > least + time_width;
+  const bool has_speed = available > least + time_width + speed_width;
   const float rest = (has_time ? time_width + gap / 2 : 0) + (has_speed ? speed_width + gap : 0) +
                      3 * side + 4 + gap + gap / 2;
 

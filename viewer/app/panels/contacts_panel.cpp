@@ -15,9 +15,9 @@ namespace {
 constexpr int kTableFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
                             ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit |
                             ImGuiTableFlags_BordersInnerV;
-constexpr std::size_t kMostRows = 9;  ///< seen at a time
+constexpr std::size_t kMostRows = 9;  ///< visible at a time
 
-/// Columns stand where they are, whatever the numbers.
+/// Columns of fixed width.
 void set_columns() {
   for (const ContactColumn& column : contact_columns()) {
     const double width = std::max(width_of(column.head), width_of(column.widest));
@@ -26,7 +26,7 @@ void set_columns() {
   }
 }
 
-/// Stands still while contacts are scrolled.
+/// Fixed head row above the scrolled contacts.
 void write_head() {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const ContactColumn& column : contact_columns()) {
@@ -37,12 +37,12 @@ void write_head() {
 }
 
 void write_right(const std::string& words) {
-  const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(words.c_str()).x;
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(room, 0.0f));
+  const float left_over = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(words.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
   ImGui::TextUnformatted(words.c_str());
 }
 
-/// True where it was clicked.
+/// Returns true if clicked.
 bool write_row(const std::string& name, const ContactQuantities& contact) {
   bool clicked = false;
   const auto words = format_contact(name, contact);
@@ -58,7 +58,7 @@ bool write_row(const std::string& name, const ContactQuantities& contact) {
   return clicked;
 }
 
-/// The place in the frame's contacts of the one that was clicked.
+/// Index of the clicked contact in the frame's contacts.
 std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
   std::optional<std::size_t> clicked;
   ImGuiListClipper clipper;
@@ -96,7 +96,7 @@ std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownCon
 void contacts_panel(AppState& state, const FieldPlace& place) {
   const PanelStyle style = panel_style(state.settings.scale);
   if (!state.settings.contacts || !state.field || state.field->contacts == nullptr) {
-    faint_words(style, "Contacts are not looked for (K).");
+    faint_text(style, "Contacts are not looked for (K).");
     return;
   }
   const ShownContacts& contacts = *state.field->contacts;
@@ -105,7 +105,7 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
                  contacts.extents[*clicked]);
   }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
-    faint_words(style, warning.c_str());
+    faint_text(style, warning.c_str());
   }
 }
 

@@ -14,7 +14,7 @@ std::string format_percent(std::uint64_t part, std::uint64_t all) {
   return fmt::format("{:.0f} %", 100 * static_cast<double>(part) / static_cast<double>(all));
 }
 
-/// "42 %", and "42 % / 90 %" where their contact resolved some of them.
+/// "42 %", or "42 % / 90 %" with the fraction resolved from the contact.
 std::string format_ambiguous(const ContactQuantities& contact) {
   std::string share = format_percent(contact.ambiguous, contact.pillars);
   if (contact.resolved == 0) return share;
@@ -31,12 +31,12 @@ std::string format_friction(const ContactQuantities& contact) {
 
 const std::array<ContactColumn, kContactColumns>& contact_columns() {
   static constexpr std::array<ContactColumn, kContactColumns> kColumns{{
-      {"id", "stays the same while the contact is followed", "0000"},
+      {"id", "constant while the contact is tracked", "0000"},
       {"normal", "normal force, N", "00000"},
       {"shear", "shear force, N", "00000"},
-      {"µ", "friction and its standard deviation, where it is known", "0.00 ± 0.00"},
+      {"µ", "friction and its standard deviation, if observed", "0.00 ± 0.00"},
       {"slip", "sticking, partial, sliding or unknown", "unknown"},
-      {"ambiguous", "share of the pillars / share of those that their contact resolved",
+      {"ambiguous", "fraction of pillars / fraction of these resolved from the contact",
        "00 % / 00 %"},
       {"mean", "mean pressure, kPa", "00000"},
       {"area", "mm²", "00000"},

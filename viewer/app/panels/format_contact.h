@@ -10,16 +10,16 @@ namespace pillarfield::viewer {
 
 inline constexpr std::size_t kContactColumns = 9;
 
-/// The head of a column of the table of contacts, and what it means.
+/// A column of the table of contacts.
 struct ContactColumn {
   const char* head;    ///< "normal"
   const char* help;    ///< "normal force, N"
-  const char* widest;  ///< words that are hardly ever exceeded
+  const char* widest;  ///< sample text that sets the width
 };
 [[nodiscard]] const std::array<ContactColumn, kContactColumns>& contact_columns();
 
-/// A line of the table: `name`, then as contact_columns(). Numbers have three digits; "–" stands
-/// for what is not known or not there.
+/// A row of the table: `name`, then contact_columns(), numbers with three digits; "–" for missing
+/// values.
 [[nodiscard]] std::array<std::string, kContactColumns> format_contact(
     const std::string& name, const ContactQuantities& contact);
 

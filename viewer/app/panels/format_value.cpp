@@ -19,7 +19,7 @@ constexpr int kMostDecimals = 6;
 
 bool tells(double deviation) { return std::isfinite(deviation) && deviation > 0; }
 
-/// Decimals that show so many digits of a size.
+/// Number of decimals that show `digits` digits of `size`.
 int decimals_of(double size, int digits) {
   const int first = static_cast<int>(std::floor(std::log10(size)));
   return std::clamp(digits - 1 - first, 0, kMostDecimals);
@@ -43,13 +43,13 @@ ShownValue with_deviation(const char* label, double value, double deviation, con
   return {label, format_value(value, deviation), format_deviation(deviation), unit};
 }
 
-/// A value that may be anything between two ends.
+/// A value known only as an interval.
 ShownValue with_interval(const char* label, double value, Span ends, const char* unit) {
   return {label, format_value(value, ends.to - ends.from), format_interval(ends.from, ends.to),
           unit};
 }
 
-/// Phi runs from low to high; where it passes pi, the far end is told beyond 180 degrees.
+/// Interval of phi; beyond 180 degrees where it crosses pi.
 Span phi_span(const PillarValues& values) {
   const double low = plane(values, Uncertainty::phi_low) * kDegrees;
   const double high = plane(values, Uncertainty::phi_high) * kDegrees;
@@ -107,7 +107,7 @@ std::string format_status(std::uint8_t status) {
     words = fmt::format("region {}", name_of(region));
   }
   if ((status & status::kFromNeighbours) != 0) {
-    words += ", resolved by its contact";
+    words += ", resolved from the contact";
   } else if ((status & status::kAmbiguous) != 0) {
     words += ", ambiguous";
   }

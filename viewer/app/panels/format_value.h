@@ -7,9 +7,8 @@
 
 namespace pillarfield::viewer {
 
-/// Standard deviations of a force's magnitude (N), theta and phi (rad) from those of its
-/// components, to first order and as if those were independent; NaN where the direction is not
-/// determined (no force, or for phi no shear).
+/// Standard deviations of magnitude (N), theta and phi (rad), to first order, from those of the
+/// components, assumed independent; NaN without a direction (no force, or for phi no shear).
 struct DirectionDeviation {
   double magnitude, theta, phi;
 };
@@ -18,38 +17,38 @@ struct DirectionDeviation {
 /// "row 12, column 34".
 [[nodiscard]] std::string format_pillar(PillarIndex pillar);
 
-/// "x 12.65, y −3.79 mm": the middle of a pillar, from that of the skin.
+/// "x 12.65, y −3.79 mm": the centre of a pillar from the middle of the skin.
 [[nodiscard]] std::string format_place(const ForceFieldView& forces, PillarIndex pillar,
                                        double pillar_pitch_mm);
 
-/// "12", and "12.3" of what is no whole number.
+/// "12", or "12.3" for a number that is not whole.
 [[nodiscard]] std::string format_count(double counts);
 
-/// "12  34  0  7  counts": the four readings in the order of the sensels.
+/// "12  34  0  7  counts", in the order of the sensels.
 [[nodiscard]] std::string format_readings(const std::array<float, 4>& readings);
 
-/// "region 3, ambiguous", "no contact", "region 1, saturated": what a status byte says.
+/// "region 3, ambiguous", "no contact", "region 1, saturated".
 [[nodiscard]] std::string format_status(std::uint8_t status);
 
-/// A number with as many decimals as two digits of its deviation have ("0.1234" of 0.0056), with
-/// three_digits() where that is no number or zero.
+/// The value with the decimals of two digits of its deviation ("0.1234" for 0.0056); three_digits()
+/// where the deviation is NaN or 0.
 [[nodiscard]] std::string format_value(double value, double deviation);
 
-/// "± 0.0056": two digits. Empty where it is no number.
+/// "± 0.0056", with two digits; empty for NaN.
 [[nodiscard]] std::string format_deviation(double deviation);
 
-/// "0.12 … 0.34": ends with as many decimals as two digits of what is between them have.
+/// "0.12 … 0.34", with the decimals of two digits of its width.
 [[nodiscard]] std::string format_interval(double low, double high);
 
-/// A quantity of a pillar as it is displayed.
+/// Displayed texts of a quantity.
 struct ShownValue {
   std::string label;
   std::string value;
-  std::string range;  ///< deviation or interval, where known
+  std::string range;  ///< deviation or interval, if known
   std::string unit;
 };
 
-/// Magnitude, theta and phi: with intervals where the pillar is ambiguous, deviations elsewhere.
+/// Magnitude, theta and phi, with intervals for an ambiguous pillar, else deviations.
 [[nodiscard]] std::array<ShownValue, 3> shown_direction(const PillarValues& values);
 
 /// Normal, shear x and shear y, with deviations.

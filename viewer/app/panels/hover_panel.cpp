@@ -9,7 +9,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// What the heat map shows, where no other line tells it.
+/// Adds the quantity of the heat map unless another line shows it.
 void add_mapped(std::vector<ShownValue>& lines, const AppState& state) {
   const Quantity quantity = state.settings.quantity;
   if (quantity != Quantity::uncertainty && quantity != Quantity::parity) return;
@@ -31,7 +31,7 @@ std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& valu
 void hover_panel(const AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   if (!state.field || !state.hovered) {
-    faint_words(style, "No pillar under the cursor.");
+    faint_text(style, "No pillar under the cursor.");
     return;
   }
   const PillarIndex pillar = *state.hovered;
@@ -40,7 +40,7 @@ void hover_panel(const AppState& state) {
   heading(style, format_pillar(pillar), format_place(state.field->forces, pillar, pitch_mm));
   status_line(style, values.status, state.settings.theme);
   if (state.field->raw.data != nullptr) {
-    faint_words(style, ("readings 1–4: " + format_readings(values.readings)).c_str());
+    faint_text(style, ("readings 1–4: " + format_readings(values.readings)).c_str());
   }
   if (values.status == 0) return;
   leave_gap(style, 2);

@@ -19,7 +19,7 @@ PanelStyle panel_style(double scale) {
   PanelStyle style{};
   style.ground = ImGui::ColorConvertFloat4ToU32(ground);
   style.text = ImGui::ColorConvertFloat4ToU32(opaque(ImGuiCol_Text, ground));
-  // A style's colour of disabled text can be too weak for what is to be read.
+  // ImGui's colour of disabled text can be too faint to read.
   style.faint = mixed(style.ground, style.text, 0.66);
   style.grid = mixed(style.ground, style.text, 0.16);
   style.raised = mixed(style.ground, style.text, 0.055);
@@ -62,11 +62,11 @@ void draw_block(ImDrawList& list, const Viewport& box, ImU32 colour) {
   list.AddRectFilled(point({left, top}), point({right, bottom}), colour);
 }
 
-Viewport take_room(double width, double height) {
+Viewport reserve(double width, double height) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const double room = width > 0 ? width : static_cast<double>(ImGui::GetContentRegionAvail().x);
-  ImGui::Dummy(point({std::max(room, 1.0), height}));
-  return {static_cast<double>(corner.x), static_cast<double>(corner.y), std::max(room, 1.0),
+  const double wide = width > 0 ? width : static_cast<double>(ImGui::GetContentRegionAvail().x);
+  ImGui::Dummy(point({std::max(wide, 1.0), height}));
+  return {static_cast<double>(corner.x), static_cast<double>(corner.y), std::max(wide, 1.0),
           height};
 }
 
@@ -74,7 +74,7 @@ void leave_gap(const PanelStyle& style, double pixels) {
   ImGui::Dummy(point({1, std::round(pixels * style.unit)}));
 }
 
-void faint_words(const PanelStyle& style, const char* words) {
+void faint_text(const PanelStyle& style, const char* words) {
   ImGui::PushStyleColor(ImGuiCol_Text, style.faint);
   ImGui::TextWrapped("%s", words);
   ImGui::PopStyleColor();
@@ -83,10 +83,10 @@ void faint_words(const PanelStyle& style, const char* words) {
 void heading(const PanelStyle& style, const std::string& words, const std::string& further) {
   ImGui::TextUnformatted(words.c_str());
   if (further.empty()) return;
-  // On the same line where there is room, at the panel's right edge.
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (width_of(words) + width_of(further) + 12 * style.unit < room) {
-    ImGui::SameLine(0, static_cast<float>(room - width_of(words) - width_of(further)));
+  // On the same line, at the panel's right edge, if it fits.
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  if (width_of(words) + width_of(further) + 12 * style.unit < available) {
+    ImGui::SameLine(0, static_cast<float>(available - width_of(words) - width_of(further)));
   }
   ImGui::PushStyleColor(ImGuiCol_Text, style.faint);
   ImGui::TextUnformatted(further.c_str());

@@ -9,21 +9,21 @@
 
 namespace pillarfield::viewer {
 
-/// Colours and sizes of what a panel draws itself, from the current style of Dear ImGui.
+/// Colours and sizes for custom drawing in panels, from the current ImGui style.
 struct PanelStyle {
-  ImU32 text;    ///< words, numbers, and lines that matter
+  ImU32 text;    ///< text and main lines
   ImU32 faint;   ///< labels, axes
-  ImU32 grid;    ///< barely there
-  ImU32 raised;  ///< the ground of plots and bars
-  ImU32 ground;  ///< of the panel
-  double unit;   ///< pixels that a pixel of a plain display is here
+  ImU32 grid;    ///< grid lines
+  ImU32 raised;  ///< background of plots and bars
+  ImU32 ground;  ///< background of the panel
+  double unit;   ///< pixels per nominal pixel
   double line;   ///< height of a line of text, pixels
 };
 [[nodiscard]] PanelStyle panel_style(double scale);
 
 [[nodiscard]] ImU32 packed(const Colour& colour);
 
-/// `share` of `over` on `under`, opaque.
+/// Opaque blend of `over` on `under`, `share` of it `over`.
 [[nodiscard]] ImU32 mixed(ImU32 under, ImU32 over, double share);
 [[nodiscard]] ImU32 with_alpha(ImU32 colour, double alpha);
 
@@ -32,26 +32,26 @@ struct PanelStyle {
 }
 [[nodiscard]] double width_of(const std::string& text);
 
-/// Where a text stands about its place.
+/// Alignment of a text to its position.
 enum class Align { left, middle, right };
 
-/// On whole pixels; `y` is its upper edge.
+/// Draws text on whole pixels; `y` is the upper edge.
 void draw_text(ImDrawList& list, Vec2 place, ImU32 colour, const std::string& text,
                Align align = Align::left);
 
-/// Filled, on whole pixels, one at least in each direction.
+/// Fills a box of whole pixels, at least one in each direction.
 void draw_block(ImDrawList& list, const Viewport& box, ImU32 colour);
 
-/// Takes `width` x `height` pixels of the current window, as wide as it is where `width` is 0.
-[[nodiscard]] Viewport take_room(double width, double height);
+/// Reserves `width` x `height` pixels in the current window; width 0: all that is available.
+[[nodiscard]] Viewport reserve(double width, double height);
 
-/// An empty space in the height of the panel.
+/// Adds vertical space.
 void leave_gap(const PanelStyle& style, double pixels);
 
-/// Words that tell that there is nothing to show.
-void faint_words(const PanelStyle& style, const char* words);
+/// A faint line of text in place of missing contents.
+void faint_text(const PanelStyle& style, const char* words);
 
-/// The title of a panel's part, with further words in faint ink.
+/// The title of a part of a panel, with `further` in the faint colour.
 void heading(const PanelStyle& style, const std::string& words, const std::string& further = {});
 
 }  // namespace pillarfield::viewer

@@ -15,7 +15,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// A button with a pin's number in its colour; filled if it is the inspected one. True if clicked.
+/// A button with a pin's number in its colour, filled for the inspected pin. True if clicked.
 bool pin_button(const PanelStyle& style, const Pin& pin, Theme theme, bool inspected) {
   const double side = std::round(style.line + 6 * style.unit);
   const std::string name = fmt::format("pin {}", pin.number);
@@ -54,7 +54,7 @@ bool remove_button(const PanelStyle& style) {
   return clicked;
 }
 
-/// Chips in the order of their numbers, so that choosing one does not move them.
+/// Buttons in the order of pin numbers, so that choosing one does not move them.
 void choose_pin(const PanelStyle& style, AppState& state) {
   std::vector<std::size_t> order;
   for (std::size_t index = 0; index < state.pins.size(); ++index) order.push_back(index);
@@ -76,37 +76,37 @@ void draw_readings(const PanelStyle& style, const AppState& state, const PillarV
   const SourceInfo& source = state.player->info();
   const auto bars = reading_bars(values, pin.pillar, source);
   const double full = full_bar(bars, source, state.field->raw.type);
-  const Viewport room = take_room(kReadingBarsSize.x * style.unit, kReadingBarsSize.y * style.unit);
-  draw_reading_bars(*ImGui::GetWindowDrawList(), {room.x, room.y}, bars, full, colour, style);
+  const Viewport box = reserve(kReadingBarsSize.x * style.unit, kReadingBarsSize.y * style.unit);
+  draw_reading_bars(*ImGui::GetWindowDrawList(), {box.x, box.y}, bars, full, colour, style);
 }
 
-/// The readings, and beside them the direction that follows; below where it is too narrow.
+/// The readings and the direction, side by side if they fit.
 void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
                                  const PillarValues& values, ImU32 colour) {
   constexpr double kLeast = 130;
   constexpr double kMost = 190;
-  double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
   if (state.field->raw.data == nullptr) {
-    faint_words(style, "The source has no readings.");
+    faint_text(style, "The source has no readings.");
   } else {
     draw_readings(style, state, values, colour);
     const double gap = 16 * style.unit;
-    const double beside = room - kReadingBarsSize.x * style.unit - gap;
+    const double beside = width - kReadingBarsSize.x * style.unit - gap;
     if (beside >= kLeast * style.unit) {
       ImGui::SameLine(0, static_cast<float>(gap));
-      room = beside;
+      width = beside;
     }
   }
-  readouts(style, shown_direction(values), std::min(room, kMost * style.unit));
+  readouts(style, shown_direction(values), std::min(width, kMost * style.unit));
 }
 
 void draw_diagram(const PanelStyle& style, const AppState& state, const PillarValues& values,
                   ImU32 colour) {
   const std::string section = section_name(values.status);
   heading(style, "θ over φ, in degrees", section.empty() ? "" : "region " + section);
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  const double height = std::clamp(0.5 * room, 120 * style.unit, 230 * style.unit);
-  const Viewport outer = take_room(0, height);
+  const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double height = std::clamp(0.5 * width, 120 * style.unit, 230 * style.unit);
+  const Viewport outer = reserve(0, height);
   draw_region_plot(*ImGui::GetWindowDrawList(), outer, values, state.pins.back().history, style,
                    colour, state.settings.theme);
 }
@@ -121,7 +121,7 @@ void pillar_panel(AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   number_pins(state);
   if (state.pins.empty()) {
-    faint_words(style, "Click a pillar to pin it.");
+    faint_text(style, "Click a pillar to pin it.");
     return;
   }
   choose_pin(style, state);

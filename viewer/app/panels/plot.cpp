@@ -13,7 +13,7 @@ double share_in(const Span& span, double value) {
   return (value - span.from) / (span.to - span.from);
 }
 
-/// What is seen of a column of pixels.
+/// Points of a curve in a column of pixels.
 struct ColumnOfPixels {
   std::size_t first, lowest, highest, last;
 };
@@ -84,7 +84,7 @@ std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width) {
     left -= widths[i];
     if (counts[i] > counts[widest]) widest = i;
   }
-  // What rounding left over or took too much is the widest one's, where nobody sees it.
+  // The widest share absorbs the rounding error.
   widths[widest] = std::max(widths[widest] + left, 0);
   return widths;
 }
@@ -99,7 +99,7 @@ Viewport inside_axes(const Viewport& outer, double label_width, const PanelStyle
   const double left = std::ceil(label_width + 6 * style.unit);
   const double top = std::ceil(0.5 * style.line);
   const double bottom = std::ceil(style.line + 4 * style.unit);
-  // The last label of the x axis is half outside.
+  // Half of the last x label lies outside the plot.
   const double right = std::ceil(12 * style.unit);
   return {outer.x + left, outer.y + top, std::max(outer.width - left - right, 1.0),
           std::max(outer.height - top - bottom, 1.0)};

@@ -13,12 +13,12 @@ constexpr Vec2 kCell{62, 80};
 constexpr Vec2 kBar{24, 54};
 constexpr Vec2 kBarCorner{18, 4};
 
-/// A plane's value at a sensel, or what stands for an empty plane.
+/// A plane's value at a sensel; `otherwise` for an empty plane.
 double value_at(const std::vector<float>& plane, std::size_t at, double otherwise) {
   return at < plane.size() ? static_cast<double>(plane[at]) : otherwise;
 }
 
-/// Rows and columns of sensels 1..4 within their pillar's four.
+/// Row and column of sensels 1..4 within a pillar.
 constexpr std::array<std::array<std::size_t, 2>, 4> kPlaces{{{0, 1}, {0, 0}, {1, 0}, {1, 1}}};
 
 void draw_bar(ImDrawList& list, const Viewport& track, const ReadingBar& bar, double full,
@@ -30,7 +30,7 @@ void draw_bar(ImDrawList& list, const Viewport& track, const ReadingBar& bar, do
     draw_block(list, {track.x, track.y + track.height - height, track.width, height},
                bar.usable ? colour : style.faint);
   }
-  // The threshold sticks out on both sides; the full scale is the track's upper end.
+  // The threshold line extends on both sides; the track ends at full scale.
   const double level = track.y + track.height * (1 - std::clamp(bar.threshold / full, 0.0, 1.0));
   const double ear = 4 * style.unit;
   draw_block(list, {track.x - ear, level, track.width + 2 * ear, style.unit}, style.text);

@@ -22,7 +22,7 @@ double in_degrees(float radians) { return static_cast<double>(radians) * kDegree
 
 int sensel_bit(int sensel) { return 1 << (sensel - 1); }
 
-/// The sensel n whose neighbour n % 4 + 1 is the other usable one; 0 outside region 3.
+/// Sensel n of the usable pair n, n % 4 + 1; 0 outside region 3.
 int first_of_pair(std::uint8_t status) {
   if (region_of(status) != Region::three) return 0;
   for (int sensel = 1; sensel <= 4; ++sensel) {
@@ -32,7 +32,7 @@ int first_of_pair(std::uint8_t status) {
   return 0;
 }
 
-/// Equation (2), with a k of one count per newton.
+/// Equation (2) with k = 1 count per newton.
 double model_reading(const PillarValues& values, int sensel) {
   const double place = std::numbers::pi / 4 * (2 * sensel - 1);
   return std::max(0.0, static_cast<double>(values.normal) +
@@ -40,7 +40,7 @@ double model_reading(const PillarValues& values, int sensel) {
                            static_cast<double>(values.shear_y) * std::sin(place));
 }
 
-/// Theta of a border at phi, degrees; 90 where it is not there.
+/// Theta of a border at phi, degrees; 90 without a border.
 double border_at(const std::vector<std::vector<Vec2>>& pieces, double phi) {
   const double x = phi / kDegreesPerRadian;
   for (const auto& piece : pieces) {
@@ -61,7 +61,7 @@ const Borders& borders() {
   return known;
 }
 
-/// Drawing in one plot for one pillar.
+/// Draws the plot of one pillar.
 class Drawing {
  public:
   Drawing(ImDrawList& list, const PlotArea& area, const PanelStyle& style, Theme theme,
@@ -95,11 +95,11 @@ class Drawing {
   const PlotArea& area_;
   const PanelStyle& style_;
   Theme theme_;
-  int usable_;  ///< sensels, as in a status byte
+  int usable_;  ///< sensel bits of a status byte
   Vec2 point_;  ///< phi and theta, degrees
 };
 
-/// Between two thetas (degrees) at its left end and two at its right one.
+/// A strip between theta intervals (degrees) at its left and right end.
 void Drawing::strip(double left, double right, Span from, Span to, int usable) const {
   list_.AddQuadFilled(point(area_.at({left, from.from})), point(area_.at({right, to.from})),
                       point(area_.at({right, to.to})), point(area_.at({left, from.to})),
@@ -107,7 +107,7 @@ void Drawing::strip(double left, double right, Span from, Span to, int usable) c
 }
 
 void Drawing::tint() const {
-  // Smoothed edges of neighbouring strips would let the ground shine through.
+  // Antialiased edges of neighbouring strips would show the background.
   const ImDrawListFlags flags = list_.Flags;
   list_.Flags &= ~ImDrawListFlags_AntiAliasedFill;
   constexpr double kStep = 3;
@@ -116,7 +116,7 @@ void Drawing::tint() const {
     const double phi = -180 + kStep * i;
     const RegionLimits left = region_limits(phi);
     const RegionLimits right = region_limits(phi + kStep);
-    // Borders cross at multiples of the step, where it would be anybody's guess who lifts first.
+    // Borders cross at multiples of the step; sample between them.
     const RegionLimits middle = region_limits(phi + kStep / 2);
     const int three = status::kUsable & ~sensel_bit(middle.first);
     const int two = three & ~sensel_bit(middle.second);
@@ -149,27 +149,27 @@ void Drawing::number(const char* words, Vec2 place, int inactive, Align align) c
             here ? style_.text : mixed(style_.ground, style_.text, 0.45), words, align);
 }
 
-/// As in the paper: behind the point the sensels that are not usable.
+/// Section numbers of the paper; the digits after the point are the unusable sensels.
 void Drawing::draw_numbers() const {
   number("1", {0, 21}, 0);
   number("2.3", {-135, 66}, status::kSensel3);
   number("2.4", {-45, 66}, status::kSensel4);
   number("2.1", {45, 66}, status::kSensel1);
   number("2.2", {135, 66}, status::kSensel2);
-  // Between the borders this is where there is room.
+  // Positions between the borders.
   number("3.34", {-90, 80}, status::kSensel3 | status::kSensel4);
   number("3.14", {0, 80}, status::kSensel1 | status::kSensel4);
   number("3.12", {90, 80}, status::kSensel1 | status::kSensel2);
-  // Half of this one is at either edge, which may be too narrow for its number.
+  // This section wraps around; each half may be too narrow for its number.
   const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
   if (width_of("3.23") + 3 * style_.unit > half_width) return;
   number("3.23", {-179, 80}, status::kSensel2 | status::kSensel3, Align::left);
   number("3.23", {179, 80}, status::kSensel2 | status::kSensel3, Align::right);
 }
 
-/// Region 4: four points at the upper edge.
+/// Draws region 4: four points at the upper edge.
 void Drawing::draw_corners() const {
-  // The force comes from the side opposite to the one sensel that it presses.
+  // The force comes from the side opposite to the pressed sensel.
   const std::array<std::pair<double, int>, 4> corners{{{-135, status::kSensel1},
                                                        {-45, status::kSensel2},
                                                        {45, status::kSensel3},
@@ -191,7 +191,7 @@ void Drawing::draw_line(const std::vector<Vec2>& line, ImU32 colour, double widt
 }
 
 void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
-  // Smaller than the point it would not be seen.
+  // A box smaller than the point would be hidden.
   const ImVec2 least = point({1.5 * style_.unit, 1.5 * style_.unit});
   for (const double turn : {-360.0, 0.0, 360.0}) {
     ImVec2 low = point(area_.at({box.phi.from + turn, box.theta.to}));
@@ -248,7 +248,7 @@ std::optional<DirectionBox> direction_box(const PillarValues& values) {
     const DirectionDeviation deviation = direction_deviation(values);
     const double phi = in_degrees(values.phi);
     const double theta = in_degrees(values.theta);
-    // Without shear every direction in the plane is as good.
+    // Without shear phi is undetermined.
     const double phi_half = std::min(deviation.phi * kDegreesPerRadian, 180.0);
     const double theta_half = deviation.theta * kDegreesPerRadian;
     box.phi = std::isfinite(phi_half) ? Span{phi - phi_half, phi + phi_half} : Span{-180, 180};

@@ -27,7 +27,7 @@ ShownValue shown(const char* label, double value, const char* unit, std::string 
   return {label, three_digits(value), std::move(further), unit};
 }
 
-/// The force that the whole region bears.
+/// Total force of the selection.
 std::vector<ShownValue> force_lines(const SelectionSums& sums) {
   return {shown("normal", sums.normal, "N"),
           shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"),
@@ -35,7 +35,7 @@ std::vector<ShownValue> force_lines(const SelectionSums& sums) {
           shown("moment z", sums.moment_z, "N mm")};
 }
 
-/// Where it acts, and how it is spread.
+/// Centre of pressure, area, mean and peak.
 std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
   std::vector<ShownValue> lines{
       shown("centre x", sums.centre_x_mm, "mm"), shown("centre y", sums.centre_y_mm, "mm"),
@@ -47,12 +47,12 @@ std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
   return lines;
 }
 
-/// Two tables beside each other where there is room.
+/// Two tables, side by side if they fit.
 void draw_tables(const PanelStyle& style, const SelectionSums& sums) {
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
   value_table(style, force_lines(sums));
   const double second = value_table_width(style) - 60 * style.unit;
-  if (second + value_table_width(style) <= room) {
+  if (second + value_table_width(style) <= available) {
     ImGui::SameLine(0, 0);
     ImGui::SetCursorPosX(ImGui::GetCursorStartPos().x + static_cast<float>(second));
   } else {
@@ -73,14 +73,14 @@ std::array<std::uint64_t, 5> shown_counts(const SelectionSums& sums) {
 }
 
 void draw_shares(const PanelStyle& style, const SelectionSums& sums, Theme theme) {
-  const Viewport room = take_room(0, std::round(10 * style.unit));
+  const Viewport bar = reserve(0, std::round(10 * style.unit));
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  draw_block(list, room, mixed(style.ground, style.text, 0.12));
-  const auto widths = shares_of(shown_counts(sums), static_cast<int>(room.width));
-  double x = room.x;
+  draw_block(list, bar, mixed(style.ground, style.text, 0.12));
+  const auto widths = shares_of(shown_counts(sums), static_cast<int>(bar.width));
+  double x = bar.x;
   for (std::size_t i = 0; i < widths.size(); ++i) {
     if (widths[i] > 0) {
-      draw_block(list, {x, room.y, static_cast<double>(widths[i]), room.height},
+      draw_block(list, {x, bar.y, static_cast<double>(widths[i]), bar.height},
                  packed(region_colour(kShown[i], theme)));
     }
     x += widths[i];
@@ -92,15 +92,15 @@ std::string share_words(std::uint64_t count, std::uint64_t all) {
   return fmt::format("{:.{}f} %", percent, percent < 9.95 ? 1 : 0);
 }
 
-/// What the colours of the shares mean: as many in a line as fit.
+/// Legend of the shares, wrapped into lines.
 void draw_legend(const PanelStyle& style, const SelectionSums& sums, Theme theme) {
   const auto counts = shown_counts(sums);
   const double cell = 76 * style.unit;
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
   double used = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (kShown[i] == Region::opposite && counts[i] == 0) continue;
-    if (used > 0 && used + cell <= room) {
+    if (used > 0 && used + cell <= available) {
       ImGui::SameLine(ImGui::GetCursorStartPos().x + static_cast<float>(used));
     } else {
       used = 0;
@@ -123,7 +123,7 @@ std::string fault_words(const SelectionSums& sums) {
 void selection_panel(AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   if (!state.selection || !state.field) {
-    faint_words(style, "No region is marked.");
+    faint_text(style, "Nothing is selected.");
     return;
   }
   const PillarRect& rect = state.selection->rect;
@@ -138,7 +138,7 @@ void selection_panel(AppState& state) {
   if (sums.in_contact == 0) return;
   draw_shares(style, sums, state.settings.theme);
   draw_legend(style, sums, state.settings.theme);
-  faint_words(style, fault_words(sums).c_str());
+  faint_text(style, fault_words(sums).c_str());
 }
 
 }  // namespace pillarfield::viewer

@@ -11,13 +11,14 @@ bool is_same(const PillarRect& a, const PillarRect& b) {
 }  // namespace
 
 const SelectionSums& selection_sums(AppState& state) {
-  Selection& region = *state.selection;
+  Selection& selection = *state.selection;
   const std::uint64_t frame = state.field->index;
-  if (!region.kept || region.kept->frame != frame || !is_same(region.kept->rect, region.rect)) {
+  if (!selection.cached || selection.cached->frame != frame ||
+      !is_same(selection.cached->rect, selection.rect)) {
     const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
-    region.kept = {frame, region.rect, sums_over(*state.field, region.rect, pitch_mm)};
+    selection.cached = {frame, selection.rect, sums_over(*state.field, selection.rect, pitch_mm)};
   }
-  return region.kept->sums;
+  return selection.cached->sums;
 }
 
 }  // namespace pillarfield::viewer

@@ -4,9 +4,8 @@
 
 namespace pillarfield::viewer {
 
-/// What the marked region of the field on display adds up to. Added up once a frame and rectangle
-/// (milliseconds where the region is a square metre), and kept in the session. There must be both
-/// a region and a field.
+/// Sums over the selection in the field on display; both must exist. Cached per frame and
+/// rectangle, since a square metre takes milliseconds.
 [[nodiscard]] const SelectionSums& selection_sums(AppState& state);
 
 }  // namespace pillarfield::viewer

@@ -26,9 +26,9 @@ Colour region_colour(Region region, Theme theme) {
 
 void swatch(const PanelStyle& style, ImU32 colour) {
   const double side = std::round(0.66 * style.line);
-  const Viewport room = take_room(side, style.line);
+  const Viewport line = reserve(side, style.line);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const Viewport box{room.x, room.y + std::round(0.5 * (style.line - side)) + 1, side, side};
+  const Viewport box{line.x, line.y + std::round(0.5 * (style.line - side)) + 1, side, side};
   draw_block(list, box, colour);
   list.AddRect(point({box.x, box.y}), point({box.x + side, box.y + side}), style.grid);
   ImGui::SameLine(0, static_cast<float>(7 * style.unit));

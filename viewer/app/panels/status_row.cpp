@@ -8,23 +8,23 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Writes columns from the left: a faint label, then its value right-aligned in a place of its own.
+/// Writes columns from the left: a faint label, then its value, right-aligned in a fixed width.
 class Row {
  public:
   void add(const char* label, const std::string& value, const char* widest) {
-    const float room = ImGui::CalcTextSize(widest).x;
-    full_ |= x_ + ImGui::CalcTextSize(label).x + gap() * 0.4f + room > right();
+    const float width = ImGui::CalcTextSize(widest).x;
+    full_ |= x_ + ImGui::CalcTextSize(label).x + gap() * 0.4f + width > right();
     if (full_) return;
     write(label, ImGuiCol_TextDisabled);
-    x_ += gap() * 0.4f + room - ImGui::CalcTextSize(value.c_str()).x;
+    x_ += gap() * 0.4f + width - ImGui::CalcTextSize(value.c_str()).x;
     write(value.c_str(), ImGuiCol_Text);
     x_ += gap();
   }
 
-  /// At the beginning of what is left of the row, whether there is room or not.
+  /// Writes text at the current position, whether it fits or not.
   void begin(const std::string& words, ImGuiCol colour) { write(words.c_str(), colour); }
 
-  /// At the end of the row; false where there is no room for it.
+  /// Writes text at the end of the row; false if it does not fit.
   bool finish(const std::string& words, ImGuiCol colour) {
     const float width = ImGui::CalcTextSize(words.c_str()).x;
     if (right() - width < x_) return false;
@@ -46,7 +46,7 @@ class Row {
     x_ += ImGui::CalcTextSize(words).x;
   }
 
-  bool full_ = false;  ///< there was no room for a column
+  bool full_ = false;  ///< a column did not fit
   float x_ = ImGui::GetStyle().WindowPadding.x;
 };
 

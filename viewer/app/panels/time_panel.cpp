@@ -46,7 +46,7 @@ Chart chart_of_pins(const char* title, const AppState& state, Component componen
   return chart;
 }
 
-/// The region bears much more than a pillar, so it has scales of its own.
+/// The selection has its own charts, since it carries much more than a pillar.
 std::vector<Chart> charts_of(const AppState& state, const PanelStyle& style) {
   std::vector<Chart> charts;
   if (!state.pins.empty()) {
@@ -55,13 +55,13 @@ std::vector<Chart> charts_of(const AppState& state, const PanelStyle& style) {
   }
   if (state.selection) {
     const History& history = state.selection->history;
-    charts.push_back({"Normal of the region, N", {{curve_of(history, normal_of), style.text}}});
-    charts.push_back({"|Shear| of the region, N", {{curve_of(history, shear_of), style.text}}});
+    charts.push_back({"Normal of the selection, N", {{curve_of(history, normal_of), style.text}}});
+    charts.push_back({"|Shear| of the selection, N", {{curve_of(history, shear_of), style.text}}});
   }
   return charts;
 }
 
-/// All curves share it, so that the play head stands at the same place in each.
+/// Common time span of all curves, which aligns the play head.
 Span time_span(const std::vector<Chart>& charts, double now_s) {
   Span span{now_s, now_s};
   for (const Chart& chart : charts) {
@@ -86,7 +86,7 @@ Span force_span(const Chart& chart) {
 
 constexpr double kChartHeight = 116;
 
-/// The widest label at the y axis of any chart: their axes stand below each other.
+/// Widest y label of all charts, which aligns their axes.
 double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
   double widest = 0;
   for (const Chart& chart : charts) {
@@ -98,7 +98,7 @@ double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
   return widest;
 }
 
-/// What all charts of a panel have in common.
+/// Common properties of all charts.
 struct ChartFrame {
   Span time;
   double now_s = 0;
@@ -140,18 +140,19 @@ void draw_legend(const AppState& state, const PanelStyle& style) {
   }
 }
 
-/// Charts in rows, as many beside each other as the width takes.
+/// Charts in rows, as many per row as fit.
 void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
                  const PanelStyle& style) {
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
   const double gap = 14 * style.unit;
-  const auto fitting = static_cast<std::size_t>(std::max(room / (300 * style.unit), 1.0));
+  const auto fitting = static_cast<std::size_t>(std::max(available / (300 * style.unit), 1.0));
   const std::size_t beside =
       std::min(fitting >= 4 ? 4 : std::min<std::size_t>(fitting, 2), charts.size());
-  const double width = (room - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
+  const double width =
+      (available - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
-    draw_chart(charts[i], take_room(width, kChartHeight * style.unit), frame, style);
+    draw_chart(charts[i], reserve(width, kChartHeight * style.unit), frame, style);
   }
 }
 
@@ -162,7 +163,7 @@ void time_panel(AppState& state) {
   number_pins(state);
   const std::vector<Chart> charts = charts_of(state, style);
   if (charts.empty() || !state.field) {
-    faint_words(style, "Pinned pillars and the marked region show their forces over time here.");
+    faint_text(style, "Pinned pillars and the selection show their forces over time here.");
     return;
   }
   const double now_s = state.field->time_s;

@@ -41,7 +41,7 @@ bool is_fixed(Quantity quantity) {
   return scale == Scale::classes || scale == Scale::cyclic;
 }
 
-/// Low and high end as they are displayed, side by side.
+/// Low and high end in the displayed unit, side by side.
 void edit_range(AppState& state) {
   RenderSettings& settings = state.settings;
   const auto factor = static_cast<float>(info_of(settings.quantity).factor);
@@ -49,7 +49,7 @@ void edit_range(AppState& state) {
   const float width = ends[1] - ends[0];
   labelled("Range");
   if (ImGui::DragFloat2("##range", ends.data(), 0.005f * width, 0, 0, "%.4g")) {
-    // Of two ends about zero, the one that was not touched follows.
+    // In a symmetric range the other end follows.
     const bool low_moved = ends[0] != settings.range.low * factor;
     const bool symmetric = info_of(settings.quantity).scale == Scale::diverging;
     const float high = symmetric && low_moved ? -ends[0] : ends[1];
@@ -68,7 +68,7 @@ void choose_range(AppState& state) {
   ImGui::Checkbox("each frame", &state.fit_each_field);
 }
 
-/// A colour map as a strip, at the place of the item drawn last.
+/// A colour map as a strip over the last item.
 void draw_map(ColourMap map, float left, float right, float top, float bottom) {
   const auto table = table_of(map);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -83,12 +83,12 @@ void draw_map(ColourMap map, float left, float right, float top, float bottom) {
   }
 }
 
-void draw_map_in_item(ColourMap map, float room_right) {
+void draw_map_in_item(ColourMap map, float margin_right) {
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   const float middle = low.x + 0.45f * (high.x - low.x);
   const float inset = 0.28f * (high.y - low.y);
-  draw_map(map, middle, high.x - room_right, low.y + inset, high.y - inset);
+  draw_map(map, middle, high.x - margin_right, low.y + inset, high.y - inset);
 }
 
 bool suits(ColourMap map, Scale scale) {
@@ -119,7 +119,7 @@ void choose_layers(AppState& state) {
   labelled("Layers");
   ImGui::Checkbox("arrows", &settings.arrows);
   ImGui::SameLine();
-  ImGui::Checkbox("sectors", &settings.sectors);
+  ImGui::Checkbox("uncertainty sectors", &settings.sectors);
   ImGui::SameLine();
   ImGui::Checkbox("hatch", &settings.hatch);
   labelled("");
@@ -148,7 +148,7 @@ void choose_surface(const Command& command) {
   if (surface.kind != SurfaceKind::cylinder) return;
   labelled("Radius");
   auto radius = static_cast<float>(surface.radius_mm);
-  // A sheet that meets itself behind the cylinder is the narrowest there can be.
+  // The smallest radius lets the sheet close around the cylinder.
   const auto least = static_cast<float>(0.17 * width);
   const auto most = static_cast<float>(20 * width);
   if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most, "%.1f mm",
@@ -197,7 +197,7 @@ void write_panel(const Command& command) {
   ImGui::SameLine();
   button("Video", "Write a video of all frames, by ffmpeg (Ctrl+M)", pending.video);
   ImGui::SameLine();
-  button("Table", "Write the pillars in sight as CSV (C)", pending.table);
+  button("Table", "Write the visible pillars as CSV (C)", pending.table);
 }
 
 }  // namespace pillarfield::viewer

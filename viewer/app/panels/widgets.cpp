@@ -8,7 +8,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// What a button looks like behind its sign or word.
+/// Background of a button.
 ImU32 ground(bool lit, bool hovered, bool held) {
   if (held) return ImGui::GetColorU32(ImGuiCol_ButtonActive);
   if (hovered) return ImGui::GetColorU32(ImGuiCol_ButtonHovered);
@@ -48,8 +48,8 @@ bool toggle_group(const char* id, std::span<const char* const> words, int& chose
   ImGui::PushID(id);
   const float gap = 1;
   const auto count = static_cast<float>(words.size());
-  const float room = ImGui::GetContentRegionAvail().x;
-  const float width = std::floor((room - gap * (count - 1)) / count);
+  const float available = ImGui::GetContentRegionAvail().x;
+  const float width = std::floor((available - gap * (count - 1)) / count);
   bool changed = false;
   for (int i = 0; i < static_cast<int>(words.size()); ++i) {
     if (i > 0) ImGui::SameLine(0, gap);
@@ -86,7 +86,7 @@ bool icon_button(const char* id, Icon icon, bool lit, const char* help) {
 namespace icon {
 namespace {
 
-/// A triangle that points right (way 1) or left (-1).
+/// A triangle that points right (`way` 1) or left (-1).
 void triangle(ImDrawList& list, const ImVec2& middle, float width, float height, float way,
               unsigned colour) {
   const float back = middle.x - way * width / 2;

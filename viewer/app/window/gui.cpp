@@ -20,7 +20,7 @@ ImVec2 corner_of_box(const Viewport& box) {
   return {static_cast<float>(box.x), static_cast<float>(box.y)};
 }
 
-/// A part of the window: no chrome, always in its place. end() ends it.
+/// Begins a fixed part of the window without decorations; ImGui::End() ends it.
 bool begin(const char* name, const Viewport& box, int more_flags = 0) {
   constexpr int kFlags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
@@ -38,13 +38,13 @@ void column(const Command& command) {
   if (section("View")) view_panel(command);
   if (section("Under the cursor")) hover_panel(state);
   if (section("Pillar")) pillar_panel(state);
-  if (section("Region")) selection_panel(state);
+  if (section("Selection")) selection_panel(state);
   if (section("Contacts")) contacts_panel(state, command.place);
   if (section("Over time")) time_panel(state);
   if (section("Write")) write_panel(command);
 }
 
-/// Thin lines where parts meet.
+/// Thin lines between parts.
 void draw_seams(const Screen& screen, Theme theme) {
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const unsigned colour = palette_of(theme).line;

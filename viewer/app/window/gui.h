@@ -7,8 +7,8 @@
 
 namespace pillarfield::viewer {
 
-/// Everything of the window that is not the picture, as one frame of the current context of ImGui:
-/// NewFrame() was called, Render() follows.
+/// Builds all of the window except the picture, in the current ImGui frame, between NewFrame() and
+/// Render().
 void draw_gui(const Command& command, const Screen& screen, const std::string& gpu);
 
 }  // namespace pillarfield::viewer

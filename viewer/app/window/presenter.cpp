@@ -13,8 +13,8 @@ using Access = vk::AccessFlagBits;
 constexpr vk::ImageSubresourceLayers kColour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
 constexpr vk::ImageSubresourceRange kWholeColour{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
 
-/// Draws over what was copied into the image, and leaves it ready to be shown.
-vk::raii::RenderPass make_front_pass(const gpu::Device& device, vk::Format format) {
+/// Render pass that draws over the copied picture and leaves the image ready to present.
+vk::raii::RenderPass make_gui_pass(const gpu::Device& device, vk::Format format) {
   const vk::AttachmentDescription attachment(
       {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad,
       vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
@@ -42,7 +42,7 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
     : instance_(&instance),
       device_(&device),
       chain_(device, surface),
-      render_pass_(make_front_pass(device, chain_.format())),
+      render_pass_(make_gui_pass(device, chain_.format())),
       renderer_(instance, device, {1, 1}, scale),
       gui_(std::make_unique<GuiContext>(instance, device, *render_pass_, scale)),
       pool_(device.handle(),
@@ -53,7 +53,7 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
       done_(device.handle(), vk::FenceCreateInfo()) {}
 
 bool Presenter::resize(vk::Extent2D window, vk::Extent2D picture, double scale) {
-  // What is being shown still uses the semaphores of the old images.
+  // Presentation may still use the semaphores of the old images.
   finish();
   framebuffers_.clear();
   if (!chain_.resize(window)) return false;
@@ -99,8 +99,8 @@ void Presenter::record(std::uint32_t index, const Picture* picture) {
   commands.end();
 }
 
-/// What the image held is of no interest: the picture and the panels cover all of it, and before
-/// there is a picture it is blank.
+/// Discards the old contents: picture and panels cover the whole image, which is blank without a
+/// picture.
 void Presenter::copy_picture(vk::Image image) const {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   const vk::ImageMemoryBarrier to_target({}, Access::eTransferWrite, ImageLayout::eUndefined,
@@ -138,7 +138,7 @@ void Presenter::draw_gui(std::uint32_t index) const {
 }
 
 void Presenter::submit(std::uint32_t index) {
-  // The image is touched by the copy first.
+  // The copy is the first access to the image.
   const vk::PipelineStageFlags waits = Stage::eTransfer;
   const vk::Semaphore ready = *ready_;
   const vk::Semaphore drawn = chain_.drawn(index);

@@ -13,7 +13,7 @@ constexpr unsigned colour(unsigned rgb, unsigned alpha = 255) {
   return IM_COL32(rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255, alpha);
 }
 
-/// The shades that everything is drawn with, from the ground up.
+/// Shades of a theme.
 struct Shades {
   unsigned ground, panel, popup, field, field_hovered, field_active, line, text, faint, accent;
 };
@@ -77,7 +77,7 @@ void set_surfaces(ImGuiStyle& style, const Shades& shades) {
   style.Colors[ImGuiCol_ScrollbarGrabActive] = vector(shades.faint);
 }
 
-/// Colours of ImGui's that come as at rest, under the mouse, and held.
+/// ImGui's colours of an item: at rest, hovered, active.
 struct Three {
   int rest, hovered, active;
 };
