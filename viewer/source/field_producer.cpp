@@ -62,7 +62,7 @@ std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptio
                     fitting, scene.frames, options.memory_bytes / kMiB));
   } else if (wanted < scene.frames) {
     info.warnings.push_back(
-        fmt::format("The first {} of {} frames are shown, as asked.", wanted, scene.frames));
+        fmt::format("The first {} of {} frames are shown, as requested.", wanted, scene.frames));
   }
   return std::min(wanted, fitting);
 }

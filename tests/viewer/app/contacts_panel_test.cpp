@@ -22,7 +22,7 @@ ContactQuantities a_contact() {
   return contact;
 }
 
-TEST(ContactWords, FollowTheHeads) {
+TEST(FormatContact, FollowTheHeads) {
   ContactQuantities contact = a_contact();
   using Words = std::array<std::string, kContactColumns>;
   EXPECT_EQ(format_contact("7", contact),
@@ -139,7 +139,7 @@ TEST_F(ContactsPanel, TheSumOfAllIsNoContact) {
   EXPECT_FALSE(state().selection);
 }
 
-TEST_F(ContactsPanel, HasNoTableWhereContactsAreNotLookedFor) {
+TEST_F(ContactsPanel, HasNoTableWhileContactsAreOff) {
   frame();
   const float with_table = frame();
   state().settings.contacts = false;

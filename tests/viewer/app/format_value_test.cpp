@@ -68,7 +68,7 @@ TEST(DirectionDeviation, IsTheSpreadOfForcesThatScatter) {
   }
 }
 
-TEST(DirectionDeviation, IsNoNumberWhereTheDirectionIsNone) {
+TEST(DirectionDeviation, IsNanWithoutDirection) {
   EXPECT_TRUE(std::isnan(direction_deviation(pillar(0, 0, 1, 0.1, 0.1, 0.1)).phi));
   EXPECT_TRUE(std::isnan(direction_deviation(pillar(0, 0, 0, 0.1, 0.1, 0.1)).magnitude));
   PillarValues unknown = pillar(1, 1, 1, 0, 0, 0);
@@ -76,7 +76,7 @@ TEST(DirectionDeviation, IsNoNumberWhereTheDirectionIsNone) {
   EXPECT_TRUE(std::isnan(direction_deviation(unknown).theta));
 }
 
-TEST(StatusWords, NameRegionAndFault) {
+TEST(FormatStatus, NameRegionAndFault) {
   EXPECT_EQ(format_status(0), "no contact");
   EXPECT_EQ(format_status(status::kUsable), "region 1");
   EXPECT_EQ(format_status(status::kSensel1 | status::kSensel2 | status::kAmbiguous),
@@ -90,7 +90,7 @@ TEST(StatusWords, NameRegionAndFault) {
   EXPECT_EQ(format_status(status::kSaturated), "no usable sensel, saturated");
 }
 
-TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {
+TEST(FormatValue, HaveTheDigitsThatTheirDeviationAllows) {
   EXPECT_EQ(format_value(0.123456, 0.0056), "0.1235");
   EXPECT_EQ(format_deviation(0.0056), "± 0.0056");
   EXPECT_EQ(format_value(-123.456, 2.3), "−123.5");
@@ -101,7 +101,7 @@ TEST(ValueWords, HaveTheDigitsThatTheirDeviationAllows) {
   EXPECT_EQ(format_deviation(0), "");
 }
 
-TEST(IntervalWords, TellTheEndsApart) {
+TEST(FormatInterval, DistinguishTheEnds) {
   EXPECT_EQ(format_interval(0.12, 0.34), "0.12 … 0.34");
   EXPECT_EQ(format_interval(60, 73.3), "60 … 73");
   EXPECT_EQ(format_interval(-5, -5), "−5.000 … −5.000");
@@ -129,7 +129,7 @@ TEST(ShownComponents, AreNormalAndShear) {
   EXPECT_EQ(shown[2].range, "± 0.0052");
 }
 
-TEST(PlaceWords, CountFromTheMiddleOfTheSkin) {
+TEST(FormatPlace, CountFromTheMiddleOfTheSkin) {
   ForceFieldView forces;
   forces.rows = 4;
   forces.cols = 6;
@@ -138,7 +138,7 @@ TEST(PlaceWords, CountFromTheMiddleOfTheSkin) {
   EXPECT_EQ(format_pillar({3, 5}), "row 3, column 5");
 }
 
-TEST(ReadingsWords, AreInTheOrderOfTheSensels) {
+TEST(FormatReadings, AreInTheOrderOfTheSensels) {
   EXPECT_EQ(format_readings({12, 34.5f, 0, 250}), "12  34.5  0  250  counts");
 }
 

@@ -101,7 +101,7 @@ TEST(Mouse, TwoSlowClicksAreNoDoubleClick) {
   EXPECT_EQ(mouse.top(), zoomed);
 }
 
-TEST(Mouse, ADragMarksTheRegionThatItTouches) {
+TEST(Mouse, ADragSelectsThePillarsItTouches) {
   Mouse mouse;
   mouse.drag(mouse.pixel(12, 20), mouse.pixel(4, 6));
   ASSERT_TRUE(mouse.state.selection);
@@ -193,7 +193,7 @@ TEST(Mouse, KeysWithUnknownModifiersDoNothing) {
   EXPECT_TRUE(mouse.pending.quit);
 }
 
-TEST(Views, EachKeepsItsPlaceWhileTheOtherIsLookedAt) {
+TEST(Views, EachKeepsItsPositionWhileTheOtherIsShown) {
   Mouse mouse;
   mouse.controls.take(WheelEvent{2, {300, 300}}, mouse.command());
   const TopView zoomed = mouse.top();

@@ -38,7 +38,7 @@ TEST(ViewerOptions, NumbersAreTaken) {
   EXPECT_EQ(options.range->low, -0.5F);
 }
 
-TEST(ViewerOptions, WhatIsNoFiniteNumberIsRefused) {
+TEST(ViewerOptions, RejectNumbersThatAreNotFinite) {
   const std::vector<std::string> bad = {"nan", "-nan", "inf", "-inf", "1e999", "x", ""};
   for (const std::string& number : bad) {
     for (const std::string& word :
@@ -56,7 +56,7 @@ TEST(ViewerOptions, WhatIsNoFiniteNumberIsRefused) {
   }
 }
 
-TEST(ViewerOptions, WhatLiesOutOfRangeIsRefused) {
+TEST(ViewerOptions, RejectNumbersOutOfRange) {
   for (const char* word : {"--zoom=0", "--zoom=1001", "--scale=5", "--centre=1.1e6,0",
                            "--centre=0,-1e300", "--range=0:1e31", "--size=640.5x480",
                            "--frames=1.5:3", "--frame=-1", "--frame=99999999999999999999"}) {

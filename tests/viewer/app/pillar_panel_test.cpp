@@ -112,7 +112,7 @@ TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
   EXPECT_EQ(state_.pins.size(), 4u);
 }
 
-TEST_F(PillarPanel, SumsOfTheRegionFollowRectangleAndFrame) {
+TEST_F(PillarPanel, SumsOfTheSelectionFollowRectangleAndFrame) {
   state_.selection = Selection{{4, 20, 8, 30}, History()};
   const double pitch_mm = made_.skin.pillar_pitch_mm();
   const double first = selection_sums(state_).normal;

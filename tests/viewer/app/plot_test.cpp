@@ -43,7 +43,7 @@ TEST(PlotArea, PixelsLeadBackToValues) {
   }
 }
 
-TEST(RoundSpan, HoldsZeroAndAllValuesWithoutWastingRoom) {
+TEST(RoundSpan, HoldsZeroAndAllValuesTightly) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> exponent(-6, 6);
   std::normal_distribution<double> sign(0.5, 1);
@@ -122,7 +122,7 @@ TEST(Thinned, LeavesFewPointsAsTheyAre) {
   EXPECT_TRUE(thinned({}, area).empty());
 }
 
-TEST(Thinned, PassesOverWhatIsNoNumber) {
+TEST(Thinned, SkipsNan) {
   const PlotArea area{{0, 0, 100, 60}, {0, 1}, {-1, 1}};
   const std::vector<Vec2> curve{{0, kNoNumber}, {0.5, 0}, {0.7, kNoNumber}, {1, 1}};
   EXPECT_EQ(thinned(curve, area).size(), 2u);
@@ -157,7 +157,7 @@ TEST(InsideAxes, LeavesRoomForLabelsAndGrowsWithTheScale) {
   EXPECT_GE(inside_axes({0, 0, 3, 3}, 30, style_of(1)).width, 1);
 }
 
-TEST(TicksOf, AreFewerWhereThereIsLessRoom) {
+TEST(TicksOf, AreFewerInASmallerPlot) {
   const PlotArea wide{{0, 0, 600, 300}, {0, 10}, {0, 1}};
   const PlotArea narrow{{0, 0, 130, 40}, {0, 10}, {0, 1}};
   const PlotTicks many = ticks_of(wide, style_of(1));

@@ -30,7 +30,7 @@ int usable(double phi, double theta) {
   return count;
 }
 
-TEST(RegionLimits, TellHowManySenselsTheModelHasUsable) {
+TEST(RegionLimits, MatchTheUsableSenselsOfTheModel) {
   for (int column = 0; column < 360; ++column) {
     const double phi = column - 179.5;
     const RegionLimits limits = region_limits(phi);
@@ -115,7 +115,7 @@ TEST(DirectionBox, IsNotThereWithoutUncertainty) {
   EXPECT_FALSE(direction_box(values));
 }
 
-TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutIdlePillars) {
+TEST(TrailOf, BreaksWherePhiWrapsAndOmitsIdlePillars) {
   History history;
   for (int i = 0; i < 40; ++i) {
     const float angle = 0.1f + 0.2f * static_cast<float>(i);

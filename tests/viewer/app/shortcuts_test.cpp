@@ -55,7 +55,7 @@ TEST(Shortcuts, NoChordIsThereTwice) {
   }
 }
 
-TEST(Shortcuts, EachHasAKeyAndWordsAndIsToldApart) {
+TEST(Shortcuts, EachHasADistinctKeyAndDescription) {
   std::set<std::string> words;
   for (const Shortcut& shortcut : shortcuts()) {
     EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.description;

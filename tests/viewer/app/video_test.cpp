@@ -104,7 +104,7 @@ TEST_F(Video, WithoutFfmpegTheErrorNamesThePackage) {
   EXPECT_TRUE(is_alone(""));
 }
 
-TEST_F(Video, WhatFfmpegComplainsOfIsInTheError) {
+TEST_F(Video, TheErrorHoldsFfmpegsMessage) {
   stand_in("cat > /dev/null; echo first complaint >&2; echo second >&2; exit 3");
   VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
   video.add(grey(4, 4, 1));
@@ -147,7 +147,7 @@ TEST_F(Video, WrongEndingsSizesAndRatesAreErrors) {
   EXPECT_NE(message("a.mp4", 4, 0).find("0 pictures a second"), std::string::npos);
   VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
   EXPECT_NE(complaint_about([&] { video.add(grey(4, 5, 1)); }).find("4 x 5"), std::string::npos);
-  EXPECT_NE(complaint_about([&] { video.finish(); }).find("needs pictures"), std::string::npos);
+  EXPECT_NE(complaint_about([&] { video.finish(); }).find("has no pictures"), std::string::npos);
 }
 
 TEST_F(Video, FfmpegWritesVideosOfOddSizes) {

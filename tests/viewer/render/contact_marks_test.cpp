@@ -99,7 +99,7 @@ TEST(ContactMarks, OnACylinderFollowTheSurface) {
   EXPECT_TRUE(marks[0].tip);
 }
 
-TEST(ContactMarks, AFewHundredAreDrawnAndTheRestIsTold) {
+TEST(ContactMarks, TheHeaviestAreDrawnAndTheRestIsReported) {
   const ShownContacts few = contacts_of({{{4, 8, 22, 28}}});
   EXPECT_EQ(contacts_left_out(few), "");
   ForceField forces(100, 100);

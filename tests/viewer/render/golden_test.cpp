@@ -138,7 +138,7 @@ class Golden : public testing::TestWithParam<GoldenPicture> {
   }
 };
 
-TEST_P(Golden, LooksAsItDid) {
+TEST_P(Golden, EqualsTheReviewedPicture) {
   const GoldenPicture& picture = GetParam();
   const std::filesystem::path file = kFolder / (std::string(picture.name) + ".png");
   const Pixels drawn = draw(picture);

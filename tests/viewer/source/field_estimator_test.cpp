@@ -22,8 +22,7 @@ using io_test::write_bytes;
 
 /// A sliding ball, solved by the estimator `contact`, with further lines of [solver].
 std::string sliding_scene(const std::string& solver_lines) {
-  return "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"
-         " + solver_lines +
+  return "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n" + solver_lines +
          "[sensor]\nnoise_counts = 0.5\n[time]\nframes = 6\n"
          "[[contact]]\nshape = \"sphere\"\nmotion = \"slide\"\ncontact_radius_mm = 8\n"
          "friction = 1.8\ndirection_deg = 0\nposition_mm = [0, 0]\nload_n = 30\n";
@@ -53,7 +52,7 @@ TEST(SceneProducer, SolvesWithTheContactEstimatorAndItsUncertainty) {
   EXPECT_EQ(from_contact, static_cast<std::uint64_t>(resolved));
 }
 
-TEST(SceneProducer, ContactsHaveTheFrictionThatTheSceneTells) {
+TEST(SceneProducer, ContactsHaveTheFrictionOfTheScene) {
   const TemporaryDirectory directory;
   for (const bool given : {false, true}) {
     const auto path = directory / (given ? "given.toml" : "observed.toml");
@@ -104,7 +103,7 @@ class FramesInOrder : public testing::Test {
   std::filesystem::path path_ = directory_ / "growing.toml";
 };
 
-TEST_F(FramesInOrder, KnowOfTheOneBeforeWhereTheyArePlayed) {
+TEST_F(FramesInOrder, CarryThePriorOverWhilePlayed) {
   const std::vector<ForceField> expected = solved_in_order(path_, 4);
   for (const Memory memory : {Memory::automatic, Memory::staged}) {
     const auto producer = open_producer(path_, {.memory = memory});
@@ -114,7 +113,7 @@ TEST_F(FramesInOrder, KnowOfTheOneBeforeWhereTheyArePlayed) {
   }
 }
 
-TEST_F(FramesInOrder, KnowNothingWhereTheyAreJumpedTo) {
+TEST_F(FramesInOrder, HaveNoPriorAfterAJump) {
   const auto producer = open_producer(path_, {});
   ASSERT_EQ(producer->info().warnings.size(), 1U);
   EXPECT_TRUE(has_all(producer->info().warnings[0], {"jumped to", "by itself"}));

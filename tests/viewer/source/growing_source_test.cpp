@@ -26,7 +26,7 @@ using io_test::write_bytes;
 /// Waits until the file's time stamp distinguishes two writes.
 void settle() { std::this_thread::sleep_for(std::chrono::milliseconds(40)); }
 
-TEST(GrowingFile, TellsEachChangeOnce) {
+TEST(GrowingFile, ReportsEachChangeOnce) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   write_bytes(path, "1");
@@ -41,7 +41,7 @@ TEST(GrowingFile, TellsEachChangeOnce) {
   EXPECT_FALSE(file.may_have_changed()) << "a file that is away is nothing new";
 }
 
-TEST(GrowingFile, IsLookedAtAgainWhereItsTimeCannotTell) {
+TEST(GrowingFile, IsCheckedAgainWithinTheTimeResolution) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   write_bytes(path, "1");
@@ -90,7 +90,7 @@ void write_forces(const std::filesystem::path& path, std::uint64_t frames, std::
   sink->finish();
 }
 
-TEST(GrowingSource, AFileOfForcesIsReadAnewWhereItChanged) {
+TEST(GrowingSource, AChangedForceFileIsReadAgain) {
   const TemporaryDirectory directory;
   const auto path = directory / "f.h5";
   write_forces(path, 3, 9);

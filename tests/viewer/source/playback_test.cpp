@@ -46,7 +46,7 @@ TEST(Playback, GivesTheFirstFrameAtOnceAndOnce) {
   EXPECT_FALSE(playback.playing());
 }
 
-TEST(Playback, LeavesNoFrameOutHoweverItIsAsked) {
+TEST(Playback, GivesEveryFrameAtAnyPollingRate) {
   std::mt19937 random(3);
   for (const double rate_hz : {7.0, 100.0, 4321.0}) {
     for (const double speed : {0.05, 1.0, 13.0}) {
@@ -85,7 +85,7 @@ TEST(Playback, KeepsItsRateWithoutDrift) {
   }
 }
 
-TEST(Playback, StopsAtTheEndWithoutLoopAndStartsAnew) {
+TEST(Playback, StopsAtTheEndWithoutLoopAndRestarts) {
   Playback playback = head(3, 10);
   playback.set_loop(false);
   playback.play(kStart);

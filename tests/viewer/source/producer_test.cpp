@@ -86,7 +86,7 @@ TEST(SceneProducer, SolvesTheFramesOfTheSceneInAnyOrder) {
   }
 }
 
-TEST(SceneProducer, TellsWhatTheSceneIs) {
+TEST(SceneProducer, DescribesTheScene) {
   const auto producer = open_producer(kDemo, {.memory = Memory::staged, .most_frames = 4});
   const SourceInfo& info = producer->info();
   EXPECT_EQ(info.name, "demo.toml");
@@ -96,7 +96,7 @@ TEST(SceneProducer, TellsWhatTheSceneIs) {
   EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
   EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
   ASSERT_EQ(info.warnings.size(), 1U);
-  EXPECT_TRUE(has_all(info.warnings[0], {"4 of 60 frames", "as asked"}));
+  EXPECT_TRUE(has_all(info.warnings[0], {"4 of 60 frames", "as requested"}));
   EXPECT_FALSE(producer->refresh());
   EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
                       {"demo.toml", "no frame 4", "4 frames"}));
@@ -149,7 +149,7 @@ TEST(SceneProducer, WithoutNoiseThereIsNoUncertainty) {
   expect_angles(field.forces);
 }
 
-TEST(SceneProducer, TheBaselineStaysAndThePaperTellsNoUncertainty) {
+TEST(SceneProducer, TheBaselineIsFixedAndThePaperHasNoUncertainty) {
   const TemporaryDirectory directory;
   const auto path = directory / "paper.toml";
   write_bytes(path,
@@ -266,7 +266,7 @@ TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
   EXPECT_THROW(static_cast<void>(producer->produce(kFrames)), Error);
 }
 
-TEST(RecordingProducer, WithoutNoiseOrTimeItSaysSo) {
+TEST(RecordingProducer, ReportsMissingNoiseAndTime) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_recording(path, {}, 0);
@@ -405,7 +405,7 @@ TEST(FieldProducer, FieldsOutliveTheirProducer) {
   }
 }
 
-TEST(FieldProducer, RefusesWhatItCannotShow) {
+TEST(FieldProducer, RejectsFilesThatItCannotShow) {
   const TemporaryDirectory directory;
   EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.h5", {})), Error);
   EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.toml", {})), Error);

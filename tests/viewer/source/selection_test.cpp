@@ -163,7 +163,7 @@ TEST(Selection, WithoutLoadThereIsNoCentre) {
   EXPECT_EQ(sums_over(sample.shown(), {2, 2, 0, 4}, kPitch).pillars, 0U) << "an empty rectangle";
 }
 
-TEST(Selection, WhatLiesOutsideIsLeftOut) {
+TEST(Selection, PillarsOutsideAreOmitted) {
   const Sample sample(5, 6);
   const SelectionSums whole = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
   const SelectionSums more = sums_over(sample.shown(), {0, 500, 0, 600}, kPitch);
@@ -182,7 +182,7 @@ TEST(Selection, ForcesThatAreNoNumbersSpoilNothing) {
   EXPECT_LE(sums.in_contact, in_contact);
 }
 
-TEST(Selection, ReadingsStandWhereTheSenselsAre) {
+TEST(Selection, ReadingsFollowThePositionsOfSensels) {
   const Sample sample(4, 5);
   const PillarValues values = values_at(sample.shown(), {2, 3});
   const float stride = 11;  // One column more than the pillars use.
@@ -207,7 +207,7 @@ TEST(Selection, ReadingsOfEveryTypeAreRead) {
   }
 }
 
-TEST(Selection, UnknownReadingsAndUncertaintyAreSaidToBe) {
+TEST(Selection, MissingReadingsAndUncertaintyAreMarked) {
   const Sample sample(3, 3);
   ShownField field = sample.shown();
   field.raw = {};

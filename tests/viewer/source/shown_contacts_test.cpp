@@ -67,7 +67,7 @@ TEST(FieldContacts, FollowsOnwardsAlsoPastFramesLeftOut) {
             (std::vector<std::uint64_t>{2}));
 }
 
-TEST(FieldContacts, BeginsAnewWhereTheHeadGoesBack) {
+TEST(FieldContacts, RestartsWhenThePlayHeadGoesBack) {
   FieldContacts watch(kContactPitch);
   const Touch left{{2, 6, 2, 6}};
   const Touch right{{12, 16, 20, 24}};

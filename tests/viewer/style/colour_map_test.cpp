@@ -104,7 +104,7 @@ TEST(DefaultMap, FollowsTheScale) {
   EXPECT_EQ(default_map(Scale::classes), ColourMap::cividis);
 }
 
-TEST(SpecialOf, MapsGiveColoursToSoundAndAmbiguousPillarsOnly) {
+TEST(SpecialOf, MapsColourDeterminedAndAmbiguousPillarsOnly) {
   EXPECT_EQ(special_of(Quantity::normal, kUsable), std::nullopt);
   EXPECT_EQ(special_of(Quantity::shear_x, kSensel1 | kSensel2 | kAmbiguous), std::nullopt);
   EXPECT_EQ(special_of(Quantity::normal, 0), Special::idle);

@@ -127,7 +127,7 @@ TEST(CyclicTable, HasFourQuadrantsForEveryEye) {
   }
 }
 
-TEST(CyclicTable, TellsUpByLightnessAndRightByYellow) {
+TEST(CyclicTable, SeparatesUpByLightnessAndRightByYellow) {
   const std::vector<Lab> labs = seen_table(ColourMap::cyclic);
   EXPECT_GT(labs[192].lightness, labs[64].lightness + 30);
   EXPECT_GT(labs[128].b, labs[0].b + 70);

@@ -38,7 +38,7 @@ double largest_of(const Extent& extent) {
   return std::max({-extent.left, extent.right, -extent.top, extent.bottom});
 }
 
-TEST(Fit, TopViewHasTheWholeSkinAndFourPercentAir) {
+TEST(Fit, TopViewHasTheWholeSkinAndFourPercentMargin) {
   std::mt19937 random(1);
   for (int i = 0; i < 200; ++i) {
     Situation situation = random_situation(random);

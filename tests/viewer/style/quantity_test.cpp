@@ -88,7 +88,7 @@ TEST(Availability, FollowsWhatTheSourceHas) {
   EXPECT_EQ(available().size(), std::size_t{kQuantities});
 }
 
-TEST(StatusClasses, TellTheWorst) {
+TEST(StatusClasses, ReportTheWorst) {
   EXPECT_EQ(status_class(kUsable), StatusClass::determined);
   EXPECT_EQ(status_class(kSensel1 | kSensel2 | kAmbiguous), StatusClass::ambiguous);
   EXPECT_EQ(status_class(kAmbiguous | kFromNeighbours), StatusClass::from_contact);
@@ -240,7 +240,7 @@ TEST(Value, ParityOfTheLargestWholeReadingsIsExact) {
   EXPECT_EQ(value_of(Quantity::parity, field, 0, 0), 131069);
 }
 
-TEST(Largest, IsOverSoundAndAmbiguousPillars) {
+TEST(Largest, IsOverDeterminedAndAmbiguousPillars) {
   MadeUpField made_up;
   made_up.shear_x = {1, -4, 9, 16, 25, 36};
   made_up.status = {kUsable,
@@ -255,7 +255,7 @@ TEST(Largest, IsOverSoundAndAmbiguousPillars) {
   EXPECT_EQ(largest(Quantity::shear_x, made_up.shown()), 0);
 }
 
-TEST(Largest, PassesOverWhatIsNotFinite) {
+TEST(Largest, SkipsValuesThatAreNotFinite) {
   MadeUpField made_up;
   made_up.normal = {kNan, kInfinity, 2, -kInfinity, 1, kNan};
   EXPECT_EQ(largest(Quantity::normal, made_up.shown()), 2);

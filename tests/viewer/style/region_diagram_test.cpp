@@ -39,7 +39,7 @@ TEST(RegionBorders, AreWhereTheirSenselReadsNothing) {
   }
 }
 
-TEST(RegionBorders, BelowAndAboveTheirSenselAnswersAndLifts) {
+TEST(RegionBorders, SeparateActiveFromInactiveReadings) {
   const auto borders = region_borders(50);
   for (int sensel = 1; sensel <= 4; ++sensel) {
     for (const auto& piece : borders.at(static_cast<std::size_t>(sensel - 1))) {

@@ -91,7 +91,7 @@ TEST(Ticks, LabelsSayTheValueAndDiffer) {
   }
 }
 
-TEST(Ticks, AreWhatAReaderExpects) {
+TEST(Ticks, HaveTheExpectedLabels) {
   EXPECT_EQ(labels(0, 1, 6), (Labels{"0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
   EXPECT_EQ(labels(0, 0.3, 4), (Labels{"0", "0.1", "0.2", "0.3"})) << "both ends";
   EXPECT_EQ(labels(-2, 2, 5), (Labels{"−2", "−1", "0", "1", "2"}));

@@ -37,7 +37,7 @@ std::FILE* stream_of(const OutputFile& file) {
 
 void write_png(const std::filesystem::path& path, const Pixels& pixels, Replace replace) {
   if (pixels.rgba.empty() || pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
-    throw Error(path.string(), "the picture is empty", "give it a size");
+    throw Error(path.string(), "the picture has no pixels", "set a size above 0");
   }
   OutputFile file(path, OutputKind::png, replace);
   png_image image{};

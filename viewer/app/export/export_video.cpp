@@ -39,7 +39,7 @@ const Words& encoding_of(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
   const auto* const found = std::ranges::find(encodings(), ending, &Encoding::ending);
   if (found != encodings().end()) return found->words;
-  throw Error(path.string(), "the extension is not that of a video",
+  throw Error(path.string(), "the extension is not a video format",
               "use .mp4, .mkv, .mov or .webm");
 }
 
@@ -81,7 +81,7 @@ void check(const std::filesystem::path& path, std::uint32_t width, std::uint32_t
            double rate_hz) {
   static_cast<void>(encoding_of(path));
   if (width == 0 || height == 0) {
-    throw Error(path.string(), "a video needs pictures with pixels", "give it a size");
+    throw Error(path.string(), "the size is 0 pixels", "set a size above 0");
   }
   if (!std::isfinite(rate_hz) || rate_hz <= 0) {
     throw Error(path.string(), fmt::format("the rate is {} pictures a second", rate_hz),
@@ -123,7 +123,7 @@ VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const Pixels& pixels) {
   const std::filesystem::path& path = state_->file.path();
-  if (state_->finished) throw Error(path.string(), "is finished", "start another video");
+  if (state_->finished) throw Error(path.string(), "the video is finished", "start another video");
   if (pixels.width != state_->width || pixels.height != state_->height ||
       pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
     throw Error(path.string(),

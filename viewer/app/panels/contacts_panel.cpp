@@ -96,7 +96,7 @@ std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownCon
 void contacts_panel(AppState& state, const FieldPlace& place) {
   const PanelStyle style = panel_style(state.settings.scale);
   if (!state.settings.contacts || !state.field || state.field->contacts == nullptr) {
-    faint_text(style, "Contacts are not looked for (K).");
+    faint_text(style, "Contacts are off; K shows them.");
     return;
   }
   const ShownContacts& contacts = *state.field->contacts;
