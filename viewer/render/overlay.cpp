@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "viewer/render/contact_marks.h"
+#include "viewer/render/imgui_point.h"
 #include "viewer/render/scene.h"
 #include "viewer/style/ticks.h"
 
@@ -126,8 +127,7 @@ void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& l
     const double factor = 30 * canvas.unit() / longest;
     const double x = x0 + factor * (end->x - origin->x);
     const double y = y0 + factor * (end->y - origin->y);
-    canvas.list.AddLine(ImVec2(static_cast<float>(x0), static_cast<float>(y0)),
-                        ImVec2(static_cast<float>(x), static_cast<float>(y)), canvas.text_colour,
+    canvas.list.AddLine(to_imgui({x0, y0}), to_imgui({x, y}), canvas.text_colour,
                         1.5f * canvas.unit());
     canvas.text(x + 3 * canvas.unit(), y - 9 * canvas.unit(), name);
   }
@@ -236,19 +236,16 @@ void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Lay
   const double length = 1.5 * cell_pixels;
   const double x = layout.legend.x;
   const double middle = y + 9 * canvas.unit();
-  const auto point = [](double px, double py) {
-    return ImVec2(static_cast<float>(px), static_cast<float>(py));
-  };
   const double head = 5 * canvas.unit();
-  canvas.list.AddLine(point(x, middle), point(x + length - head, middle), canvas.text_colour,
-                      2 * canvas.unit());
+  canvas.list.AddLine(to_imgui({x, middle}), to_imgui({x + length - head, middle}),
+                      canvas.text_colour, 2 * canvas.unit());
   canvas.list.AddTriangleFilled(
-      point(x + length, middle), point(x + length - head, middle - 3 * canvas.unit()),
-      point(x + length - head, middle + 3 * canvas.unit()), canvas.text_colour);
+      to_imgui({x + length, middle}), to_imgui({x + length - head, middle - 3 * canvas.unit()}),
+      to_imgui({x + length - head, middle + 3 * canvas.unit()}), canvas.text_colour);
   const bool from_above = std::holds_alternative<TopView>(settings.view);
-  const char* what = from_above ? "shear" : "force";
+  const char* name = from_above ? "shear" : "force";
   const double sum = full_arrow_n(settings) * block * block;
-  canvas.text(x, y + 20 * canvas.unit(), fmt::format("{} {} N", what, three_digits(sum)));
+  canvas.text(x, y + 20 * canvas.unit(), fmt::format("{} {} N", name, three_digits(sum)));
   canvas.text(x, y + 38 * canvas.unit(),
               block == 1 ? "on a pillar" : fmt::format("on {} × {} pillars", block, block),
               canvas.faint_colour);

@@ -123,6 +123,11 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 
 }  // namespace
 
+void throw_all_fields_in_use() {
+  throw Error("FieldProducer", fmt::format("all {} fields are in use", FieldProducer::kMostShown),
+              "release one before producing another");
+}
+
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
   if (!found_contacts_) found_contacts_.emplace(info().skin.pillar_pitch_mm(), info().contacts);
   return found_contacts_->contacts_of(field);

@@ -62,6 +62,9 @@ class FieldProducer {
   std::optional<FieldContacts> found_contacts_;
 };
 
+/// Throws Error: kMostShown fields of a producer are alive.
+[[noreturn]] void throw_all_fields_in_use();
+
 struct ProducerOptions {
   std::string device = {};  ///< as open_device() takes it
   Memory memory = Memory::automatic;

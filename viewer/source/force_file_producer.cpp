@@ -9,7 +9,6 @@
 #include "pillarfield/solver_plan.h"
 #include "viewer/source/direction.h"
 #include "viewer/source/frame_rate.h"
-#include "viewer/source/too_many_shown.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -85,7 +84,7 @@ ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
 ShownField ForceFileProducer::produce(std::uint64_t index) {
   if (!reader_) open(file_.path());
   const std::shared_ptr<PlaneBlock> block = blocks_.acquire();
-  if (block == nullptr) throw_too_many_shown();
+  if (block == nullptr) throw_all_fields_in_use();
   const double time_s = reader_->read(index, forces_);
   fill(*block, forces_);
   return {.forces = block->view(),

@@ -5,7 +5,6 @@
 #include "viewer/source/frame_provider.h"
 #include "viewer/source/growing_file.h"
 #include "viewer/source/object_pool.h"
-#include "viewer/source/too_many_shown.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -27,7 +26,7 @@ class RecordedFrames final : public FrameProvider {
   [[nodiscard]] FrameHandle frame(std::uint64_t index) override {
     if (source_ == nullptr) open(file_.path());
     const std::shared_ptr<FrameBuffer> buffer = buffers_.acquire();
-    if (buffer == nullptr) throw_too_many_shown();
+    if (buffer == nullptr) throw_all_fields_in_use();
     const double time_s = source_->read(index, *buffer);
     return {buffer, time_s};
   }

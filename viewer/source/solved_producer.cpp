@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "viewer/source/too_many_shown.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -51,7 +50,7 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
     throw Error(info_.name, fmt::format("has no frame {}", index),
                 fmt::format("it has {} frames, counted from 0", info_.frames));
   }
-  if (processor_.pinned() == kMostShown) throw_too_many_shown();
+  if (processor_.pinned() == kMostShown) throw_all_fields_in_use();
   FrameHandle frame = provider_->frame(index);
   if (idle_frame_ && index != next_) clear_prior();
   const FrameView raw = frame.readings->view();

@@ -79,7 +79,7 @@ void set_style(Theme theme, double scale) {
 /// Draws a panel in its own ImGui window; position and size at scale 1.
 template <class Panel>
 void in_window(const char* name, const Viewport& box, double scale, Panel&& panel) {
-  const auto sized = [scale](double x, double y) { return point({x * scale, y * scale}); };
+  const auto sized = [scale](double x, double y) { return to_imgui({x * scale, y * scale}); };
   ImGui::SetNextWindowPos(sized(box.x, box.y));
   ImGui::SetNextWindowSize(sized(box.width, box.height));
   ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);

@@ -141,7 +141,7 @@ TEST(Playback, IsLateByASecondAtMost) {
   const Time late = kStart + seconds(60);
   EXPECT_EQ(playback.behind(late), seconds(1));
   EXPECT_EQ(playback.next(late), 1U) << "late, but not left out";
-  EXPECT_EQ(all_due(playback, late).size(), 100U) << "what a second holds, and no more";
+  EXPECT_EQ(all_due(playback, late).size(), 100U) << "the frames of one second";
   EXPECT_EQ(playback.behind(late), Time::zero());
   EXPECT_EQ(playback.next(late + milliseconds(10)), 102U) << "in time again";
 }

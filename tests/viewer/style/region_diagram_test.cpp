@@ -72,7 +72,7 @@ TEST(RegionBorders, HaveTheirPointsInAscendingPhiFromEdgeToEdge) {
         }
         length += piece.back().x - piece.front().x;
       }
-      EXPECT_NEAR(length, kPi, 1e-12) << "each sensel lifts over half a turn";
+      EXPECT_NEAR(length, kPi, 1e-12) << "each border spans half a turn";
       EXPECT_LE(total, static_cast<std::size_t>(points) + 1);
     }
   }

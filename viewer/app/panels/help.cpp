@@ -13,10 +13,10 @@ namespace {
 constexpr float kKeyColumn = 5.8f;  ///< width of the keys, font sizes
 constexpr float kBlock = 19.5f;     ///< width of a block of keys and descriptions
 
-void line(const char* keys, const char* what) {
+void line(const char* keys, const char* description) {
   ImGui::TextUnformatted(keys);
   ImGui::SameLine(kKeyColumn * ImGui::GetFontSize());
-  ImGui::TextDisabled("%s", what);
+  ImGui::TextDisabled("%s", description);
 }
 
 void title(const char* words) {

@@ -51,7 +51,7 @@ double width_of(const std::string& text) {
 
 void draw_text(ImDrawList& list, Vec2 place, ImU32 colour, const std::string& text, Align align) {
   if (align != Align::left) place.x -= (align == Align::middle ? 0.5 : 1) * width_of(text);
-  list.AddText(point({std::round(place.x), std::round(place.y)}), colour, text.c_str());
+  list.AddText(to_imgui({std::round(place.x), std::round(place.y)}), colour, text.c_str());
 }
 
 void draw_block(ImDrawList& list, const Viewport& box, ImU32 colour) {
@@ -59,19 +59,19 @@ void draw_block(ImDrawList& list, const Viewport& box, ImU32 colour) {
   const double top = std::round(box.y);
   const double right = std::max(std::round(box.x + box.width), left + 1);
   const double bottom = std::max(std::round(box.y + box.height), top + 1);
-  list.AddRectFilled(point({left, top}), point({right, bottom}), colour);
+  list.AddRectFilled(to_imgui({left, top}), to_imgui({right, bottom}), colour);
 }
 
 Viewport reserve(double width, double height) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const double wide = width > 0 ? width : static_cast<double>(ImGui::GetContentRegionAvail().x);
-  ImGui::Dummy(point({std::max(wide, 1.0), height}));
+  ImGui::Dummy(to_imgui({std::max(wide, 1.0), height}));
   return {static_cast<double>(corner.x), static_cast<double>(corner.y), std::max(wide, 1.0),
           height};
 }
 
 void leave_gap(const PanelStyle& style, double pixels) {
-  ImGui::Dummy(point({1, std::round(pixels * style.unit)}));
+  ImGui::Dummy(to_imgui({1, std::round(pixels * style.unit)}));
 }
 
 void faint_text(const PanelStyle& style, const char* words) {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "viewer/render/imgui_point.h"
 #include "viewer/style/colour_map.h"
 #include "viewer/style/view.h"
 
@@ -27,9 +28,6 @@ struct PanelStyle {
 [[nodiscard]] ImU32 mixed(ImU32 under, ImU32 over, double share);
 [[nodiscard]] ImU32 with_alpha(ImU32 colour, double alpha);
 
-[[nodiscard]] inline ImVec2 point(Vec2 place) {
-  return {static_cast<float>(place.x), static_cast<float>(place.y)};
-}
 [[nodiscard]] double width_of(const std::string& text);
 
 /// Alignment of a text to its position.

@@ -19,7 +19,7 @@ namespace {
 bool pin_button(const PanelStyle& style, const Pin& pin, Theme theme, bool inspected) {
   const double side = std::round(style.line + 6 * style.unit);
   const std::string name = fmt::format("pin {}", pin.number);
-  const bool clicked = ImGui::InvisibleButton(name.c_str(), point({side, side}));
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), to_imgui({side, side}));
   const bool lit = inspected || ImGui::IsItemHovered();
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", format_pillar(pin.pillar).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -41,7 +41,7 @@ bool remove_button(const PanelStyle& style) {
   const double side = std::round(style.line + 6 * style.unit);
   const auto right = ImGui::GetWindowContentRegionMax().x;
   ImGui::SameLine(right - static_cast<float>(side));
-  const bool clicked = ImGui::InvisibleButton("remove", point({side, side}));
+  const bool clicked = ImGui::InvisibleButton("remove", to_imgui({side, side}));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("remove this pin");
   const ImU32 colour = ImGui::IsItemHovered() ? style.text : style.faint;
   const ImVec2 low = ImGui::GetItemRectMin();

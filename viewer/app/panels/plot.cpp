@@ -128,10 +128,10 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
 void draw_curve(ImDrawList& list, const PlotArea& area, std::span<const Vec2> curve,
                 std::uint32_t colour, double width) {
   std::vector<ImVec2> points;
-  for (const Vec2& pixel : thinned(curve, area)) points.push_back(point(pixel));
+  for (const Vec2& pixel : thinned(curve, area)) points.push_back(to_imgui(pixel));
   const Viewport& box = area.box;
-  list.PushClipRect(point({box.x, box.y - width}),
-                    point({box.x + box.width, box.y + box.height + width}), true);
+  list.PushClipRect(to_imgui({box.x, box.y - width}),
+                    to_imgui({box.x + box.width, box.y + box.height + width}), true);
   list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
                    static_cast<float>(width));
   list.PopClipRect();
@@ -142,9 +142,9 @@ void draw_head(ImDrawList& list, const PlotArea& area, double x, const PanelStyl
   const Vec2 top = area.at({x, area.y.to});
   draw_block(list, {top.x - 0.5 * hair, area.box.y, hair, area.box.height}, style.text);
   const double side = 4 * style.unit;
-  list.AddTriangleFilled(point({top.x - side, area.box.y - side}),
-                         point({top.x + side, area.box.y - side}),
-                         point({top.x, area.box.y + 0.5 * side}), style.text);
+  list.AddTriangleFilled(to_imgui({top.x - side, area.box.y - side}),
+                         to_imgui({top.x + side, area.box.y - side}),
+                         to_imgui({top.x, area.box.y + 0.5 * side}), style.text);
 }
 
 }  // namespace pillarfield::viewer

@@ -101,8 +101,8 @@ class Drawing {
 
 /// A strip between theta intervals (degrees) at its left and right end.
 void Drawing::strip(double left, double right, Span from, Span to, int usable) const {
-  list_.AddQuadFilled(point(area_.at({left, from.from})), point(area_.at({right, to.from})),
-                      point(area_.at({right, to.to})), point(area_.at({left, from.to})),
+  list_.AddQuadFilled(to_imgui(area_.at({left, from.from})), to_imgui(area_.at({right, to.from})),
+                      to_imgui(area_.at({right, to.to})), to_imgui(area_.at({left, from.to})),
                       tint_of(usable));
 }
 
@@ -176,7 +176,7 @@ void Drawing::draw_corners() const {
                                                        {135, status::kSensel4}}};
   for (const auto& [phi, usable] : corners) {
     const bool here = usable_ == usable;
-    list_.AddCircleFilled(point(area_.at({phi, 90})),
+    list_.AddCircleFilled(to_imgui(area_.at({phi, 90})),
                           static_cast<float>((here ? 4.5 : 3) * style_.unit),
                           here ? packed(region_colour(Region::four, theme_)) : style_.faint, 16);
   }
@@ -185,17 +185,17 @@ void Drawing::draw_corners() const {
 void Drawing::draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const {
   std::vector<ImVec2> points;
   points.reserve(line.size());
-  for (const Vec2& direction : line) points.push_back(point(area_.at(direction)));
+  for (const Vec2& direction : line) points.push_back(to_imgui(area_.at(direction)));
   list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
                     static_cast<float>(width));
 }
 
 void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
   // A box smaller than the point would be hidden.
-  const ImVec2 least = point({1.5 * style_.unit, 1.5 * style_.unit});
+  const ImVec2 least = to_imgui({1.5 * style_.unit, 1.5 * style_.unit});
   for (const double turn : {-360.0, 0.0, 360.0}) {
-    ImVec2 low = point(area_.at({box.phi.from + turn, box.theta.to}));
-    ImVec2 high = point(area_.at({box.phi.to + turn, box.theta.from}));
+    ImVec2 low = to_imgui(area_.at({box.phi.from + turn, box.theta.to}));
+    ImVec2 high = to_imgui(area_.at({box.phi.to + turn, box.theta.from}));
     if (high.x - low.x < least.x) high.x = low.x + least.x;
     if (high.y - low.y < least.y) high.y = low.y + least.y;
     list_.AddRectFilled(low, high, with_alpha(colour, 0.22));
@@ -212,7 +212,7 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
   for (const auto& piece : pieces) {
     for (std::size_t i = 1; i < piece.size(); ++i) {
       const double age = static_cast<double>(seen + i) / static_cast<double>(all);
-      list_.AddLine(point(area_.at(piece[i - 1])), point(area_.at(piece[i])),
+      list_.AddLine(to_imgui(area_.at(piece[i - 1])), to_imgui(area_.at(piece[i])),
                     with_alpha(colour, 0.75 * age), static_cast<float>(1.6 * style_.unit));
     }
     seen += piece.size();
@@ -220,7 +220,7 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
 }
 
 void Drawing::draw_point(ImU32 colour) const {
-  const ImVec2 place = point(area_.at(point_));
+  const ImVec2 place = to_imgui(area_.at(point_));
   const auto radius = static_cast<float>(4.5 * style_.unit);
   list_.AddCircleFilled(place, radius + static_cast<float>(2 * style_.unit), style_.ground, 24);
   list_.AddCircleFilled(place, radius, colour, 24);
@@ -310,7 +310,8 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
   const Viewport& box = area.box;
   const Drawing drawing(list, area, style, theme, values);
   draw_axes(list, area, angle_ticks(), style);
-  list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
+  list.PushClipRect(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
+                    true);
   drawing.tint();
   drawing.draw_borders();
   drawing.draw_numbers();

@@ -30,7 +30,7 @@ void swatch(const PanelStyle& style, ImU32 colour) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const Viewport box{line.x, line.y + std::round(0.5 * (style.line - side)) + 1, side, side};
   draw_block(list, box, colour);
-  list.AddRect(point({box.x, box.y}), point({box.x + side, box.y + side}), style.grid);
+  list.AddRect(to_imgui({box.x, box.y}), to_imgui({box.x + side, box.y + side}), style.grid);
   ImGui::SameLine(0, static_cast<float>(7 * style.unit));
 }
 

@@ -36,7 +36,7 @@ void line(const PanelStyle& style, const ShownValue& shown) {
 }  // namespace
 
 void value_table(const PanelStyle& style, std::span<const ShownValue> values) {
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, point({0, 2 * style.unit}));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, to_imgui({0, 2 * style.unit}));
   ImGui::BeginGroup();
   for (const ShownValue& value : values) line(style, value);
   ImGui::EndGroup();
@@ -44,7 +44,7 @@ void value_table(const PanelStyle& style, std::span<const ShownValue> values) {
 }
 
 void readouts(const PanelStyle& style, std::span<const ShownValue> values, double width) {
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, point({0, style.unit}));
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, to_imgui({0, style.unit}));
   ImGui::BeginGroup();
   const double right = static_cast<double>(ImGui::GetCursorPosX()) + width;
   for (const ShownValue& shown : values) {

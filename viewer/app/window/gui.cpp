@@ -12,13 +12,10 @@
 #include "viewer/app/panels/view_panel.h"
 #include "viewer/app/panels/widgets.h"
 #include "viewer/app/window/style.h"
+#include "viewer/render/imgui_point.h"
 
 namespace pillarfield::viewer {
 namespace {
-
-ImVec2 corner_of_box(const Viewport& box) {
-  return {static_cast<float>(box.x), static_cast<float>(box.y)};
-}
 
 /// Begins a fixed part of the window without decorations; ImGui::End() ends it.
 bool begin(const char* name, const Viewport& box, int more_flags = 0) {
@@ -26,8 +23,8 @@ bool begin(const char* name, const Viewport& box, int more_flags = 0) {
                          ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                          ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavFocus |
                          ImGuiWindowFlags_NoBringToFrontOnFocus;
-  ImGui::SetNextWindowPos(corner_of_box(box));
-  ImGui::SetNextWindowSize(ImVec2(static_cast<float>(box.width), static_cast<float>(box.height)));
+  ImGui::SetNextWindowPos(to_imgui({box.x, box.y}));
+  ImGui::SetNextWindowSize(to_imgui({box.width, box.height}));
   return ImGui::Begin(name, nullptr, kFlags | more_flags);
 }
 
@@ -49,8 +46,7 @@ void draw_seams(const Screen& screen, Theme theme) {
   ImDrawList& list = *ImGui::GetForegroundDrawList();
   const unsigned colour = palette_of(theme).line;
   const auto line = [&](double x0, double y0, double x1, double y1) {
-    list.AddRectFilled(ImVec2(static_cast<float>(x0), static_cast<float>(y0)),
-                       ImVec2(static_cast<float>(x1), static_cast<float>(y1)), colour);
+    list.AddRectFilled(to_imgui({x0, y0}), to_imgui({x1, y1}), colour);
   };
   const Viewport& transport = screen.transport;
   const Viewport& status = screen.status;
