@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Whether one pillarfield-bench is faster than another.
+"""Compares the speed of two programs pillarfield-bench.
 
     compare.py --old PROGRAM --new PROGRAM [--pairs N] [--seconds S] [FILTER]
 
-Both run by turns, A B B A A B ..., so that a machine that grows slow in the meantime slows both.
-For each row the ratio new / old of the nanoseconds per pillar is taken within each pair of runs,
-and told as the median of all pairs with the tenth and the ninetieth percentile. A row is faster or
-slower when these lie both on the same side of 1.
+Runs are interleaved, A B B A A B ..., so that drift of the machine affects both programs. For each
+case the table gives the ratio new / old of the nanoseconds per pillar within a pair of runs: median
+and deciles over all pairs. A case is faster or slower when both deciles lie on one side of 1.
 """
 
 import argparse
@@ -15,13 +14,29 @@ import statistics
 import subprocess
 import sys
 
-# The rows that matter: a small and a large skin, one touched and one bare, all stages, and latency.
+# A small and a large skin, 1 % in contact, all stages, float readings, and latency.
 FILTER = "^(size/10000|size/624100|contact/1/bare|contact/1/all|stage/all|type/f32|latency/6241)$"
 PAIRS = 10
+# Prefixes of names, as programs of older revisions have them.
+OLD_NAMES = {"baseline/": "opponent/", "intrinsics/": "by_hand/", "limit/": "ceiling/",
+             "regions/idle": "regions/silent"}
+
+
+def renamed(text, names):
+    """Text with each of the names replaced."""
+    for before, after in names.items():
+        text = text.replace(before, after)
+    return text
+
+
+def any_revision(pattern):
+    """The pattern, extended by the old names of the cases that it names."""
+    old = renamed(pattern, OLD_NAMES)
+    return pattern if old == pattern else f"{pattern}|{old}"
 
 
 def turns(pairs):
-    """The order of the runs: "old" or "new", two runs a pair, each pair the other way round."""
+    """Order of the runs, "old" or "new": two runs a pair, reversed from pair to pair."""
     order = []
     for pair in range(pairs):
         order += ["old", "new"] if pair % 2 == 0 else ["new", "old"]
@@ -29,40 +44,41 @@ def turns(pairs):
 
 
 def times_of(report):
-    """Nanoseconds per pillar by row, of what a program printed as JSON."""
-    return {row["name"]: row["ns_per_pillar"] for row in report["benchmarks"]
-            if row.get("run_type") == "iteration" and "ns_per_pillar" in row}
+    """Nanoseconds per pillar by case, from a program's JSON report."""
+    new_names = {old: new for new, old in OLD_NAMES.items()}
+    return {renamed(case["name"], new_names): case["ns_per_pillar"] for case in report["benchmarks"]
+            if case.get("run_type") == "iteration" and "ns_per_pillar" in case}
 
 
 def spread(ratios):
-    """Tenth percentile, median and ninetieth of two ratios or more."""
+    """First decile, median and last decile of two or more ratios."""
     deciles = statistics.quantiles(ratios, n=10, method="inclusive")
     return deciles[0], statistics.median(ratios), deciles[-1]
 
 
-def verdict(low, high):
-    """What it means that most ratios new / old lie from `low` to `high`."""
+def change(low, high):
+    """Whether the new program is faster, from the deciles of new / old."""
     if high < 1:
         return "faster"
     return "slower" if low > 1 else "same"
 
 
 def compare(old, new):
-    """Lines of a table. `old` and `new` are dictionaries of times, one for each pair."""
-    lines = [f"{'row':28} {'new / old':>10} {'10 % .. 90 %':>17}  the new one is"]
+    """Lines of the table. `old` and `new` hold the times of each pair."""
+    lines = [f"{'case':28} {'new / old':>10} {'10 % .. 90 %':>17}  new program"]
     common = [name for name in old[0] if name in new[0]]
     for name in common:
         ratios = [after[name] / before[name] for before, after in zip(old, new)]
         low, middle, high = spread(ratios)
-        lines.append(f"{name:28} {middle:10.3f} {low:8.3f} {high:8.3f}  {verdict(low, high)}")
+        lines.append(f"{name:28} {middle:10.3f} {low:8.3f} {high:8.3f}  {change(low, high)}")
     for name in sorted(set(old[0]) ^ set(new[0])):
-        lines.append(f"{name:28} only in the {'old' if name in old[0] else 'new'} one")
+        lines.append(f"{name:28} only in the {'old' if name in old[0] else 'new'} program")
     return lines
 
 
-def run(program, rows, seconds):
-    """The times of one run of a program."""
-    result = subprocess.run([program, f"--benchmark_filter={rows}", "--benchmark_format=json",
+def run(program, pattern, seconds):
+    """Times of one run of a program."""
+    result = subprocess.run([program, f"--benchmark_filter={pattern}", "--benchmark_format=json",
                              f"--seconds={seconds}"],
                             stdout=subprocess.PIPE, text=True, check=False)
     if result.returncode != 0:
@@ -71,7 +87,7 @@ def run(program, rows, seconds):
 
 
 def whole_number_from_2(text):
-    """For argparse: percentiles take two pairs."""
+    """For argparse: deciles need two pairs."""
     number = int(text)
     if number < 2:
         raise argparse.ArgumentTypeError("must be 2 or more")
@@ -81,23 +97,24 @@ def whole_number_from_2(text):
 def main():
     """Runs the programs and prints the table."""
     parser = argparse.ArgumentParser(
-        description="Tells whether one pillarfield-bench is faster than another.")
+        description="Compares the speed of two programs pillarfield-bench.")
     parser.add_argument("--old", required=True, metavar="PROGRAM")
     parser.add_argument("--new", required=True, metavar="PROGRAM")
     parser.add_argument("--pairs", type=whole_number_from_2, default=PAIRS, metavar="N",
                         help="runs of each program (default %(default)s)")
     parser.add_argument("--seconds", type=float, default=0.3, metavar="S",
-                        help="least time of a row's race (default %(default)s)")
-    parser.add_argument("filter", nargs="?", default=FILTER, help="rows (default '%(default)s')")
+                        help="minimum time of a case (default %(default)s)")
+    parser.add_argument("filter", nargs="?", default=FILTER, help="cases (default '%(default)s')")
     arguments = parser.parse_args()
 
     programs = {"old": arguments.old, "new": arguments.new}
     times = {"old": [], "new": []}
+    pattern = any_revision(arguments.filter)
     order = turns(arguments.pairs)
     for number, which in enumerate(order, 1):
         if sys.stderr.isatty():
             print(f"run {number} of {len(order)}", end="\r", file=sys.stderr, flush=True)
-        times[which].append(run(programs[which], arguments.filter, arguments.seconds))
+        times[which].append(run(programs[which], pattern, arguments.seconds))
     print("\n".join(compare(times["old"], times["new"])))
 
 

@@ -16,8 +16,8 @@ using bound::Force;
 
 constexpr double kFar = 5;  ///< standard deviations
 
-/// The sensels of a skin as the bound knows them: V is told above the threshold and the dead zone,
-/// with the noise of a reading that went through the calibration.
+/// Sensels as the bound models them: they read V above threshold plus dead zone, with the noise of
+/// a calibrated reading.
 class SenselsOfPlan {
  public:
   explicit SenselsOfPlan(const SolverPlan& plan)
@@ -28,7 +28,7 @@ class SenselsOfPlan {
     return {sensel(at[0]), sensel(at[1]), sensel(at[2]), sensel(at[3])};
   }
 
-  [[nodiscard]] bool is_whole(std::uint32_t row, std::uint32_t col) const {
+  [[nodiscard]] bool is_intact(std::uint32_t row, std::uint32_t col) const {
     const auto& mask = calibration_.mask;
     if (mask.empty()) return true;
     return std::ranges::all_of(pillar_sensels(skin_, row, col),
@@ -94,7 +94,7 @@ class Sums {
       all_errors_ += error;
       ambiguous_ += (solved.status[pillar] & status::kAmbiguous) != 0 ? 1U : 0U;
       const bound::Sensels sensels = sensels_.of_pillar(row, col);
-      if (!sensels_.is_whole(row, col) || !has_bound(truth, sensels)) return;
+      if (!sensels_.is_intact(row, col) || !has_bound(truth, sensels)) return;
       const double least = bound::least_error(truth, sensels);
       ++bounded_;
       errors_ += error;

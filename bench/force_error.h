@@ -8,22 +8,22 @@
 
 namespace pillarfield::bench {
 
-/// How wrong the forces of a variant are, beside the least that noise allows.
+/// Error of a variant's forces, absolute and relative to the Cramér–Rao bound.
 struct ForceError {
-  /// RMS of |solved − true|, counts of a uint8 sensel, where the true force is in region 1 or 2 and
-  /// every one of its sensels is whole, below full scale, and five standard deviations or more from
-  /// the threshold.
+  /// RMS of |solved − true|, counts of a uint8 sensel, over pillars whose true force is in region 1
+  /// or 2 and whose sensels are all intact, below full scale, and at least five standard deviations
+  /// from the threshold.
   double counts = 0;
-  /// RMS, over the same pillars, of |solved − true| over the Cramér–Rao bound of the pillar: of its
-  /// sensels' noise as their calibration leaves it, a converter's rounding (1/12 count²) included.
+  /// RMS, over these pillars, of |solved − true| over the pillar's Cramér–Rao bound, for the noise
+  /// of calibrated readings with the converter's rounding (1/12 count²).
   double over_bound = 0;
-  std::size_t pillars = 0;  ///< of which there are so many
+  std::size_t pillars = 0;  ///< number of these pillars
   double all_counts = 0;    ///< RMS of |solved − true| over all pillars, counts of a uint8 sensel
-  double ambiguous = 0;     ///< share of all pillars whose status says so
+  double ambiguous = 0;     ///< fraction of all pillars with an ambiguous status
 };
 
-/// Solves the first `count` of the frames, which are those of the variant's plan. The same on every
-/// run. About 0.5 µs per pillar.
+/// Solves the first `count` frames, which must be of the variant's plan. Deterministic. About
+/// 0.5 µs per pillar.
 [[nodiscard]] ForceError measure_force_error(const Device& device, const SolveVariant& variant,
                                              const SolverPlan& plan, const NoisyFrames& frames,
                                              std::size_t count);

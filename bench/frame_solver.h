@@ -6,17 +6,16 @@
 
 namespace pillarfield::bench {
 
-/// A processor that works through a series of frames, as many in flight as it has slots for.
-/// `frames` must outlive it.
+/// Solves a series of frames with all slots of a processor in flight. `frames` must outlive it.
 class FrameSolver {
  public:
   FrameSolver(const Device& device, const SolverPlan& plan, const Frames& frames,
               const Processor::Options& options = {}, const ProcessorTuning& tuning = {});
 
-  /// Solves so many frames, going on where it stopped.
+  /// Solves the next `frames` frames.
   void run(int frames);
 
-  /// Solves one frame; the result stays until run() or the next solve().
+  /// Solves one frame; the result is valid until run() or the next solve().
   ForceFieldView solve(const FrameView& frame);
 
  private:

@@ -23,31 +23,31 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 constexpr std::size_t kQuartets = 1024;      ///< distinct ones of a region
 constexpr std::size_t kTapePillars = 16384;  ///< before a tape repeats
 
-/// From any direction of the hemisphere alike, 1 to 170 counts and as many weak as strong ones:
-/// sensels read 240 at most, and some forces are below what three of four sensels feel.
+/// A force of 1 to 170 counts, log-uniform, direction uniform over the hemisphere: sensels read at
+/// most 240, and some forces activate only one.
 Quartet random_readings(Random& random) {
-  std::uniform_real_distribution<double> share(0, 1);
-  const double magnitude = std::pow(170, share(random));
-  const double cosine = share(random);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const double magnitude = std::pow(170, uniform(random));
+  const double cosine = uniform(random);
   const double shear = magnitude * std::sqrt(1 - cosine * cosine);
-  const double phi = 2 * std::numbers::pi * share(random);
+  const double phi = 2 * std::numbers::pi * uniform(random);
   const auto v =
       ideal_readings({-shear * std::cos(phi), -shear * std::sin(phi), magnitude * cosine},
                      /*counts_per_newton=*/1);
-  // What rounds to no count stays silent in every type of sensel.
-  const auto felt = [](double reading) { return reading < 0.5 ? 0.0 : reading; };
-  return {felt(v.v1), felt(v.v2), felt(v.v3), felt(v.v4)};
+  // Below half a count a sensel is inactive in every type.
+  const auto active = [](double reading) { return reading < 0.5 ? 0.0 : reading; };
+  return {active(v.v1), active(v.v2), active(v.v3), active(v.v4)};
 }
 
 std::uint8_t usable(const Quartet& v) { return usable_bits({v[0], v[1], v[2], v[3]}); }
 
-/// Distinct readings of one region, or of all in which a sensel reads something.
+/// Random readings of one region, or of all regions.
 std::vector<Quartet> draw(Touch touch, Random& random) {
   std::vector<Quartet> drawn;
   while (drawn.size() < kQuartets) {
-    const Quartet readings = touch == Touch::silent ? Quartet{} : random_readings(random);
+    const Quartet readings = touch == Touch::idle ? Quartet{} : random_readings(random);
     const Region region = region_of(usable(readings));
-    const bool fits = touch == Touch::mixed || touch == Touch::silent
+    const bool fits = touch == Touch::mixed || touch == Touch::idle
                           ? (region != Region::none) == (touch == Touch::mixed)
                           : static_cast<int>(region) == static_cast<int>(touch) + 1;
     if (fits) drawn.push_back(readings);
@@ -55,11 +55,11 @@ std::vector<Quartet> draw(Touch touch, Random& random) {
   return drawn;
 }
 
-/// The pools from which neighbouring pillars take their readings in turns.
+/// The pools from which neighbouring pillars draw readings in turns.
 std::vector<std::vector<Quartet>> pools(Touch touch, Random& random) {
   if (touch != Touch::worst) return {draw(touch, random)};
   std::vector<std::vector<Quartet>> all;
-  for (const Touch each : {Touch::one, Touch::two, Touch::three, Touch::four, Touch::silent}) {
+  for (const Touch each : {Touch::one, Touch::two, Touch::three, Touch::four, Touch::idle}) {
     all.push_back(draw(each, random));
   }
   return all;
@@ -72,7 +72,7 @@ Reading stored(double counts) {
   return static_cast<Reading>(counts);
 }
 
-/// Two long rows of readings, of which every row of pillars of every frame is a piece.
+/// Two long rows of readings; every row of pillars of every frame is a piece of them.
 template <class Reading>
 struct Tape {
   Tape(Touch touch, std::uint32_t cols, Random& random) {
@@ -82,7 +82,7 @@ struct Tape {
       top.insert(top.end(), {stored<Reading>(v[1]), stored<Reading>(v[0])});
       bottom.insert(bottom.end(), {stored<Reading>(v[2]), stored<Reading>(v[3])});
     }
-    // So that a piece may start anywhere.
+    // A piece may start at any pillar.
     for (std::size_t i = 0; i < 2 * std::size_t{cols}; ++i) {
       top.push_back(top[i]);
       bottom.push_back(bottom[i]);
@@ -97,17 +97,17 @@ struct PillarSpan {
   std::uint32_t count;
 };
 
-/// Round contacts in the cells of a grid, each going round the middle of its cell.
+/// Round contacts that circle the centres of grid cells.
 class Contacts {
  public:
-  Contacts(const Skin& skin, double share, double turns)
+  Contacts(const Skin& skin, double fraction, double turns)
       : rows_(skin.pillar_rows()), cols_(skin.pillar_cols()), turns_(turns) {
     constexpr double kContacts = kGridRows * kGridCols;
     const auto pillars = static_cast<double>(skin.pillars());
-    radius_ = std::sqrt(share * pillars / (kContacts * std::numbers::pi));
+    radius_ = std::sqrt(fraction * pillars / (kContacts * std::numbers::pi));
   }
 
-  /// Where they cut a row of pillars.
+  /// The pillars of a row that lie in contacts.
   [[nodiscard]] std::vector<PillarSpan> spans(std::uint32_t row) const {
     std::vector<PillarSpan> cut;
     const double cell_rows = static_cast<double>(rows_) / kGridRows;
@@ -138,17 +138,17 @@ class Contacts {
 };
 
 template <class Reading>
-void fill(std::vector<FrameBuffer>& frames, const Skin& skin, const Scenery& scenery) {
+void fill(std::vector<FrameBuffer>& frames, const Skin& skin, const Scenario& scenario) {
   Random random(1);
-  const Tape<Reading> tape(scenery.touch, skin.pillar_cols(), random);
+  const Tape<Reading> tape(scenario.touch, skin.pillar_cols(), random);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double turns = static_cast<double>(i) / static_cast<double>(frames.size());
-    const Contacts contacts(skin, scenery.contact, turns);
+    const Contacts contacts(skin, scenario.contact, turns);
     Reading* const readings = frames[i].readings<Reading>().data();
     for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
       const std::size_t piece = 2 * (random() % kTapePillars);
-      const auto spans = scenery.contact < 1 ? contacts.spans(row)
-                                             : std::vector<PillarSpan>{{0, skin.pillar_cols()}};
+      const auto spans = scenario.contact < 1 ? contacts.spans(row)
+                                              : std::vector<PillarSpan>{{0, skin.pillar_cols()}};
       for (const PillarSpan& span : spans) {
         Reading* const to = readings + std::size_t{2} * row * skin.cols + 2 * span.first;
         std::copy_n(tape.top.data() + piece, 2 * span.count, to);
@@ -159,24 +159,24 @@ void fill(std::vector<FrameBuffer>& frames, const Skin& skin, const Scenery& sce
 }
 
 void fill(std::vector<FrameBuffer>& frames, SenselType type, const Skin& skin,
-          const Scenery& scenery) {
+          const Scenario& scenario) {
   switch (type) {
     case SenselType::u8:
-      return fill<std::uint8_t>(frames, skin, scenery);
+      return fill<std::uint8_t>(frames, skin, scenario);
     case SenselType::u16:
-      return fill<std::uint16_t>(frames, skin, scenery);
+      return fill<std::uint16_t>(frames, skin, scenario);
     case SenselType::f32:
-      return fill<float>(frames, skin, scenery);
+      return fill<float>(frames, skin, scenario);
   }
 }
 
 }  // namespace
 
-Frames::Frames(const Skin& skin, SenselType type, const Scenery& scenery) : skin_(skin) {
+Frames::Frames(const Skin& skin, SenselType type, const Scenario& scenario) : skin_(skin) {
   const std::size_t fit = kMostBytes / (skin.sensels() * size_of(type));
   const std::size_t count = std::clamp<std::size_t>(fit, 2, kMostFrames);
   for (std::size_t i = 0; i < count; ++i) frames_.emplace_back(type, skin.rows, skin.cols);
-  fill(frames_, type, skin, scenery);
+  fill(frames_, type, skin, scenario);
 }
 
 Frames::Frames(const Skin& skin, std::vector<FrameBuffer> frames)
@@ -189,9 +189,9 @@ double Frames::contact() const {
       if (row % 2 != 0 || row + 1 == skin_.rows) return;
       const auto* const bottom = top + skin_.cols;
       for (std::size_t col = 0; col + 1 < skin_.cols; col += 2) {
-        const bool felt =
+        const bool loaded =
             top[col] > 0 || top[col + 1] > 0 || bottom[col] > 0 || bottom[col + 1] > 0;
-        pressed += felt ? 1 : 0;
+        pressed += loaded ? 1 : 0;
       }
     });
   }

@@ -9,42 +9,41 @@
 
 namespace pillarfield::bench {
 
-/// What the pillars in contact are pressed with.
+/// Load of the pillars in contact.
 enum class Touch : std::uint8_t {
-  one,     ///< forces of region 1: all four sensels read
-  two,     ///< of region 2
-  three,   ///< of region 3
-  four,    ///< of region 4
-  silent,  ///< nothing
-  mixed,   ///< from all directions alike that some sensel feels
-  worst,   ///< all of the above in turns, from one pillar to the next
+  one,    ///< forces of region 1
+  two,    ///< forces of region 2
+  three,  ///< forces of region 3
+  four,   ///< forces of region 4
+  idle,   ///< none
+  mixed,  ///< directions uniform over the hemisphere, at least one sensel active
+  worst,  ///< regions 1 to 4 and idle in turns, from one pillar to the next
 };
 
-/// What a series of frames shows.
-struct Scenery {
+/// Content of a series of frames.
+struct Scenario {
   Touch touch = Touch::mixed;
-  /// Share of the skin in contact, 0..1: below 1 in eight round contacts, which move from frame to
+  /// Fraction of the skin in contact, 0..1: below 1, eight round contacts that move from frame to
   /// frame.
   double contact = 1;
 };
 
-/// A series of frames of which no two are alike, in memory of their own. Readings are those of a
-/// flawless sensor in whole counts, up to 240; uint16 ones have four bits more, and float32 ones
-/// their fractions.
+/// A series of distinct frames. Readings are ideal, up to 240 counts: rounded to whole counts in
+/// uint8, to sixteenths (stored times 16) in uint16, not rounded in float32.
 class Frames {
  public:
-  /// 64 frames, or as many as a gibibyte holds.
-  Frames(const Skin& skin, SenselType type, const Scenery& scenery);
-  /// Frames of that skin that somebody else made, one or more.
+  /// 64 frames, or as many as fit in 1 GiB, at least 2.
+  Frames(const Skin& skin, SenselType type, const Scenario& scenario);
+  /// Wraps one or more given frames.
   Frames(const Skin& skin, std::vector<FrameBuffer> frames);
 
   [[nodiscard]] std::size_t size() const { return frames_.size(); }
-  /// Frames repeat from the size() th on.
+  /// Frames repeat after size().
   [[nodiscard]] FrameView operator[](std::size_t frame) const {
     return frames_[frame % frames_.size()].view();
   }
 
-  /// Share of the pillars of all frames on which a sensel reads something.
+  /// Fraction of the pillars of all frames with a reading above 0.
   [[nodiscard]] double contact() const;
 
  private:

@@ -1,5 +1,5 @@
-// pillarfield-bench: how fast frames are solved, beside the copy of the same bytes and beside
-// others. Exit status: 0 done, 1 a row failed, 2 the command line was wrong.
+// pillarfield-bench: speed of the solve, relative to a copy of the same bytes and to baselines.
+// Exit status: 0 done, 1 a case failed, 2 the command line was wrong.
 
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
@@ -13,8 +13,8 @@
 #include <string_view>
 #include <vector>
 
-#include "bench/cases/rows.h"
-#include "bench/timing/plain_names.h"
+#include "bench/cases/cases.h"
+#include "bench/timing/unsuffixed_reporter.h"
 #include "device/device_state.h"
 #include "pillarfield/error.h"
 
@@ -29,30 +29,30 @@ constexpr const char* kHelp = R"(Measures how fast frames are solved (docs/bench
 
 Usage: pillarfield-bench [OPTIONS]
 
-  --benchmark_filter=REGEX       only the rows whose name matches; --benchmark_list_tests lists them
+  --benchmark_filter=REGEX       only cases whose name matches; --benchmark_list_tests lists them
   --benchmark_format=FORMAT      console or json, to standard output
-  --benchmark_repetitions=N      every row N times, then mean, median and deviation
-  --device=INDEX|NAME            an OpenCL device, as for `pillarfield solve`
-  --seconds=S                    least time of a row's race, above 0 (default 1)
-  --help                         this
+  --benchmark_repetitions=N      run every case N times, then print mean, median and deviation
+  --device=INDEX|NAME            the OpenCL device, as for `pillarfield solve`
+  --seconds=S                    minimum time of a case, above 0 (default 1)
+  --help                         print this help
 
   Further options are those of Google Benchmark 1.7: --benchmark_out=FILE, --benchmark_color=BOOL,
   --benchmark_counters_tabular=BOOL, --benchmark_enable_random_interleaving=BOOL, ...
 
-Rows: ceiling/ size/ contact/ regions/ type/ output/ estimator/ lanes/ stage/ latency/ throughput/
-      opponent/ by_hand/ spread/ variant/ field/ render/
+Cases: limit/ size/ contact/ regions/ type/ output/ estimator/ lanes/ stage/ latency/ throughput/
+       baseline/ intrinsics/ spread/ variant/ field/ render/
 
 Try:  pillarfield-bench --benchmark_filter=size/
-      pillarfield-bench --benchmark_filter=opponent/ --seconds=5
+      pillarfield-bench --benchmark_filter=baseline/ --seconds=5
 )";
 
-/// What is asked for beside Google Benchmark's own options.
+/// Options beside those of Google Benchmark.
 struct Arguments {
   std::string device;
   double seconds = 1;
 };
 
-/// Takes out `--name=value`; false where the word is another.
+/// Parses `--name=value`; false where `word` is another option.
 bool take(std::string_view word, std::string_view name, std::string_view& value) {
   const std::string prefix = fmt::format("--{}=", name);
   if (!word.starts_with(prefix)) return false;
@@ -65,13 +65,13 @@ double parse_seconds(std::string_view text) {
   const char* const end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, seconds);
   if (parsed.ec != std::errc{} || parsed.ptr != end || !(seconds > 0 && seconds <= 3600)) {
-    throw Error("--seconds", fmt::format("'{}' is no time", text),
-                "give seconds above 0, 3600 at most");
+    throw Error("--seconds", fmt::format("'{}' is not a time", text),
+                "give seconds above 0 and at most 3600");
   }
   return seconds;
 }
 
-/// Takes our options out of `words`; the others stay.
+/// Removes these options from `words`; the others remain.
 Arguments take_arguments(std::vector<char*>& words) {
   Arguments arguments;
   std::erase_if(words, [&](const char* word) {
@@ -93,7 +93,7 @@ void print_help() {
   std::exit(kDone);  // NOLINT(concurrency-mt-unsafe): no thread was started.
 }
 
-void tell_context(const Device& device) {
+void add_context(const Device& device) {
   const DeviceInfo& info = device.info();
   benchmark::AddCustomContext("device", fmt::format("{} ({})", info.name, info.type));
   benchmark::AddCustomContext("driver", device.state().device.getInfo<CL_DRIVER_VERSION>());
@@ -104,15 +104,15 @@ void tell_context(const Device& device) {
   benchmark::AddCustomContext("build", PILLARFIELD_BUILD_TYPE);
 }
 
-/// Rows end in "/manual_time" for Google Benchmark, and in nothing for people: a `$` stands for
-/// both ends.
-std::string row_filter(const std::string& filter) {
+/// Google Benchmark appends "/manual_time" to names, which the reporter hides: `$` matches before
+/// the suffix.
+std::string case_filter(const std::string& filter) {
   return std::regex_replace(filter, std::regex(R"(\$)"), "/manual_time$$");
 }
 
-/// Hands Google Benchmark its options; false where one is unknown to it too.
+/// Passes the other options to Google Benchmark; false where one is unknown to it.
 bool initialize(std::vector<char*> words) {
-  // A row is one race: with the library's own time it would be repeated.
+  // A case repeats by itself: the library must run it once.
   std::string one_iteration = "--benchmark_min_time=1e-9";
   words.insert(words.begin() + 1, one_iteration.data());
   int count = static_cast<int>(words.size());
@@ -124,17 +124,17 @@ bool initialize(std::vector<char*> words) {
 int run(const Arguments& arguments) {
   Session session{open_device(arguments.device), {}};
   session.length.seconds = arguments.seconds;
-  tell_context(session.device);
-  for (const auto add :
-       {add_ceiling_rows, add_size_rows, add_plan_rows, add_time_rows, add_opponent_rows,
-        add_by_hand_rows, add_spread_rows, add_variant_rows, add_field_rows, add_render_rows}) {
+  add_context(session.device);
+  for (const auto add : {add_limit_cases, add_size_cases, add_plan_cases, add_time_cases,
+                         add_baseline_cases, add_intrinsics_cases, add_spread_cases,
+                         add_variant_cases, add_field_cases, add_render_cases}) {
     add(session);
   }
-  PlainNames reporter;
-  const std::size_t rows =
-      benchmark::RunSpecifiedBenchmarks(&reporter, row_filter(benchmark::GetBenchmarkFilter()));
+  UnsuffixedReporter reporter;
+  const std::size_t cases =
+      benchmark::RunSpecifiedBenchmarks(&reporter, case_filter(benchmark::GetBenchmarkFilter()));
   benchmark::Shutdown();
-  return rows == 0 || reporter.any_failed() ? kFailed : kDone;
+  return cases == 0 || reporter.any_failed() ? kFailed : kDone;
 }
 
 int complain(const std::exception& error, int status) {

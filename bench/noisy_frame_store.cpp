@@ -13,7 +13,7 @@ const NoisyFrames& NoisyFrameStore::of(const SolverPlan& plan) {
   const Kind wanted = {plan.sensel_type, !plan.calibration.empty()};
   if (wanted == Kind{SenselType::u8, false}) return bare();
   if (!last_ || wanted != last_kind_) {
-    last_.reset();  // Before the next are made.
+    last_.reset();  // Before the next allocation.
     last_.emplace(plan, count_);
     last_kind_ = wanted;
   }

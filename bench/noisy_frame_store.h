@@ -9,9 +9,8 @@
 
 namespace pillarfield::bench {
 
-/// The frames of solve variants: those of the bare uint8 sensor, by whose copy all variants are
-/// measured, and those that were wanted last. They are large, so neighbours among the variants
-/// share them.
+/// Frames of solve variants: of the bare uint8 sensor, whose copy all variants are compared with,
+/// and of the last variant. Neighbouring variants share them, since they are large.
 class NoisyFrameStore {
  public:
   /// Each series has `count` frames of a square skin.
@@ -20,12 +19,11 @@ class NoisyFrameStore {
 
   const NoisyFrames& bare();
 
-  /// For a plan of a variant; they stay until those of another type, or of a sensor calibrated
-  /// otherwise, are asked for.
+  /// Frames for a variant's plan, valid until a call with another type or another calibration.
   const NoisyFrames& of(const SolverPlan& plan);
 
  private:
-  using Kind = std::pair<SenselType, bool>;  ///< and whether calibrated
+  using Kind = std::pair<SenselType, bool>;  ///< type, calibrated
   std::uint32_t pillars_a_side_;
   std::size_t count_;
   std::optional<NoisyFrames> bare_;

@@ -20,7 +20,7 @@ constexpr std::size_t kForces = std::size_t{1} << 16;  ///< before they repeat
 constexpr double kLeastCounts = 15;
 constexpr double kMostCounts = 150;
 
-/// In counts: those of a sensor that has one count per newton.
+/// Forces in counts.
 std::vector<Force> draw_forces() {
   std::vector<Force> forces;
   std::array<double, 4> shares{};
@@ -40,7 +40,7 @@ const std::vector<Force>& forces() {
   return all;
 }
 
-/// Each row of pillars is a piece of all forces: where it begins among them.
+/// Index of the force on a row's first pillar; each row takes a piece of forces().
 std::size_t piece_of(std::size_t frame, std::uint32_t row) {
   std::array<double, 1> share{};
   random::fill_uniform({kSeed, random::Stream::positioner, frame, row}, share);
@@ -56,7 +56,7 @@ Reading converted(double counts) {
   return static_cast<Reading>(counts);
 }
 
-/// The sensels of a plan as one presses them.
+/// Readings of a plan's sensels under forces().
 class Sensor {
  public:
   explicit Sensor(const SolverPlan& plan) : skin_(plan.skin), calibration_(plan.calibration) {
@@ -89,8 +89,8 @@ class Sensor {
       return plane.empty() ? otherwise : plane[sensel];
     };
     if (!calibration_.mask.empty() && calibration_.mask[sensel] == 0) return 0;
-    const double felt = std::max(0.0, model - value(calibration_.dead_zone, 0));
-    return value(calibration_.tare, 0) + felt / value(calibration_.gain, 1) + noise;
+    const double response = std::max(0.0, model - value(calibration_.dead_zone, 0));
+    return value(calibration_.tare, 0) + response / value(calibration_.gain, 1) + noise;
   }
 
   Skin skin_;

@@ -10,28 +10,27 @@
 
 namespace pillarfield::bench {
 
-/// Frames of a sensor with noise, every pillar of which is pressed with a force that is known: 15
-/// to 150 counts of a uint8 sensel, as many weak as strong ones, from all directions of the
-/// hemisphere alike.
+/// Frames of a sensor with noise under known forces: 15 to 150 counts of a uint8 sensel on each
+/// pillar, log-uniform, with directions uniform over the hemisphere.
 ///
-/// A sensel reads raw = t + g·max(0, V − z) with the tare, gain 1/g and dead zone of the plan's
-/// calibration, nothing where its mask says so, and normal noise of kSensorNoiseCounts; uint8 and
-/// uint16 sensels round to whole counts and read no less than 0. Seeds are fixed.
+/// A sensel reads raw = t + g·max(0, V − z) with the tare t, gain 1/g and dead zone z of the plan's
+/// calibration, and normal noise of kSensorNoiseCounts; a masked sensel reads 0. uint8 and uint16
+/// sensels round to whole counts, at least 0. Seeds are fixed.
 class NoisyFrames {
  public:
-  /// So many frames of the skin and type of `plan`. About 20 ns per sensel.
+  /// `count` frames of the skin and type of `plan`. About 20 ns per sensel.
   NoisyFrames(const SolverPlan& plan, std::size_t count);
 
   [[nodiscard]] const Frames& frames() const { return frames_; }
 
-  /// What presses a pillar, N.
+  /// The true force on a pillar, N.
   [[nodiscard]] double_precision::Force truth(std::size_t frame, std::uint32_t row,
                                               std::uint32_t col) const;
 
  private:
   Frames frames_;
-  double counts_per_newton_;  ///< of the plan
-  double count_scale_;        ///< of its type
+  double counts_per_newton_;
+  double count_scale_;
 };
 
 }  // namespace pillarfield::bench

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bench/frames.h"
-#include "bench/timing/plain_names.h"
+#include "bench/timing/unsuffixed_reporter.h"
 #include "bench/variants.h"
 #include "pillarfield/error.h"
 #include "viewer/options.h"
@@ -19,9 +19,9 @@ namespace pillarfield::bench {
 namespace {
 
 constexpr double kContact = 0.1;
-constexpr std::uint64_t kFields = 4;  ///< more than the caches hold, of a square metre
+constexpr std::uint64_t kFields = 4;  ///< of a square metre: larger than the caches
 
-/// Frames of readings, copied from those of other rows.
+/// Copies of the benchmark's frames.
 class FrameCopies final : public viewer::FrameProvider {
  public:
   FrameCopies(const SolverPlan& plan, std::uint64_t count) {
@@ -65,11 +65,11 @@ viewer::RenderSettings settings_of(viewer::FieldProducer& producer, const Pictur
   return settings;
 }
 
-/// What keeps a row from being measured is no failure of it.
-template <class Open>
-auto or_skip(const Open& open) {
+/// An error of `create` skips the case instead of failing it.
+template <class Create>
+auto or_skip(const Create& create) {
   try {
-    return open();
+    return create();
   } catch (const Error& error) {
     throw Error("", fmt::format("{}{}", kSkipped, error.what()));
   }

@@ -9,8 +9,8 @@
 
 namespace pillarfield::bench {
 
-/// Pictures of the viewer's own drawing, without a window: of a square skin with a tenth of it in
-/// contact, whose frames were solved beforehand.
+/// The viewer's pictures of a square skin, a tenth of it in contact, without a window. Its frames
+/// are solved beforehand.
 class Pictures {
  public:
   static constexpr std::uint32_t kWidth = 1280;
@@ -18,22 +18,22 @@ class Pictures {
 
   struct Kind {
     std::uint32_t pillars_a_side;
-    bool orbit;     ///< in perspective, else from above
-    bool arrows;    ///< upon the heat map
-    bool overlay;   ///< axes and legends around it
-    bool in_place;  ///< fields are read where the solver left them, else copied to the device
+    bool orbit;     ///< perspective, else from above
+    bool arrows;    ///< on the heat map
+    bool overlay;   ///< axes and legends
+    bool in_place;  ///< reads fields in the solver's memory, else copies them to the device
   };
 
-  /// Throws Error that begins with kSkipped where no device of Vulkan will do.
+  /// Throws an Error that begins with kSkipped where no Vulkan device suffices.
   Pictures(const Device& solver, const Kind& kind);
 
-  /// Draws so many pictures, each of the next of a few fields; waits for each.
+  /// Draws `pictures` pictures of the next fields; waits for each.
   void draw(int pictures);
 
-  /// The same of pictures of nothing, each of which is read back.
+  /// Clears a target and reads it back, `pictures` times.
   void clear_and_read(int pictures);
 
-  /// Reads the last picture so many times.
+  /// Reads the last picture back, `pictures` times.
   void read(int pictures);
 
   [[nodiscard]] const std::string& device_name() const { return device_.name(); }

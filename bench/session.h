@@ -1,14 +1,14 @@
 #pragma once
 
-#include "bench/timing/race.h"
+#include "bench/timing/interleaved_timing.h"
 #include "pillarfield/processor.h"
 
 namespace pillarfield::bench {
 
-/// What all rows of a run have in common.
+/// Device and timing length of all cases of a run.
 struct Session {
   Device device;
-  RaceLength length;
+  TimingLength length;
 };
 
 }  // namespace pillarfield::bench

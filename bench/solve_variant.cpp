@@ -7,7 +7,7 @@
 namespace pillarfield::bench {
 namespace {
 
-/// Those that share frames side by side: of the uncalibrated sensor, then of the calibrated one.
+/// Stages of the uncalibrated sensor, then of the calibrated one: each group shares its frames.
 constexpr std::string_view kStages[] = {"none", "angles", "uncertainty", "calibration", "all"};
 constexpr SenselType kTypes[] = {SenselType::u8, SenselType::u16, SenselType::f32};
 constexpr Estimator kEstimators[] = {Estimator::direct, Estimator::paper};

@@ -9,34 +9,33 @@
 
 namespace pillarfield::bench {
 
-/// What computes, and how exactly.
+/// Precision, and the code that computes.
 enum class Arithmetic : std::uint8_t {
   device_float,  ///< the kernels
-  host_double,  ///< a C++ loop over kernels/pillar, on all threads; its results are stored as float
+  host_double,   ///< a C++ loop over kernels/pillar, on all threads; stores float results
 };
 
-/// One way to solve the frames of a sensor with noise.
+/// A variant of the solve of a noisy sensor's frames.
 struct SolveVariant {
   Estimator estimator = Estimator::direct;
   Arithmetic arithmetic = Arithmetic::device_float;
   SenselType type = SenselType::u8;
-  /// "none", "calibration" (tare, gain, dead zone, mask), "angles", "uncertainty", or "all", as
-  /// add_stage has it.
+  /// "none", "calibration" (tare, gain, dead zone, mask), or one of "angles", "uncertainty", "all"
+  /// of add_stage.
   std::string_view stage = "none";
 };
 
 /// "direct/float/u8/none".
 [[nodiscard]] std::string name_of(const SolveVariant& variant);
 
-/// All that there are. Neighbours share their frames where they can.
+/// All variants, in an order in which neighbours share frames.
 [[nodiscard]] std::vector<SolveVariant> solve_variants();
 
-/// The sensor's noise before its converter rounds, and what it takes for silence: of uint8 and
-/// float32 sensels.
+/// Noise before the converter rounds, and threshold, of uint8 and float32 sensels.
 inline constexpr double kSensorNoiseCounts = 0.5;
 inline constexpr double kSensorThresholdCounts = 2.5;
 
-/// Counts of a type for one of uint8: uint16 sensels count 16 times finer.
+/// Counts of a type per count of uint8: 16 for uint16, else 1.
 [[nodiscard]] double count_scale(SenselType type);
 
 /// The plan of a variant for a square skin.

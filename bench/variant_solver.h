@@ -8,22 +8,22 @@
 
 namespace pillarfield::bench {
 
-/// Solves a series of frames as a variant says. `plan`, which is that of the variant, and `frames`
-/// must outlive it.
+/// Solves a series of frames by a variant. `plan`, the plan of the variant, and `frames` must
+/// outlive it.
 class VariantSolver {
  public:
   VariantSolver(const Device& device, const SolveVariant& variant, const SolverPlan& plan,
                 const Frames& frames);
 
-  /// Solves so many frames, going on where it stopped.
+  /// Solves the next `frames` frames.
   void run(int frames);
 
-  /// Solves one frame; the result stays until run() or the next solve().
+  /// Solves one frame; the result is valid until run() or the next solve().
   ForceFieldView solve(const FrameView& frame);
 
  private:
   const Frames* frames_;
-  std::optional<FrameSolver> on_device_;  ///< one of the two is there
+  std::optional<FrameSolver> on_device_;  ///< exactly one of the two is set
   std::optional<DoubleLoop> in_double_;
 };
 

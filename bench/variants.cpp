@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNoiseCounts = 0.5;
 
-/// A plane of the skin's sensels with values evenly from `low` to `high`.
+/// A plane of uniformly distributed values, `low` to `high`.
 std::vector<float> uneven_plane(const Skin& skin, float low, float high, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> value(low, high);
@@ -31,14 +31,14 @@ void add_dead_zone(SolverPlan& plan) {
   plan.calibration.dead_zone = uneven_plane(plan.skin, 1, 2, 3);
 }
 
-/// Three sensels in a thousand are dead.
+/// Masks 0.3 % of the sensels.
 void add_mask(SolverPlan& plan) {
-  for (const float share : uneven_plane(plan.skin, 0, 1, 4)) {
-    plan.calibration.mask.push_back(share < 0.997F ? 1 : 0);
+  for (const float value : uneven_plane(plan.skin, 0, 1, 4)) {
+    plan.calibration.mask.push_back(value < 0.997F ? 1 : 0);
   }
 }
 
-/// Of the frames' readings, a few per cent are at least so large.
+/// A few per cent of the frames' readings reach this full scale.
 void add_saturation(SolverPlan& plan) {
   plan.skin.full_scale_counts = plan.sensel_type == SenselType::u16 ? 16 * 200 : 200;
 }
@@ -104,8 +104,8 @@ void add_stage(SolverPlan& plan, std::string_view name) {
   for (const Stage& stage : kStages) {
     if (stage.name == name) return stage.add(plan);
   }
-  throw Error("bench", fmt::format("'{}' is no stage", name),
-              fmt::format("there are: {}", fmt::join(stage_names(), ", ")));
+  throw Error("bench", fmt::format("unknown stage '{}'", name),
+              fmt::format("choose from: {}", fmt::join(stage_names(), ", ")));
 }
 
 std::size_t Streams::bytes_per_pillar() const {

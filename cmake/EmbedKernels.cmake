@@ -1,5 +1,5 @@
-# Writes a C++ file that holds the program of all.h as bytes: its directives, and in place of each
-# #include the file, which compilers then know by its own lines.
+# Writes a C++ file that holds the program of all.h as bytes: its directives, with each #include
+# replaced by #line and the file.
 #   cmake -DALL=kernels/all.h -DOUTPUT=out.cpp -P EmbedKernels.cmake
 cmake_path(GET ALL PARENT_PATH folder)
 file(STRINGS "${ALL}" directives REGEX "^#")

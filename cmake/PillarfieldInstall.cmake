@@ -1,14 +1,14 @@
 # Installs the library for find_package(pillarfield), the program and the scenes.
 include(CMakePackageConfigHelpers)
 
-# pillarfield::pillarfield stands for all floors.
+# pillarfield::pillarfield links all layers.
 add_library(pillarfield_all INTERFACE)
 add_library(pillarfield::pillarfield ALIAS pillarfield_all)
 set_target_properties(pillarfield_all PROPERTIES EXPORT_NAME pillarfield)
 
-foreach(floor kernels core device io pipeline)
-  target_link_libraries(pillarfield_all INTERFACE pillarfield_${floor})
-  install(TARGETS pillarfield_${floor} EXPORT pillarfield)
+foreach(layer kernels core device io pipeline)
+  target_link_libraries(pillarfield_all INTERFACE pillarfield_${layer})
+  install(TARGETS pillarfield_${layer} EXPORT pillarfield)
 endforeach()
 install(TARGETS pillarfield_all EXPORT pillarfield)
 install(TARGETS pillarfield)

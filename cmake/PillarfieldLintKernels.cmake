@@ -1,5 +1,5 @@
-# Compiles the kernels with clang's own OpenCL C 1.2 front end, which warns where drivers do not:
-# every sensel type and lane width, with no stage and with all of them, and in whole numbers.
+# Compiles the kernels with clang's OpenCL C 1.2 front end, which warns where drivers do not: every
+# sensel type and lane width, without stages and with all of them, and in integers.
 find_program(PILLARFIELD_CLANG NAMES clang clang-14)
 mark_as_advanced(PILLARFIELD_CLANG)
 if(NOT PILLARFIELD_CLANG)

@@ -1,14 +1,13 @@
-# What every target of the project has in common.
+# Options of all targets.
 
-# The compilers that the project is checked with. Newer ones warn of more, which must not keep a user
-# from building.
+# The compilers of `./dev check`. Newer ones have more warnings, which must not break a user's build.
 if((CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^12\\.")
    OR (CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION MATCHES "^14\\."))
   set(PILLARFIELD_KNOWN_COMPILER ON)
 endif()
 
-# Programs are position-independent, and the loader searches nothing but the system's directories. (A
-# build directory's own RUNPATH would end in an empty entry, which means the current directory.)
+# Programs are position-independent, and the loader searches only the system's directories. (A build
+# directory's RUNPATH would end in an empty entry, which means the current directory.)
 include(CheckPIESupported)
 check_pie_supported(LANGUAGES CXX)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
@@ -23,11 +22,11 @@ function(pillarfield_compile_options target)
     -Wnon-virtual-dtor -Woverloaded-virtual -Wcast-align -Wnull-dereference
     -ffp-contract=off)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # g++ 12 reports null dereferences and overlaps inside the standard library at -O3 that are none.
+    # g++ 12 reports false null dereferences and overlaps inside the standard library at -O3.
     target_compile_options(${target} PRIVATE -Wno-null-dereference -Wno-restrict)
   endif()
   if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # g++ takes an included source file for a header, whose types would differ from file to file.
+    # g++ mistakes an included source file for a header, whose types would differ from file to file.
     target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
   endif()
   if(PILLARFIELD_WERROR AND PILLARFIELD_KNOWN_COMPILER)
@@ -60,9 +59,8 @@ function(pillarfield_library name)
   pillarfield_compile_options(pillarfield_${name})
 endfunction()
 
-# pillarfield_precompile(<target> <headers...>): headers that take long to read are read once where
-# files are compiled one by one for quick incremental builds (the preset dev). A unity build reads them
-# once per batch anyway.
+# pillarfield_precompile(<target> <headers...>): precompiles slow headers in builds without unity (the
+# preset dev). A unity build reads them once per batch.
 function(pillarfield_precompile target)
   if(NOT CMAKE_UNITY_BUILD)
     target_precompile_headers(${target} PRIVATE ${ARGN})

@@ -1,23 +1,23 @@
-# How tests are made, and what they run with.
+# Functions that define tests, and the environment of the tests.
 #
 # A test program is one entry of ctest and runs all of its tests; `PROGRAM --gtest_filter=...` runs some.
-# Three keywords say when an entry is run:
+# Three keywords select when an entry runs:
 #   (none)     in the optimised build, by `./dev test`
-#   LONG       by `./dev test --all` alone: it takes minutes, or tests what is for developers
+#   LONG       only by `./dev test --all`: it takes minutes, or tests tools of developers
 #   SANITIZED  with sanitizers too, by `./dev test`: parsers, files, the ring, calibration planes.
-#              All others are run with sanitizers by `./dev test --all`.
-# The target `default_tests` builds what `./dev test` runs, `all_tests` the rest too.
+#              `./dev test --all` runs all others with sanitizers.
+# The target `default_tests` builds the tests of `./dev test`, `all_tests` those of `./dev test --all`.
 
-# Compiled kernels are kept in the build tree, not in the user's home (where others can write the tree,
-# each program compiles its own); graphics drivers look for a folder of the user's session.
+# Compiled kernels are cached in the build tree, not in the user's home (where others can write the
+# tree, each program compiles its own); graphics drivers need a folder of the user's session.
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/cache)
 file(CHMOD ${PROJECT_BINARY_DIR}/session ${PROJECT_BINARY_DIR}/cache
   PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
 set(PILLARFIELD_TEST_ENVIRONMENT "XDG_CACHE_HOME=${PROJECT_BINARY_DIR}/cache"
   "XDG_RUNTIME_DIR=${PROJECT_BINARY_DIR}/session")
 set(PILLARFIELD_TEST_PREFIX "")
-# At exit LeakSanitizer stops all threads, and dies of it now and then where they are PoCL's. Leaks are
-# looked for where no such threads live (LEAKS in pillarfield_test); device_leaks counts those of devices.
+# At exit LeakSanitizer stops all threads, and sometimes crashes where PoCL has threads. So it runs only
+# in programs without them (LEAKS in pillarfield_test); device_leaks counts leaks of devices.
 set(PILLARFIELD_LEAKS_SOUGHT "")
 if(PILLARFIELD_SANITIZE)
   set(asan_options "detect_stack_use_after_return=1:strict_string_checks=1")
@@ -32,7 +32,7 @@ add_custom_target(default_tests)
 add_custom_target(all_tests)
 add_dependencies(all_tests default_tests)
 
-# pillarfield_test_entry(<name> [LONG] [SANITIZED] [TARGETS <targets...>]): says of the test <name> when it
+# pillarfield_test_entry(<name> [LONG] [SANITIZED] [TARGETS <targets...>]): sets when the test <name>
 # runs and which targets it needs. Its label is the module that its name begins with.
 function(pillarfield_test_entry name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED" "" "TARGETS")
@@ -60,13 +60,13 @@ function(pillarfield_test_program name)
   pillarfield_test_options(${name})
 endfunction()
 
-# pillarfield_test_options(<target>): tests are compiled more often than they run.
+# pillarfield_test_options(<target>): -O1, since tests are compiled more often than they run.
 function(pillarfield_test_options target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# pillarfield_test(<module>_<subject> [LONG] [SANITIZED] [LEAKS] LINK <modules...> SOURCES <files...>): the
-# same, and its tests are a test of the project. LEAKS: with sanitizers, leaks are errors.
+# pillarfield_test(<module>_<subject> [LONG] [SANITIZED] [LEAKS] LINK <modules...> SOURCES <files...>): a
+# test program and its entry. LEAKS: with sanitizers, leaks are errors.
 function(pillarfield_test name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;SANITIZED;LEAKS" "" "")
   pillarfield_test_program(${name} ${arg_UNPARSED_ARGUMENTS})
@@ -85,10 +85,10 @@ function(pillarfield_test name)
   endif()
 endfunction()
 
-# pillarfield_oclgrind_test(<name> <program> <filter> [LONG]): one more test, which runs those tests of a
-# program that match the GoogleTest filter on Oclgrind's simulated device. It fails when they do, and
-# when a kernel accesses memory out of bounds or two work-items race; it is skipped where Oclgrind is
-# not installed. Oclgrind and AddressSanitizer exclude each other.
+# pillarfield_oclgrind_test(<name> <program> <filter> [LONG]): runs the tests of a program that match the
+# GoogleTest filter on Oclgrind's simulated device. It fails when they fail, when a kernel accesses
+# memory out of bounds, or when two work-items race; it is skipped where Oclgrind is not installed.
+# Oclgrind and AddressSanitizer exclude each other.
 function(pillarfield_oclgrind_test name program filter)
   if(PILLARFIELD_SANITIZE)
     return()
@@ -101,8 +101,8 @@ function(pillarfield_oclgrind_test name program filter)
 endfunction()
 
 # pillarfield_python_test(<module>_<subject> [LONG] SCRIPT <file> ARGUMENTS <words...> TARGETS <targets...>):
-# a Python script that passes by exiting with 0. It needs h5py and NumPy, which may be there for the
-# system's Python only, and that need not be the first on the path. Without them the test is skipped.
+# a Python script that passes by exiting with 0. It needs h5py and NumPy, which may be installed only for
+# the system's Python, which need not be the first on the path. Without them the test is skipped.
 find_program(PILLARFIELD_SYSTEM_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
 find_program(PILLARFIELD_PATH_PYTHON python3)
 mark_as_advanced(PILLARFIELD_SYSTEM_PYTHON PILLARFIELD_PATH_PYTHON)

@@ -1,5 +1,5 @@
-# cmake -D SOURCE=folder -D OUTPUT=commit.h -P WriteCommit.cmake: writes the commit that SOURCE is at.
-# The file is written only when the commit is another.
+# cmake -D SOURCE=folder -D OUTPUT=commit.h -P WriteCommit.cmake: writes the commit of SOURCE, only when
+# it has changed.
 execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=10
   OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed)

@@ -1,13 +1,13 @@
 /* The ordered list of the kernel files. C++ includes it in a namespace, once per precision
- * (host/solve/pillar_maths.h); CMake reads it and embeds the program that it makes of OpenCL C;
- * clang lints it as that program. */
+ * (host/solve/pillar_maths.h); CMake embeds its files as one OpenCL C program, which clang lints.
+ */
 /* clang-format off */
 #include "portable.h"
 #include "pillar/status.h"
 #include "pillar/pillar_model.h"
 #include "pillar/sensel.h"
 #include "pillar/direct_solve.h"
-#ifndef PF_WHOLE /* What follows computes fractions. */
+#ifndef PF_WHOLE /* The other files compute fractions. */
 #include "pillar/elementary.h"
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"

@@ -1,6 +1,6 @@
-/* The only file that knows the language, the precision and the number of lanes.
+/* The only file that depends on the language, the precision and the number of lanes.
  *
- * It gives kernels/pillar six types and four macros. The same text then compiles four ways:
+ * It defines types, macros and conversions with which kernels/pillar compiles four ways:
  *
  *            OpenCL C                   and PF_WHOLE   C++, PF_PRECISION 32   C++, PF_PRECISION 64
  *   Real     float, or floatN of lanes  floatN         float                  double
@@ -13,35 +13,33 @@
  *   PF_REAL(x)    the constant x in every lane, of Real's own precision
  *   PF_COUNTS(x)  the whole constant x in every lane
  *   PF_BITS(x)    the integer x in every lane
- *   PF_WORD(x)    as well
+ *   PF_WORD(x)    the unsigned constant x in every lane
  *   halved(c)    c / 2
  *   fraction_of(c, f)  c times f, of a Fraction, where c is not negative
  *   real_of(c)    c as Real
  *   bits_of(m)    all bits where the mask m is true, none elsewhere
  *   mask_of(b)    true where b has any bit
- *   any_lane(m)   whether m is true in any lane
+ *   any_lane(m)   true if m is true in any lane
  *   PF_CONSTANT(T, x)  the constant x of a program or plan in every lane of a T
- *   PF_FUNCTION     before a function of lanes and of structures of them
+ *   PF_INLINE     specifier of a function of lanes; PoCL always inlines it
  *   word_of(r)    the bits of r
- *   real_of_word(w)  what w are the bits of
+ *   real_of_word(w)  the Real whose bits are w
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
  * half as wide (docs/derivations/direct_solve.md, section 6); no sensel is then missing, a Fraction
- * is the number n of 1 - 1 / 2^n, and of
- * maths only pillar_model.h, sensel.h, direct_solve.h are of use.
+ * is the number n of 1 - 1 / 2^n, and only pillar_model.h, sensel.h and direct_solve.h are used.
  *
- * In C++ it is included inside a namespace, once per precision, and so has no guard. OpenCL C takes
- * PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE from the program's first lines.
+ * C++ includes it inside a namespace, once per precision; it therefore has no guard. In OpenCL C
+ * the program's first lines define PF_LANES (1, 2, 4, 8 or 16) and PF_WHOLE.
  *
- * What may stand in kernels/pillar is what means the same in all of them: masks joined by && and
- * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts; choices
- * written c ? x : y with both sides of lane type; structs passed by value; of Counts in programs of
- * whole numbers + - and comparisons alone; if (any_lane(mask)) where what it leaves out changes no
- * bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan, atan2, pow.
- * No contraction: the device and a host built with -ffp-contract=off then agree bit for bit in all
- * but the last six.
- */
+ * kernels/pillar uses only expressions with one meaning in all four: masks joined by && and
+ * ||, negated by !; Bits joined by &, | and ~; Words joined by these, ^, +, - and shifts;
+ * selections written c ? x : y with both sides of lane type; structs passed by value; of Counts in
+ * programs of whole numbers + - and comparisons alone; if (any_lane(mask)) where the skipped code
+ * changes no bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan,
+ * atan2, pow. No contraction: the device and a host built with -ffp-contract=off then agree bit for
+ * bit in all but the last six. */
 #ifndef __cplusplus /* OpenCL C */
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -90,7 +88,7 @@ static inline Counts halved(Counts counts) { return 0.5f * counts; }
 static inline Counts fraction_of(Counts counts, Fraction fraction) { return fraction * counts; }
 static inline Real real_of(Counts counts) { return counts; }
 #endif
-/* Whether any lane has any bit. (Drivers' any() asks one lane after the other.) */
+/* True if any lane has any bit set. (Drivers' any() tests one lane after the other.) */
 static inline bool any_bits(Bits bits) {
 #if PF_LANES == 1
   return bits != 0;
@@ -108,13 +106,12 @@ static inline bool any_bits(Bits bits) {
 
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
-/* PoCL, which a processor is solved on with lanes, leaves calls as they are, and structures of
- * lanes then go through memory. Other drivers inline, or like Oclgrind do not know the attribute.
- */
+/* PoCL does not inline by itself, and passes structures of lanes through memory. Other drivers
+ * inline; Oclgrind lacks the attribute. */
 #ifdef POCL_DEVICE_ADDRESS_BITS
-#define PF_FUNCTION static inline __attribute__((always_inline))
+#define PF_INLINE static inline __attribute__((always_inline))
 #else
-#define PF_FUNCTION static inline
+#define PF_INLINE static inline
 #endif
 
 #define PF_CONSTANT(type, x) ((type)(x))
@@ -125,7 +122,7 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
 #else /* C++ */
 
-#define PF_FUNCTION static inline
+#define PF_INLINE static inline
 #define PF_CONSTANT(type, x) static_cast<type>(x)
 #undef PF_REAL
 #undef PF_COUNTS

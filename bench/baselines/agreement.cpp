@@ -28,16 +28,16 @@ std::string text_of(const Solved& solved) {
 }
 
 template <class Agree>
-void require_all(std::string_view opponent, const ForceFieldView& theirs,
+void require_all(std::string_view baseline, const ForceFieldView& theirs,
                  const ForceFieldView& ours, Agree agree) {
-  constexpr const char* kMend = "its time would say nothing; mend one of the two";
+  constexpr const char* kMend = "correct one of the two before timing them";
   if (theirs.rows != ours.rows || theirs.cols != ours.cols) {
-    throw Error(opponent, "its result has another size", kMend);
+    throw Error(baseline, "the result has another size than ours", kMend);
   }
   for (std::size_t i = 0; i < ours.normal.size(); ++i) {
     if (agree(pillar(theirs, i), pillar(ours, i))) continue;
-    throw Error(opponent,
-                fmt::format("it solves pillar {} to {}, we to {}", i, text_of(pillar(theirs, i)),
+    throw Error(baseline,
+                fmt::format("pillar {} is {}, ours is {}", i, text_of(pillar(theirs, i)),
                             text_of(pillar(ours, i))),
                 kMend);
   }
@@ -49,17 +49,17 @@ bool same_bits(float a, float b) {
 
 }  // namespace
 
-void require_same_bits(std::string_view opponent, const ForceFieldView& theirs,
+void require_same_bits(std::string_view baseline, const ForceFieldView& theirs,
                        const ForceFieldView& ours) {
-  require_all(opponent, theirs, ours, [](const Solved& a, const Solved& b) {
+  require_all(baseline, theirs, ours, [](const Solved& a, const Solved& b) {
     return same_bits(a.shear_x, b.shear_x) && same_bits(a.shear_y, b.shear_y) &&
            same_bits(a.normal, b.normal) && a.status == b.status;
   });
 }
 
-void require_near(std::string_view opponent, const ForceFieldView& theirs,
+void require_near(std::string_view baseline, const ForceFieldView& theirs,
                   const ForceFieldView& ours, float tolerance) {
-  require_all(opponent, theirs, ours, [=](const Solved& a, const Solved& b) {
+  require_all(baseline, theirs, ours, [=](const Solved& a, const Solved& b) {
     const float most = tolerance * std::hypot(b.shear_x, b.shear_y, b.normal);
     return std::abs(a.shear_x - b.shear_x) <= most && std::abs(a.shear_y - b.shear_y) <= most &&
            std::abs(a.normal - b.normal) <= most && a.status == b.status;

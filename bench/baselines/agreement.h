@@ -6,13 +6,13 @@
 
 namespace pillarfield::bench {
 
-/// Throws Error that names the first pillar where forces or status bytes differ in any bit.
-void require_same_bits(std::string_view opponent, const ForceFieldView& theirs,
+/// Throws an Error that names the first pillar whose force or status differs in any bit.
+void require_same_bits(std::string_view baseline, const ForceFieldView& theirs,
                        const ForceFieldView& ours);
 
-/// Throws Error that names the first pillar where status bytes differ, or a force by more than
-/// `tolerance` of the magnitude of ours.
-void require_near(std::string_view opponent, const ForceFieldView& theirs,
+/// Throws an Error that names the first pillar whose status differs, or whose force differs by more
+/// than `tolerance` times the magnitude of ours.
+void require_near(std::string_view baseline, const ForceFieldView& theirs,
                   const ForceFieldView& ours, float tolerance);
 
 }  // namespace pillarfield::bench

@@ -11,8 +11,8 @@ BareSolve bare_solve(const SolverPlan& plan) {
       !plan.calibration.empty() || plan.skin.full_scale_counts || plan.skin.power_law ||
       plan.parity_tolerance_counts || plan.baseline_rate || plan.angles || plan.uncertainty ||
       plan.segment_point != kSegmentPoint) {
-    throw Error("opponent", "the plan is not the bare direct solve of uint8 frames",
-                "take a plan without stages");
+    throw Error("baseline", "the plan is not the bare direct solve of uint8 frames",
+                "use a plan without stages");
   }
   const ForceScale scale = force_scale(plan.skin.counts_per_newton);
   return {static_cast<float>(plan.skin.threshold_counts), static_cast<float>(region_margin(plan)),

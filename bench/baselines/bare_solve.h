@@ -7,7 +7,7 @@
 
 namespace pillarfield::bench {
 
-/// The constants of the bare direct solve of uint8 frames, in the precision of the kernels.
+/// Constants of the bare direct solve of uint8 frames, in single precision.
 struct BareSolve {
   float threshold = 0;     ///< counts
   float margin = 0;        ///< counts
@@ -15,11 +15,10 @@ struct BareSolve {
   float normal_scale = 0;  ///< N per count
 };
 
-/// Throws Error where the plan asks for more than that: another type, estimator, stage, result or
-/// segment point.
+/// Throws Error where the plan has another type, estimator, stage, result or segment point.
 BareSolve bare_solve(const SolverPlan& plan);
 
-/// Where results go: planes [pillar rows, pillar cols].
+/// Result planes [pillar rows, pillar cols].
 struct ForcePlanes {
   float* shear_x;
   float* shear_y;

@@ -23,7 +23,7 @@ namespace maths = double_precision;
 constexpr std::size_t kResults = 2;
 constexpr std::size_t kPieces = 32;  ///< of a frame
 
-/// What a loop is compiled for, as a kernel is.
+/// Stages of a compiled loop.
 struct Stages {
   bool paper = false;
   bool calibration = false;
@@ -45,7 +45,7 @@ constexpr std::array kCompiled = {
     Stages{.paper = true, .angles = true},
 };
 
-/// The plan's numbers, and where the planes of its calibration are.
+/// The plan's constants and calibration planes.
 struct Constants {
   explicit Constants(const SolverPlan& plan)
       : stages(plan_constants<maths::Stages>(plan)),
@@ -62,7 +62,7 @@ struct Constants {
   const std::uint8_t* mask;
 };
 
-/// The plan's constants and the stages that the loop is compiled for.
+/// The plan's constants, with the stages of the compiled loop.
 template <class Reading, Stages compiled>
 maths::Stages stages_of(const Constants& is) {
   maths::Stages stages = is.stages;
@@ -82,7 +82,7 @@ maths::Correction correction_at(const Constants& is, std::size_t at) {
   return {is.tare[at], is.gain[at], is.dead_zone[at], static_cast<double>(is.mask[at])};
 }
 
-/// Where a pillar's results go, plane by plane.
+/// Writes a pillar's results, plane by plane.
 class Store {
  public:
   explicit Store(DoubleLoop::Planes& planes) {
@@ -174,7 +174,8 @@ DoubleLoop::SolveRows loop_for(const SolverPlan& plan) {
                                                   : find<float>(wanted, kPlaces);
   }
   if (found == nullptr) {
-    throw Error("loop in double", "the plan is of no variant", "take a plan of solve_variants()");
+    throw Error("loop in double", "the plan is not that of a variant",
+                "use a plan of solve_variants()");
   }
   return found;
 }
@@ -194,7 +195,7 @@ DoubleLoop::Planes planes_for(const SolverPlan& plan) {
 }  // namespace
 
 DoubleLoop::DoubleLoop(const SolverPlan& plan, int threads)
-    : plan_(&plan), solve_rows_(loop_for(plan)), team_(static_cast<std::size_t>(threads)) {
+    : plan_(&plan), solve_rows_(loop_for(plan)), pool_(static_cast<std::size_t>(threads)) {
   for (std::size_t i = 0; i < kResults; ++i) results_.push_back(planes_for(plan));
 }
 
@@ -205,7 +206,7 @@ void DoubleLoop::run(const Frames& frames, int count) {
 ForceFieldView DoubleLoop::solve(const FrameView& frame) {
   Planes& to = results_[solved_++ % kResults];
   const std::size_t rows = plan_->skin.pillar_rows();
-  team_.run(kPieces, [&](std::size_t piece, std::size_t /*member*/) {
+  pool_.run(kPieces, [&](std::size_t piece, std::size_t /*member*/) {
     solve_rows_(*plan_, frame.data, rows * piece / kPieces, rows * (piece + 1) / kPieces, to);
   });
   ForceFieldView view;

@@ -32,7 +32,7 @@ LoopSolver::LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads
       solve_(bare_solve(plan)),
       solve_rows_(solve_rows),
       threads_(static_cast<std::size_t>(threads)),
-      team_(threads_) {
+      pool_(threads_) {
   for (std::size_t i = 0; i < kResults; ++i) results_.emplace_back(skin_);
 }
 
@@ -40,8 +40,8 @@ template <class FrameOf>
 void LoopSolver::solve_frames(std::size_t count, FrameOf frame_of) {
   std::atomic<std::size_t> next = 0;
   std::barrier meeting(static_cast<std::ptrdiff_t>(threads_));
-  team_.run(threads_, [&](std::size_t, std::size_t) {
-    // Members draw pieces of all frames in their order, and wait where a frame ends.
+  pool_.run(threads_, [&](std::size_t, std::size_t) {
+    // Threads draw the pieces of all frames in order, and wait at the end of each frame.
     std::size_t piece = next++;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t frame = solved_ + i;

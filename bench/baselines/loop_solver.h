@@ -9,16 +9,16 @@
 
 namespace pillarfield::bench {
 
-/// A C++ loop over frames, of each of which the threads take piece after piece. Two results are
-/// kept in turns, as a processor of two slots does.
+/// A multithreaded C++ loop over frames: threads take piece after piece of a frame. It alternates
+/// between two results, as a processor of two slots does.
 class LoopSolver {
  public:
   LoopSolver(const SolverPlan& plan, SolveRows solve_rows, int threads);
 
-  /// Solves so many frames, going on where it stopped.
+  /// Solves the next `count` frames.
   void run(const Frames& frames, int count);
 
-  /// Solves one frame; the result stays until two more are solved.
+  /// Solves one frame; the result is valid until two more are solved.
   ForceFieldView solve(const FrameView& frame);
 
   /// The result of the last frame.
@@ -31,7 +31,7 @@ class LoopSolver {
     explicit Result(const Skin& skin);
     ForcePlanes planes();
     [[nodiscard]] ForceFieldView view(const Skin& skin) const;
-    FrameBuffer shear_x;  ///< page by page, as what a processor writes
+    FrameBuffer shear_x;  ///< page-aligned, as in a processor
     FrameBuffer shear_y;
     FrameBuffer normal;
     FrameBuffer status;
@@ -46,7 +46,7 @@ class LoopSolver {
   std::vector<Result> results_;
   std::size_t solved_ = 0;
   std::size_t threads_;
-  ThreadPool team_;
+  ThreadPool pool_;
 };
 
 }  // namespace pillarfield::bench

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <vector>
 
-#include "bench/timing/plain_names.h"
+#include "bench/timing/unsuffixed_reporter.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::bench {
@@ -17,7 +17,7 @@ constexpr std::size_t kMostFrames = 16;
 
 std::filesystem::path make_folder() {
   std::string name = (std::filesystem::temp_directory_path() / "pillarfield-bench-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw Error(name, "cannot be made", "check TMPDIR");
+  if (mkdtemp(name.data()) == nullptr) throw Error(name, "cannot be created", "check TMPDIR");
   return name;
 }
 
@@ -43,7 +43,7 @@ ForceField read_result(const std::filesystem::path& path, const Skin& skin) {
   read(field.shear_y);
   read(field.normal);
   read(field.status);
-  if (!file) throw Error(path.string(), "the result of NumPy is too short");
+  if (!file) throw Error(path.string(), "NumPy's result is too short");
   return field;
 }
 
@@ -51,7 +51,7 @@ ForceField read_result(const std::filesystem::path& path, const Skin& skin) {
 
 NumpyProcess::NumpyProcess(const SolverPlan& plan, const Frames& frames) : folder_(make_folder()) {
   write_frames(folder_ / "frames", frames);
-  // The system's Python may have NumPy where the first on the path has not.
+  // The system's Python may have NumPy where the first one on the path does not.
   for (const char* const python : {"/usr/bin/python3", "python3"}) {
     if (!starts(python, plan)) continue;
     first_ = read_result(folder_ / "result", plan.skin);
@@ -69,8 +69,8 @@ NumpyProcess::~NumpyProcess() {
 }
 
 double NumpyProcess::run(int frames) {
-  const bool told = child_->feed(fmt::format("{}\n", frames));
-  const std::string answer = told ? child_->read_line() : "";
+  const bool fed = child_->feed(fmt::format("{}\n", frames));
+  const std::string answer = fed ? child_->read_line() : "";
   if (answer.empty()) throw Error("NumPy", "the process ended", "run bench/baselines/solve.py");
   return std::stod(answer);
 }
@@ -83,7 +83,7 @@ bool NumpyProcess::starts(const char* python, const SolverPlan& plan) {
             fmt::format("{}", plan.skin.rows), fmt::format("{}", plan.skin.cols),
             fmt::format("{}", plan.skin.threshold_counts),
             fmt::format("{}", plan.skin.counts_per_newton), (folder_ / "result").string()},
-        "", ChildProgram::kAnswer);
+        "", ChildProgram::kPipe);
   } catch (const Error&) {
     return false;
   }

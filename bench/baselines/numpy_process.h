@@ -10,20 +10,20 @@
 
 namespace pillarfield::bench {
 
-/// The bare direct solve in NumPy (solve.py), by a child that waits to be told how many frames to
-/// solve. The frames and its first result pass through files.
+/// The bare direct solve in NumPy (solve.py) in a child process, which reads the number of frames
+/// to solve from a pipe. The frames and its first result pass through files.
 class NumpyProcess {
  public:
-  /// Throws Error that begins with kSkipped where there is no Python with NumPy.
+  /// Throws an Error that begins with kSkipped where no Python has NumPy.
   NumpyProcess(const SolverPlan& plan, const Frames& frames);
   ~NumpyProcess();
   NumpyProcess(const NumpyProcess&) = delete;
   NumpyProcess& operator=(const NumpyProcess&) = delete;
 
-  /// Solves so many frames; returns the nanoseconds per pillar that the child measured.
+  /// Solves `frames` frames; returns the nanoseconds per pillar that the child measured.
   double run(int frames);
 
-  /// Its result of the first frame.
+  /// Result of the first frame.
   [[nodiscard]] const ForceField& first_result() const { return first_; }
 
  private:

@@ -4,8 +4,7 @@
 
 namespace pillarfield::bench {
 
-/// kernels/pillar as C++, one pillar after the other, as the compiler makes it at -O3 for this very
-/// processor.
+/// kernels/pillar as a C++ loop over pillars, compiled at -O3 for the build machine's processor.
 void solve_rows_plainly(const BareSolve& solve, const FrameView& frame, std::uint32_t first,
                         std::uint32_t last, const ForcePlanes& to);
 

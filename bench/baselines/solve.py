@@ -1,11 +1,11 @@
-"""The bare direct solve in NumPy, as one who thinks in arrays writes it: an opponent of
-pillarfield-bench, which starts it.
+"""The bare direct solve as NumPy array expressions: a baseline of pillarfield-bench.
 
     solve.py FRAMES ROWS COLS THRESHOLD COUNTS_PER_NEWTON RESULT
 
-FRAMES holds uint8 frames of ROWS x COLS sensels, one after the other, ROWS and COLS even. The first
-is solved into RESULT: shear_x, shear_y, normal as float32, then status as uint8. After "ready" each
-line of standard input says how many frames to solve; the answer is the nanoseconds per pillar.
+FRAMES holds uint8 frames of ROWS x COLS sensels, one after the other, ROWS and COLS even. RESULT
+receives the solved first frame: shear_x, shear_y, normal as float32, then status as uint8. After
+printing "ready", the program reads a number of frames per line of standard input, solves them, and
+prints the nanoseconds per pillar.
 """
 
 import math
@@ -19,14 +19,14 @@ SEGMENT_POINT = np.float32(0.875)
 
 
 def difference(p, q, p_usable, q_usable, parity_sum):
-    """V_p - V_q of a diagonal; the silent one of two has what the parity sum leaves for it."""
+    """V_p - V_q of a diagonal; parity predicts the inactive one of the two."""
     return np.where(p_usable & q_usable, p - q,
                     np.where(p_usable, p + p - parity_sum,
                              np.where(q_usable, parity_sum - q - q, np.float32(0))))
 
 
 def may_press(p, q, p_usable, q_usable, parity_sum):
-    """Whether the silent one of a diagonal may press under its threshold."""
+    """Whether the inactive sensel of a diagonal may be loaded below the threshold."""
     return (p_usable ^ q_usable) & (parity_sum - np.maximum(p, q) > 0)
 
 

@@ -1,11 +1,11 @@
 #include "bench/baselines/vectorised.h"
 
-// Highway compiles this file once for each of its targets; this one brings nothing to this solve.
+// Highway compiles this file once for each target; AVX3_DL does not speed up this solve.
 #define HWY_DISABLED_TARGETS HWY_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/baselines/vectorised.cpp"
 #include <hwy/foreach_target.h>
-// foreach_target.h comes before highway.h.
+// foreach_target.h must precede highway.h.
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
@@ -40,17 +40,17 @@ using Vector = hn::Vec<Counts>;
 using Mask = hn::Mask<Counts>;
 constexpr Counts kCounts;
 constexpr std::size_t kLanes = hn::MaxLanes(kCounts);
-constexpr std::size_t kBlock = 2 * kLanes;  ///< pillars: whole cache lines of each plane, or halves
+constexpr std::size_t kBlock = 2 * kLanes;  ///< pillars: whole or half cache lines of each plane
 
-/// The constants of a solve in whole numbers, forces in eighths of a count.
+/// Constants of the solve in integers; forces are in eighths of a count.
 struct EighthCounts {
   std::int16_t threshold;  ///< counts
-  std::int16_t margin;     ///< counts: whole ones above it are above -margin of the solve
+  std::int16_t margin;     ///< counts: floor of the solve's -margin
   float shear_scale;       ///< N per eighth of a count
   float normal_scale;      ///< N per eighth of a count
 };
 
-/// A row of pillars, from one of them on.
+/// A row of pillars, or the rest of one.
 struct Row {
   const std::uint8_t* top;
   const std::uint8_t* bottom;
@@ -70,10 +70,10 @@ HWY_INLINE Vector difference(Vector p, Vector q, Mask p_usable, Mask q_usable, V
   return hn::IfThenElse(p_usable, with_p, hn::IfThenElseZero(q_usable, by_q));
 }
 
-/// Whether a full diagonal of parity sum `sum` leaves more than -margin for the inactive one of p,
-/// q.
+/// Whether parity sum `sum` of a full diagonal predicts more than -margin for the inactive one of
+/// p, q.
 HWY_INLINE Mask may_press(Mask one_usable, Vector p, Vector q, Vector sum, Vector margin) {
-  // The usable one of the two is the larger: it is above the threshold, at which the other stands.
+  // The usable one of the two is the larger: the other was raised to the threshold.
   return hn::And(one_usable, hn::Gt(hn::Sub(sum, hn::Max(p, q)), margin));
 }
 
@@ -81,7 +81,7 @@ HWY_INLINE Vector bit_where(Mask mask, std::int16_t bit) {
   return hn::IfThenElseZero(mask, hn::Set(kCounts, bit));
 }
 
-/// A vector of forces.
+/// Stores a vector of forces.
 template <bool streaming>
 HWY_INLINE void store_forces(Vector eighths, float newtons, float* plane) {
   constexpr hn::RepartitionToWide<Counts> kWide;
@@ -101,7 +101,7 @@ HWY_INLINE void store_forces(Vector eighths, float newtons, float* plane) {
   }
 }
 
-/// Solves a vector of pillars, writes their forces and returns their status.
+/// Solves a vector of pillars, stores their forces and returns their status.
 template <bool streaming>
 HWY_INLINE Vector solve_vector(const Row& row, const EighthCounts& solve) {
   constexpr hn::Repartition<std::uint8_t, Counts> kBytes;
@@ -178,7 +178,7 @@ HWY_INLINE void solve_half_block(const Row& row, const EighthCounts& solve) {
   hn::StoreU(hn::DemoteTo(kHalf, solve_vector<false>(row, solve)), kHalf, row.to.status);
 }
 
-/// `count` pillars, fewer than a vector has, by way of memory in which there is room for all.
+/// Solves `count` pillars, fewer than a vector holds, through buffers of a whole vector.
 HWY_INLINE void solve_some(const Row& row, std::size_t count, const EighthCounts& solve) {
   std::array<std::uint8_t, 2 * kLanes> top{};
   std::array<std::uint8_t, 2 * kLanes> bottom{};
@@ -194,8 +194,8 @@ HWY_INLINE void solve_some(const Row& row, std::size_t count, const EighthCounts
   std::copy_n(planes.status, count, row.to.status);
 }
 
-/// The pillars from `col` to before `end`, whichever lines they lie in. Some of their neighbours
-/// may be written twice, but not beside stores past the caches.
+/// Solves the pillars [col, end) at any alignment. It may write neighbours twice, except with
+/// nontemporal stores.
 template <bool streaming>
 HWY_INLINE void solve_end(const Row& row, std::size_t col, std::size_t end, std::size_t cols,
                           const EighthCounts& solve) {
@@ -205,8 +205,8 @@ HWY_INLINE void solve_end(const Row& row, std::size_t col, std::size_t end, std:
   }
 }
 
-/// Asks for what is read 4096 bytes later, which the processor does not see coming at the ends of
-/// rows. Found by trying; to ask for what is written did not pay.
+/// Prefetches reads 4096 bytes ahead, since the hardware prefetcher stops at the ends of rows. The
+/// distance was found by experiment; prefetching stores gained nothing.
 HWY_INLINE void prefetch(const Row& row) {
   for (std::size_t i = 4096; i < 4096 + 2 * kBlock; i += 64) {
     hwy::Prefetch(row.top + i);
@@ -214,7 +214,7 @@ HWY_INLINE void prefetch(const Row& row) {
   }
 }
 
-/// Solves a row whose first whole line begins after `head` pillars.
+/// Solves a row whose first whole cache line begins after `head` pillars.
 template <bool streaming>
 HWY_INLINE void solve_row(const Row& row, std::size_t head, std::size_t cols,
                           const EighthCounts& solve) {
@@ -283,8 +283,8 @@ std::vector<Vectorised> vectorised() {
 
 void require_whole_threshold(const BareSolve& solve) {
   if (solve.threshold <= 255 && solve.threshold == std::floor(solve.threshold)) return;
-  throw Error("opponent", "the threshold is not a whole number of counts up to 255",
-              "take one that is");
+  throw Error("baseline", "the threshold is not a whole number of counts up to 255",
+              "use a whole threshold");
 }
 
 }  // namespace pillarfield::bench

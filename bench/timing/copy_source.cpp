@@ -7,20 +7,20 @@
 namespace pillarfield::bench {
 namespace {
 
-/// So many bytes ahead of the reading what is next is asked for, as the hand-written loop does.
-constexpr const char* kAskingAhead = R"(
+/// Prefetches 4096 bytes ahead of each read, as the loop of vector intrinsics does.
+constexpr const char* kPrefetching = R"(
 #define READ_AHEAD 4096
 #if PREFETCHING && defined(__has_builtin)
 #if __has_builtin(__builtin_prefetch)
-#define ASK_TO_READ(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + READ_AHEAD))
+#define PREFETCH_TO_READ(pointer) __builtin_prefetch((const void*)((size_t)(pointer) + READ_AHEAD))
 #endif
 #endif
-#ifndef ASK_TO_READ
-#define ASK_TO_READ(pointer)
+#ifndef PREFETCH_TO_READ
+#define PREFETCH_TO_READ(pointer)
 #endif
 )";
 
-/// What is read: one word of a pillar, or 16 of as many pillars. A function for each type of value.
+/// Reads one word of one pillar, or 16 words of 16 pillars: a function for each type of value.
 constexpr const char* kReading = R"(
 #define uchar_of_one(p, q) as_uint((uchar4)((p)[0], (p)[1], (q)[0], (q)[1]))
 #define ushort_of_one(p, q) \
@@ -29,22 +29,22 @@ constexpr const char* kReading = R"(
   (as_uint((p)[0]) ^ as_uint((p)[1]) ^ as_uint((q)[0]) ^ as_uint((q)[1]))
 
 uint16 uchar_of_many(global const uchar* p, global const uchar* q) {
-  ASK_TO_READ(p);
-  ASK_TO_READ(q);
+  PREFETCH_TO_READ(p);
+  PREFETCH_TO_READ(q);
   return (uint16)(as_uint4(vload16(0, p)), as_uint4(vload16(1, p)), as_uint4(vload16(0, q)),
                   as_uint4(vload16(1, q)));
 }
 uint16 ushort_of_many(global const ushort* p, global const ushort* q) {
-  ASK_TO_READ(p);
-  ASK_TO_READ(q);
+  PREFETCH_TO_READ(p);
+  PREFETCH_TO_READ(q);
   return (uint16)(as_uint8(vload16(0, p)), as_uint8(vload16(1, p))) ^
          (uint16)(as_uint8(vload16(0, q)), as_uint8(vload16(1, q)));
 }
 uint16 float_of_many(global const float* p, global const float* q) {
-  ASK_TO_READ(p);
-  ASK_TO_READ(p + 16);
-  ASK_TO_READ(q);
-  ASK_TO_READ(q + 16);
+  PREFETCH_TO_READ(p);
+  PREFETCH_TO_READ(p + 16);
+  PREFETCH_TO_READ(q);
+  PREFETCH_TO_READ(q + 16);
   return as_uint16(vload16(0, p)) ^ as_uint16(vload16(1, p)) ^ as_uint16(vload16(0, q)) ^
          as_uint16(vload16(1, q));
 }
@@ -52,7 +52,7 @@ uint16 float_of_many(global const float* p, global const float* q) {
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 
-/* `at` is the place of a pillar's upper left sensel in the planes of the calibration. */
+/* `at` is the index of a pillar's upper left sensel in the calibration planes. */
 #define FOLD_ALL(words, how)                                                                \
   words = JOIN(SENSEL, how)(first, first + row_stride);                                     \
   if (MASK) words ^= JOIN(uchar, how)(mask + at, mask + at + stride);                       \
@@ -69,7 +69,7 @@ constexpr const char* kWriting = R"(
 #endif
 #endif
 
-/* A vector that begins at any value; drivers take vstore16 apart. */
+/* A vector without alignment: drivers split vstore16. */
 typedef float16 ResultsAnywhere __attribute__((aligned(4)));
 
 void write_one(uint word, global float* results, ulong pitch, global uchar* status) {
@@ -102,8 +102,8 @@ void follow_many(uint16 words, global float* upper, global float* lower) {
 }
 )";
 
-/// Streaming stores want their addresses aligned: the pillars before the first such place are
-/// copied one by one, and so is the rest of a row.
+/// Nontemporal stores need aligned addresses: pillars before the first aligned one, and the rest of
+/// a row, are copied one by one.
 constexpr const char* kEntryPoints = R"(
 kernel void copy_streams(global const SENSEL* restrict raw, ulong row_stride, uint pillar_cols,
                          global const float* calibration, ulong calibration_pitch,
@@ -163,7 +163,7 @@ std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind)
          define("RESULT_PLANES", streams.result_planes) +
          define("FOLLOW", int{streams.tare_follows}) + define("LANES", lanes > 1 ? 16 : 1) +
          define("STREAMING", int{kind.streaming}) + define("PREFETCHING", int{kind.prefetching}) +
-         kAskingAhead + kReading + kWriting + kEntryPoints;
+         kPrefetching + kReading + kWriting + kEntryPoints;
 }
 
 }  // namespace pillarfield::bench

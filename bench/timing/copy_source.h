@@ -7,28 +7,27 @@
 
 namespace pillarfield::bench {
 
-/// How a copy kernel goes about it, where the compiler of the device knows how; nobody can tell
-/// beforehand what is fastest on a device.
+/// A variant of the copy kernel; the fastest depends on the device. Ignored where the device's
+/// compiler lacks the builtin.
 struct CopyKind {
   const char* name;
-  bool streaming;    ///< stores go past the caches
-  bool prefetching;  ///< what is read later is asked for before
+  bool streaming;    ///< nontemporal stores
+  bool prefetching;  ///< prefetches what it reads
 };
 inline constexpr CopyKind kCopyKinds[] = {{"cached", false, false},
                                           {"streaming", true, false},
                                           {"prefetching", false, true},
                                           {"streaming_prefetching", true, true}};
 
-/// OpenCL C of the kernels `copy_streams`, which reads and writes all of `streams` and does nothing
-/// else that takes time, and `empty`. With 16 lanes a work-item copies a row of pillars, with one a
-/// pillar, as solve_frame of that many lanes.
+/// OpenCL C of the kernels `copy_streams`, which reads and writes all of `streams`, and `empty`. As
+/// in solve_frame, a work-item copies a row of pillars with 16 lanes, one pillar with 1 lane.
 ///
-/// The bits of all that is read for as many pillars as are copied at once are folded by exclusive
-/// or into one word for each, which is what every result plane gets, and the status bytes folded
-/// once more: each bit that is read moves one value of every plane.
+/// The kernel folds the input of each lane by exclusive or into one word, stores the word to every
+/// result plane, and folds it again for the status byte. So each input bit changes one value of
+/// every plane, and no read can be optimised away.
 std::string copy_source(const Streams& streams, int lanes, const CopyKind& kind);
 
-/// Values from one plane to the next in the buffers of calibration and results: whole pages.
+/// Distance of the planes in the buffers of calibration and results, in values: whole pages.
 constexpr std::uint64_t plane_pitch(std::uint64_t values) { return (values + 1023) / 1024 * 1024; }
 
 }  // namespace pillarfield::bench

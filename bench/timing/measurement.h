@@ -6,15 +6,14 @@
 
 namespace pillarfield::bench {
 
-/// What a row of the table says.
+/// Result of a case.
 struct Measurement {
-  double seconds = 0;  ///< of one frame, the median
+  double seconds = 0;  ///< median time of a frame
   std::map<std::string, double> counters;
   std::string label;
 };
 
-/// Adds a row, whose measurement is taken when its name is asked for. What it throws becomes the
-/// row's error.
-void add_row(const std::string& name, std::function<Measurement()> measure);
+/// Registers a case. `measure` runs when the case is selected; an exception becomes its error.
+void add_case(const std::string& name, std::function<Measurement()> measure);
 
 }  // namespace pillarfield::bench

@@ -35,9 +35,9 @@ constexpr bool kShadowMemory = false;
 constexpr bool kShadowMemory = false;
 #endif
 
-constexpr int kAnswerDescriptor = 3;  // the child's end of the pipe
+constexpr int kOutputDescriptor = 3;  // the child's end of the pipe
 
-/// `resource` is of an enumeration in some C libraries, and an int in others.
+/// `resource` is an enumeration in some C libraries, and an int in others.
 template <class Resource>
 void lower_limit(Resource resource, rlim_t soft, rlim_t hard) {
   rlimit limit = {};
@@ -47,7 +47,7 @@ void lower_limit(Resource resource, rlim_t soft, rlim_t hard) {
   setrlimit(resource, &limit);
 }
 
-/// Bytes of addresses that this process has; 0 where that is not known.
+/// Size of the process's address space, bytes; 0 where unknown.
 rlim_t mapped_bytes() {
   const int file = open("/proc/self/statm", O_RDONLY | O_CLOEXEC);
   if (file < 0) return 0;
@@ -69,7 +69,7 @@ void limit_child(const ChildLimits& limits) {
   lower_limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + limits.memory_bytes);
 }
 
-/// An interrupt from the terminal reaches parent and child; the parent deals with it.
+/// An interrupt from the terminal reaches parent and child; only the parent handles it.
 void reset_signals() {
   for (int signal = 1; signal < NSIG; ++signal) std::signal(signal, SIG_DFL);
   for (const int signal : {SIGINT, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
@@ -78,15 +78,15 @@ void reset_signals() {
   sigprocmask(SIG_SETMASK, &none, nullptr);
 }
 
-/// Leaves the end of the pipe, and /dev/null in the place of what the parent reads and prints. A
-/// file that the parent has open could share its position with the child.
-void leave_only(int answer) {
-  answer = fcntl(answer, F_DUPFD, kAnswerDescriptor + 1);
+/// Closes all files but the pipe, and replaces the standard streams by /dev/null: a file inherited
+/// from the parent would share its position.
+void leave_only(int output) {
+  output = fcntl(output, F_DUPFD, kOutputDescriptor + 1);
   const int nothing = open("/dev/null", O_RDWR);
   for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nothing, standard);
-  dup2(answer, kAnswerDescriptor);
+  dup2(output, kOutputDescriptor);
 #if defined(__linux__) && defined(SYS_close_range)
-  syscall(SYS_close_range, kAnswerDescriptor + 1, ~0U, 0);
+  syscall(SYS_close_range, kOutputDescriptor + 1, ~0U, 0);
 #endif
 }
 
@@ -98,30 +98,30 @@ void write_all(int file, const std::string& text) {
   }
 }
 
-[[noreturn]] void be_child(int answer, const ChildLimits& limits,
+[[noreturn]] void be_child(int output, const ChildLimits& limits,
                            const std::function<std::string()>& work) {
 #ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGKILL);
 #endif
   reset_signals();
-  leave_only(answer);
+  leave_only(output);
   limit_child(limits);
-  write_all(kAnswerDescriptor, work() + '\0');
+  write_all(kOutputDescriptor, work() + '\0');
   _exit(0);
 }
 
-/// Reads to the end of the pipe or to `deadline`; whether it came to the end.
-bool read_answer(int answer, ChildClock::time_point deadline, std::string& text) {
+/// Reads to the end of the pipe; false if `deadline` came first.
+bool read_output(int output, ChildClock::time_point deadline, std::string& text) {
   for (;;) {
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - ChildClock::now());
     if (left.count() <= 0) return false;
-    pollfd waiting = {answer, POLLIN, 0};
+    pollfd waiting = {output, POLLIN, 0};
     const int ready = poll(&waiting, 1, static_cast<int>(left.count()));
     if (ready < 0 && errno != EINTR) return false;
     if (ready <= 0) continue;
     char block[512];
-    const ssize_t got = read(answer, block, sizeof block);
+    const ssize_t got = read(output, block, sizeof block);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return true;
     text.append(block, static_cast<std::size_t>(got));
@@ -129,7 +129,7 @@ bool read_answer(int answer, ChildClock::time_point deadline, std::string& text)
   }
 }
 
-/// The signal that ended the child, 0 where there was none or somebody else waited for it.
+/// The signal that ended the child; 0 if none did or another thread waited for the child.
 int signal_of_end(pid_t child) {
   int status = 0;
   pid_t ended = 0;
@@ -140,8 +140,8 @@ int signal_of_end(pid_t child) {
 
 [[noreturn]] void fail_to_start(const std::string& where) {
   throw Error(where,
-              std::string("cannot be tried in a process of its own: ") + std::strerror(errno),
-              "allow another process, or say that you trust the file (--trust-input)");
+              std::string("cannot be checked in a separate process: ") + std::strerror(errno),
+              "allow another process, or trust the file with --trust-input");
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ ChildEnd run_in_child(const std::string& where, const ChildLimits& limits,
     fail_to_start(where);
   }
   ChildEnd end;
-  end.in_time = read_answer(ends[0], ChildClock::now() + limits.time, end.text);
+  end.in_time = read_output(ends[0], ChildClock::now() + limits.time, end.text);
   close(ends[0]);
   if (!end.in_time) kill(child, SIGKILL);
   end.signal = signal_of_end(child);

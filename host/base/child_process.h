@@ -7,26 +7,23 @@
 
 namespace pillarfield {
 
-/// What a child process may take.
 struct ChildLimits {
   unsigned processor_s = 2;
-  std::chrono::milliseconds time{10'000};           ///< waiting for a disk included
-  std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond what the parent has mapped
+  std::chrono::milliseconds time{10'000};           ///< wall time
+  std::size_t memory_bytes = std::size_t{1} << 30;  ///< beyond the parent's address space
 };
 
-/// How a child process ended.
 struct ChildEnd {
-  std::string text;       ///< what the function returned
-  bool returned = false;  ///< it returned, and `text` is complete
-  bool in_time = true;    ///< it was not ended for the sake of its limits of time
-  int signal = 0;         ///< that ended it, 0 where it is not known
+  std::string text;       ///< returned by the function
+  bool returned = false;  ///< the function returned, and `text` is complete
+  bool in_time = true;    ///< the child was not ended by a time limit
+  int signal = 0;         ///< that ended the child; 0: none, or unknown
 };
 
-/// Runs `work` in a child process, which is a copy of this one with no other thread, and waits for
-/// its end. Nothing that it prints is seen, its signals have their default actions, and files that
-/// are open here are closed there. `work` must not throw, and must take no lock that another thread
-/// may hold; the heap may be used. Throws Error, its place being `where`, where there can be no
-/// child. `do_fork` calls fork() under such a lock, or is fork() itself.
+/// Runs `work` in a forked child process and waits for its end. The child discards its output, has
+/// default signal actions, and closes inherited files. `work` must not throw, and must take no lock
+/// that another thread may hold; it may use the heap. `do_fork` calls fork() while holding such a
+/// lock, or is fork() itself. Throws Error at `where` if the child cannot be started.
 [[nodiscard]] ChildEnd run_in_child(const std::string& where, const ChildLimits& limits,
                                     const std::function<int()>& do_fork,
                                     const std::function<std::string()>& work);

@@ -16,9 +16,9 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kLongestComplaint = 400;
+constexpr std::size_t kLongestLine = 400;
 
-/// The files that the program begins with in place of ours.
+/// Standard streams of the program.
 class FileActions {
  public:
   FileActions(int input, int output, int errors) {
@@ -62,7 +62,7 @@ int spawn(const std::vector<std::string>& words, const FileActions& actions, pid
 ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::string& mend,
                            int output)
     : errors_(std::tmpfile()) {
-  // A socket can be written to without a signal where nobody reads any more; a pipe cannot.
+  // Writing to a socket without a reader need not raise a signal; writing to a pipe does.
   std::array<int, 2> ends{};
   if (!errors_ || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     throw Error(words.front(), std::string("cannot be started: ") + std::strerror(errno),
@@ -70,7 +70,7 @@ ChildProgram::ChildProgram(const std::vector<std::string>& words, const std::str
   }
   fcntl(fileno(errors_.get()), F_SETFD, FD_CLOEXEC);
   input_ = ends[0];
-  const FileActions actions(ends[1], output == kAnswer ? ends[1] : output, fileno(errors_.get()));
+  const FileActions actions(ends[1], output == kPipe ? ends[1] : output, fileno(errors_.get()));
   const int failure = spawn(words, actions, process_);
   close(ends[1]);
   if (failure == 0) return;
@@ -125,16 +125,16 @@ std::string ChildProgram::errors() const {
   return text;
 }
 
-std::string ChildProgram::complaint() const {
+std::string ChildProgram::error_line() const {
   std::string text = errors();
   while (!text.empty() && text.back() == '\n') text.pop_back();
-  if (text.size() > kLongestComplaint) {
-    text = "... " + text.substr(text.size() - kLongestComplaint);
+  if (text.size() > kLongestLine) {
+    text = "... " + text.substr(text.size() - kLongestLine);
   }
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
     text.replace(end, 1, "; ");
   }
-  return text.empty() ? "it does not say why" : text;
+  return text.empty() ? "it gives no reason" : text;
 }
 
 }  // namespace pillarfield

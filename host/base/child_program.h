@@ -11,39 +11,40 @@
 
 namespace pillarfield {
 
-/// Another program that is fed through its standard input. What it says on standard error is kept.
-/// Destroyed before finish(), it is killed.
+/// A program that reads from this one through its standard input. Its standard error is kept. The
+/// destructor kills it unless finish() was called.
 class ChildProgram {
  public:
   static constexpr int kDiscard = -1;
-  static constexpr int kAnswer = -2;
+  static constexpr int kPipe = -2;
 
-  /// `words`: the program, looked up in PATH, and its arguments. `output` is the file descriptor
-  /// that its standard output is; kDiscard: none; kAnswer: read_line(). Throws Error where it
-  /// cannot be started; `mend` tells what to do where there is no such program.
+  /// `words`: the program, found in PATH, and its arguments. `output`: file descriptor of its
+  /// standard output; kDiscard: none; kPipe: read_line(). Throws Error if it cannot be started,
+  /// with the remedy `mend` if it is not installed.
   ChildProgram(const std::vector<std::string>& words, const std::string& mend,
                int output = kDiscard);
   ~ChildProgram();
   ChildProgram(const ChildProgram&) = delete;
   ChildProgram& operator=(const ChildProgram&) = delete;
 
-  /// False where the program takes no more, which is no signal to this one.
+  /// Writes to the program's standard input. False if the program no longer reads; raises no
+  /// signal.
   [[nodiscard]] bool feed(std::span<const std::byte> bytes) const;
   [[nodiscard]] bool feed(const std::string& text) const {
     return feed(std::as_bytes(std::span(text)));
   }
 
-  /// What it says next, to the end of the line or of the program.
+  /// Its next line of output, or the rest if it ends.
   [[nodiscard]] std::string read_line() const;
 
-  /// Ends its input and waits for its end. True if it ended with status 0.
+  /// Closes its input and waits for its end. True if its exit status is 0.
   [[nodiscard]] bool finish();
 
   /// Its standard error so far.
   [[nodiscard]] std::string errors() const;
 
-  /// The same in one line, the last words where it is long.
-  [[nodiscard]] std::string complaint() const;
+  /// Its standard error as one line of at most 400 characters, the last ones.
+  [[nodiscard]] std::string error_line() const;
 
  private:
   struct Close {

@@ -12,7 +12,7 @@ void note_interrupt(int /*signal*/) { interrupted = 1; }
 void catch_signal(int signal) {
   struct sigaction action = {};
   action.sa_handler = note_interrupt;
-  // A call that waits, for the other end of a pipe, say, ends instead of going on.
+  // Without SA_RESTART a blocking call, such as opening a pipe, ends.
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigemptyset(&action.sa_mask);
   sigaction(signal, &action, nullptr);

@@ -7,7 +7,7 @@
 namespace pillarfield {
 namespace {
 
-/// Whether a character does something to the terminal or the line instead of being seen.
+/// True if a character controls the terminal or the line.
 bool is_command(char32_t point) {
   const auto between = [point](char32_t first, char32_t last) {
     return point >= first && point <= last;

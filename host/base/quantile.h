@@ -7,11 +7,11 @@
 
 namespace pillarfield {
 
-/// The smallest of the values that at least `share` (0..1) of them do not exceed; `values` are
-/// finite, not empty, and put into another order.
+/// The smallest value that at least a fraction `probability` (0..1) of the values do not exceed.
+/// `values` are finite and not empty; reorders them.
 template <class Value>
-Value quantile(std::vector<Value>& values, double share) {
-  const auto rank = std::ceil(share * static_cast<double>(values.size())) - 1;
+Value quantile(std::vector<Value>& values, double probability) {
+  const auto rank = std::ceil(probability * static_cast<double>(values.size())) - 1;
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max(0.0, rank));
   std::nth_element(values.begin(), place, values.end());
   return *place;

@@ -6,11 +6,11 @@
 
 namespace pillarfield {
 
-/// Random numbers that are a function of what they are for: seed, stream, frame and sensel. No
-/// state is kept, so any of them can be drawn in any order and on any thread.
+/// Counter-based random numbers: a function of seed, stream, frame and sensel, without state, so
+/// they can be drawn in any order and on any thread.
 ///
-/// Bits come from Philox 4x32-10 (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2,
-/// 3, SC 2011), of which the seed is the key.
+/// Philox 4x32-10 (J. K. Salmon et al., Parallel random numbers: as easy as 1, 2, 3, SC 2011) with
+/// the seed as key.
 namespace random {
 
 using Block = std::array<std::uint32_t, 4>;
@@ -18,7 +18,7 @@ using Block = std::array<std::uint32_t, 4>;
 /// Philox 4x32-10: four random words for a counter and a key.
 [[nodiscard]] Block philox(Block counter, std::array<std::uint32_t, 2> key);
 
-/// What numbers are drawn for; numbers of different streams are independent.
+/// Purpose of random numbers; different streams are independent.
 enum class Stream : std::uint32_t {
   sensitivity,
   tare,
@@ -39,8 +39,8 @@ struct Row {
   std::uint32_t row;  ///< below 65536
 };
 
-/// Standard normal variates, one per sensel of a row of at most 2^18, by the method of Box and
-/// Muller in single precision: at most 5.77 in magnitude. About 10 ns each.
+/// Standard normal variates, one per sensel of a row of at most 2^18, by the Box-Muller method in
+/// single precision: at most 5.77 in magnitude. About 10 ns each.
 void fill_normal(const Row& row, std::span<float> values);
 
 /// Uniform variates in [0, 1), multiples of 2^-32.

@@ -4,14 +4,13 @@
 
 namespace pillarfield {
 
-/// An interval of numbers.
 struct Range {
   double low;
   double high;
   bool open_low = false;
   bool open_high = false;
 
-  [[nodiscard]] bool contains(double value) const;  ///< false for what is not a number
+  [[nodiscard]] bool contains(double value) const;  ///< false for NaN
   [[nodiscard]] std::string text() const;           ///< "a number in [0, 1)"
 };
 

@@ -7,7 +7,7 @@ unsigned char byte_at(std::string_view text, std::size_t at) {
   return static_cast<unsigned char>(text[at]);
 }
 
-/// Bytes of a character by its first one; 0 where no character begins so.
+/// Length of a character in bytes, from its first one; 0 if no character begins with it.
 std::size_t announced_length(unsigned char first) {
   if (first < 0x80) return 1;
   if (first >= 0xc2 && first < 0xe0) return 2;

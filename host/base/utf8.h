@@ -5,11 +5,11 @@
 
 namespace pillarfield {
 
-/// Bytes of the character that `text` begins with, 1 to 4; 0 where these are not UTF-8 (RFC 3629)
-/// or the text is empty.
+/// Length in bytes, 1 to 4, of the first character of `text`; 0 if it is not UTF-8 (RFC 3629) or
+/// the text is empty.
 [[nodiscard]] std::size_t utf8_length(std::string_view text);
 
-/// The code point of a character of UTF-8, whole as utf8_length() counts it.
+/// Code point of one complete UTF-8 character.
 [[nodiscard]] char32_t code_point(std::string_view character);
 
 }  // namespace pillarfield

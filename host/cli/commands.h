@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/contact_output.h"
-#include "cli/plan_options.h"
+#include "cli/options/plan_options.h"
+#include "pillarfield/contact_tracker.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/fault_finder.h"
 #include "pillarfield/load_calibration.h"
@@ -16,13 +16,12 @@
 #include "pillarfield/tare.h"
 #include "testbed/testbed.h"
 
-/// The commands, each with its arguments. A command throws Error where its work fails.
+/// The commands and their arguments. A command throws Error where its work fails.
 namespace pillarfield::cli {
 
-/// How a command prints.
 struct PrintOptions {
   bool json = false;
-  bool quiet = false;  ///< no progress, and no summary of a file that is written
+  bool quiet = false;  ///< no progress, and no summary of a written file
 };
 
 struct WriteOptions : PrintOptions {
@@ -46,7 +45,8 @@ struct SolveOptions : WriteOptions {
   std::string input;
   PlanOptions plan;
   DeviceOptions device;
-  ContactOutputOptions contacts;
+  std::string contacts_file;  ///< empty: none
+  ContactOptions contacts;
 };
 
 struct PaceOptions : PrintOptions {
@@ -70,9 +70,9 @@ struct CompareOptions : PrintOptions {
   ReadOptions read;
 };
 
-/// What every step of a calibration is given.
+/// Arguments of all calibration steps.
 struct StepOptions : WriteOptions {
-  std::string calibration;  ///< file to go on from; empty where there is none
+  std::string calibration;  ///< file to extend, or empty
   ReadOptions read;
 };
 
@@ -83,13 +83,13 @@ struct TareCommand : StepOptions {
 
 struct EquilibrateCommand : StepOptions {
   std::vector<std::string> files;
-  std::vector<double> pressures_kpa;  ///< one for each file
+  std::vector<double> pressures_kpa;  ///< one per file
   EquilibrationOptions equilibration;
 };
 
 struct LoadCommand : StepOptions {
   std::vector<std::string> files;
-  std::vector<double> loads_n;  ///< one for each file
+  std::vector<double> loads_n;  ///< one per file
   LoadModel model = LoadModel::linear;
 };
 
@@ -109,8 +109,7 @@ struct TestbedOptions : PrintOptions {
   Replace replace = Replace::results;
 };
 
-/// What to describe: a file, the devices, the kernel of a scene, or the program where all are
-/// unset.
+/// Describes a file, the devices, the kernel of a scene, or with none of these the program.
 struct InfoOptions : PrintOptions {
   std::string file;
   std::string kernel;
@@ -119,7 +118,7 @@ struct InfoOptions : PrintOptions {
 };
 
 void simulate(const SimulateOptions& options);
-void solve(const SolveOptions& asked);
+void solve(const SolveOptions& given);
 void pace(const PaceOptions& options);
 void compare(const CompareOptions& options);
 void calibrate(const TareCommand& command);
@@ -130,7 +129,7 @@ void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);
 void info(const InfoOptions& options);
 
-/// Version, commit, compiler and libraries of the program.
+/// Prints version, commit, compiler and libraries.
 void print_version(bool json);
 
 }  // namespace pillarfield::cli

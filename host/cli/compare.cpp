@@ -1,4 +1,4 @@
-// pillarfield compare: solved forces against the truth, region by region.
+// pillarfield compare: solved forces against the truth by region.
 
 #include <fmt/format.h>
 
@@ -99,7 +99,7 @@ void print_json(const std::vector<Row>& rows, const Resultant& resultant,
   fmt::print("{}\n", json_text(json));
 }
 
-/// A number of so many decimals that fits its column, by an exponent where it must.
+/// Formats a number with `decimals`, or with an exponent if it exceeds the column.
 std::string fitted(double value, std::size_t width, int decimals, std::string_view unit = "") {
   std::string text = fmt::format("{:.{}f}{}", value, decimals, unit);
   if (text.size() > width) text = fmt::format("{:.1e}{}", value, unit);
@@ -137,18 +137,17 @@ void print_text(const std::vector<Row>& rows, const Resultant& resultant, std::u
              rounded(resultant.true_rms_n()),
              rounded(std::round(1e4 * resultant.error_rms_n()) / 1e4));
   fmt::print(
-      "\nForce error: length of (solved - true). 95 %: that share of the pillars has at most "
-      "this.\n"
-      "phi is weighted with sin(theta). Status differs: other sensels usable than the ideal "
-      "model says.\n"
-      "Region 3 is ambiguous in itself: two readings, three unknowns.\n");
+      "\nForce error: length of (solved - true). 95 %: the 95th percentile over pillars.\n"
+      "phi is weighted by sin(theta). Status differs: the usable sensels differ from those of the "
+      "ideal model.\n"
+      "Region 3 is ambiguous: two readings, three unknowns.\n");
 }
 
 void print_coverage(const Coverage& coverage) {
   fmt::print("\n{:<8} {:>13} {:^29} {:>12}\n", "solved", "", "truths within 1.96 deviations",
-             "between");
+             "in the");
   fmt::print("{:<8} {:>13} {:>9} {:>9} {:>9} {:>12}\n", "region", "pillars", "shear_x", "shear_y",
-             "normal", "the ends");
+             "normal", "interval");
   for (const Region region : kCoveredRegions) {
     const RegionCoverage of_region = coverage.region(region);
     fmt::print("{:<8} {:>13} {:>8.1f}% {:>8.1f}% {:>8.1f}% {:>11.1f}%\n", name_of(region),
@@ -156,16 +155,16 @@ void print_coverage(const Coverage& coverage) {
                100 * of_region.normal, 100 * of_region.ends);
   }
   fmt::print(
-      "\n95 % are due in regions 1 and 2. Ends: of theta, phi and magnitude, widened by three\n"
-      "deviations, since they are stated noise apart. Pillars with flagged sensels are left "
-      "out.\n");
+      "\nRegions 1 and 2 should have 95 %. Interval: of theta, phi and magnitude, widened by "
+      "three\n"
+      "deviations, since it excludes noise. Pillars with flagged sensels are left out.\n");
 }
 
-/// Whether the two files are of one patch, and how many frames they share.
+/// Checks that the files belong to one patch and returns the number of frames in both.
 std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& recording,
                             const CompareOptions& options) {
   if (!recording.has_truth()) {
-    throw Error(options.recording, "it holds no truth",
+    throw Error(options.recording, "it has no truth",
                 "give a recording made by 'pillarfield simulate'");
   }
   const Skin& skin = recording.skin();

@@ -1,4 +1,4 @@
-// pillarfield info: what a file holds, which devices there are, which kernel a scene makes.
+// pillarfield info: contents of a file, OpenCL devices, kernel of a scene.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -24,10 +24,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A file is opened several times; it is probed once, before, unless it is trusted.
+/// facts_of() probes a file once, before it is opened several times.
 constexpr ReadOptions kProbed = {.trust = true};
 
-/// A value as text: of a list its members, of an object also their names.
+/// Returns a value as text: the members of a list, and of an object with their names.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (value.is_number_float()) return rounded(value.get<double>());
@@ -93,7 +93,7 @@ Json facts_of_frames(const std::string& file) {
   facts["sensel_type"] = name_of(source->sensel_type());
   add_skin(facts, source->skin());
   if (source->frames() > 0) {
-    // The readings too: what info describes can be read.
+    // Also checks that the readings can be read.
     FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
     const double first = source->read(0, frame);
     facts["seconds"] = source->read(source->frames() - 1, frame) - first;
@@ -182,7 +182,7 @@ Json facts_of(const std::string& file, const ReadOptions& options) {
   return is_force_file(file, kProbed) ? facts_of_forces(file) : facts_of_frames(file);
 }
 
-void print_why_no_device() {
+void print_device_error() {
   try {
     static_cast<void>(open_device());
   } catch (const Error& error) {
@@ -209,7 +209,7 @@ void print_devices(bool json) {
     fmt::print("{}\n", json_text(list));
     return;
   }
-  if (devices.empty()) print_why_no_device();
+  if (devices.empty()) print_device_error();
   for (const DeviceInfo& device : devices) {
     fmt::print("{:>3}  {} ({}, {}; {} lanes, {})  {}\n", device.index, device.name, device.type,
                device.platform, device.lanes, device.shares_memory ? "zero copy" : "staged",
@@ -217,9 +217,9 @@ void print_devices(bool json) {
   }
 }
 
-/// The stages and the source that frames of the scene would be solved with.
+/// Prints the stages and the kernel source for frames of the scene.
 void print_kernel(const std::string& scene_file) {
-  const Simulator simulator(load_scene_aloud(scene_file));
+  const Simulator simulator(load_scene_with_warnings(scene_file));
   const Scene& scene = simulator.scene();
   SolverPlan plan;
   plan.skin = scene.skin;

@@ -7,11 +7,10 @@
 
 namespace pillarfield::cli {
 
-/// Throws Error where an interrupt was noted: `frames` are done, and what is written under the name
-/// of `output` + ".part" may hold them.
+/// Throws Error after an interrupt: `frames` are done and may be in `output` + ".part".
 void stop_if_interrupted(std::uint64_t frames, const std::filesystem::path& output);
 
-/// The same for work that writes nothing before its end.
+/// Throws Error after an interrupt of work that writes its output at the end.
 void stop_if_interrupted_before(const std::filesystem::path& output);
 
 }  // namespace pillarfield::cli

@@ -5,8 +5,7 @@
 
 namespace pillarfield::cli {
 
-/// JSON on one line. Bytes that are not UTF-8, as names of files may have, become replacement
-/// characters; dump() would throw.
+/// Returns JSON on one line. Invalid UTF-8, as in file names, becomes replacement characters.
 [[nodiscard]] inline std::string json_text(const nlohmann::ordered_json& json) {
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "cli/arguments.h"
+#include "cli/options/arguments.h"
 #include "pillarfield/interrupt.h"
 #include "pillarfield/printable.h"
 
@@ -14,18 +14,17 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongCommandLine = 2;
 
-/// For use where nothing may throw any more.
-int complain(const char* message) noexcept {
+int print_error(const char* message) noexcept {
   std::fprintf(stderr, "pillarfield: %s\n", message);
   return kFailed;
 }
 
-/// The same for a text that may hold anything, as that of a system's error with a file's name.
-int complain_of(const std::exception& error) noexcept {
+/// Escapes the message, which may contain the name of a file.
+int print_error(const std::exception& error) noexcept {
   try {
-    return complain(printable(error.what()).c_str());
+    return print_error(printable(error.what()).c_str());
   } catch (...) {
-    return complain("out of memory");
+    return print_error("out of memory");
   }
 }
 
@@ -33,7 +32,7 @@ int run(int argc, char** argv) {
   const std::function<void()> work = parse_arguments(argc, argv);
   catch_interrupts();
   work();
-  if (std::fflush(stdout) != 0) return complain("standard output cannot be written");
+  if (std::fflush(stdout) != 0) return print_error("standard output cannot be written");
   return kDone;
 }
 
@@ -44,13 +43,13 @@ int main(int argc, char** argv) {
   try {
     return pillarfield::cli::run(argc, argv);
   } catch (const pillarfield::cli::WrongCommandLine& error) {
-    pillarfield::cli::complain_of(error);
+    pillarfield::cli::print_error(error);
     return pillarfield::cli::kWrongCommandLine;
   } catch (const std::bad_alloc&) {
-    return pillarfield::cli::complain("out of memory; take a smaller patch");
+    return pillarfield::cli::print_error("out of memory; use a smaller patch");
   } catch (const std::exception& error) {
-    return pillarfield::cli::complain_of(error);
+    return pillarfield::cli::print_error(error);
   } catch (...) {
-    return pillarfield::cli::complain("an unknown failure; please report it");
+    return pillarfield::cli::print_error("unknown failure; please report it");
   }
 }

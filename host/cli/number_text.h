@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-/// Numbers for people. JSON has them whole.
+/// Rounded numbers for text output.
 namespace pillarfield::cli {
 
 /// "1,234,567".
@@ -12,11 +12,10 @@ namespace pillarfield::cli {
 /// "1 frame", "1,200 frames".
 [[nodiscard]] std::string counted(std::uint64_t number, const char* noun);
 
-/// Five significant digits, all those before the point, an exponent for the tiniest only:
-/// "0.63246", "12,346".
+/// Five significant digits, and all digits before the point: "0.63246", "12,346".
 [[nodiscard]] std::string rounded(double number);
 
-/// "25.0 %"; "<0.1 %" of a part that would vanish.
+/// "25.0 %"; "<0.1 %" of a part that would round to zero.
 [[nodiscard]] std::string percent(std::uint64_t part, std::uint64_t whole);
 
 }  // namespace pillarfield::cli

@@ -7,20 +7,18 @@
 
 namespace pillarfield::cli {
 
-/// What prints a line to standard error; empty where that is no terminal, or `quiet` is asked for.
+/// Returns a function that prints a line to standard error; empty if `quiet` or without a terminal.
 [[nodiscard]] std::function<void(const std::string&)> terminal_line(bool quiet);
 
-/// A line on the terminal that shows how far a long job is: only where standard error is a
-/// terminal, and rewritten at most ten times a second.
+/// Shows the progress of a job on standard error if that is a terminal, at most ten times a second.
 class Progress {
  public:
-  /// `verb`, as "Solving"; `frames` in all.
+  /// `verb` is a word such as "Solving".
   Progress(std::string verb, std::uint64_t frames, bool quiet);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// So many frames are done.
   void show(std::uint64_t done);
 
  private:

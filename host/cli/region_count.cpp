@@ -25,17 +25,17 @@ const char* meaning_of(Region region) {
     case Region::none:
       return "no sensel usable: no contact";
     case Region::one:
-      return "four sensels usable: force known, readings tested";
+      return "four sensels usable: force determined, parity tested";
     case Region::two:
-      return "three usable: force known";
+      return "three usable: force determined";
     case Region::three:
-      return "two usable: ambiguous by its own readings";
+      return "two adjacent usable: force ambiguous";
     case Region::four:
       return "one usable: force along the skin";
     case Region::opposite:
       break;
   }
-  return "two opposite usable: impossible, a fault";
+  return "two opposite usable: a fault";
 }
 
 }  // namespace pillarfield::cli

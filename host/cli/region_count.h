@@ -8,7 +8,7 @@
 
 namespace pillarfield::cli {
 
-/// Counts pillars by region and by what their status flags.
+/// Counts pillars by region and by flags of their status.
 struct RegionCount {
   std::array<std::uint64_t, kRegions> pillars{};
   std::uint64_t saturated = 0;
@@ -24,10 +24,10 @@ struct RegionCount {
   [[nodiscard]] std::uint64_t in_contact() const { return all() - of(Region::none); }
 };
 
-/// What a region means, in a few words.
+/// Describes a region in a few words.
 const char* meaning_of(Region region);
 
-/// The regions of pillars in contact, in the order of tables.
+/// Regions of pillars in contact, in the order of tables.
 inline constexpr std::array kContactRegions = {Region::one, Region::two, Region::three,
                                                Region::four, Region::opposite};
 

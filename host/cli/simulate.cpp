@@ -17,7 +17,7 @@ namespace pillarfield::cli {
 namespace {
 
 Scene scene_of(const SimulateOptions& options) {
-  Scene scene = load_scene_aloud(options.scene);
+  Scene scene = load_scene_with_warnings(options.scene);
   if (options.frames) scene.frames = *options.frames;
   if (options.seed) scene.seed = *options.seed;
   return scene;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -12,6 +13,8 @@
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
+#include "io/ending.h"
+#include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/pipeline.h"
@@ -23,6 +26,30 @@
 namespace pillarfield::cli {
 namespace {
 
+bool is_hdf5(const std::string& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".h5" || ending == ".hdf5";
+}
+
+/// Returns the table of contacts, unless contacts go into the force file alone. Throws Error where
+/// they cannot be written as the options name them.
+std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
+  const std::string& file = options.contacts_file;
+  if (file.empty()) return std::nullopt;
+  check(options.contacts, "the command line");
+  if (name_same_file(file, options.output)) {
+    if (is_hdf5(options.output)) return std::nullopt;
+    throw Error(file, "forces and contacts cannot share this file",
+                "name another file for contacts");
+  }
+  if (is_hdf5(file)) {
+    throw Error(file, "its ending is no format of contacts",
+                fmt::format("end it in {}, or name the .h5 file of forces",
+                            endings_of(OutputKind::contacts)));
+  }
+  return planned_contact_file(file);
+}
+
 struct SolveSummary {
   PipelineStatistics done;
   RegionCount regions;
@@ -30,18 +57,17 @@ struct SolveSummary {
   double seconds = 0;          ///< reading, solving and writing, which overlap
 };
 
-/// Seconds from one frame to the next; throws where the file does not tell.
+/// Seconds between frames. Throws Error where the times do not rise.
 double frame_interval(const SolveOptions& options, FrameSource& source) {
   if (source.frames() >= 2) {
     const double interval = (source.time(source.frames() - 1) - source.time(0)) /
                             static_cast<double>(source.frames() - 1);
     if (interval > 0) return interval;
   }
-  throw Error(options.input, "its frames do not tell the time from one to the next",
-              "solve without following the baseline");
+  throw Error(options.input, "the times of its frames do not rise", "leave out --follow-baseline");
 }
 
-/// The plan that the file asks for, and after it the command line.
+/// The settings of the file, then of the command line.
 SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
   SolverPlan plan;
   plan.skin = source.skin();
@@ -62,13 +88,13 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
-  ask_for_contacts(options.contacts, options.output, info);
+  if (!options.contacts_file.empty() && is_hdf5(options.output)) info.contacts = options.contacts;
   return info;
 }
 
 constexpr int kFramesInFlight = 3;
 
-/// Counts what is solved, and shows how far the work is.
+/// Counts regions and shows the progress.
 class Counter final : public ForceSink {
  public:
   Counter(std::uint64_t frames, bool quiet) : progress_("Solving", frames, quiet) {}
@@ -109,8 +135,8 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
                                  {"startup_seconds", summary.startup_seconds},
                                  {"seconds", summary.seconds},
                                  {"warnings", warnings}};
-  if (!options.contacts.file.empty()) {
-    json["contacts_output"] = options.contacts.file;
+  if (!options.contacts_file.empty()) {
+    json["contacts_output"] = options.contacts_file;
     json["contacts"] = summary.done.contacts;
     json["contacts_at_once"] = summary.done.most_contacts;
   }
@@ -130,7 +156,7 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
              summary.seconds, rounded(per_second(frames, summary.seconds)),
              per_second(pillars, summary.seconds) / 1e6);
   fmt::print("  opening, compiling         {:.2f} s\n", summary.startup_seconds);
-  fmt::print("In contact: {} of {} pillars ({}), of these\n", grouped(regions.in_contact()),
+  fmt::print("In contact: {} of {} pillars ({}), of which\n", grouped(regions.in_contact()),
              grouped(regions.all()), percent(regions.in_contact(), regions.all()));
   for (const Region region : kContactRegions) {
     fmt::print("  {:<9} {:>7}  {}\n",
@@ -138,19 +164,20 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
   if (plan.estimator == Estimator::contact) {
-    fmt::print("Resolved with the help of their contacts: {} of {} pillars of region 3\n",
+    fmt::print("Resolved by the friction of their contacts: {} of {} pillars of region 3\n",
                grouped(regions.resolved), grouped(regions.of(Region::three)));
   }
-  fmt::print("Flagged: {} with a saturated sensel, {} with a missing sensel or readings at odds\n",
-             grouped(regions.saturated), grouped(regions.inconsistent));
-  if (!options.contacts.file.empty()) {
+  fmt::print(
+      "Flagged: {} with a saturated sensel, {} with a missing sensel or inconsistent readings\n",
+      grouped(regions.saturated), grouped(regions.inconsistent));
+  if (!options.contacts_file.empty()) {
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
-               summary.done.most_contacts, printable(options.contacts.file));
+               summary.done.most_contacts, printable(options.contacts_file));
   }
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
-/// Where nearly all pillars of a real skin are in contact, its tare is likely to be missing.
+/// Warns of a recording that seems to lack its tare: nearly all pillars of a real skin in contact.
 void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
                   const RegionCount& regions) {
   constexpr double kNearlyAll = 0.95;
@@ -159,19 +186,11 @@ void warn_of_tare(const SolveOptions& options, const FrameSource& source, const 
     return;
   }
   fmt::print(stderr,
-             "{}: {} of all pillars are in contact and it has no tare; measure one with "
+             "{}: {} of all pillars are in contact and there is no tare; measure one with "
              "'pillarfield calibrate tare'\n",
              printable(options.input), percent(regions.in_contact(), regions.all()));
 }
 
-void check_solve_outputs(const SolveOptions& options) {
-  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
-  if (const auto table = planned_table(options.contacts, options.output)) outputs.push_back(*table);
-  check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
-                options.replace);
-}
-
-/// Reads, solves, tracks and writes all frames.
 void run(const SolveOptions& options, FrameSource& source, Processor& processor,
          const std::vector<std::unique_ptr<ForceSink>>& files, ContactTracker* tracker,
          SolveSummary& summary) {
@@ -192,15 +211,20 @@ void run(const SolveOptions& options, FrameSource& source, Processor& processor,
 
 }  // namespace
 
-void solve(const SolveOptions& asked) {
-  SolveOptions options = asked;
+void solve(const SolveOptions& given) {
+  SolveOptions options = given;
   const Stopwatch watch;
-  check(options.contacts, options.output);
-  check_solve_outputs(options);
+  const std::optional<PlannedOutput> table = contact_table(options);
+  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
+  if (table) outputs.push_back(*table);
+  check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
+                options.replace);
   const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
   print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
-  take_friction(plan, options.contacts.contacts);
+  options.contacts.friction = plan.friction;
+  options.contacts.noise_n = reading_noise_n(plan);
+  options.contacts.hidden_n = hidden_normal_n(plan.skin);
   const Device device = open_device(options.device.name);
   Processor processor(device, plan,
                       {.memory = options.device.memory,
@@ -210,12 +234,11 @@ void solve(const SolveOptions& asked) {
   std::vector<std::unique_ptr<ForceSink>> files;
   files.push_back(create_force_sink(options.output, info, options.replace));
   std::optional<ContactTracker> tracker;
-  if (!options.contacts.file.empty()) {
-    tracker.emplace(info.pillar_pitch_mm, options.contacts.contacts);
-    if (const auto table = planned_table(options.contacts, options.output)) {
+  if (!options.contacts_file.empty()) {
+    tracker.emplace(info.pillar_pitch_mm, options.contacts);
+    if (table) {
       files.push_back(create_contact_sink(
-          table->path, {info.pillar_pitch_mm, info.source, options.contacts.contacts},
-          options.replace));
+          table->path, {info.pillar_pitch_mm, info.source, options.contacts}, options.replace));
     }
   }
   SolveSummary summary;

@@ -4,7 +4,7 @@
 
 namespace pillarfield::cli {
 
-/// Seconds since it was made.
+/// Measures seconds since its construction.
 class Stopwatch {
  public:
   [[nodiscard]] double seconds() const {

@@ -1,4 +1,4 @@
-// pillarfield testbed: the paper's single pillar, its Table II and its figures.
+// pillarfield testbed: the paper's experiment on one pillar.
 
 #include "testbed/testbed.h"
 
@@ -29,10 +29,10 @@ Json json_of(const Statistics& statistics) {
           {"mean_error", statistics.mean_error}};
 }
 
-Json json_of(const testbed::Answer& answer) {
-  return {{"run", json_of(answer.run)},
-          {"expected", json_of(answer.expected)},
-          {"spread", json_of(answer.spread)}};
+Json json_of(const testbed::RowEstimate& estimate) {
+  return {{"run", json_of(estimate.run)},
+          {"expected", json_of(estimate.expected)},
+          {"spread", json_of(estimate.spread)}};
 }
 
 Json json_of(const testbed::Row& row) {
@@ -124,7 +124,7 @@ void print_name(const testbed::Row& row) {
 }
 
 void print_run(const TableTwo& table) {
-  print_head("Table II: one run, as the paper's",
+  print_head("Table II: one run, as in the paper",
              std::array{"printed by the paper", "the paper's equations", "direct"}, 7);
   for (const testbed::Row& row : table.rows) {
     print_name(row);
@@ -138,15 +138,16 @@ void print_run(const TableTwo& table) {
   }
 }
 
-/// "0.624 ±0.028*"; the mark where `marked`.
+/// Returns a text such as "0.624 ±0.028*", with the mark if `marked`.
 std::string with_spread(double expected, double spread, bool marked) {
   return fmt::format("{:.3f} ±{:.3f}{}", expected, spread, marked ? '*' : ' ');
 }
 
-void print_answer(const testbed::Answer& answer, testbed::Reproduced marked) {
-  fmt::print(" | {} {} {}", with_spread(answer.expected.mean, answer.spread.mean, marked.mean),
-             with_spread(answer.expected.deviation, answer.spread.deviation, marked.deviation),
-             with_spread(answer.expected.mean_error, answer.spread.mean_error, marked.mean_error));
+void print_estimate(const testbed::RowEstimate& estimate, testbed::Reproduced marked) {
+  fmt::print(
+      " | {} {} {}", with_spread(estimate.expected.mean, estimate.spread.mean, marked.mean),
+      with_spread(estimate.expected.deviation, estimate.spread.deviation, marked.deviation),
+      with_spread(estimate.expected.mean_error, estimate.spread.mean_error, marked.mean_error));
 }
 
 void print_expected(const TableTwo& table, std::uint64_t runs) {
@@ -157,21 +158,21 @@ void print_expected(const TableTwo& table, std::uint64_t runs) {
       std::array{"the paper's equations", "direct"}, 14);
   for (const testbed::Row& row : table.rows) {
     print_name(row);
-    print_answer(row.paper, testbed::reproduced(row));
-    print_answer(row.direct, {false, false, false});
+    print_estimate(row.paper, testbed::reproduced(row));
+    print_estimate(row.direct, {false, false, false});
     fmt::print("\n");
   }
   fmt::print(
-      "\n{} of {} forces show another region than they have in the ideal model; of these, {} bear "
-      "no\n"
-      "status bit that says so. Error: mean of |angle - truth|.\n",
+      "\n{} of {} forces are in another region than in the ideal model; {} of these lack the "
+      "status\n"
+      "bit ambiguous or inconsistent. Error: mean of |angle - truth|.\n",
       table.audit.wrong_regions, table.audit.trials, table.audit.unflagged);
 }
 
 void print_magnitudes(const MagnitudeFigure& figure) {
   fmt::print(
-      "\nFigure 8: calculated magnitude, N. Uncertain: what the angles' uncertainty makes of the\n"
-      "applied force. Possible: what an ambiguous force may be.\n"
+      "\nFigure 8: calculated magnitude, N. Uncertain: range of the applied force from the\n"
+      "uncertainty of the angles. Possible: interval of an ambiguous force.\n"
       "{:<9} {:>7}   {:<15}   {:>7} {:>7}   {}\n",
       "", "applied", "uncertain", "paper", "direct", "possible");
   for (std::size_t site = 0; site < figure.size(); ++site) {

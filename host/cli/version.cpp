@@ -1,4 +1,4 @@
-// pillarfield --version: what this program is made of.
+// pillarfield --version: build and libraries.
 
 #include "pillarfield/version.h"
 

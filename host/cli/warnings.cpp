@@ -12,7 +12,7 @@ void print_file_warnings(const std::string& file, const std::vector<std::string>
   }
 }
 
-Scene load_scene_aloud(const std::string& file) {
+Scene load_scene_with_warnings(const std::string& file) {
   Scene scene = load_scene(file);
   print_file_warnings(file, scene.warnings);
   return scene;

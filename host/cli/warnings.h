@@ -7,10 +7,10 @@
 
 namespace pillarfield::cli {
 
-/// Prints what a file's reader warnings to standard error, a line each.
+/// Prints the warnings of a file to standard error, one per line.
 void print_file_warnings(const std::string& file, const std::vector<std::string>& warnings);
 
 /// Loads a scene and prints its warnings.
-[[nodiscard]] Scene load_scene_aloud(const std::string& file);
+[[nodiscard]] Scene load_scene_with_warnings(const std::string& file);
 
 }  // namespace pillarfield::cli

@@ -124,7 +124,7 @@ void append_active(std::uint32_t row, std::uint32_t cols, const IdleBlocks& sile
   const std::size_t size = silent.pillars;
   const std::size_t skew = std::size_t{row} * cols % size;  // of the first block, in the row above
   const std::size_t blocks = (skew + cols + size - 1) / size;
-  const auto marks = silent.marks.subspan(row * silent.stride, blocks);
+  const auto marks = silent.flags.subspan(row * silent.stride, blocks);
   const auto skip = [&](std::size_t at) {
     while (at + kWordBytes <= blocks && word_at(marks.data() + at) == kEachByte) at += kWordBytes;
     return at;
@@ -195,13 +195,13 @@ void ContactLabels::find(std::span<const std::uint8_t> status, std::uint32_t row
   }
   active_.clear();
   for (std::uint32_t row = 0; row < rows; ++row) {
-    if (silent.marks.empty()) {
+    if (silent.flags.empty()) {
       active_.push_back({row, 0, cols, 0});
     } else {
       append_active(row, cols, silent, active_);
     }
   }
-  if (!silent.marks.empty()) prefetch(status, cols, active_);
+  if (!silent.flags.empty()) prefetch(status, cols, active_);
   find_runs(status, cols);
   number_contacts();
   sort_runs();

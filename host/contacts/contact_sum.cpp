@@ -26,14 +26,14 @@ constexpr std::uint32_t kLanes = 4;
 constexpr int kUndetermined = status::kFromNeighbours | status::kSaturated | status::kInconsistent;
 
 /// Reads forces; NaN, infinity and lanes that are not `present` are zero.
-PF_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
+PF_WIDE_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
   std::memcpy(&values, from, sizeof values);
   const Ints finite = values - values == 0;
   values = __builtin_bit_cast(Floats, __builtin_bit_cast(Ints, values) & finite & present);
   forces = Doubles{values[0], values[1], values[2], values[3]};
 }
 
-PF_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& status) {
+PF_WIDE_INLINE void read(const std::uint8_t* from, const Ints& present, Ints& status) {
   Bytes bytes;
   std::memcpy(&bytes, from, sizeof bytes);
   status = Ints{bytes[0], bytes[1], bytes[2], bytes[3]} & present;
@@ -61,7 +61,7 @@ struct LastPillars {
   }
 };
 
-PF_INLINE void keep(const Doubles& values, const Longs& mask, Doubles& kept) {
+PF_WIDE_INLINE void keep(const Doubles& values, const Longs& mask, Doubles& kept) {
   kept = __builtin_bit_cast(Doubles, __builtin_bit_cast(Longs, values) & mask);
 }
 
@@ -85,8 +85,8 @@ struct Lanes {
   Ints ambiguous{};
   Ints resolved{};
 
-  PF_INLINE void add_slip(const Doubles& x, const Doubles& y, const Doubles& n, const Ints& status,
-                          double least_ratio) {
+  PF_WIDE_INLINE void add_slip(const Doubles& x, const Doubles& y, const Doubles& n,
+                               const Ints& status, double least_ratio) {
     const Ints inactive = ~status & status::kUsable;
     const Ints known = ((inactive & (inactive - 1)) | (status & kUndetermined)) == 0;
     const Doubles least = least_ratio * n;
@@ -120,8 +120,8 @@ struct Lanes {
 /// Prefetches what the run four ahead needs of a plane, at the first run all up to there: rows are
 /// too far apart for a processor to guess.
 template <class Value>
-PF_INLINE void prefetch(std::span<const Value> plane, const ForceFieldView& forces,
-                        std::span<const ContactRun> runs, std::size_t run) {
+PF_WIDE_INLINE void prefetch(std::span<const Value> plane, const ForceFieldView& forces,
+                             std::span<const ContactRun> runs, std::size_t run) {
   constexpr std::size_t kAhead = 4;
   constexpr std::uint32_t kLine = 64 / sizeof(Value);
   const std::size_t end = std::min(run + kAhead + 1, runs.size());
@@ -139,8 +139,8 @@ std::int64_t place_x(const ForceFieldView& forces, std::uint32_t col) {
 }
 
 /// Adds the pillars of a run, whose y is given, and returns their largest normal force.
-PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, double y,
-                        std::optional<double> least_ratio, Lanes& lanes) {
+PF_WIDE_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, double y,
+                             std::optional<double> least_ratio, Lanes& lanes) {
   constexpr float kNone = -std::numeric_limits<float>::infinity();
   Floats peaks = {kNone, kNone, kNone, kNone};
   LastPillars last;
@@ -163,7 +163,7 @@ PF_INLINE float add_run(const ForceFieldView& forces, const ContactRun& run, dou
     read(from.shear_y, present, values, shear_y);
     read(from.normal, present, values, normal);
     read(from.status, present, status);
-    peaks = present & (values > peaks) ? values : peaks;
+    peaks = (present & (values > peaks)) ? values : peaks;
     sum_x += shear_x;
     sum_y += shear_y;
     sum_n += normal;

@@ -4,7 +4,7 @@
 
 namespace pillarfield {
 
-/// Pillars that a work-item solves at once: the device's lanes, but no more than a row has.
+/// Pillars that a work-item solves at once: the device's lanes, halved until a row has as many.
 constexpr int block_lanes(int lanes, std::uint32_t pillar_cols) {
   while (lanes > 1 && static_cast<std::uint32_t>(lanes) > pillar_cols) lanes /= 2;
   return lanes;

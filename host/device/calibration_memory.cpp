@@ -14,8 +14,8 @@ void copy(const std::vector<Value>& plane, std::byte* to) {
   std::memcpy(to, plane.data(), plane.size() * sizeof(Value));
 }
 
-/// The levels as readings of the plan's type.
-void copy_wake_levels(const SolverPlan& plan, std::byte* to) {
+/// Copies the activation thresholds as readings of the plan's type.
+void copy_activation_thresholds(const SolverPlan& plan, std::byte* to) {
   const std::vector<float> levels = activation_thresholds(plan);
   if (plan.sensel_type == SenselType::u8) {
     return copy(std::vector<std::uint8_t>(levels.begin(), levels.end()), to);
@@ -26,7 +26,7 @@ void copy_wake_levels(const SolverPlan& plan, std::byte* to) {
   copy(levels, to);
 }
 
-/// Writes a plane to memory that is zero, as is the tare that a plan follows from zero on.
+/// Writes a plane to zeroed memory; a plan that follows the baseline may start without a tare.
 void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
   switch (plane) {
     case CalibrationPlane::tare:
@@ -39,10 +39,10 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
       return copy(plan.calibration.noise, to);
     case CalibrationPlane::mask:
       return copy(plan.calibration.mask, to);
-    case CalibrationPlane::wake:
+    case CalibrationPlane::activation:
       break;
   }
-  copy_wake_levels(plan, to);
+  copy_activation_thresholds(plan, to);
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   add(!calibration.dead_zone.empty(), CalibrationPlane::dead_zone);
   add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
   add(!calibration.mask.empty(), CalibrationPlane::mask);
-  add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::wake);
+  add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::activation);
   return planes;
 }
 

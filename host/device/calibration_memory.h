@@ -8,32 +8,31 @@
 
 namespace pillarfield {
 
-/// A plane that calibrates sensels, as kernels read it.
-enum class CalibrationPlane : std::uint8_t { tare, gain, dead_zone, noise, mask, wake };
+enum class CalibrationPlane : std::uint8_t { tare, gain, dead_zone, noise, mask, activation };
 
-/// The macro of its place among the planes of a plan.
+/// The macro that holds the plane's index.
 [[nodiscard]] const char* macro_of(CalibrationPlane plane);
 
-/// Those that the kernel of a plan reads, in the order in which they lie in memory.
+/// Planes that the kernel of a plan reads, in memory order.
 [[nodiscard]] std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan,
                                                                const SpeedPaths& paths);
 
-/// The calibration planes of a plan in one block of the device's, one after the other.
+/// The calibration planes of a plan, contiguous in device memory.
 class CalibrationMemory {
  public:
   CalibrationMemory(const cl::Context& context, const SolverPlan& plan, const SpeedPaths& paths);
 
-  /// Null where the plan has none.
+  /// Null if the plan has no calibration plane.
   [[nodiscard]] const cl::Buffer& buffer() const { return buffer_; }
-  /// From one plane to the next.
+  /// Distance between planes.
   [[nodiscard]] std::size_t plane_bytes() const { return plane_bytes_; }
-  /// Whether there is a tare; it is the first plane.
+  /// True if there is a tare; it is the first plane.
   [[nodiscard]] bool has_tare() const { return has_tare_; }
 
  private:
   std::size_t plane_bytes_;
   bool has_tare_;
-  LargePages memory_;  ///< where the device uses the host's
+  LargePages memory_;  ///< used if the device shares the host's memory
   cl::Buffer buffer_;
 };
 

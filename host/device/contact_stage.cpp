@@ -6,7 +6,7 @@
 namespace pillarfield {
 namespace {
 
-/// A device that is the host's processor has as many compute units as threads may be used.
+/// Threads: the compute units of a device that is the host's processor.
 std::size_t threads_for(const Device::State& device) {
   const bool is_host = device.device.getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU;
   const std::size_t threads = is_host ? device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>()
@@ -14,7 +14,7 @@ std::size_t threads_for(const Device::State& device) {
   return std::max<std::size_t>(threads, 1);
 }
 
-/// The host's side of a result's planes.
+/// Planes of a result in host memory.
 FieldPlanes planes_of(const SlotMemory& memory, std::uint32_t rows, std::uint32_t cols) {
   FieldPlanes planes;
   planes.rows = rows;

@@ -7,9 +7,8 @@
 
 namespace pillarfield {
 
-/// The estimator `contact` of a processor: goes over a frame that the direct solve left, on the
-/// host's side of its planes, where its results are wanted: the same bits whatever the device. One
-/// for all slots, whose frames come one after the other.
+/// The estimator `contact` of a processor. Runs on the host, on the planes of a frame after the
+/// direct solve: equal bits on all devices. All slots share it, since frames are resolved in order.
 class ContactStage {
  public:
   ContactStage(const Device::State& device, const SolverPlan& plan);
@@ -17,7 +16,7 @@ class ContactStage {
   /// Estimates the ambiguous pillars of a frame whose planes lie in `memory`.
   void resolve(const SlotMemory& memory);
 
-  /// The contacts of that frame.
+  /// The contacts of the frame last resolved.
   [[nodiscard]] FoundContacts contacts() const {
     return {&estimator_.contacts(), estimator_.friction()};
   }

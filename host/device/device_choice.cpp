@@ -1,4 +1,4 @@
-// Which OpenCL device to use.
+// Selection of an OpenCL device.
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -23,7 +23,7 @@ const char* type_name(cl_device_type type) {
   return "other";
 }
 
-/// "OpenCL 1.2 pocl ..." has at least the version that the kernels are written in.
+/// True if the version, such as "OpenCL 1.2 pocl ...", is at least 1.2.
 bool speaks_opencl_1_2(const std::string& version) {
   constexpr std::string_view kPrefix = "OpenCL ";
   if (!version.starts_with(kPrefix) || version.size() < kPrefix.size() + 3) return false;
@@ -60,7 +60,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, int 
   return info;
 }
 
-/// What may let a driver be found that is not.
+/// Remedies where no driver is found.
 std::string mend_no_device() {
   const KernelCache& cache = kernel_cache();
   if (cache.directory.empty()) {
@@ -113,7 +113,7 @@ bool is_named(const Candidate& candidate, std::string_view index_or_name) {
   return lower_case(candidate.info.name).find(lower_case(index_or_name)) != std::string::npos;
 }
 
-/// The best suitable device, or the first that is named so.
+/// The best suitable device, or the first with this name.
 const Candidate* choose(const std::vector<Candidate>& candidates, std::string_view wanted) {
   const Candidate* best = nullptr;
   for (const Candidate& candidate : candidates) {
@@ -127,13 +127,13 @@ const Candidate* choose(const std::vector<Candidate>& candidates, std::string_vi
 }  // namespace
 
 std::vector<Candidate> all_devices() {
-  static_cast<void>(kernel_cache());  // Before PoCL asks for it.
+  static_cast<void>(kernel_cache());  // Before PoCL reads the variable.
   std::vector<Candidate> candidates;
   std::vector<cl::Platform> platforms;
   try {
     cl::Platform::get(&platforms);
   } catch (const cl::Error&) {
-    return candidates;  // No platform is an error in OpenCL, and an empty list here.
+    return candidates;  // OpenCL reports no platform as an error.
   }
   for (const cl::Platform& platform : platforms) {
     std::vector<cl::Device> devices;

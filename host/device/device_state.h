@@ -9,12 +9,12 @@
 
 namespace pillarfield {
 
-/// An open device: its context and the programs built for it, by their source.
+/// Context of a device, and the programs built for it by their source.
 struct Device::State {
   State(DeviceInfo described, cl::Device opened);
 
-  /// The program of this source, built at most once for the device. May be called from several
-  /// threads. Throws Error with the compiler's log.
+  /// The program of this source, built at most once. Thread-safe. Throws Error with the compiler's
+  /// log.
   cl::Program program(const std::string& source);
 
   const DeviceInfo info;
@@ -26,13 +26,13 @@ struct Device::State {
   std::map<std::string, cl::Program> programs_;
 };
 
-/// A device and what is known of it.
+/// A device and its description.
 struct Candidate {
   DeviceInfo info;
   cl::Device device;
 };
 
-/// Every device of every platform, in the order of the platforms; DeviceInfo::index counts them.
+/// All devices of all platforms; DeviceInfo::index is the index in this list.
 std::vector<Candidate> all_devices();
 
 }  // namespace pillarfield

@@ -16,11 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A plan's compiled kernels take 0.2 MB; a disk that is full ends the process inside of LLVM.
+/// A plan's compiled kernels take 0.2 MB; a full disk makes LLVM abort the process.
 constexpr std::uintmax_t kLeastFreeBytes = 16U << 20U;
 
-/// In a file that is no directory nobody can make one, so PoCL finds no place, and offers no
-/// device.
+/// No directory can be created below a device file, so PoCL offers no device.
 constexpr const char* kNowhere = "/dev/null/pillarfield";
 
 /// An environment variable; empty and unset are the same.
@@ -29,7 +28,7 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-/// What the user asks for is taken or refused, never passed over.
+/// The user's directory is used or refused, never replaced by another.
 KernelCache cache_of_user(const std::string& wanted) {
   std::error_code failed;
   const PrivateDirectory found = private_directory(fs::absolute(wanted, failed), kLeastFreeBytes);
@@ -37,7 +36,7 @@ KernelCache cache_of_user(const std::string& wanted) {
   throw Error("POCL_CACHE_DIR", found.refused, "name another that only you can write, or unset it");
 }
 
-/// Where kernels are kept unless the user says something else, the best place first.
+/// Default directories of kernels, the preferred one first.
 std::vector<fs::path> usual_places() {
   std::vector<fs::path> places;
   const fs::path below = fs::path("pillarfield") / "kernels";
@@ -64,7 +63,7 @@ KernelCache choose_directory(std::unique_ptr<TemporaryDirectory>& temporary) {
   return {temporary->directory().path, refused};
 }
 
-/// The choice and what it needs as long as the process lives.
+/// The chosen directory, for the lifetime of the process.
 struct ProcessCache {
   ProcessCache() : cache(choose_kernel_cache(temporary)) {
     setenv("POCL_CACHE_DIR", cache.directory.empty() ? kNowhere : cache.directory.c_str(), 1);

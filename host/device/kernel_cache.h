@@ -9,27 +9,26 @@
 
 namespace pillarfield {
 
-/// Where PoCL, OpenCL on the host's processor, writes compiled kernels, which are libraries that it
-/// loads into the process: hence a directory that only root and this user can change, or none.
+/// Directory where PoCL, OpenCL on the host's processor, writes compiled kernels. It loads them
+/// into the process as libraries, so only root and this user may write there.
 struct KernelCache {
-  std::filesystem::path directory;  ///< empty: there is none, and PoCL offers no device
-  std::string not_kept;  ///< why the next process does not find them there; empty where it does
+  std::filesystem::path directory;  ///< empty: none, and PoCL offers no device
+  std::string not_kept;  ///< why the next process cannot reuse the kernels; empty if it can
 };
 
-/// Chooses the directory by the environment: $POCL_CACHE_DIR, or the first that serves of
-/// $XDG_CACHE_HOME/pillarfield/kernels, $HOME/.cache/pillarfield/kernels and, not kept, one of
-/// `temporary`, which is made then. What is missing is made. Throws Error where $POCL_CACHE_DIR
-/// cannot be written, has too little space, or is not private.
+/// Chooses the directory: $POCL_CACHE_DIR, or the first usable one of
+/// $XDG_CACHE_HOME/pillarfield/kernels, $HOME/.cache/pillarfield/kernels and a new `temporary` one.
+/// Creates missing directories. Throws Error if $POCL_CACHE_DIR is not writable, has too little
+/// space, or is not private.
 [[nodiscard]] KernelCache choose_kernel_cache(std::unique_ptr<TemporaryDirectory>& temporary);
 
-/// The choice for this process. The first call makes it and sets POCL_CACHE_DIR, by which PoCL
-/// learns of it, so it comes before any call of OpenCL. As setenv() does, it excludes that other
-/// threads read or change the environment meanwhile. Where the program opened PoCL before, it has
-/// no effect.
+/// The directory of this process. The first call chooses it and sets POCL_CACHE_DIR for PoCL, so it
+/// must precede all OpenCL calls. Like setenv(), it must not run while other threads use the
+/// environment. It has no effect if the program has opened PoCL before.
 [[nodiscard]] const KernelCache& kernel_cache();
 
-/// Why kernels of a device could not be written now, as where a disk has become full, which PoCL
-/// would end the process for; empty where they can be, or their driver is another.
+/// Why kernels of a device cannot be written, for instance because the disk is full: PoCL would
+/// abort the process. Empty if they can, or if the driver is not PoCL.
 [[nodiscard]] std::string reason_not_to_compile(const DeviceInfo& device);
 
 }  // namespace pillarfield

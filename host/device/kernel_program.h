@@ -4,7 +4,7 @@
 
 namespace pillarfield {
 
-/// The program of kernels/all.h, embedded in the library: what follows a plan's macros.
+/// The program of kernels/all.h, embedded in the library; a plan's macros precede it.
 std::string_view kernel_program();
 
 }  // namespace pillarfield

@@ -21,20 +21,20 @@ namespace {
 /// The macros of a program with their values.
 using Definitions = std::map<std::string, std::string, std::less<>>;
 
-/// A constant as the device gets it: rounded to single precision, then exact.
+/// A constant rounded to single precision, as exact text.
 std::string hex_float(double value) { return fmt::format("{:a}f", static_cast<float>(value)); }
 
-/// Whole numbers stand for sixteenths of a count: readings are whole counts, a threshold is whole
-/// or a half, and so is their sum, of which the segment point leaves an eighth at least.
+/// The unit of whole numbers, 1/16 count: readings are whole counts, thresholds multiples of 1/2,
+/// and the segment point divides their sums by at most 8.
 constexpr int kUnitsPerCount = 16;
 
-/// Thresholds beyond are not made whole: four of them fit into 16 bits.
+/// Largest threshold for whole numbers: four of them fit into 16 bits.
 constexpr double kLargestWholeThreshold = 500;
 
-/// Counts beyond which a constant is like any larger one to readings of 8 bits; it fits as well.
+/// Constants are clamped to this many counts: larger ones compare alike with readings of 8 bits.
 constexpr double kManyCounts = 1000;
 
-/// The segment point as programs of whole numbers take it: n where it is 1 - 1 / 2^n.
+/// The segment point of whole-number programs: n of 1 - 1 / 2^n.
 std::optional<int> whole_segment_point(const SolverPlan& plan) {
   for (int n = 1; n <= 3; ++n) {
     if (plan.segment_point == 1 - std::ldexp(1.0, -n)) return n;
@@ -42,8 +42,8 @@ std::optional<int> whole_segment_point(const SolverPlan& plan) {
   return std::nullopt;
 }
 
-/// Whether all that the solve of a plan computes in counts is a whole number of sixteenths, and no
-/// sensel is missing (docs/derivations/direct_solve.md, section 6).
+/// True if the solve of a plan computes only multiples of 1/16 count, and no sensel is missing
+/// (docs/derivations/direct_solve.md, section 6).
 bool is_whole(const SolverPlan& plan) {
   const Calibration& calibration = plan.calibration;
   const auto threshold = static_cast<float>(plan.skin.threshold_counts);
@@ -59,8 +59,7 @@ bool is_whole(const SolverPlan& plan) {
          whole_segment_point(plan);
 }
 
-/// A constant in counts with which readings and what is made of them are compared. As a whole
-/// number it is rounded up or down such that whole numbers compare with it alike.
+/// A limit in counts. In a whole-number program it is rounded so that comparisons do not change.
 class CountsMacro {
  public:
   explicit CountsMacro(bool whole) : whole_(whole) {}
@@ -79,7 +78,7 @@ class CountsMacro {
   bool whole_;
 };
 
-/// The stages and constants of a plan; `whole` if in whole numbers.
+/// Adds the stages and constants of a plan; `whole`: in whole numbers.
 Definitions definitions(const SolverPlan& plan, bool whole) {
   const Skin& skin = plan.skin;
   const ForceScale scale = force_scale(skin.counts_per_newton);
@@ -113,7 +112,7 @@ Definitions definitions(const SolverPlan& plan, bool whole) {
   return all;
 }
 
-/// Adds what skipping idle blocks needs to know.
+/// Adds the constants for skipping idle blocks.
 void define_idle_range(const SolverPlan& plan, Definitions& all) {
   const ActivationRange range = activation_range(plan);
   all["PF_SKIP_IDLE"] = "";
@@ -138,7 +137,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   SpeedPaths paths = wanted;
   paths.skip_idle = paths.skip_idle && may_skip_idle(plan);
   const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
-  // A lane of its own is 32 bits wide anyway.
+  // A single lane has 32 bits anyway.
   const bool whole = lanes > 1 && is_whole(plan);
   Definitions all = definitions(plan, whole);
   all["PF_LANES"] = fmt::format("{}", lanes);

@@ -9,7 +9,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kLargePage = std::size_t{1} << 21U;  ///< of x86 and, mostly, of ARM
+constexpr std::size_t kLargePage = std::size_t{1} << 21U;  ///< bytes, on x86 and mostly on ARM
 constexpr std::align_val_t kAlignment{kLargePage};
 
 std::size_t whole_pages(std::size_t bytes) {
@@ -28,7 +28,7 @@ LargePages allocate_large_pages(std::size_t bytes) {
   const std::size_t size = whole_pages(bytes);
   LargePages memory(static_cast<std::byte*>(::operator new[](size, kAlignment)));
 #ifdef MADV_HUGEPAGE
-  // A wish, which the system may refuse: the memory is the same then, only slower.
+  // The system may refuse the advice; the memory is then only slower.
   if (size >= kLargePage) static_cast<void>(madvise(memory.get(), size, MADV_HUGEPAGE));
 #endif
   return memory;

@@ -9,11 +9,11 @@ struct FreeLargePages {
   void operator()(std::byte* memory) const;
 };
 
-/// Memory of the host, uninitialised, on a boundary of pages.
+/// Uninitialised, page-aligned host memory.
 using LargePages = std::unique_ptr<std::byte[], FreeLargePages>;
 
-/// Memory that kernels go through once a frame: in large pages where it is worth one and the system
-/// gives any, since a frame's planes otherwise need more pages than the processor has looked up
+/// Memory that kernels read or write once per frame, in large pages if it fills one and the system
+/// grants them: a frame's planes have more small pages than the TLB holds
 /// (docs/performance_decisions.md). Throws std::bad_alloc.
 LargePages allocate_large_pages(std::size_t bytes);
 

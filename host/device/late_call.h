@@ -7,10 +7,10 @@
 
 namespace pillarfield {
 
-/// Calls a function, from a thread of its own, once the object has existed for a while.
+/// Calls a function from its own thread after a delay, unless the object is destroyed before.
 class LateCall {
  public:
-  /// Without a function it does nothing.
+  /// An empty `function` is not called.
   LateCall(std::chrono::milliseconds delay, std::function<void()> function);
 
  private:

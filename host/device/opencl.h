@@ -1,6 +1,6 @@
 #pragma once
 
-// The OpenCL C++ bindings as this floor uses them; nothing outside host/device includes this.
+// The OpenCL C++ bindings; only host/device includes them.
 
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_HPP_TARGET_OPENCL_VERSION 120
@@ -18,7 +18,7 @@ std::string_view name_of_opencl_error(cl_int code);
 
 [[noreturn]] void throw_opencl_error(std::string_view where, const cl::Error& error);
 
-/// Calls `work`, turning an OpenCL error into an Error whose place is `where`.
+/// Calls `work`; converts an OpenCL error to an Error at `where`.
 template <class Work>
 decltype(auto) with_opencl_errors(std::string_view where, Work&& work) {
   try {

@@ -28,8 +28,8 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kTemporaryPrefix = "pillarfield-kernels-";
 
-/// The user id by which a user namespace shows all users outside of it, root among them; none
-/// outside of such a namespace, where nobody is a user as any other.
+/// The user id that stands for all users outside of a user namespace, root included; none outside
+/// of such a namespace, where that id is an ordinary user.
 std::optional<uid_t> id_of_outer_users() {
   std::ifstream map("/proc/self/uid_map");
   std::uint64_t inside = 0;
@@ -46,8 +46,8 @@ bool is_trusted(uid_t owner) {
   return owner == 0 || owner == geteuid() || owner == id_of_outer_users();
 }
 
-/// Whether the group is that of the owner alone, who has its name, as many systems give every user
-/// one and let it write.
+/// True if the group is private to the owner and has the owner's name: many systems give each user
+/// such a group with write access.
 bool is_of_owner_alone(gid_t group, uid_t owner) {
   std::array<char, 16384> user_text{};
   std::array<char, 16384> group_text{};
@@ -68,13 +68,13 @@ bool is_of_owner_alone(gid_t group, uid_t owner) {
 bool may_be_written_by_others(const fs::path& directory, const struct stat& facts) {
   if ((facts.st_mode & S_IWOTH) != 0) return true;
   if ((facts.st_mode & S_IWGRP) == 0) return false;
-  // With an access control list the group's bits are the most that the list may give to anyone.
+  // With an access control list, the group's bits are the upper limit of its entries.
   if (getxattr(directory.c_str(), "system.posix_acl_access", nullptr, 0) > 0) return true;
   return !is_of_owner_alone(facts.st_gid, facts.st_uid);
 }
 
-/// Why others could change what lies below `directory`, which has no links; empty where none could.
-/// `shared` becomes whether they can make entries of their own in it, as in /tmp.
+/// Why others could change the contents of `directory`, which has no links; empty if they cannot.
+/// Sets `shared` if they can create entries in it, as in /tmp.
 std::string reason_not_private(const fs::path& directory, bool& shared) {
   fs::path parent;
   for (const fs::path& part : directory) {
@@ -95,7 +95,7 @@ std::string reason_not_private(const fs::path& directory, bool& shared) {
   return {};
 }
 
-/// The same for the nearest of the directories above `wanted` that is there.
+/// Why others could change the nearest existing directory above `wanted`; empty if they cannot.
 std::string reason_not_to_make(fs::path wanted) {
   std::error_code failed;
   while (wanted.has_relative_path() && !fs::exists(fs::symlink_status(wanted, failed))) {
@@ -107,7 +107,7 @@ std::string reason_not_to_make(fs::path wanted) {
   return reason_not_private(real, shared);
 }
 
-/// Makes the directory and those missing above it; returns why it cannot be made.
+/// Creates the directory and its missing parents; returns why it cannot.
 std::string make_directories(const fs::path& directory) {
   if (std::string reason = reason_not_to_make(directory); !reason.empty()) return reason;
   fs::path made;
@@ -130,16 +130,16 @@ std::string reason_not_usable(const fs::path& real, std::uintmax_t least_free_by
     return fmt::format("{} cannot be written: {}", real.string(), std::strerror(errno));
   }
   struct statvfs disk {};
-  if (statvfs(real.c_str(), &disk) != 0) return {};  // It shows when something is written.
+  if (statvfs(real.c_str(), &disk) != 0) return {};  // A later write reports the error.
   const std::uintmax_t free = std::uintmax_t{disk.f_bavail} * disk.f_frsize;
   if (free >= least_free_bytes) return {};
   return fmt::format("the disk of {} has {} KiB left, and {} may be needed", real.string(),
                      free >> 10U, least_free_bytes >> 10U);
 }
 
-/// Removes directories that processes left that were killed: those that nobody has locked.
+/// Removes unlocked directories: those of killed processes.
 void remove_left_over(const fs::path& parent) {
-  std::error_code ignored;  // What cannot be removed stays.
+  std::error_code ignored;  // Directories that cannot be removed stay.
   for (fs::directory_iterator entry(parent, ignored), end; !ignored && entry != end;
        entry.increment(ignored)) {
     const fs::path path = entry->path();

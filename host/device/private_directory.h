@@ -6,22 +6,22 @@
 
 namespace pillarfield {
 
-/// A directory in which only root and this user can change anything, or why there is none.
+/// A directory that only root and this user can change, or the reason why there is none.
 struct PrivateDirectory {
-  std::filesystem::path path;  ///< absolute and without links; empty where `refused` says why
-  std::string refused;
+  std::filesystem::path path;  ///< absolute, without links; empty if refused
+  std::string refused;         ///< the reason
 };
 
-/// Makes `wanted` and what is missing above it for this user alone. It is refused where it cannot
-/// be made or written, where its disk has less than `least_free_bytes` left for this user, and
-/// where others could change what lies in it: where a directory on the way belongs to them or they
-/// may write it, save a sticky one such as /tmp, in which they cannot rename what is not theirs.
+/// Creates `wanted` and its missing parents with access for this user alone. Refuses it if it
+/// cannot be created or written, if its disk has less than `least_free_bytes` for this user, or if
+/// others could change its contents: if they own or can write a directory on its path, except a
+/// sticky one such as /tmp.
 [[nodiscard]] PrivateDirectory private_directory(const std::filesystem::path& wanted,
                                                  std::uintmax_t least_free_bytes);
 
-/// A new private directory in $TMPDIR, /tmp, /var/tmp or /dev/shm, the first that serves. It is
-/// removed with the object, in the process that made it; those of processes that were killed are
-/// removed when the next one is made.
+/// A new private directory in the first usable of $TMPDIR, /tmp, /var/tmp and /dev/shm. The
+/// destructor removes it in the process that created it; the constructor removes directories of
+/// killed processes.
 class TemporaryDirectory {
  public:
   explicit TemporaryDirectory(std::uintmax_t least_free_bytes);
@@ -35,8 +35,8 @@ class TemporaryDirectory {
   bool make_in(const std::filesystem::path& parent, std::uintmax_t least_free_bytes);
 
   PrivateDirectory directory_;
-  int lock_ = -1;  ///< a descriptor of the directory, locked for as long as it is in use
-  int owner_;      ///< the process that made it: one that is forked from it does not remove it
+  int lock_ = -1;  ///< locked descriptor of the directory
+  int owner_;      ///< the process that created it
 };
 
 }  // namespace pillarfield

@@ -20,7 +20,7 @@ namespace pillarfield {
 namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
-constexpr std::chrono::milliseconds kMoment{300};  ///< that nobody minds to wait
+constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -43,7 +43,7 @@ bool decide_sharing(Memory memory, const Device& device) {
   return memory == Memory::shared;
 }
 
-/// The paths with what the device leaves to choose decided.
+/// The speed paths with automatic choices resolved.
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
@@ -57,7 +57,6 @@ SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
   return paths;
 }
 
-/// What a user reads while kernels are compiled.
 std::string line_on_compiling(const DeviceInfo& device) {
   if (!device.kernel_cache.empty()) {
     return fmt::format("Compiling the kernels for {}; the next start finds them in {}", device.name,
@@ -68,15 +67,15 @@ std::string line_on_compiling(const DeviceInfo& device) {
                      device.kernels_not_kept);
 }
 
-[[noreturn]] void throw_no_slot(const SlotScheduler& turns) {
-  if (turns.pinned() == 0) {
-    throw Error("Processor::submit", fmt::format("all {} frames are in flight", turns.slots()),
-                "receive() one first, or ask for more frames_in_flight");
+[[noreturn]] void throw_no_slot(const SlotScheduler& scheduler) {
+  if (scheduler.pinned() == 0) {
+    throw Error("Processor::submit", fmt::format("all {} frames are in flight", scheduler.slots()),
+                "receive() one first, or set more frames_in_flight");
   }
   throw Error("Processor::submit",
-              fmt::format("of {} frames {} are in flight and {} are pinned", turns.slots(),
-                          turns.in_flight(), turns.pinned()),
-              "receive() one or give one back first, or ask for more frames_in_flight");
+              fmt::format("of {} frames {} are in flight and {} are pinned", scheduler.slots(),
+                          scheduler.in_flight(), scheduler.pinned()),
+              "receive() or unpin a frame first, or set more frames_in_flight");
 }
 
 }  // namespace
@@ -90,7 +89,7 @@ struct Processor::State {
         shares_memory(decide_sharing(options.memory, opened)),
         paths(decide_paths(opened, wanted, options, tuning)),
         calibration(opened.state().context, wanted, paths),
-        turns(static_cast<std::size_t>(options.frames_in_flight)) {
+        scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
     baseline.follows = wanted.baseline_rate.has_value();
     baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
@@ -111,8 +110,8 @@ struct Processor::State {
     baseline.frame = 0;
   }
 
-  /// Solves an empty frame: drivers finish compiling and make their buffers at the first launch,
-  /// which no real frame shall wait for. The baseline's rate is still zero: the tare stays.
+  /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
+  /// buffers at the first launch. The baseline's rate is still zero: the tare does not change.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front()->submit(frame.view());
@@ -125,23 +124,23 @@ struct Processor::State {
   bool shares_memory;
   SpeedPaths paths;
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
-  Baseline baseline;              ///< as well
-  std::optional<ContactStage> contacts;      ///< where the estimator is that of contacts
-  std::vector<std::shared_ptr<Slot>> slots;  ///< one that is pinned outlives the processor
-  SlotScheduler turns;
-  bool received = false;  ///< a frame, once
+  Baseline baseline;              ///< outlives the slots
+  std::optional<ContactStage> contacts;      ///< of the estimator `contact`
+  std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
+  SlotScheduler scheduler;
+  bool received = false;  ///< a frame has been received
 };
 
 struct Processor::PinnedResult::State {
   State(std::shared_ptr<const Slot> pinned, std::shared_ptr<ReturnedSlots> to, std::size_t index)
-      : slot(std::move(pinned)), returned(std::move(to)), number(index) {}
-  ~State() { returned->give_back(number); }
+      : slot(std::move(pinned)), returned(std::move(to)), slot_index(index) {}
+  ~State() { returned->give_back(slot_index); }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
   std::shared_ptr<const Slot> slot;
   std::shared_ptr<ReturnedSlots> returned;
-  std::size_t number;
+  std::size_t slot_index;
 };
 
 Processor::PinnedResult::PinnedResult(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -155,11 +154,11 @@ Processor::Processor(const Device& device, const SolverPlan& plan, const Options
                      const ProcessorTuning& tuning) {
   check_options(options, tuning);
   check(plan, "solver plan");
-  std::function<void()> tell;
+  std::function<void()> notify;
   if (options.on_compiling) {
-    tell = [&] { options.on_compiling(line_on_compiling(device.info())); };
+    notify = [&] { options.on_compiling(line_on_compiling(device.info())); };
   }
-  const LateCall notice(kMoment, tell);
+  const LateCall notice(kCompileNotice, notify);
   state_ = with_opencl_errors(
       device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
 }
@@ -176,39 +175,39 @@ Processor& Processor::operator=(Processor&&) noexcept = default;
 
 void Processor::submit(const FrameView& frame) {
   check(frame, state_->skin, state_->sensel_type, "Processor::submit");
-  const std::optional<std::size_t> slot = state_->turns.next();
-  if (!slot) throw_no_slot(state_->turns);
+  const std::optional<std::size_t> slot = state_->scheduler.next();
+  if (!slot) throw_no_slot(state_->scheduler);
   try {
     with_opencl_errors(state_->device.info().name, [&] { state_->slots[*slot]->submit(frame); });
   } catch (...) {
-    state_->turns.returned()->give_back(*slot);
+    state_->scheduler.returned()->give_back(*slot);
     throw;
   }
-  state_->turns.submit(*slot);
+  state_->scheduler.submit(*slot);
 }
 
 ForceFieldView Processor::receive() {
-  if (state_->turns.in_flight() == 0) {
+  if (state_->scheduler.in_flight() == 0) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
-  Slot& slot = *state_->slots[state_->turns.oldest()];
+  Slot& slot = *state_->slots[state_->scheduler.oldest()];
   with_opencl_errors(state_->device.info().name, [&] {
     slot.wait();
     if (state_->contacts) slot.resolve(*state_->contacts);
   });
-  state_->turns.receive();
+  state_->scheduler.receive();
   state_->received = true;
   return slot.results();
 }
 
 Processor::PinnedResult Processor::pin() {
-  const std::optional<std::size_t> slot = state_->turns.pin();
+  const std::optional<std::size_t> slot = state_->scheduler.pin();
   if (!slot) {
-    throw Error("Processor::keep", "there is no frame to keep",
-                "pin() a frame once, after it was received and before its slot is used again");
+    throw Error("Processor::pin", "there is no frame to pin",
+                "call pin() once per frame, after receive() and before its slot is used again");
   }
-  return PinnedResult(
-      std::make_unique<PinnedResult::State>(state_->slots[*slot], state_->turns.returned(), *slot));
+  return PinnedResult(std::make_unique<PinnedResult::State>(state_->slots[*slot],
+                                                            state_->scheduler.returned(), *slot));
 }
 
 FoundContacts Processor::contacts() const {
@@ -216,9 +215,9 @@ FoundContacts Processor::contacts() const {
   return state_->contacts->contacts();
 }
 
-int Processor::in_flight() const { return static_cast<int>(state_->turns.in_flight()); }
+int Processor::in_flight() const { return static_cast<int>(state_->scheduler.in_flight()); }
 
-int Processor::pinned() const { return static_cast<int>(state_->turns.pinned()); }
+int Processor::pinned() const { return static_cast<int>(state_->scheduler.pinned()); }
 
 std::vector<float> Processor::tare() const {
   return with_opencl_errors(state_->device.info().name, [&] {

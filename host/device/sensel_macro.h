@@ -4,7 +4,7 @@
 
 namespace pillarfield {
 
-/// What OpenCL C calls a reading of this type.
+/// The OpenCL C type of a reading.
 constexpr const char* sensel_macro(SenselType type) {
   switch (type) {
     case SenselType::u8:

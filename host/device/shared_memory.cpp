@@ -11,11 +11,11 @@ class SharedMemory final : public SlotMemory {
   SharedMemory(const cl::Context& context, const ResultLayout& layout)
       : SlotMemory(layout),
         context_(context),
-        bytes_(layout.bytes + layout.marks),
+        bytes_(layout.bytes + layout.idle_flags),
         memory_(allocate_large_pages(bytes_)) {
     pages_ = memory_.get();
-    shares_marks_ = true;
-    std::memset(pages_ + layout.bytes, 0, layout.marks);
+    shares_flags_ = true;
+    std::memset(pages_ + layout.bytes, 0, layout.idle_flags);
     results_ = {context, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes_, pages_};
   }
 
@@ -24,7 +24,7 @@ class SharedMemory final : public SlotMemory {
     mapped_ = false;
     const std::size_t bytes =
         ((frame.rows - 1) * frame.row_stride + frame.cols) * size_of(frame.type);
-    // OpenCL takes host memory as non-const even where it is only read.
+    // OpenCL requires a non-const pointer even to read-only host memory.
     void* const memory = const_cast<void*>(frame.data);
     return {cl::Buffer(context_, CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes, memory),
             frame.row_stride};

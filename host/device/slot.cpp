@@ -5,10 +5,9 @@
 namespace pillarfield {
 namespace {
 
-/// Work-items, and their grouping. Where a work-item solves several pillars at once it takes a band
-/// of rows; there are a few bands for each compute unit, so that none waits long for the last, and
-/// they are work-groups of their own, since drivers have other ideas (PoCL makes a single group of
-/// 790 rows). Elsewhere a row is spread over work-items.
+/// Global and local size of a launch. With several lanes, a work-item solves a band of rows.
+/// Several bands per compute unit balance the load; each is a work-group of its own, because
+/// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row.
 struct Launch {
   Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
     constexpr std::size_t kGroup = 64;
@@ -25,7 +24,7 @@ struct Launch {
   cl::NDRange local;
 };
 
-/// The arguments of kernels/frame/*.cl; those of follow_baseline go on.
+/// Arguments of kernels/frame/*.cl; those from kRate on are of follow_baseline alone.
 enum Argument : cl_uint { kRaw, kCalibration, kResults, kLayout, kRate, kFirstRow, kInterval };
 
 single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& results,
@@ -71,7 +70,7 @@ Slot::~Slot() {
   try {
     queue_.finish();
   } catch (const cl::Error&) {
-    // Nothing of the frame in flight is wanted any more.
+    // The result of the frame in flight is not used.
   }
 }
 

@@ -10,17 +10,17 @@
 
 namespace pillarfield {
 
-/// How the tare follows the readings from frame to frame, where a plan asks for it. Each frame
-/// needs the tare that the one before left, so frames in flight wait for each other.
+/// State of the baseline. Each frame needs the tare after the frame before, so frames in flight
+/// wait for each other.
 struct Baseline {
   bool follows = false;
-  float rate = 0;           ///< of a row whose turn it is
-  cl_uint interval = 1;     ///< frames from one turn of a pillar row to the next
-  std::uint64_t frame = 0;  ///< counts those submitted
-  cl::Event left;           ///< the last frame's tare is written; null before the first
+  float rate = 0;           ///< rate per update of a row
+  cl_uint interval = 1;     ///< frames between updates of a pillar row
+  std::uint64_t frame = 0;  ///< number of frames submitted
+  cl::Event left;           ///< completion of the last frame's update; null before the first
 };
 
-/// What the slots of a processor have in common.
+/// Settings that all slots of a processor share.
 struct SlotSettings {
   cl::Program program;
   int lanes = 1;
@@ -39,23 +39,21 @@ class Slot {
   Slot(const Slot&) = delete;
   Slot& operator=(const Slot&) = delete;
 
-  /// Starts the frame; the slot must not be in flight.
+  /// Starts solving the frame; the slot must not be in flight.
   void submit(const FrameView& frame);
 
-  /// Waits for it.
   void wait();
 
-  /// Estimates what the direct solve left ambiguous, after wait().
+  /// Estimates the ambiguous pillars of the frame, after wait().
   void resolve(ContactStage& contacts) { contacts.resolve(*memory_); }
 
-  /// What it became, after wait().
+  /// Results of the frame, after wait().
   [[nodiscard]] ForceFieldView results() const;
 
-  /// The block of whole pages that the results lie in.
   [[nodiscard]] std::span<const std::byte> pages() const { return memory_->pages(); }
 
  private:
-  /// Solves and follows after the frame before has.
+  /// Solves the frame and updates the tare after the frame before.
   void launch_in_order();
 
   std::uint32_t rows_;  ///< pillars
@@ -64,7 +62,7 @@ class Slot {
   cl::NDRange local_;
   cl::CommandQueue queue_;
   cl::Kernel kernel_;
-  cl::Kernel follow_;  ///< null where the baseline stays
+  cl::Kernel follow_;  ///< null without a baseline rate
   Baseline* baseline_;
   cl::Buffer frame_;  ///< keeps the frame in flight alive
   single_precision::Layout layout_{};

@@ -12,14 +12,14 @@ ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
   bytes = status + page_aligned(plan.skin.pillars());
   if (block_lanes == 0) return;
   lanes = static_cast<std::uint32_t>(block_lanes);
-  mark_stride = plan.skin.pillar_cols() / lanes + 2;
-  marks = plan.skin.pillar_rows() * mark_stride;
+  flag_stride = plan.skin.pillar_cols() / lanes + 2;
+  idle_flags = plan.skin.pillar_rows() * flag_stride;
 }
 
 IdleBlocks SlotMemory::idle_blocks() const {
-  if (!shares_marks_) return {};
-  const auto* const marks = reinterpret_cast<const std::uint8_t*>(pages_ + layout_.bytes);
-  return {{marks, layout_.marks}, layout_.mark_stride, layout_.lanes};
+  if (!shares_flags_) return {};
+  const auto* const flags = reinterpret_cast<const std::uint8_t*>(pages_ + layout_.bytes);
+  return {{flags, layout_.idle_flags}, layout_.flag_stride, layout_.lanes};
 }
 
 }  // namespace pillarfield

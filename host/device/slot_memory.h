@@ -20,20 +20,20 @@ constexpr std::size_t page_aligned(std::size_t bytes) {
   return (bytes + kPageSize - 1) / kPageSize * kPageSize;
 }
 
-/// Where the planes of a result lie in one block of whole pages, each on a page of its own, and
-/// behind it the marks of idle blocks. In bytes.
+/// Offsets of the planes of a result in one block of pages, bytes. Each plane begins on a page; the
+/// flags of idle blocks follow the planes.
 struct ResultLayout {
-  /// `lanes` are the pillars of a block that may be idle; 0: there are no marks.
+  /// `lanes`: pillars of a block that may be idle; 0: no flags.
   ResultLayout(const SolverPlan& plan, int lanes);
 
-  std::array<std::size_t, kSolvedPlanes> planes{};  ///< from the first one on
-  std::array<bool, kSolvedPlanes> has{};            ///< what the plan asks for
-  std::size_t plane_bytes = 0;                      ///< from one to the next
+  std::array<std::size_t, kSolvedPlanes> planes{};  ///< offset from the first one
+  std::array<bool, kSolvedPlanes> has{};            ///< planes of the plan
+  std::size_t plane_bytes = 0;                      ///< distance between planes
   std::size_t status = 0;
-  std::size_t bytes = 0;        ///< of the block; the marks follow
-  std::size_t marks = 0;        ///< how many
-  std::size_t mark_stride = 0;  ///< marks of a pillar row
-  std::uint32_t lanes = 1;      ///< pillars of a mark
+  std::size_t bytes = 0;        ///< of the block; the flags follow
+  std::size_t idle_flags = 0;   ///< number of flags
+  std::size_t flag_stride = 0;  ///< flags of a pillar row
+  std::uint32_t lanes = 1;      ///< pillars of a flag
 };
 
 /// A frame that the kernel can read.
@@ -42,33 +42,33 @@ struct DeviceFrame {
   std::uint64_t row_stride = 0;  ///< readings
 };
 
-/// How one frame reaches the device and its result comes back. Between upload() and download() the
-/// memory is the device's, elsewhere the host's.
+/// Transfers one frame to the device and its result back. The device owns the memory between
+/// upload() and download(), the host otherwise.
 class SlotMemory {
  public:
   virtual ~SlotMemory() = default;
 
-  /// Makes the frame's readings, and memory for its results, available to commands that follow on
+  /// Makes the frame's readings and memory for its results available to the next commands on
   /// `queue`.
   virtual DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) = 0;
 
-  /// Starts bringing the results to the host.
+  /// Starts the transfer of the results to the host.
   virtual void download(const cl::CommandQueue& queue) = 0;
 
   [[nodiscard]] const ResultLayout& layout() const { return layout_; }
-  /// What the kernel writes: results and marks, which are zero at first.
+  /// Results and idle flags, which the kernel writes; the flags are zero at first.
   [[nodiscard]] const cl::Buffer& results() const { return results_; }
-  /// The host's side of a plane; null for one that the plan does not ask for. What is written there
-  /// stays; where memory is shared, the device sees it.
+  /// A plane in host memory; null if the plan does not have it. Shared memory passes writes on to
+  /// the device.
   [[nodiscard]] std::byte* plane(std::size_t index) const {
     return layout_.has[index] ? pages_ + layout_.planes[index] : nullptr;
   }
   [[nodiscard]] std::uint8_t* status() const {
     return reinterpret_cast<std::uint8_t*>(pages_ + layout_.status);
   }
-  /// The block that the host's sides of all planes lie in: whole pages, always the same.
+  /// The block of whole pages that holds all planes in host memory; it does not move.
   [[nodiscard]] std::span<const std::byte> pages() const { return {pages_, layout_.bytes}; }
-  /// The marks; none where they stay on the device.
+  /// The flags of idle blocks; none if they stay on the device.
   [[nodiscard]] IdleBlocks idle_blocks() const;
 
  protected:
@@ -77,13 +77,14 @@ class SlotMemory {
   ResultLayout layout_;
   cl::Buffer results_;
   std::byte* pages_ = nullptr;
-  bool shares_marks_ = false;  ///< they lie behind the host's pages too
+  bool shares_flags_ = false;  ///< the flags follow the host's pages
 };
 
-/// Zero copy: the kernel reads the caller's memory and writes the memory the caller reads.
+/// Zero copy: the kernel reads the caller's memory and writes memory that the caller reads.
 std::unique_ptr<SlotMemory> shared_memory(const cl::Context& context, const ResultLayout& layout);
 
-/// Through pinned memory of the driver: one copy by the host, one by the device, each way one.
+/// Copies through pinned memory of the driver: one copy by the host and one by the device in each
+/// direction.
 std::unique_ptr<SlotMemory> staged_memory(const cl::Context& context, const cl::CommandQueue& queue,
                                           const SolverPlan& plan, const ResultLayout& layout);
 

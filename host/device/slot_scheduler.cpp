@@ -6,7 +6,7 @@
 namespace pillarfield {
 
 std::optional<std::size_t> ReturnedSlots::take() {
-  // Mostly there are none, and looking is cheaper than exchanging.
+  // Mostly there are none, and a load is cheaper than an exchange.
   const std::uint64_t bits = bits_.load(std::memory_order_acquire);
   if (bits == 0) return std::nullopt;
   const auto slot = static_cast<std::size_t>(std::countr_zero(bits));

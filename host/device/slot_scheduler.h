@@ -11,7 +11,7 @@ namespace pillarfield {
 
 inline constexpr std::size_t kMostSlots = 64;
 
-/// Numbers of slots, first in, first out. Takes no memory while frames run.
+/// A FIFO queue of slot indices that does not allocate.
 class SlotQueue {
  public:
   void push(std::size_t slot) { slots_.at((first_ + count_++) % kMostSlots) = slot; }
@@ -30,12 +30,12 @@ class SlotQueue {
   std::size_t count_ = 0;
 };
 
-/// Slots that were pinned and given back, from any thread. What was read of a slot before
-/// give_back() was read before whatever follows the take() that yields it.
+/// Slots whose pin was released, from any thread. Reads of a slot before give_back() happen before
+/// the take() that returns it.
 class ReturnedSlots {
  public:
   void give_back(std::size_t slot) { bits_.fetch_or(bit(slot), std::memory_order_release); }
-  /// By one thread.
+  /// Must be called by one thread only.
   std::optional<std::size_t> take();
   [[nodiscard]] std::size_t size() const;
 
@@ -44,29 +44,27 @@ class ReturnedSlots {
   std::atomic<std::uint64_t> bits_{0};
 };
 
-/// Which slot is whose: free, in flight, last received, or pinned.
+/// State of each slot: free, in flight, last received, or pinned.
 ///
-/// A slot waits for its next frame in the order in which frames were received, so that results stay
-/// as long as they can; those given back were read already and come first.
+/// Returned slots are reused first, then free ones in the order in which their frames were
+/// received, so that results stay valid as long as possible.
 class SlotScheduler {
  public:
   explicit SlotScheduler(std::size_t slots);
 
-  /// A slot for the next frame; none where all are in flight or pinned. Either submit() follows, or
-  /// the slot is given back.
+  /// A slot for the next frame; none if all are in flight or pinned. The caller must submit() it or
+  /// give it back.
   std::optional<std::size_t> next();
 
-  /// Its frame is in flight.
   void submit(std::size_t slot) { in_flight_.push(slot); }
 
-  /// The slot of the oldest frame in flight, of which there must be one.
+  /// The slot of the oldest frame in flight. Requires one.
   [[nodiscard]] std::size_t oldest() const { return in_flight_.front(); }
 
-  /// That frame is received.
+  /// Marks the oldest frame in flight as received.
   void receive();
 
-  /// Takes the slot last received out of the turns, until returned()->give_back(); none where it is
-  /// not there any more.
+  /// Pins the slot last received until returned()->give_back(); none if it is in use again.
   std::optional<std::size_t> pin();
 
   [[nodiscard]] std::size_t in_flight() const { return in_flight_.size(); }

@@ -6,7 +6,7 @@
 namespace pillarfield {
 namespace {
 
-/// Memory of the host from which, and to which, the driver copies without a detour.
+/// Pinned host memory: the driver copies from and to it directly.
 class PinnedMemory {
  public:
   PinnedMemory(const cl::Context& context, const cl::CommandQueue& queue, std::size_t bytes)
@@ -19,7 +19,7 @@ class PinnedMemory {
       queue_.enqueueUnmapMemObject(buffer_, mapped_);
       queue_.finish();
     } catch (const cl::Error&) {
-      // The device is gone, and its memory with it.
+      // The device and its memory are gone.
     }
   }
   PinnedMemory(const PinnedMemory&) = delete;
@@ -27,7 +27,7 @@ class PinnedMemory {
 
   [[nodiscard]] std::byte* data() const { return static_cast<std::byte*>(mapped_); }
 
-  /// The first page boundary in it.
+  /// Its first page boundary.
   [[nodiscard]] std::byte* first_page() const {
     void* place = mapped_;
     std::size_t space = bytes_;
@@ -49,12 +49,12 @@ class StagedMemory final : public SlotMemory {
         frame_bytes_(plan.skin.sensels() * size_of(plan.sensel_type)),
         frame_(context, CL_MEM_READ_ONLY, frame_bytes_),
         frame_on_host_(context, queue, frame_bytes_),
-        // Drivers align what they map as they like: a page more, to begin on a boundary.
+        // Drivers may map at any alignment: one page more, to begin on a boundary.
         results_on_host_(context, queue, layout.bytes + kPageSize) {
     pages_ = results_on_host_.first_page();
-    results_ = {context, CL_MEM_READ_WRITE, layout.bytes + layout.marks};
-    if (layout.marks == 0) return;
-    queue.enqueueFillBuffer(results_, cl_uchar{0}, layout.bytes, layout.marks);
+    results_ = {context, CL_MEM_READ_WRITE, layout.bytes + layout.idle_flags};
+    if (layout.idle_flags == 0) return;
+    queue.enqueueFillBuffer(results_, cl_uchar{0}, layout.bytes, layout.idle_flags);
     queue.finish();
   }
 

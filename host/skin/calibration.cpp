@@ -10,7 +10,7 @@
 namespace pillarfield {
 namespace {
 
-/// Throws where a plane has not one value per sensel, or a value outside [low, high].
+/// Throws Error unless a plane is empty or has one value in [low, high] per sensel.
 template <class Value>
 void check_plane(const std::vector<Value>& plane, const char* name, const Skin& skin,
                  std::string_view where, double low, double high) {

@@ -13,7 +13,7 @@
 namespace pillarfield {
 namespace {
 
-/// Beyond it, as in the solve, a reading is none.
+/// Readings beyond it are missing, as in the solve.
 constexpr auto kLargest = static_cast<float>(kMaxCounts);
 
 }  // namespace

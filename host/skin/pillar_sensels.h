@@ -7,7 +7,7 @@
 
 namespace pillarfield {
 
-/// Where the sensels 1 to 4 of the pillar in this row and column stand in a plane of the skin.
+/// Indices of sensels 1 to 4 of a pillar in a plane of sensels.
 inline std::array<std::size_t, 4> pillar_sensels(const Skin& skin, std::size_t pillar_row,
                                                  std::size_t pillar_col) {
   const std::size_t upper_left = 2 * pillar_row * skin.cols + 2 * pillar_col;

@@ -6,8 +6,8 @@
 
 namespace pillarfield {
 
-/// Calls `use(row, readings)` for each row of sensels, `readings` being a pointer to the first of
-/// them in the frame's own type.
+/// Calls `use(row, readings)` for each row of sensels; `readings` points to the first one, in the
+/// frame's type.
 template <class Use>
 void for_each_row(const FrameView& frame, Use use) {
   const auto rows_of = [&](const auto* readings) {
@@ -24,7 +24,7 @@ void for_each_row(const FrameView& frame, Use use) {
   rows_of(static_cast<const float*>(frame.data));
 }
 
-/// Throws Error, its place being `where`, unless the frame is of this size and type.
+/// Throws Error at `where` unless the frame has this size and type.
 void require_frame(const FrameView& frame, const Skin& skin, SenselType type,
                    const std::string& where);
 

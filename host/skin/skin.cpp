@@ -63,7 +63,7 @@ void check(const Skin& skin, std::string_view where) {
     throw Error(where,
                 fmt::format("full_scale_counts is {}, not above threshold_counts, {}",
                             *skin.full_scale_counts, skin.threshold_counts),
-                "a reading must have room between the two");
+                "raise full_scale_counts or lower threshold_counts");
   }
 }
 

@@ -5,8 +5,7 @@
 
 namespace pillarfield {
 
-/// Status bytes are gone through eight at a time.
 inline constexpr std::size_t kWordBytes = sizeof(std::uint64_t);
-inline constexpr std::uint64_t kEachByte = 0x0101010101010101u;  ///< the lowest bit of each
+inline constexpr std::uint64_t kEachByte = 0x0101010101010101u;  ///< the lowest bit of each byte
 
 }  // namespace pillarfield

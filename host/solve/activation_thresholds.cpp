@@ -8,8 +8,8 @@
 namespace pillarfield {
 namespace {
 
-/// The reading at which the power law reaches the threshold. Powers are not rounded alike
-/// everywhere, so a little below.
+/// The reading at which the power law reaches the threshold, reduced by 1e-4: pow() rounds
+/// differently on other devices.
 double threshold_before_power_law(const SolverPlan& plan) {
   const double threshold = plan.skin.threshold_counts;
   if (!plan.skin.power_law) return threshold;
@@ -58,18 +58,18 @@ std::vector<float> activation_thresholds(const SolverPlan& plan) {
   const auto threshold = static_cast<float>(range.threshold);
   const auto lowest = static_cast<float>(range.lowest);
   const auto highest = static_cast<float>(range.highest);
-  std::vector<float> levels(has_activation_plane(plan) ? plan.skin.sensels() : 1);
-  for (std::size_t i = 0; i < levels.size(); ++i) {
+  std::vector<float> thresholds(has_activation_plane(plan) ? plan.skin.sensels() : 1);
+  for (std::size_t i = 0; i < thresholds.size(); ++i) {
     const float tare = calibration.tare.empty() ? 0 : calibration.tare[i];
     const float gain = calibration.gain.empty() ? 1 : calibration.gain[i];
-    const float level = single_precision::activation_threshold(
+    const float reading = single_precision::activation_threshold(
         tare, gain, threshold, static_cast<float>(range.step), lowest);
-    levels[i] = std::min(std::max(level, lowest), highest);
+    thresholds[i] = std::min(std::max(reading, lowest), highest);
     if (!calibration.mask.empty() && calibration.mask[i] == 0) {
-      levels[i] = static_cast<float>(range.never);
+      thresholds[i] = static_cast<float>(range.never);
     }
   }
-  return levels;
+  return thresholds;
 }
 
 }  // namespace pillarfield

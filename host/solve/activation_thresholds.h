@@ -6,24 +6,23 @@
 
 namespace pillarfield {
 
-/// What decides whether a raw reading wakes its sensel (kernels/frame/idle.h), all in counts and
-/// exact in single precision.
+/// Parameters of the activation thresholds (kernels/frame/idle.h), counts, exact in single
+/// precision.
 struct ActivationRange {
-  double threshold;  ///< a reading is silent up to it, after tare and gain, before the power law
-  double step;       ///< from one reading to the next: 1, or 0 for fractions
-  double lowest;     ///< of a level
-  double highest;    ///< of a level: saturated readings are active
-  double never;      ///< the level of a masked sensel
+  double threshold;  ///< a reading up to it is inactive, after tare and gain, before the power law
+  double step;       ///< between readings: 1, or 0 for fractions
+  double lowest;     ///< lowest activation threshold
+  double highest;    ///< highest activation threshold: saturated readings are active
+  double never;      ///< activation threshold of a masked sensel
 };
 
 [[nodiscard]] ActivationRange activation_range(const SolverPlan& plan);
 
-/// Whether sensels of a plan differ in what wakes them.
+/// True if the activation threshold differs between sensels of a plan.
 [[nodiscard]] bool has_activation_plane(const SolverPlan& plan);
 
-/// The raw reading from which on each sensel [rows, cols] may be more than silent; a single one for
-/// all sensels of a plan without tare, gain and mask. A block of pillars with lower readings alone
-/// has forces and status that do not depend on them.
+/// Activation threshold of each sensel [rows, cols], raw counts; a single one for a plan without
+/// tare, gain and mask. Forces and status of a block do not depend on readings below it.
 [[nodiscard]] std::vector<float> activation_thresholds(const SolverPlan& plan);
 
 }  // namespace pillarfield

@@ -26,21 +26,21 @@ struct Component {
   [[nodiscard]] Interval interval() const {
     return Interval{value, value}.wider(kDeviations95 * deviation);
   }
-  /// What of the deviation is noise, if the rest is this.
+  /// Deviation due to noise, if `other` is due to ambiguity.
   [[nodiscard]] double noise_beside(double other) const {
     return std::sqrt(std::max(deviation * deviation - other * other, 0.0));
   }
 };
 
-/// The part of the deviation of a segment's normal force that is not noise (U9).
+/// Deviation of a segment's normal force due to ambiguity, N (U9).
 double ambiguity_of(double high, double point) {
   constexpr double kPoint = 0.875;
   constexpr double kOfPoint = 0.12;
   return std::hypot(kOfPoint, point - kPoint) * high;
 }
 
-/// The ends of a segment at whose `point` the direct solve put the force (F1, F2): of the component
-/// of the shear that changes along it, and of the normal force.
+/// Intervals of the free shear component and of the normal force on the feasible segment of a
+/// direct force at the segment point `point` (F1, F2), N.
 void set_segment(double point, const Component& moving, const Component& normal,
                  Interval& of_moving, Interval& of_normal) {
   const double high = normal.value / point;
@@ -68,7 +68,7 @@ std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, s
   Interval of_normal = normal.interval();
   const std::uint8_t status = forces.status[pillar];
   if (direct_point && is_ambiguous(status) && normal.value > 0) {
-    const bool vertical = moves_vertically(status);
+    const bool vertical = shear_y_is_free(status);
     set_segment(*direct_point, vertical ? y : x, normal, vertical ? of_y : of_x, of_normal);
   }
   if (normal.value >= 0) of_normal.low = std::max(of_normal.low, 0.0);

@@ -6,17 +6,16 @@
 
 namespace pillarfield {
 
-/// Which blocks of a frame's pillars are known to bear no load, so that nobody need look there.
+/// Flags of the blocks of a frame that have no loaded pillar.
 ///
-/// A block is so many pillars whose places, counted row by row through the frame, begin at a
-/// multiple of that number; where a row ends, so does its last block, and the next row begins with
-/// the rest of it.
+/// Blocks begin at multiples of `pillars` in the row-by-row index of pillars. A block that crosses
+/// the end of a row is divided: its rest is the first block of the next row.
 struct IdleBlocks {
-  /// [rows, stride], 1 for a block without a loaded pillar, else 0; of each row the first ones
-  /// count, as many as it has blocks. Empty: nothing is known.
-  std::span<const std::uint8_t> marks;
+  /// [rows, stride]: 1 for a block without a loaded pillar, else 0. Each row uses as many as it has
+  /// blocks. Empty: unknown.
+  std::span<const std::uint8_t> flags;
   std::size_t stride = 0;
-  std::uint32_t pillars = 1;  ///< of a block
+  std::uint32_t pillars = 1;  ///< in a block
 };
 
 }  // namespace pillarfield

@@ -10,13 +10,13 @@
 
 namespace pillarfield {
 
-/// What is known of the sensels of one pillar; all in counts of a reading.
+/// Sensor parameters of one pillar, counts.
 struct PillarSensor {
   double counts_per_newton = 1;
   double threshold_counts = 0;
   double dead_zone_counts = 0;
   std::optional<double> full_scale_counts;
-  double noise_counts = 0;  ///< standard deviation; 0: not known
+  double noise_counts = 0;  ///< standard deviation; 0: unknown
 };
 
 /// The types of kernels/frame/stages.h in the precision of Real.
@@ -33,12 +33,12 @@ struct PillarTypes<double> {
   using Solution = double_precision::Solution;
 };
 
-/// All that is solved of one pillar: force (N), direction (N, rad), status, and of the direct
-/// estimate deviations (N) and interval (N, rad).
+/// Results of one pillar: force (N), direction (N, rad) and status; of the direct estimate also
+/// deviations (N) and interval (N, rad).
 template <class Real>
 using PillarEstimate = typename PillarTypes<Real>::Solution;
 
-/// The stages of such a pillar; the paper's estimator is not among them.
+/// The stages of a pillar with this sensor, without the paper's estimator.
 template <class Real>
 typename PillarTypes<Real>::Stages pillar_stages(const PillarSensor& sensor) {
   typename PillarTypes<Real>::Stages stages{};
@@ -53,15 +53,15 @@ typename PillarTypes<Real>::Stages pillar_stages(const PillarSensor& sensor) {
   return stages;
 }
 
-/// A raw reading through the stages of a sensel.
+/// Applies the stages of a sensel to a raw reading.
 template <class Real>
 auto prepare_sensel(Real raw, const PillarSensor& sensor) {
   return correct_sensel(raw, {0, 0, static_cast<Real>(sensor.dead_zone_counts), 0},
                         pillar_stages<Real>(sensor));
 }
 
-/// One pillar from the raw readings of its sensels 1 to 4, counts, in float or double: the very
-/// functions that the kernels call. `segment_point` is that of SolverPlan.
+/// Solves one pillar from the raw readings of its sensels 1 to 4, counts, in float or double, with
+/// the functions of the kernels. `segment_point` is that of SolverPlan.
 template <class Real>
 PillarEstimate<Real> estimate_pillar(const std::array<Real, 4>& raw, const PillarSensor& sensor,
                                      Estimator estimator, double segment_point = kSegmentPoint) {

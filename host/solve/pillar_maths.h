@@ -1,6 +1,6 @@
 #pragma once
 
-// kernels/pillar as C++: in single precision, which matches the device bit for bit, and in double.
+// The kernels as C++: in single precision, which matches the device bit for bit, and in double.
 
 #include <bit>
 #include <cmath>

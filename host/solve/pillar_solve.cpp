@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/tuning.h"
 #include "solve/pillar_maths.h"
@@ -14,7 +15,6 @@ namespace {
 
 namespace maths = single_precision;
 
-/// Solves one pillar after the other into a field.
 class PillarSolver {
  public:
   PillarSolver(const SolverPlan& plan, const FrameView& frame, ForceField& field)
@@ -44,7 +44,7 @@ class PillarSolver {
   ForceField& field_;
 };
 
-/// Whether anything presses in the 3 x 3 pillars around one.
+/// True if a pillar of the 3 x 3 neighbourhood is loaded.
 bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
   const std::size_t last_row = std::min<std::size_t>(row + 1, forces.rows - 1);
   const std::size_t last_col = std::min<std::size_t>(col + 1, forces.cols - 1);
@@ -76,7 +76,7 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
     for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
       const bool untouched = !is_touched(forces, row / 2, col / 2);
       float& tare = plan.calibration.tare[row * frame.cols + col];
-      tare = maths::follow_tare(tare, sensel.judged(row, col), untouched, rate);
+      tare = maths::follow_tare(tare, sensel.validated(row, col), untouched, rate);
     }
   }
 }

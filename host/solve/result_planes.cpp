@@ -2,7 +2,7 @@
 
 namespace pillarfield {
 
-// The enumeration of the public header follows the table.
+// The enumeration of the public header must have the order of the table.
 #define PF_PLANE(name, unit, value) Uncertainty::name,
 static_assert([] {
   constexpr std::array kTable = {PF_UNCERTAINTY_PLANES(PF_PLANE)};

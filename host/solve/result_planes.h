@@ -10,24 +10,23 @@
 
 namespace pillarfield {
 
-/// Planes that a plan asks for together, or a file holds together.
+/// Planes that a plan requests together, or a file holds together.
 enum class PlaneSet : std::uint8_t { forces, angles, uncertainty, component_ends };
 
-/// A plane of floats of a result, as files name it.
+/// A plane of floats of a result, with its name in files.
 struct ResultPlane {
   PlaneSet set;
   const char* name;   ///< "shear_x", "theta_low", ...
   const char* unit;   ///< "n" or "rad"
   std::size_t index;  ///< in kResultPlanes
 
-  /// "force" or "uncertainty": where there are groups.
+  /// "force" or "uncertainty": its group in files with groups.
   [[nodiscard]] const char* group() const;
-  /// "shear_x", "uncertainty_theta_low": where there are none.
+  /// "shear_x", "uncertainty_theta_low": its name in files without groups.
   [[nodiscard]] std::string field() const;
 };
 
-/// The planes that a solve makes, in the order in which they lie in memory, status apart; then
-/// those that files have beside them.
+/// The planes of a solve in memory order, without status; then those that only files have.
 inline constexpr auto kResultPlanes = [] {
   std::array planes = {
 #define PF_PLANE(name, unit, value) ResultPlane{PlaneSet::forces, #name, #unit, 0},
@@ -54,12 +53,12 @@ inline constexpr std::size_t kSolvedPlanes = kResultPlanes.size() - kComponentEn
 inline constexpr std::size_t kNamedPlanes = kSolvedPlanes - kUncertaintyPlanes;
 inline constexpr std::size_t kForcePlanes = 3;
 
-/// Whether a plan or file with these has a set of planes.
+/// True if a plan or file with these options has a set of planes.
 constexpr bool has_planes(bool angles, bool uncertainty, PlaneSet set) {
   return set == PlaneSet::forces || (set == PlaneSet::angles ? angles : uncertainty);
 }
 
-/// One of the first kSolvedPlanes of a field: of a FieldView or FieldPlanes.
+/// One of the first kSolvedPlanes of a FieldView or FieldPlanes.
 template <class Field>
 auto& plane_of(Field& field, std::size_t index) {
 #define PF_PLANE(name, unit, value) &Field::name,

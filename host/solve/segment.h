@@ -1,7 +1,7 @@
 #pragma once
 
-// The forces between which the readings of an ambiguous pillar leave the choice: a segment along
-// which the normal force is free (docs/derivations/segment.md). For two adjacent usable sensels.
+// The feasible segment of an ambiguous pillar with two adjacent usable sensels: all forces that are
+// consistent with its readings (docs/derivations/segment.md).
 
 #include <algorithm>
 #include <cmath>
@@ -13,52 +13,54 @@
 
 namespace pillarfield {
 
-/// Whether the shear's y component is the one that changes along the segment: the usable sensels
-/// are the upper or the lower two.
-[[nodiscard]] inline bool moves_vertically(std::uint8_t status) {
+/// True if shear_y, not shear_x, varies along the segment: the usable sensels are the upper or the
+/// lower two.
+[[nodiscard]] inline bool shear_y_is_free(std::uint8_t status) {
   const int usable = status & status::kUsable;
   return usable == 3 || usable == 12;
 }
 
-/// One component of the shear is fixed; the other shrinks as the normal force grows, from `moving`
-/// where that is zero, by sqrt(2) of it.
-struct Segment {
-  float fixed;   ///< size of the one component, N
-  float moving;  ///< size of the other without normal force, N
-  float high;    ///< largest normal force, N; the least is zero
+/// A segment of forces. One shear component is known; the other is free: it falls from `free_shear`
+/// at zero normal force by sqrt(2) times the normal force.
+struct FeasibleSegment {
+  float known_shear;  ///< magnitude of the known component, N
+  float free_shear;   ///< magnitude of the free component at zero normal force, N
+  float high;         ///< largest normal force, N; the least is zero
 
-  /// Shear over normal force where the normal force, above zero, is this.
+  /// Shear over normal force at the normal force `normal` > 0, N.
   [[nodiscard]] double ratio_at(double normal) const {
-    const double rest = std::max(moving - std::numbers::sqrt2 * normal, 0.0);
-    return std::sqrt(double{fixed} * fixed + rest * rest) / normal;
+    const double rest = std::max(free_shear - std::numbers::sqrt2 * normal, 0.0);
+    return std::sqrt(double{known_shear} * known_shear + rest * rest) / normal;
   }
 };
 
-/// How the largest normal force of a segment is known (F1).
+/// Source of a segment's largest normal force (F1).
 struct SegmentEnd {
-  float point = 0;     ///< of direct forces, SolverPlan::segment_point; 0: of any on the segment
-  float hidden_n = 0;  ///< else: the normal force that sensels hide at the threshold, N
+  float point = 0;     ///< segment point of a direct force; 0: the force is anywhere on the segment
+  float hidden_n = 0;  ///< normal force below the threshold, N, if `point` is 0
 };
 
-/// The segment on which a force lies (F1, F2).
-[[nodiscard]] inline Segment segment_of(const single_precision::Force& point, bool vertical,
-                                        const SegmentEnd& end) {
+/// The feasible segment through a force (F1, F2).
+[[nodiscard]] inline FeasibleSegment segment_of(const single_precision::Force& point, bool vertical,
+                                                const SegmentEnd& end) {
   constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
-  const float fixed = std::abs(vertical ? point.shear_x : point.shear_y);
-  const float moving = std::abs(vertical ? point.shear_y : point.shear_x) + kRoot2 * point.normal;
-  const float high = end.point > 0 ? point.normal / end.point
-                                   : std::max(moving - fixed, 0.0F) / (2 * kRoot2) + end.hidden_n;
-  return {fixed, moving, high};
+  const float known_shear = std::abs(vertical ? point.shear_x : point.shear_y);
+  const float free_shear =
+      std::abs(vertical ? point.shear_y : point.shear_x) + kRoot2 * point.normal;
+  const float high = end.point > 0
+                         ? point.normal / end.point
+                         : std::max(free_shear - known_shear, 0.0F) / (2 * kRoot2) + end.hidden_n;
+  return {known_shear, free_shear, high};
 }
 
-/// The force whose normal force is `normal`, of the segment on which `point` lies (F2).
+/// The force with the normal force `normal`, N, on the segment through `point` (F2).
 [[nodiscard]] inline single_precision::Force force_on_segment(const single_precision::Force& point,
                                                               bool vertical, float normal) {
   const float grown = std::numbers::sqrt2_v<float> * (normal - point.normal);
-  const float moved = vertical ? point.shear_y : point.shear_x;
-  const float moving = moved - std::copysign(1.0F, moved) * grown;
-  if (vertical) return {point.shear_x, moving, normal};
-  return {moving, point.shear_y, normal};
+  const float shear = vertical ? point.shear_y : point.shear_x;
+  const float free_shear = shear - std::copysign(1.0F, shear) * grown;
+  if (vertical) return {point.shear_x, free_shear, normal};
+  return {free_shear, point.shear_y, normal};
 }
 
 }  // namespace pillarfield

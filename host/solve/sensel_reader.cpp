@@ -20,7 +20,7 @@ maths::Noise SenselReader::noise(std::size_t row, std::size_t col) const {
           sensel_noise(top + 1, left + 1)};
 }
 
-maths::Sensel SenselReader::judged(std::size_t row, std::size_t col) const {
+maths::Sensel SenselReader::validated(std::size_t row, std::size_t col) const {
   return maths::validate_reading(raw(row, col), correction(row, col).good, stages_);
 }
 

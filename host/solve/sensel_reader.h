@@ -10,8 +10,8 @@
 
 namespace pillarfield {
 
-/// A frame's sensels after the stages of a plan, in single precision as on the device. Plan and
-/// frame, which fit each other, must outlive it.
+/// Sensels of a frame after the stages of a plan, in single precision as on the device. Plan and
+/// frame must fit each other and outlive the reader.
 class SenselReader {
  public:
   SenselReader(const SolverPlan& plan, const FrameView& frame)
@@ -20,14 +20,14 @@ class SenselReader {
         stages_(plan_constants<single_precision::Stages>(plan)),
         noise_(static_cast<float>(reading_noise(plan))) {}
 
-  /// The four of the pillar in this row and column of pillars, after all stages.
+  /// The four sensels of a pillar after all stages.
   [[nodiscard]] single_precision::Pillar pillar(std::size_t row, std::size_t col) const;
 
-  /// Their noise as the corrections leave it, counts.
+  /// Noise of the four sensels of a pillar after correction, counts.
   [[nodiscard]] single_precision::Noise noise(std::size_t row, std::size_t col) const;
 
-  /// A sensel before any calibration.
-  [[nodiscard]] single_precision::Sensel judged(std::size_t row, std::size_t col) const;
+  /// A sensel before calibration: valid, missing or saturated.
+  [[nodiscard]] single_precision::Sensel validated(std::size_t row, std::size_t col) const;
 
   [[nodiscard]] const single_precision::Stages& stages() const { return stages_; }
 

@@ -13,7 +13,7 @@
 namespace pillarfield {
 namespace {
 
-/// Throws where a value that may be absent lies outside [0, high].
+/// Throws Error if a value is given and lies outside [0, high].
 void check_counts(std::optional<double> value, const char* name, double high,
                   std::string_view where) {
   if (!value || (*value >= 0 && *value <= high)) return;
@@ -33,8 +33,9 @@ double mean_noise(const Calibration& calibration) {
   return count == 0 ? 0 : std::sqrt(squares / static_cast<double>(count));
 }
 
-/// Standard deviation of a reading, counts: of the noise plane, else of the plan; unset without.
-std::optional<double> known_noise(const SolverPlan& plan) {
+/// Standard deviation of a reading, counts: from the noise plane, else from the plan; empty if
+/// neither is given.
+std::optional<double> given_noise(const SolverPlan& plan) {
   if (!plan.calibration.noise.empty()) return mean_noise(plan.calibration);
   if (plan.noise_counts) return reading_noise(plan);
   return std::nullopt;
@@ -42,7 +43,7 @@ std::optional<double> known_noise(const SolverPlan& plan) {
 
 constexpr int kMaxBaselineInterval = 1024;
 
-/// Where the noise is not known, the threshold is taken to be so many deviations.
+/// Threshold over standard deviation of a reading, assumed where no noise is given.
 constexpr double kThresholdDeviations = 4;
 
 }  // namespace
@@ -97,10 +98,10 @@ void check(const SolverPlan& plan, std::string_view where) {
   if (!plan.uncertainty) return;
   if (plan.estimator == Estimator::paper) {
     throw Error(where, "the paper's estimator has no uncertainty",
-                "take the estimator direct or contact");
+                "use the estimator direct or contact");
   }
   if (!plan.noise_counts && plan.calibration.noise.empty()) {
-    throw Error(where, "uncertainty is asked for, and the noise of the sensels is not known",
+    throw Error(where, "uncertainty needs the noise of the sensels",
                 "give noise_counts, or a calibration with a noise plane");
   }
 }
@@ -123,7 +124,7 @@ double reading_noise(const SolverPlan& plan) {
 
 double reading_noise_n(const SolverPlan& plan) {
   const double assumed = plan.skin.threshold_counts / kThresholdDeviations;
-  return known_noise(plan).value_or(assumed) / plan.skin.counts_per_newton;
+  return given_noise(plan).value_or(assumed) / plan.skin.counts_per_newton;
 }
 
 double hidden_normal_n(const Skin& skin) {
@@ -131,12 +132,12 @@ double hidden_normal_n(const Skin& skin) {
 }
 
 double region_margin(const SolverPlan& plan) {
-  const std::optional<double> noise = known_noise(plan);
+  const std::optional<double> noise = given_noise(plan);
   return noise ? region_margin(*noise) : 0;
 }
 
 double region_margin(double noise_counts) {
-  // Parity leaves V_p + V_q - V_r, three readings, each with its noise.
+  // Parity predicts V_p + V_q - V_r, from three readings with independent noise.
   return 5 * std::sqrt(3.0) * noise_counts;
 }
 

@@ -54,7 +54,7 @@ static_assert(std::ranges::none_of(kStages,
                                      return stage.place == StagePlace::pillar &&
                                             (stage.needs_neighbours || stage.has_memory);
                                    }),
-              "a pillar's stage sees neither its neighbours nor earlier frames");
+              "a pillar's stage reads neither its neighbours nor earlier frames");
 
 }  // namespace
 

@@ -6,30 +6,30 @@
 
 namespace pillarfield {
 
-/// Which code a stage is in.
 enum class StagePlace : std::uint8_t {
-  pillar,  ///< kernels/frame/stages.h: sees the sensels of one pillar, in one frame
-  frame,   ///< an entry point of its own in kernels/frame: sees the frame
-  host,    ///< after the device: sees the frame's results
+  pillar,  ///< kernels/frame/stages.h: reads the sensels of one pillar in one frame
+  frame,   ///< an entry point of its own in kernels/frame: reads the frame
+  host,    ///< after the device: reads the frame's results
 };
 
-/// A stage of the solve: what a plan has to say of it.
+/// A stage of the solve.
 struct Stage {
   const char* name;
-  const char* macro;  ///< that a program defines where the stage is named; null: it is always there
+  const char* macro;  ///< defined where the stage is named; null: the stage always runs
   bool (*is_named)(const SolverPlan& plan);
   StagePlace place = StagePlace::pillar;
-  bool needs_neighbours = false;  ///< other sensels or pillars than those of one pillar
-  bool has_memory = false;        ///< of earlier frames, which then are solved one after the other
-  /// Whether activation_thresholds() and level_of() in kernels/frame/idle.h follow from it too, so
-  /// that idle blocks may be skipped.
+  bool needs_neighbours = false;  ///< reads sensels or pillars beyond one pillar
+  bool has_memory =
+      false;  ///< keeps state between frames, which are then solved one after the other
+  /// Idle blocks may be skipped: activation_thresholds() and threshold_of_sensel() in
+  /// kernels/frame/idle.h include the stage.
   bool may_skip_idle = true;
 };
 
-/// The stages that a plan names, in their order.
+/// The stages that a plan names, in order.
 [[nodiscard]] std::vector<Stage> stages_of(const SolverPlan& plan);
 
-/// Whether all of them let idle blocks be skipped.
+/// True if idle blocks may be skipped under all stages of a plan.
 [[nodiscard]] bool may_skip_idle(const SolverPlan& plan);
 
 }  // namespace pillarfield

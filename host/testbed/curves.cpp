@@ -7,7 +7,7 @@ namespace {
 
 namespace maths = double_precision;
 
-/// A pillar in region 3.12 with V3 / V4 = ratio, raw.
+/// Raw readings of a pillar in region 3.12 with V3 / V4 = `ratio`.
 std::array<double, 4> raw_readings(double ratio) { return {0, 0, ratio, 1}; }
 
 Estimate estimate(double ratio, Estimator estimator) {
@@ -44,8 +44,8 @@ std::vector<Angles> contour(double ratio, int points) {
   const ForceScale scale = force_scale(sensor.counts_per_newton);
   std::vector<Angles> contour;
   for (int i = 0; i < points; ++i) {
-    const double at = sum.low + (sum.high - sum.low) * i / (points - 1);
-    const maths::Force force = maths::force_at(diagonals, at, {scale.shear, scale.normal});
+    const double parity_sum = sum.low + (sum.high - sum.low) * i / (points - 1);
+    const maths::Force force = maths::force_at(diagonals, parity_sum, {scale.shear, scale.normal});
     contour.push_back(angles_of(maths::direction_of(force)));
   }
   return contour;

@@ -15,14 +15,13 @@ struct Angles {
   double phi;
 };
 
-/// The inclination beyond which sensel 1, 2, 3 or 4 lifts, found as the zero of its reading: the
-/// paper's equation (3); pi/2 where it does not lift at all. Within 1e-15.
+/// Inclination, rad, above which sensel 1, 2, 3 or 4 is inactive: the zero of its reading by
+/// bisection, equation (3) of the paper; pi/2 where it is always active. Within 1e-15.
 [[nodiscard]] double border_theta(int sensel, double phi_rad);
 
 inline constexpr double kPi = std::numbers::pi;
 
-/// A region of Figure 3 and a place within. Behind the point of its name, which is the paper's, are
-/// the sensels that are not usable.
+/// Name and place of a region in Figure 3. The digits after the point are its inactive sensels.
 struct RegionLabel {
   const char* name;
   Angles place;
@@ -40,7 +39,7 @@ inline constexpr std::array<RegionLabel, 10> kRegionLabels = {{
     {"3.14", {1.38, 2 * kPi - 0.3}},
 }};
 
-/// The four points that are region 4.
+/// The four points of region 4.
 inline constexpr std::array<RegionLabel, 4> kCornerLabels = {{
     {"4.124", {kPi / 2, kPi / 4}},
     {"4.123", {kPi / 2, 3 * kPi / 4}},
@@ -48,15 +47,14 @@ inline constexpr std::array<RegionLabel, 4> kCornerLabels = {{
     {"4.134", {kPi / 2, 7 * kPi / 4}},
 }};
 
-/// The directions for which the two readings of region 3.12 have the ratio V3 / V4 = `ratio` > 0,
-/// from theta = pi/2 to the region's border: a contour of the paper's equation (5). `points` >= 2.
+/// Returns the directions of region 3.12 with V3 / V4 = `ratio` > 0, from theta = pi/2 to the
+/// border of the region: a contour of equation (5) of the paper. `points` >= 2.
 [[nodiscard]] std::vector<Angles> contour(double ratio, int points);
 
-/// Where on that contour an estimator puts the force: the paper's half way in theta, or the segment
-/// point.
+/// Returns the estimate on that contour: midpoint in theta (paper) or segment point (direct).
 [[nodiscard]] Angles point_on_contour(double ratio, Estimator estimator);
 
-/// Half of what theta and phi range over along that contour, rad; the same for any two adjacent
+/// Returns half the range of theta and phi along that contour, rad; equal for all pairs of adjacent
 /// sensels.
 [[nodiscard]] Angles half_widths(double ratio);
 

@@ -16,7 +16,7 @@
 namespace pillarfield::testbed {
 namespace {
 
-/// A block of data, `$name` in a script.
+/// Returns a data block, `$name` in a script.
 std::string data_block(const std::string& name, const std::string& lines) {
   return fmt::format("${} << END\n{}END\n", name, lines);
 }
@@ -38,18 +38,18 @@ do for [n = 1:4] {
   set label sprintf('V_%d = 0', n) at (2*n - 1) * pi/4, 0.67 center \
       textcolor linetype word('6 7 4 8', n)
 }
-lifts(theta) = theta < top ? theta : NaN
+border(theta) = theta < top ? theta : NaN
 plot $borders using 1:6:(top) with filledcurves fillcolor '#E2EFF8', \
      '' using 1:7:(top) with filledcurves fillcolor '#FAE6BE', \
-     '' using 1:(lifts($2)) with lines linetype 6, \
-     '' using 1:(lifts($3)) with lines linetype 7, \
-     '' using 1:(lifts($4)) with lines linetype 4, \
-     '' using 1:(lifts($5)) with lines linetype 8, \
+     '' using 1:(border($2)) with lines linetype 6, \
+     '' using 1:(border($3)) with lines linetype 7, \
+     '' using 1:(border($4)) with lines linetype 4, \
+     '' using 1:(border($5)) with lines linetype 8, \
      $corners using 1:2:3 with labels offset 0,0.9, \
      '' using 1:2 with points linetype 1 pointtype 7 pointsize 1
 )";
 
-/// phi, the borders of sensels 1 to 4, and the two lowest of these: where regions 2 and 3 begin.
+/// Columns: phi, the borders of sensels 1 to 4, and the lowest two, which bound regions 2 and 3.
 std::string borders() {
   constexpr int kSteps = 720;
   std::string lines;
@@ -98,7 +98,7 @@ plot $border using 1:4:(pi/2) with filledcurves fillcolor '#FAE6BE', \
      '' index 2 using 1:2:3 with labels right offset -0.7,-0.4, \
      $direct using 1:2 with points linetype 4 pointsize 1.3 title '7/8 of the segment (direct)', \
      $paper using 1:2 with points pointtype 7 pointsize 1.2 linecolor '#ffffff', \
-     '' using 1:2 with points linetype 1 pointsize 1.2 title 'half way in θ (paper)'
+     '' using 1:2 with points linetype 1 pointsize 1.2 title 'midpoint in θ (paper)'
 )";
 
 /// Ratios V3 / V4 of Figure 4.
@@ -114,7 +114,7 @@ constexpr std::array<std::pair<const char*, double>, 9> kRatios = {{
     {"8", 8},
 }};
 
-/// phi, the borders of sensels 1 and 2, and the higher of the two: region 3.12 is above.
+/// Columns: phi, the borders of sensels 1 and 2, and their maximum, the lower bound of region 3.12.
 std::string border_of_region_312() {
   constexpr int kSteps = 200;
   std::string lines;
@@ -127,7 +127,7 @@ std::string border_of_region_312() {
   return data_block("border", lines);
 }
 
-/// The contours, and names for their lower ends: those of R below, at and above 1 apart.
+/// The contours and the labels of their lower ends, in one index each for R < 1, R = 1 and R > 1.
 std::string contours() {
   std::string lines;
   std::string names;
@@ -151,7 +151,7 @@ constexpr const char* kUncertaintyScript = R"(
 set xrange [-2 : 2]
 set yrange [0 : 0.35]
 set xlabel 'log_{10} R, the ratio of the two readings'
-set ylabel 'half-width of what is possible (rad)'
+set ylabel 'half-width of the interval (rad)'
 set xtics 0.5
 set ytics 0.05 format '%.2f'
 plot $half_widths using 1:2 with lines linetype 6 linewidth 2.5 \
@@ -193,7 +193,7 @@ do for [i = 0:2] {
 unset multiplot
 )";
 
-/// Site by site, from no force on: applied, band, both estimators, and what is possible.
+/// Columns for each site: applied force, band, both estimates and the interval.
 std::string magnitudes(const Parameters& parameters) {
   std::string lines;
   for (const auto& site : magnitude_figure(parameters)) {
@@ -210,33 +210,19 @@ std::string magnitudes(const Parameters& parameters) {
 
 }  // namespace
 
-void draw_regions(const std::filesystem::path& stem, Replace replace) {
-  gnuplot::draw(stem, borders() + region_labels() + kRegionsScript, {}, replace);
-}
-
-void draw_contours(const std::filesystem::path& stem, Replace replace) {
-  gnuplot::draw(stem, border_of_region_312() + contours() + points_of_ratio_2() + kContoursScript,
-                {}, replace);
-}
-
-void draw_uncertainty(const std::filesystem::path& stem, Replace replace) {
-  gnuplot::draw(stem, uncertainty() + kUncertaintyScript, {}, replace);
-}
-
-void draw_magnitude(const std::filesystem::path& stem, const Parameters& parameters,
-                    Replace replace) {
-  gnuplot::draw(stem, magnitudes(parameters) + kMagnitudeScript, {1040, 370}, replace);
-}
-
 void draw_figures(const std::filesystem::path& folder, const Parameters& parameters,
                   Replace replace) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Error(folder.string(), error.message(), "choose a folder that can be written");
-  draw_regions(folder / "figure_3_regions", replace);
-  draw_contours(folder / "figure_4_contours", replace);
-  draw_uncertainty(folder / "figure_5_uncertainty", replace);
-  draw_magnitude(folder / "figure_8_magnitude", parameters, replace);
+  const auto draw = [&](const char* name, const std::string& script, gnuplot::Size size = {}) {
+    gnuplot::draw(folder / name, script, size, replace);
+  };
+  draw("figure_3_regions", borders() + region_labels() + kRegionsScript);
+  draw("figure_4_contours",
+       border_of_region_312() + contours() + points_of_ratio_2() + kContoursScript);
+  draw("figure_5_uncertainty", uncertainty() + kUncertaintyScript);
+  draw("figure_8_magnitude", magnitudes(parameters) + kMagnitudeScript, {1040, 370});
 }
 
 }  // namespace pillarfield::testbed

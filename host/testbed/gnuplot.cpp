@@ -31,11 +31,11 @@ set linetype 7 linecolor '#D55E00' linewidth 2 pointtype 4
 set linetype 8 linecolor '#CC79A7' linewidth 2 pointtype 15
 )";
 
-/// A format of pictures.
+/// A picture format.
 struct Format {
   const char* ending;
   std::string terminal;       ///< gnuplot's command
-  std::string_view end_mark;  ///< stands among the last bytes of a whole file
+  std::string_view end_mark;  ///< among the last bytes of a complete file
 };
 
 Format svg_format(Size size) {
@@ -54,11 +54,11 @@ Format png_format(Size size) {
           "IEND"};
 }
 
-/// What gnuplot complains of, one line, or nothing. A warning means that data were skipped; a
-/// failure is told by the last line, after those that show the place.
-std::string complaint_in(const std::string& messages, bool failed) {
+/// Returns the error of gnuplot in one line, or nothing. A warning means skipped data; the last
+/// line of a failure is its reason.
+std::string error_in(const std::string& messages, bool failed) {
   std::istringstream lines(messages);
-  std::string last = "it does not say why";
+  std::string last = "unknown reason";
   for (std::string line; std::getline(lines, line);) {
     line.erase(0, line.find_first_not_of(' '));
     if (line.find("warning:") != std::string::npos) return line;
@@ -67,8 +67,8 @@ std::string complaint_in(const std::string& messages, bool failed) {
   return failed ? last : "";
 }
 
-/// Whether the file is written to its end: gnuplot does not notice that a disk is full.
-bool is_whole(const OutputFile& file, std::string_view end_mark) {
+/// Whether the file is complete; gnuplot does not report a full disk.
+bool is_complete(const OutputFile& file, std::string_view end_mark) {
   std::array<char, 16> tail{};
   const off_t end = lseek(file.descriptor(), 0, SEEK_END);
   const off_t begin = std::max<off_t>(end - static_cast<off_t>(tail.size()), 0);
@@ -79,18 +79,17 @@ bool is_whole(const OutputFile& file, std::string_view end_mark) {
 }
 
 void run(const Format& format, const std::string& script, const OutputFile& output) {
-  ChildProgram gnuplot({"gnuplot", "--default-settings"},  // without the user's own
+  ChildProgram gnuplot({"gnuplot", "--default-settings"},  // ignores ~/.gnuplot
                        "install it; its Debian package is gnuplot-nox", output.descriptor());
   const bool fed = gnuplot.feed(format.terminal + kStyle + script);
   const bool done = gnuplot.finish() && fed;
-  const std::string complaint = complaint_in(gnuplot.errors(), !done);
-  if (!complaint.empty()) {
-    throw Error(output.path().string(), "gnuplot failed: " + complaint,
-                "draw with gnuplot 5.4 or later");
+  const std::string error = error_in(gnuplot.errors(), !done);
+  if (!error.empty()) {
+    throw Error(output.path().string(), "gnuplot failed: " + error, "use gnuplot 5.4 or later");
   }
-  if (!is_whole(output, format.end_mark)) {
-    throw Error(output.path().string(), "gnuplot did not write all of it",
-                "make room on that disk");
+  if (!is_complete(output, format.end_mark)) {
+    throw Error(output.path().string(), "gnuplot did not write the whole file",
+                "free space on that disk");
   }
 }
 

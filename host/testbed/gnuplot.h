@@ -7,24 +7,22 @@
 
 namespace pillarfield::gnuplot {
 
-/// Of a figure in the pixels that its SVG names; the PNG has twice as many each way.
+/// Pixels of the SVG; the PNG has twice as many in each direction.
 struct Size {
   int width_px = 720;
   int height_px = 480;
 };
 
-/// Draws a script of gnuplot as `stem`.svg and `stem`.png, both or neither; of what bears these
-/// names, `replace` says what is replaced at the end. `stem` is a path without an ending, in a
-/// folder that exists.
+/// Draws a script of gnuplot as `stem`.svg and `stem`.png, both or neither. `stem` is a path
+/// without an ending in an existing folder.
 ///
-/// The script says neither terminal nor output. It begins in the style of this project: UTF-8,
-/// enhanced text, tics outside, no box, and linetypes 1 to 8 in the colours of Okabe and Ito, which
-/// colour-blind readers tell apart:
+/// The script sets neither terminal nor output. Its style is UTF-8, enhanced text, tics outside, no
+/// box, and linetypes 1 to 8 in the colour-blind safe colours of Okabe and Ito:
 ///
 ///     1 black  2 orange  3 sky blue  4 bluish green  5 yellow  6 blue  7 vermilion  8 purple
 ///
-/// Data go into the script as data blocks. Throws Error where gnuplot is not installed, fails or
-/// skips data, or where the files cannot be written. Takes some 0.1 s.
+/// Data are data blocks of the script. Throws Error where gnuplot is missing, fails or skips data,
+/// or the files cannot be written. Takes about 0.1 s.
 void draw(const std::filesystem::path& stem, const std::string& script, Size size = {},
           Replace replace = Replace::results);
 

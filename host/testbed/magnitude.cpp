@@ -9,14 +9,15 @@
 namespace pillarfield::testbed {
 namespace {
 
-/// The magnitude that equation (2) fits to `readings` (of k = 1) where the brackets are `taken`.
-double fitted_magnitude(const std::array<double, 4>& readings, const std::array<double, 4>& taken) {
+/// Least-squares magnitude of equation (2) for `readings` (k = 1) and the brackets `assumed`.
+double fitted_magnitude(const std::array<double, 4>& readings,
+                        const std::array<double, 4>& assumed) {
   double product = 0;
   double square = 0;
-  for (std::size_t n = 0; n < taken.size(); ++n) {
+  for (std::size_t n = 0; n < assumed.size(); ++n) {
     if (readings[n] <= 0) continue;
-    product += readings[n] * taken[n];
-    square += taken[n] * taken[n];
+    product += readings[n] * assumed[n];
+    square += assumed[n] * assumed[n];
   }
   return product / square;
 }

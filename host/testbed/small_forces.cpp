@@ -32,15 +32,14 @@ Scene study_scene() {
   return scene;
 }
 
-/// Forces of one magnitude whose directions are spread evenly over the hemisphere, in a spiral of
-/// the golden angle.
-ForceField forces_from_everywhere(double magnitude_n) {
+/// Forces of one magnitude with directions spread evenly over the hemisphere, in a golden spiral.
+ForceField forces_over_hemisphere(double magnitude_n) {
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
   ForceField truth(kSide, kSide);
   for (std::size_t i = 0; i < truth.pillars(); ++i) {
-    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(truth.pillars());
+    const double fraction = (static_cast<double>(i) + 0.5) / static_cast<double>(truth.pillars());
     const Force force =
-        force_from(magnitude_n, std::acos(1 - share), golden_angle * static_cast<double>(i));
+        force_from(magnitude_n, std::acos(1 - fraction), golden_angle * static_cast<double>(i));
     truth.shear_x[i] = static_cast<float>(force.shear_x);
     truth.shear_y[i] = static_cast<float>(force.shear_y);
     truth.normal[i] = static_cast<float>(force.normal);
@@ -48,7 +47,7 @@ ForceField forces_from_everywhere(double magnitude_n) {
   return truth;
 }
 
-/// What the sensor reads of these forces; their status bytes become those of the ideal model.
+/// Returns the readings of the forces, and sets their status bytes to those of the ideal model.
 FrameBuffer read_forces(const Scene& scene, ForceField& truth) {
   const Sensor sensor(scene);
   FrameBuffer raw(sensor.sensel_type(), scene.skin.rows, scene.skin.cols);
@@ -68,22 +67,22 @@ FrameBuffer read_forces(const Scene& scene, ForceField& truth) {
   return raw;
 }
 
-SolverPlan plan_of(const Scene& scene, Estimator estimator, bool knows_dead_zone) {
+SolverPlan plan_of(const Scene& scene, Estimator estimator, bool has_dead_zone) {
   SolverPlan plan;
   plan.skin = scene.skin;
   plan.sensel_type = SenselType::u16;
   plan.noise_counts = scene.sensor.noise_counts;
   plan.estimator = estimator;
   plan.uncertainty = estimator == Estimator::direct;
-  if (knows_dead_zone) {
+  if (has_dead_zone) {
     plan.calibration.dead_zone.assign(scene.skin.sensels(),
                                       static_cast<float>(scene.sensor.dead_zone_counts));
   }
   return plan;
 }
 
-/// Share of all pillars whose truth lies between the stated ends.
-double held_share(const ForceField& solved, const ForceField& truth) {
+/// Fraction of pillars with the truth inside the intervals.
+double held_fraction(const ForceField& solved, const ForceField& truth) {
   Coverage coverage;
   coverage.add(solved.view(), truth.view());
   double held = 0;
@@ -94,8 +93,7 @@ double held_share(const ForceField& solved, const ForceField& truth) {
   return held / static_cast<double>(truth.pillars());
 }
 
-/// RMS of |solved − true| / |true| where the readings determine the force; not a number where they
-/// never do.
+/// RMS of |solved − true| / |true| over pillars in regions 1 and 2; NaN without any.
 double determined_error(const ForceField& solved, const ForceField& truth) {
   double squares = 0;
   double count = 0;
@@ -116,14 +114,14 @@ SmallForceErrors errors_of(const ForceField& solved, const ForceField& truth) {
   SmallForceErrors errors{};
   for (std::size_t i = 0; i < truth.pillars(); ++i) {
     const Region region = region_of(solved.status[i]);
-    const bool felt = region != Region::none;
-    const bool wrong = felt && region != region_of(truth.status[i]);
+    const bool detected = region != Region::none;
+    const bool wrong = detected && region != region_of(truth.status[i]);
     const bool flagged = (solved.status[i] & (status::kAmbiguous | status::kInconsistent)) != 0;
-    errors.unfelt += felt ? 0 : 1;
+    errors.undetected += detected ? 0 : 1;
     errors.wrong_region += wrong ? 1 : 0;
     errors.unflagged += wrong && !flagged ? 1 : 0;
   }
-  for (double* count : {&errors.unfelt, &errors.wrong_region, &errors.unflagged}) {
+  for (double* count : {&errors.undetected, &errors.wrong_region, &errors.unflagged}) {
     *count /= static_cast<double>(truth.pillars());
   }
   Comparison comparison;
@@ -139,14 +137,14 @@ SmallForceErrors errors_of(const ForceField& solved, const ForceField& truth) {
 SmallForceErrors study(const SolverPlan& plan, const FrameBuffer& raw, const ForceField& truth) {
   const ForceField solved = solve_on_host(plan, raw.view());
   SmallForceErrors errors = errors_of(solved, truth);
-  if (plan.uncertainty) errors.held = held_share(solved, truth);
+  if (plan.uncertainty) errors.held = held_fraction(solved, truth);
   return errors;
 }
 
 SmallForcePoint point_at(double load) {
   const Scene scene = study_scene();
   ForceField truth =
-      forces_from_everywhere(load * kStudyDeadZoneCounts / scene.skin.counts_per_newton);
+      forces_over_hemisphere(load * kStudyDeadZoneCounts / scene.skin.counts_per_newton);
   const FrameBuffer raw = read_forces(scene, truth);
   return {load, study(plan_of(scene, Estimator::paper, false), raw, truth),
           study(plan_of(scene, Estimator::direct, false), raw, truth),

@@ -29,8 +29,7 @@ constexpr std::size_t kThetaInRegion1 = 1;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
-/// Mean and standard deviation of what is added, by Welford's recurrence; what is not a number is
-/// left out.
+/// Mean and standard deviation by Welford's recurrence; ignores NaN.
 class Moments {
  public:
   void add(double value) {
@@ -51,8 +50,8 @@ class Moments {
   double squares_ = 0;
 };
 
-/// One estimator's figures for a row of the table, gathered run by run.
-class Answers {
+/// Accumulates the statistics of an estimator in a row over runs.
+class RowStatistics {
  public:
   void add(const Statistics& run) {
     if (!first_) first_ = run;
@@ -60,7 +59,7 @@ class Answers {
     deviation_.add(run.deviation);
     mean_error_.add(run.mean_error);
   }
-  [[nodiscard]] Answer all() const {
+  [[nodiscard]] RowEstimate all() const {
     return {first_.value(),
             {mean_.mean(), deviation_.mean(), mean_error_.mean()},
             {mean_.deviation(), deviation_.deviation(), mean_error_.deviation()}};
@@ -80,13 +79,13 @@ double truth_of(std::size_t row) {
   return is_phi(row) ? site.phi_rad : site.theta_rad;
 }
 
-/// The figures of a row in one run, by one estimator.
+/// Statistics of an estimator in a row of one run.
 Statistics statistics_of_row(const Experiment& run, std::size_t row, Estimate Trial::*estimate) {
   std::vector<double> angles;
   for (const Trial& trial : run[row / 2]) {
-    const Estimate& answer = trial.*estimate;
-    if (region_of(static_cast<std::uint8_t>(answer.status)) == Region::none) continue;
-    angles.push_back(is_phi(row) ? answer.direction.phi : answer.direction.theta);
+    const Estimate& solved = trial.*estimate;
+    if (region_of(static_cast<std::uint8_t>(solved.status)) == Region::none) continue;
+    angles.push_back(is_phi(row) ? solved.direction.phi : solved.direction.theta);
   }
   return statistics_of(angles, truth_of(row));
 }
@@ -147,8 +146,8 @@ std::string as_printed(double figure) {
 
 TableTwo table_two(const Parameters& parameters, std::uint64_t runs) {
   TableTwo table{};
-  std::array<Answers, kRows> paper;
-  std::array<Answers, kRows> direct;
+  std::array<RowStatistics, kRows> paper;
+  std::array<RowStatistics, kRows> direct;
   for (std::uint64_t number = 0; number < runs; ++number) {
     const Experiment run = run_experiment(parameters, number);
     audit_run(run, parameters.sensor.counts_per_newton, table.audit);

@@ -10,20 +10,19 @@
 
 namespace pillarfield::testbed {
 
-/// What Table II tells of an angle over the forces of one site, rad.
+/// Statistics of an angle over the forces of one site, as in Table II, rad.
 struct Statistics {
   double mean;
-  double deviation;   ///< standard deviation of a sample, over n - 1
+  double deviation;   ///< sample standard deviation, over n - 1
   double mean_error;  ///< mean of |angle - ground truth|
 };
 
-/// Of angles that are unwrapped about the truth first. Not numbers where there are fewer than two.
+/// Unwraps the angles about the truth. NaN for fewer than two.
 [[nodiscard]] Statistics statistics_of(std::span<const double> angles_rad, double truth_rad);
 
-/// One estimator's answer to a row of Table II. Forces without contact have no angle and are left
-/// out.
-struct Answer {
-  Statistics run;       ///< of run 0, as the paper has one
+/// Statistics of an estimator in a row of Table II, without forces that no sensel detects.
+struct RowEstimate {
+  Statistics run;       ///< of run 0; the paper has one run
   Statistics expected;  ///< mean over all runs
   Statistics spread;    ///< standard deviation over all runs
 };
@@ -34,12 +33,12 @@ struct Row {
   const char* angle;  ///< "phi" or "theta"
   double truth_rad;
   Statistics published;  ///< by the paper
-  Answer paper;
-  Answer direct;
+  RowEstimate paper;
+  RowEstimate direct;
 };
 
-/// Which of the paper's figures of a row its estimator has here: those within two standard
-/// deviations over runs of what is expected.
+/// Whether the published figures of a row are within two standard deviations over runs of the
+/// expected ones of the paper's estimator.
 struct Reproduced {
   bool mean;
   bool deviation;
@@ -47,38 +46,36 @@ struct Reproduced {
 };
 [[nodiscard]] Reproduced reproduced(const Row& row);
 
-/// A published figure with the digits it has in print: three behind the point, or four.
+/// Formats a published figure with its printed digits: three after the point, or four.
 [[nodiscard]] std::string as_printed(double figure);
 
-/// How often the usable sensels tell another region than the ideal model does for the true force,
-/// and whether the status byte warns of it.
+/// Counts forces whose region differs from that of the ideal model for the true force.
 struct Audit {
   std::uint64_t trials = 0;
   std::uint64_t wrong_regions = 0;
-  std::uint64_t unflagged = 0;  ///< of the wrong ones: neither ambiguous nor inconsistent
+  std::uint64_t unflagged = 0;  ///< wrong regions that are neither ambiguous nor inconsistent
 };
 
-/// Table II, and the audit of the direct solve over the trials of all runs.
+/// Table II, and the audit of the direct solve over all runs.
 struct TableTwo {
   std::array<Row, 2 * kSites.size()> rows{};  ///< phi and theta, site by site
   Audit audit;
 };
 
-/// Root mean square, over the paper's 18 figures, of the difference between what it prints and what
-/// is expected of its equations here, rad.
+/// RMS of published minus expected value, rad, over the paper's 18 figures and its equations.
 [[nodiscard]] double rms_difference(const TableTwo& table);
 
-/// Makes Table II from `runs` runs, at least 2; some 15 µs each.
+/// Computes Table II from `runs` >= 2 runs; about 15 µs each.
 [[nodiscard]] TableTwo table_two(const Parameters& parameters, std::uint64_t runs);
 
-/// How near a dead zone comes to what the paper prints of theta in region 1.
+/// Distance between the published and the expected figures of theta in region 1 for a dead zone.
 struct ScanPoint {
   double dead_zone_n;   ///< in newtons: counts over counts per newton
   Statistics expected;  ///< of the paper's estimator, mean over runs
-  double distance_rad;  ///< root of the summed squares of the differences in the three figures
+  double distance_rad;  ///< Euclidean distance of the three figures
 };
 
-/// Tries dead zones from 0 to 10 N in steps of 0.1 N, all else being as in `parameters`.
+/// Scans dead zones from 0 to 10 N in steps of 0.1 N, with the other `parameters`.
 [[nodiscard]] std::vector<ScanPoint> scan_dead_zones(const Parameters& parameters,
                                                      std::uint64_t runs);
 

@@ -19,11 +19,11 @@ void require(const char* parameter, double value, double least, double most) {
               fmt::format("give {} to {}", least, most));
 }
 
-/// How far the probe's direction is from the one it was set to.
+/// Error of the probe's direction.
 struct Misalignment {
   double theta_rad;
   double phi_rad;
-  double theta_play_rad;  ///< that comes on top at the largest force, in proportion before
+  double theta_play_rad;  ///< further error at the largest force, proportional to the force
   double phi_play_rad;
 };
 
@@ -36,16 +36,16 @@ Misalignment misalignment_of(const Parameters& parameters, std::uint64_t run, st
           within(parameters.play_rad, uniform[3])};
 }
 
-/// What really acts on the pillar when the probe reads `applied_n`. `u` is uniform in [0, 1).
+/// Force on the pillar when the probe reads `applied_n`; `u` is uniform in [0, 1).
 Force true_force(const Parameters& parameters, const Site& site, const Misalignment& error,
                  double applied_n, double u) {
-  const double share = applied_n / kAppliedN.back();
+  const double fraction = applied_n / kAppliedN.back();
   return force_from(applied_n + parameters.probe_resolution_n * (u - 0.5),
-                    site.theta_rad + error.theta_rad + share * error.theta_play_rad,
-                    site.phi_rad + error.phi_rad + share * error.phi_play_rad);
+                    site.theta_rad + error.theta_rad + fraction * error.theta_play_rad,
+                    site.phi_rad + error.phi_rad + fraction * error.phi_play_rad);
 }
 
-/// What the direct solve knows: the sensor, rounding to whole counts being noise as well.
+/// The sensor as calibrated for the direct solve; its noise includes rounding to whole counts.
 PillarSensor calibrated(PillarSensor sensor) {
   sensor.noise_counts = std::hypot(sensor.noise_counts, 1 / std::sqrt(12.0));
   return sensor;
@@ -125,8 +125,8 @@ std::array<double, 4> read_sensels(Force force, const PillarSensor& sensor,
       sensor.full_scale_counts.value_or(std::numeric_limits<double>::infinity());
   std::array<double, 4> raw{};
   for (std::size_t n = 0; n < raw.size(); ++n) {
-    const double answer = std::max(0.0, signal[n] - sensor.dead_zone_counts);
-    raw[n] = std::clamp(std::round(answer + sensor.noise_counts * noise[n]), 0.0, full_scale);
+    const double response = std::max(0.0, signal[n] - sensor.dead_zone_counts);
+    raw[n] = std::clamp(std::round(response + sensor.noise_counts * noise[n]), 0.0, full_scale);
   }
   return raw;
 }

@@ -1,5 +1,5 @@
-/* The calibration of a frame's sensels, as it lies in memory (layout.h). The host writes which
- * plane is where: PF_TARE_PLANE and so on, of stages that read one. */
+/* Calibration planes in memory (layout.h). The host defines the index of each plane that a stage
+ * reads: PF_TARE_PLANE and so on. */
 
 typedef struct {
   global const uchar* planes;
@@ -10,15 +10,15 @@ typedef struct {
 #define PF_PLANE_OF(calibration, type, plane) \
   ((global const type*)((calibration).planes + (plane) * (calibration).plane_bytes))
 
-/* Of the left and the right sensels of PF_LANES pillars. */
+/* Corrections of the left and right sensels of PF_LANES pillars. */
 typedef struct {
   Correction left;
   Correction right;
 } CorrectionPair;
 
-/* Of the sensels of one row under PF_LANES pillars. `offset` is the first one's place in the
- * planes. */
-PF_FUNCTION CorrectionPair load_corrections(Calibration calibration, size_t offset) {
+/* Loads the corrections of one row of sensels under PF_LANES pillars. `offset` is the index of the
+ * first one in the planes. */
+PF_INLINE CorrectionPair load_corrections(Calibration calibration, size_t offset) {
   const Correction none = {(Counts)(0), (Real)(0.0f), (Counts)(0), (Counts)(0)};
   CorrectionPair pair = {none, none};
 #ifdef PF_TARE
@@ -49,9 +49,9 @@ typedef struct {
   Sensel right;
 } SenselPair;
 
-/* Those sensels, corrected. */
-PF_FUNCTION SenselPair read_sensels(global const PF_SENSEL* raw, Calibration calibration,
-                                    size_t offset) {
+/* Loads and corrects one row of sensels under PF_LANES pillars. */
+PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Calibration calibration,
+                                  size_t offset) {
   const CountsPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, offset);
   SenselPair pair;
@@ -61,9 +61,8 @@ PF_FUNCTION SenselPair read_sensels(global const PF_SENSEL* raw, Calibration cal
 }
 
 #ifdef PF_UNCERTAINTY
-/* The noise of those sensels as their corrections leave it, counts. */
-PF_FUNCTION RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration,
-                                size_t offset) {
+/* Noise of one row of sensels under PF_LANES pillars after correction, counts. */
+PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration, size_t offset) {
   const CountsPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, offset);
   RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
@@ -79,9 +78,9 @@ PF_FUNCTION RealPair read_noise(global const PF_SENSEL* raw, Calibration calibra
 #define PF_PREFETCH_PLANE(type, plane) \
   PF_PREFETCH(PF_PLANE_OF(calibration, type, plane) + offset + row * calibration.stride)
 
-/* Prefetches what calibrates both rows of sensels under a block. Processors follow a row by
- * themselves, but lose it at the end of a page; a row ahead they are late for none. */
-PF_FUNCTION void prefetch_planes(Calibration calibration, size_t offset) {
+/* Prefetches the calibration of both rows of sensels under a block, one pillar row ahead: hardware
+ * prefetching stops at the end of a page. */
+PF_INLINE void prefetch_planes(Calibration calibration, size_t offset) {
   for (uint row = 0; row < 2; ++row) {
 #ifdef PF_TARE
     PF_PREFETCH_PLANE(float, PF_TARE_PLANE);
@@ -101,19 +100,19 @@ PF_FUNCTION void prefetch_planes(Calibration calibration, size_t offset) {
   }
 }
 
-/* Pillar rows. */
+/* A range of pillar rows. */
 typedef struct {
   uint first;
   uint end;
 } Band;
 
-/* The rows of this work-item: its band among get_global_size(1) of like height. */
-PF_FUNCTION Band band_of_rows(uint rows) {
+/* Pillar rows of this work-item: one of get_global_size(1) bands of nearly equal height. */
+PF_INLINE Band band_of_rows(uint rows) {
   const ulong bands = get_global_size(1);
   const ulong band = get_global_id(1);
   const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
   return result;
 }
 
-/* Blocks of a row of pillars at most, wherever it begins. */
-PF_FUNCTION uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }
+/* Largest number of blocks in a pillar row, whatever its first index. */
+PF_INLINE uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }

@@ -1,10 +1,9 @@
-/* Lets the tare follow the readings of untouched sensels, after their frame was solved
+/* Updates the tare from the readings of untouched sensels after the frame is solved
  * (docs/calibration.md). Stage PF_BASELINE. */
 #ifdef PF_BASELINE
 
-/* The status bits of a pillar's 3 x 3 neighbourhood, or-ed. */
-PF_FUNCTION Bits status_around(global const uchar* status, uint row, uint col, uint rows,
-                               uint cols) {
+/* Bitwise or of the status bytes of a pillar's 3 x 3 neighbourhood. */
+PF_INLINE Bits status_around(global const uchar* status, uint row, uint col, uint rows, uint cols) {
   const uint first = row == 0 ? 0 : row - 1;
   const uint last = row + 1 == rows ? row : row + 1;
   Bits bits = PF_BITS(0);
@@ -16,10 +15,10 @@ PF_FUNCTION Bits status_around(global const uchar* status, uint row, uint col, u
   return bits;
 }
 
-/* The tares, and the levels that follow from them, under PF_LANES pillars of a row of sensels, of
- * which `lanes` are written; `offset` is the place of the first sensel in the planes. */
-PF_FUNCTION void follow_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
-                            Mask untouched, Real rate, Lanes lanes) {
+/* Updates the tares and activation thresholds of one row of sensels under PF_LANES pillars; writes
+ * those of `lanes`. `offset` is the index of the first sensel in the planes. */
+PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
+                          Mask untouched, Real rate, Lanes lanes) {
   const RealPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, offset);
   RealPair tares;
@@ -29,16 +28,17 @@ PF_FUNCTION void follow_row(global const PF_SENSEL* raw, Calibration calibration
                             untouched, rate);
   store_pair(tares, (global float*)PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset, lanes);
 #ifdef PF_SKIP_IDLE
-  const RealPair levels = {level_of(tares.left, at.left), level_of(tares.right, at.right)};
-  store_readings(levels, (global PF_SENSEL*)activation_thresholds(calibration) + offset, lanes);
+  const RealPair thresholds = {threshold_of_sensel(tares.left, at.left),
+                               threshold_of_sensel(tares.right, at.right)};
+  store_readings(thresholds, (global PF_SENSEL*)activation_thresholds(calibration) + offset, lanes);
 #endif
 }
 
-/* Follows the tares of one row in `interval` of pillar rows, from `first_row` on: in those of this
- * work-item's band among get_global_size(1), every get_global_size(0)-th block of PF_LANES pillars.
+/* Updates the tares of every `interval`-th pillar row from `first_row` on. A work-item updates
+ * every get_global_size(0)-th block of PF_LANES pillars in its band of rows.
  *
- * raw, calibration, results   as of solve_frame, after it; the tares and levels are written
- * rate                        share of the difference that is taken over, 0..1 */
+ * raw, calibration, results   those of solve_frame; tares and activation thresholds are written
+ * rate                        fraction of reading - tare that is added to the tare, 0..1 */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
                             global uchar* restrict calibration,
                             global const uchar* restrict results, Layout layout, float rate,
@@ -52,7 +52,7 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw,
   for (uint at = band.first; at < band.end; ++at) {
     const uint row = first_row + at * interval;
     for (uint place = (uint)get_global_id(0) * PF_LANES; place < cols; place += step) {
-      /* The last block is moved into the row; its neighbour has followed some of it already. */
+      /* The last block is shifted into the row; the block before it has updated its first lanes. */
       const uint col = min(place, cols - PF_LANES);
       const Lanes lanes = {place - col, PF_LANES};
       const Bits around = status_around(status, row, col, rows, cols);

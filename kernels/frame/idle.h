@@ -1,13 +1,13 @@
-/* Blocks that need no solving: where all readings are below the level that wakes their sensel,
- * forces and status do not depend on them, so a block that was silent when its place in the results
- * was last written has them there already (docs/performance_decisions.md). Stage PF_SKIP_IDLE.
+/* Skips idle blocks. Forces and status do not depend on readings below the activation threshold. If
+ * the block was idle when this slot was last written, its results are still valid and it is skipped
+ * (docs/performance_decisions.md). Stage PF_SKIP_IDLE.
  *
- * The levels are a plane of readings where sensels differ (PF_ACTIVATION_PLANE), else
- * PF_ACTIVATION. A masked sensel never wakes; a reading at the end of its type's range, NaN and
- * absurd ones always do. */
+ * Activation thresholds are a plane of readings where sensels differ (PF_ACTIVATION_PLANE), else
+ * PF_ACTIVATION. A masked sensel is never active; NaN and readings at or beyond the end of the
+ * range always are. */
 
-/* The levels of a frame's sensels, of use where PF_ACTIVATION_PLANE tells their place. */
-PF_FUNCTION global const PF_SENSEL* activation_thresholds(Calibration calibration) {
+/* The plane of activation thresholds; null without PF_ACTIVATION_PLANE. */
+PF_INLINE global const PF_SENSEL* activation_thresholds(Calibration calibration) {
 #ifdef PF_ACTIVATION_PLANE
   return PF_PLANE_OF(calibration, PF_SENSEL, PF_ACTIVATION_PLANE);
 #else
@@ -18,17 +18,17 @@ PF_FUNCTION global const PF_SENSEL* activation_thresholds(Calibration calibratio
 #ifdef PF_SKIP_IDLE
 
 #ifdef PF_BASELINE
-/* The level of sensels with these tares. */
-PF_FUNCTION Real level_of(Real tare, Correction at) {
+/* Activation threshold of sensels with these tares and corrections, raw counts. */
+PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
   Real gain = (Real)(1.0f);
 #ifdef PF_GAIN
   gain = at.gain;
 #endif
   const Real lowest = (Real)(PF_ACTIVATION_LOWEST);
   const Real highest = (Real)(PF_ACTIVATION_HIGHEST);
-  const Real level = activation_threshold(tare, gain, (Real)(PF_ACTIVATION_CUT),
-                                          (Real)(PF_ACTIVATION_STEP), lowest);
-  const Real bounded = level < lowest ? lowest : (level < highest ? level : highest);
+  const Real threshold = activation_threshold(tare, gain, (Real)(PF_ACTIVATION_CUT),
+                                              (Real)(PF_ACTIVATION_STEP), lowest);
+  const Real bounded = threshold < lowest ? lowest : (threshold < highest ? threshold : highest);
 #ifdef PF_MASK
   return at.good == (Real)(0.0f) ? (Real)(PF_ACTIVATION_NEVER) : bounded;
 #else
@@ -38,35 +38,37 @@ PF_FUNCTION Real level_of(Real tare, Correction at) {
 #endif
 
 #ifdef PF_LARGEST_READING
-#define PF_IS_ACTIVE(reading, level) \
-  (!((reading) < (level)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
+#define PF_IS_ACTIVE(reading, threshold) \
+  (!((reading) < (threshold)) || (reading) < (PF_SENSEL)(-(PF_LARGEST_READING)))
 #else
-#define PF_IS_ACTIVE(reading, level) ((reading) >= (level))
+#define PF_IS_ACTIVE(reading, threshold) ((reading) >= (threshold))
 #endif
 
-/* Whether no sensel under PF_LANES pillars is active. `wake` is the level of the first one. */
-PF_FUNCTION bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
-                         global const PF_SENSEL* wake, size_t activation_stride) {
+/* True if no sensel under PF_LANES pillars is active. `activation` points to the first sensel's
+ * threshold. */
+PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
+                       global const PF_SENSEL* activation, size_t activation_stride) {
 #if PF_LANES == 1
 #define PF_READING(place, i) (place)[i]
 #else
 #define PF_READING(place, i) PF_LOAD_WHOLE(PF_SENSEL, (place) + (i)*PF_LANES)
 #endif
 #ifdef PF_ACTIVATION_PLANE
-#define PF_LEVEL(row, i) PF_READING(wake + row * activation_stride, i)
+#define PF_THRESHOLD_AT(row, i) PF_READING(activation + row * activation_stride, i)
 #else
-#define PF_LEVEL(row, i) (PF_SENSEL)(PF_ACTIVATION)
+#define PF_THRESHOLD_AT(row, i) (PF_SENSEL)(PF_ACTIVATION)
 #endif
-#define PF_ACTIVE(row, i) PF_IS_ACTIVE(PF_READING(raw + row * row_stride, i), PF_LEVEL(row, i))
+#define PF_ACTIVE(row, i) \
+  PF_IS_ACTIVE(PF_READING(raw + row * row_stride, i), PF_THRESHOLD_AT(row, i))
 #if PF_LANES == 1
   return !(PF_ACTIVE(0, 0) || PF_ACTIVE(0, 1) || PF_ACTIVE(1, 0) || PF_ACTIVE(1, 1));
 #elif defined(PF_ACTIVATION) && !defined(PF_LARGEST_READING)
-  /* One level for all, and no NaN: only the highest is to be asked. */
+  /* One threshold for all sensels, and no NaN: comparing the largest reading suffices. */
   global const PF_SENSEL* const below_raw = raw + row_stride;
   const PF_LANE_TYPE(PF_SENSEL) above = max(PF_READING(raw, 0), PF_READING(raw, 1));
   const PF_LANE_TYPE(PF_SENSEL) below = max(PF_READING(below_raw, 0), PF_READING(below_raw, 1));
   return !any_bits(PF_JOIN(convert_char, PF_LANES)(
-      PF_IS_ACTIVE(max(above, below), (PF_LANE_TYPE(PF_SENSEL))(PF_LEVEL(0, 0)))));
+      PF_IS_ACTIVE(max(above, below), (PF_LANE_TYPE(PF_SENSEL))(PF_THRESHOLD_AT(0, 0)))));
 #else
   return !any_bits(PF_JOIN(convert_char, PF_LANES)(PF_ACTIVE(0, 0) | PF_ACTIVE(0, 1) |
                                                    PF_ACTIVE(1, 0) | PF_ACTIVE(1, 1)));

@@ -1,6 +1,5 @@
-/* Where a frame and what belongs to it lie in memory: an argument of the entry points, which the
- * host fills in. Calibration planes are [sensel rows, plane_stride] each, result planes [rows,
- * cols] each, one plane so many bytes after the other. */
+/* Memory layout of a frame, its calibration and its results: an argument of the entry points.
+ * Calibration planes are [sensel rows, plane_stride], result planes [rows, cols]. */
 typedef struct {
   ulong row_stride; /* readings from one row of sensels to the next */
   ulong rows;       /* pillars */
@@ -9,5 +8,5 @@ typedef struct {
   ulong plane_bytes;  /* from one calibration plane to the next */
   ulong result_bytes; /* from one plane of results to the next */
   ulong status;       /* bytes from the first plane of results to the status bytes */
-  ulong idle;         /* and to the marks of idle blocks */
+  ulong idle;         /* bytes from the first plane of results to the idle flags */
 } Layout;

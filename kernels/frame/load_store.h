@@ -1,7 +1,7 @@
-/* How values of PF_LANES pillars at once come from memory and go there. For the entry points;
- * PF_LANES and PF_SENSEL are of the program's first lines. */
+/* Loads and stores of PF_LANES pillars at once, for the entry points. The program's first lines
+ * define PF_LANES and PF_SENSEL. */
 
-/* The values of `PF_LANES` pillars in one row of sensels. */
+/* Values of the left and right sensels of PF_LANES pillars in one row of sensels. */
 typedef struct {
   Real left;
   Real right;
@@ -20,8 +20,8 @@ typedef RealPair CountsPair;
 #define PF_VLOAD PF_JOIN(vload, PF_LANES)
 #define PF_VSTORE PF_JOIN(vstore, PF_LANES)
 
-/* Vectors at any address. Drivers take those of vload and vstore apart (PoCL 3.1: bytes one by one,
- * 16 floats into three), but not a member of a packed structure. */
+/* Unaligned vectors. Drivers split vload and vstore (PoCL 3.1: bytes one by one, 16 floats into
+ * three accesses), but not a member of a packed structure. */
 #if PF_LANES > 1
 #define PF_DEFINE_PACKED(type)             \
   typedef struct __attribute__((packed)) { \
@@ -35,38 +35,37 @@ PF_DEFINE_PACKED(float)
   ((global PF_JOIN(packed_, type)*)(place))->value = (lanes)
 #endif
 
-/* load_<name>(row): the sensels under PF_LANES neighbouring pillars, as Real; readings as Counts.
- */
+/* load_<name>(row): sensels under PF_LANES pillars, as Real; readings as Counts. */
 #if PF_LANES == 1
-#define PF_DEFINE_LOAD(name, type, Pair, split)          \
-  PF_FUNCTION Pair load_##name(global const type* row) { \
-    Pair pair;                                           \
-    pair.left = (Real)row[0];                            \
-    pair.right = (Real)row[1];                           \
-    return pair;                                         \
+#define PF_DEFINE_LOAD(name, type, Pair, split)        \
+  PF_INLINE Pair load_##name(global const type* row) { \
+    Pair pair;                                         \
+    pair.left = (Real)row[0];                          \
+    pair.right = (Real)row[1];                         \
+    return pair;                                       \
   }
 #else
 
 #define PF_DEFINE_LOAD(name, type, Pair, split)                                  \
-  PF_FUNCTION Pair load_##name(global const type* row) {                         \
+  PF_INLINE Pair load_##name(global const type* row) {                           \
     return split(PF_LOAD_WHOLE(type, row), PF_LOAD_WHOLE(type, row + PF_LANES)); \
   }
 
 #define PF_TO_REAL PF_JOIN(convert_float, PF_LANES)
 
 /* Left and right sensels alternate in memory. */
-#define PF_DEFINE_SPLIT(type)                                                          \
-  PF_FUNCTION RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
-    RealPair pair;                                                                     \
-    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));                 \
-    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                  \
-    return pair;                                                                       \
+#define PF_DEFINE_SPLIT(type)                                                        \
+  PF_INLINE RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) { \
+    RealPair pair;                                                                   \
+    pair.left = PF_TO_REAL((PF_LANE_TYPE(type))(low.even, high.even));               \
+    pair.right = PF_TO_REAL((PF_LANE_TYPE(type))(low.odd, high.odd));                \
+    return pair;                                                                     \
   }
 PF_DEFINE_SPLIT(float)
 
 #ifdef __ENDIAN_LITTLE__
-/* Two neighbours of a short type are one integer, whose lower half is the left one: taken apart so
- * they cost half the instructions of a shuffle. */
+/* Two neighbours of a short type form one integer, whose lower half is the left one. Masking and
+ * shifting take half the instructions of a shuffle. */
 #if PF_LANES == 16
 #define PF_HALF_LANES 8
 #elif PF_LANES == 8
@@ -77,7 +76,7 @@ PF_DEFINE_SPLIT(float)
 #define PF_HALF_LANES
 #endif
 #define PF_DEFINE_SPLIT_OF_INTEGERS(type, wide, bits)                                      \
-  PF_FUNCTION RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {     \
+  PF_INLINE RealPair split_##type(PF_LANE_TYPE(type) low, PF_LANE_TYPE(type) high) {       \
     const PF_LANE_TYPE(uint) both = PF_JOIN(convert_uint, PF_LANES)((PF_LANE_TYPE(wide))(  \
         PF_JOIN(as_##wide, PF_HALF_LANES)(low), PF_JOIN(as_##wide, PF_HALF_LANES)(high))); \
     RealPair pair;                                                                         \
@@ -94,8 +93,8 @@ PF_DEFINE_SPLIT(ushort)
 #endif
 
 #ifdef PF_WHOLE
-/* Both readings of a pillar are one integer, as above. */
-PF_FUNCTION CountsPair load_readings(global const uchar* row) {
+/* Both readings of a pillar form one integer. */
+PF_INLINE CountsPair load_readings(global const uchar* row) {
   const PF_LANE_TYPE(ushort) both = PF_LOAD_WHOLE(ushort, row);
   const PF_LANE_TYPE(short) lower = PF_JOIN(as_short, PF_LANES)(both & (ushort)0xff);
   const PF_LANE_TYPE(short) upper = PF_JOIN(as_short, PF_LANES)(both >> 8);
@@ -112,10 +111,10 @@ PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
 PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
-/* Brings the values of PF_LANES pillars in one row of sensels towards the caches: PF_PREFETCH into
- * the nearest, for what is about to be solved; PF_PREFETCH_FAR into the second, of which more may
- * be under way at once, for what is about to be passed. What may lie past the end of a plane is not
- * touched by it; other drivers than PoCL may not know the word. */
+/* Prefetches the values of PF_LANES pillars in one row of sensels: PF_PREFETCH into the first cache
+ * level, for blocks that are solved next; PF_PREFETCH_FAR into the second, which allows more
+ * requests in flight, for blocks that are likely idle. Addresses past the end of a plane are
+ * harmless. Only PoCL is certain to have the builtin. */
 #if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
 #define PF_PREFETCH_TO(row, locality)                                          \
   for (size_t byte_ = 0; byte_ < 2 * PF_LANES * sizeof(*(row)); byte_ += 64) { \
@@ -128,25 +127,25 @@ PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 #define PF_PREFETCH_FAR(row)
 #endif
 
-/* The lanes of a block that are written. */
+/* Range of the lanes of a block that are written. */
 typedef struct {
   uint first;
   uint end;
 } Lanes;
 
-PF_FUNCTION bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES; }
+PF_INLINE bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LANES; }
 
-/* store_<name>(pair, row, lanes): writes what load_<name> reads; whole values where type has no
- * fractions. */
+/* store_<name>(pair, row, lanes): writes values in the layout that load_<name> reads; an integer
+ * type takes whole values. */
 #if PF_LANES == 1
-#define PF_DEFINE_STORE(name, type)                                             \
-  PF_FUNCTION void store_##name(RealPair pair, global type* row, Lanes lanes) { \
-    row[0] = (type)pair.left;                                                   \
-    row[1] = (type)pair.right;                                                  \
+#define PF_DEFINE_STORE(name, type)                                           \
+  PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) { \
+    row[0] = (type)pair.left;                                                 \
+    row[1] = (type)pair.right;                                                \
   }
 #else
 #define PF_DEFINE_STORE(name, type)                                                          \
-  PF_FUNCTION void store_##name(RealPair pair, global type* row, Lanes lanes) {              \
+  PF_INLINE void store_##name(RealPair pair, global type* row, Lanes lanes) {                \
     const PF_LANE_TYPE(type) left = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.left);   \
     const PF_LANE_TYPE(type) right = PF_JOIN(PF_JOIN(convert_, type), PF_LANES)(pair.right); \
     PF_LANE_TYPE(type) low, high;                                                            \
@@ -169,8 +168,8 @@ PF_FUNCTION bool are_all(Lanes lanes) { return lanes.end - lanes.first == PF_LAN
 PF_DEFINE_STORE(pair, float)
 PF_DEFINE_STORE(readings, PF_SENSEL)
 
-/* Results that are more than the caches hold go past them (PF_STREAM); full blocks alone, which
- * then begin on a boundary of their size. */
+/* With PF_STREAM, full blocks bypass the caches, for results that exceed them; such blocks are
+ * aligned to their size. */
 #if PF_LANES == 1
 #define PF_STORE_BLOCK(results, plane) *(plane) = (results)
 #elif defined(PF_STREAM) && defined(POCL_DEVICE_ADDRESS_BITS)
@@ -179,7 +178,7 @@ PF_DEFINE_STORE(readings, PF_SENSEL)
 #define PF_STORE_BLOCK(results, plane) PF_STORE_WHOLE(float, results, plane)
 #endif
 
-PF_FUNCTION void store_plane(Real value, global float* plane, Lanes lanes) {
+PF_INLINE void store_plane(Real value, global float* plane, Lanes lanes) {
   if (are_all(lanes)) {
     PF_STORE_BLOCK(value, plane);
   } else {
@@ -191,7 +190,7 @@ PF_FUNCTION void store_plane(Real value, global float* plane, Lanes lanes) {
   }
 }
 
-PF_FUNCTION void store_status(Bits value, global uchar* plane, Lanes lanes) {
+PF_INLINE void store_status(Bits value, global uchar* plane, Lanes lanes) {
 #if PF_LANES == 1
   *plane = (uchar)value;
 #else
@@ -206,9 +205,8 @@ PF_FUNCTION void store_status(Bits value, global uchar* plane, Lanes lanes) {
 #endif
 }
 
-/* The status bytes of PF_LANES pillars from column `col` on, which may lie outside the row: what is
- * beyond its ends is zero. */
-PF_FUNCTION Bits load_status(global const uchar* row, int col, uint cols) {
+/* Status bytes of PF_LANES pillars from column `col` on; bytes outside the row are zero. */
+PF_INLINE Bits load_status(global const uchar* row, int col, uint cols) {
 #if PF_LANES == 1
   return col >= 0 && (uint)col < cols ? (Bits)row[col] : (Bits)0;
 #else

@@ -1,6 +1,6 @@
-/* The planes of a result: the one table of them, in the order in which they lie in memory; the
- * status bytes follow them. X(name, unit, value): its name and unit in files, and what it holds of
- * a Solution. Forces are always there, the others where a plan asks for them. */
+/* The one table of result planes, in memory order; the status bytes follow them. X(name, unit,
+ * value): name and unit in files, member of Solution. Force planes always exist, the others if the
+ * plan requests them. */
 #define PF_FORCE_PLANES(X)     \
   X(shear_x, n, force.shear_x) \
   X(shear_y, n, force.shear_y) \

@@ -1,38 +1,35 @@
-/* Solves a frame: readings in, forces and status bytes out. Only indexing, loading, calling and
- * storing; the mathematics is in pillar/, the order of the stages in stages.h.
+/* Solves a frame: readings in, forces and status bytes out. This file indexes, loads and stores;
+ * the mathematics is in pillar/, the order of the stages in stages.h.
  *
- * The host writes what a plan asks for as the first lines of the program:
+ * The host defines the plan's stages and constants in the first lines of the program:
  *
- *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8, 16, and
- *                                   no more than a row has
+ *   PF_LANES                        pillars that a work-item solves at once: 1, 2, 4, 8 or 16
  *   PF_SENSEL                       uchar, ushort or float
  *   PF_WHOLE                        counts are whole numbers of 1 / PF_WHOLE counts: portable.h
  *   PF_SHEAR_SCALE, PF_NORMAL_SCALE newtons per count, or per that unit (ForceScale)
  *   PF_THRESHOLD                    counts
  *   PF_LARGEST_READING              counts; stage: readings beyond, and NaN, are missing
  *   PF_FULL_SCALE                   counts; stage: saturation
- *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: the calibration plane of that name is read,
- *   PF_TARE_PLANE, ...              so many planes after the first
- *   PF_POWER_EXPONENT               stage: readings are straightened by a power law, with
+ *   PF_TARE, PF_GAIN, PF_DEAD_ZONE, PF_MASK   stages: read the calibration plane of that name,
+ *   PF_TARE_PLANE, ...              whose index is this
+ *   PF_POWER_EXPONENT               stage: linearises readings by a power law, with
  *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
  *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
- *   PF_SEGMENT_POINT                where on a segment the force is reported, in (0, 1]; with
+ *   PF_SEGMENT_POINT                segment point, in (0, 1]; with
  *                                   PF_WHOLE the number n of 1 - 1 / 2^n
- *   PF_MARGIN                        counts by which noise may shift what parity says
+ *   PF_MARGIN                       margin, counts (docs/derivations/direct_solve.md, D9)
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
- *   PF_ANGLES                       stage: magnitude, theta and phi are written too
- *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: uncertainty is written
- *   PF_NOISE                        with PF_UNCERTAINTY: the noise is read from its plane instead
+ *   PF_ANGLES                       stage: writes magnitude, theta and phi too
+ *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: writes uncertainty
+ *   PF_NOISE                        with PF_UNCERTAINTY: reads the noise from its plane instead
  *   PF_BASELINE                     stage: follow_baseline.cl
- *   PF_STREAM                       results go past the caches: load_store.h
- *   PF_SKIP_IDLE                  silent blocks are left as they are: silence.h
- *   PF_ACTIVATION_PLANE or PF_ACTIVATION        readings that wake a sensel, each its own or one
- * for all
+ *   PF_STREAM                       results bypass the caches: load_store.h
+ *   PF_SKIP_IDLE                    skips idle blocks: idle.h
+ *   PF_ACTIVATION_PLANE, or PF_ACTIVATION     activation thresholds: one per sensel, or one
  *
- * A stage that is not named leaves no trace. Constants are exact (hexadecimal); with PF_WHOLE those
- * in counts are whole numbers of its unit. */
+ * A stage without its macro is not compiled. Constants are exact (hexadecimal); with PF_WHOLE those
+ * in counts are multiples of its unit. */
 
-/* Where a frame comes from, and the results go: the arguments of the entry point. */
 typedef struct {
   global const PF_SENSEL* raw;
   size_t row_stride;
@@ -43,12 +40,12 @@ typedef struct {
   global uchar* planes;
   size_t plane_bytes;
   global uchar* status;
-  global uchar* idle; /* of each block: its results are those of silence; or nothing */
+  global uchar* idle; /* flag of each block: its stored results are those of an idle block */
 } Output;
 
-/* Where the pillars of a block are: `raw` is the sensel at their upper left, `offset` its place in
- * the calibration planes, and `index` that of the first pillar in the results. `lanes` of them
- * are written. */
+/* A block of PF_LANES pillars: `raw` points to its upper left sensel, `offset` is that sensel's
+ * index in the calibration planes, `index` the first pillar's index in the results. Results of
+ * `lanes` are written. */
 typedef struct {
   global const PF_SENSEL* raw;
   size_t offset;
@@ -56,8 +53,8 @@ typedef struct {
   Lanes lanes;
 } Block;
 
-/* The noise of a block's sensels, of use with uncertainty alone. */
-PF_FUNCTION Noise noise_of(Block block, Input input) {
+/* Noise of a block's sensels, counts; zero without PF_UNCERTAINTY. */
+PF_INLINE Noise noise_of(Block block, Input input) {
 #ifdef PF_UNCERTAINTY
   const RealPair top = read_noise(block.raw, input.calibration, block.offset);
   const RealPair bottom = read_noise(block.raw + input.row_stride, input.calibration,
@@ -70,38 +67,38 @@ PF_FUNCTION Noise noise_of(Block block, Input input) {
   return noise;
 }
 
-/* The sensel, of which is known in every lane that it is neither missing nor saturated. */
-PF_FUNCTION Sensel sound_sensel(Sensel sensel) {
+/* A sensel that is neither missing nor saturated in any lane, with constant masks. */
+PF_INLINE Sensel valid_sensel(Sensel sensel) {
   const Mask none = (Mask)(0);
   sensel.missing = none;
   sensel.saturated = none;
   return sensel;
 }
 
-PF_FUNCTION Mask is_unsound(Sensel sensel) { return sensel.missing || sensel.saturated; }
+PF_INLINE Mask is_invalid(Sensel sensel) { return sensel.missing || sensel.saturated; }
 
-/* Most blocks have no missing and no saturated sensel. For them the compiler gets the same text
- * with those masks false, and leaves half of it out. */
-PF_FUNCTION Solution solve_block(Block block, Input input) {
+/* Solves a block. Most blocks have no missing and no saturated sensel; constant false masks let the
+ * compiler drop half of the code for them. */
+PF_INLINE Solution solve_block(Block block, Input input) {
   const Calibration calibration = input.calibration;
   const SenselPair top = read_sensels(block.raw, calibration, block.offset);
   const SenselPair bottom =
       read_sensels(block.raw + input.row_stride, calibration, block.offset + calibration.stride);
   const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
 #if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_FULL_SCALE) || defined(PF_LARGEST_READING))
-  const Mask unsound = is_unsound(pillar.s1) || is_unsound(pillar.s2) || is_unsound(pillar.s3) ||
-                       is_unsound(pillar.s4);
-  if (!any_lane(unsound)) {
-    const Pillar sound = {sound_sensel(pillar.s1), sound_sensel(pillar.s2), sound_sensel(pillar.s3),
-                          sound_sensel(pillar.s4)};
-    return solve_pillar(sound, noise_of(block, input), 0);
+  const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
+                       is_invalid(pillar.s4);
+  if (!any_lane(invalid)) {
+    const Pillar valid = {valid_sensel(pillar.s1), valid_sensel(pillar.s2), valid_sensel(pillar.s3),
+                          valid_sensel(pillar.s4)};
+    return solve_pillar(valid, noise_of(block, input), 0);
   }
 #endif
   return solve_pillar(pillar, noise_of(block, input), 0);
 }
 
-/* Writes the results of `lanes` from pillar `index` on. */
-PF_FUNCTION void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
+/* Writes the results of `lanes`, lane 0 at pillar `index`. */
+PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
   global uchar* plane = output.planes;
 #define PF_STORE(name, unit, value)                                   \
   store_plane(solution.value, (global float*)(plane) + index, lanes); \
@@ -117,8 +114,8 @@ PF_FUNCTION void store_lanes(Solution solution, Output output, size_t index, Lan
   store_status(solution.status, output.status + index, lanes);
 }
 
-/* The same; asked once for all planes whether the block is whole, which nearly all are. */
-PF_FUNCTION void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
+/* Writes the results of a block; tests once for all planes whether the block is whole. */
+PF_INLINE void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
   const Lanes whole = {0, PF_LANES};
   if (are_all(lanes)) {
     store_lanes(solution, output, index, whole);
@@ -127,29 +124,29 @@ PF_FUNCTION void store_solution(Solution solution, Output output, size_t index, 
   }
 }
 
-/* A row of pillars, and the blocks into which it is divided. Blocks begin where a result is on a
- * boundary of PF_LANES, so that stores do not straddle cache lines; the first and the last are
- * moved into the row, and solve again what their neighbours solve as well. Written again it is the
- * same; only past the caches each line must be written once. */
+/* A row of pillars, and the blocks into which it is divided. Blocks begin at results aligned to
+ * PF_LANES, so that stores do not straddle cache lines. The first and the last block are shifted
+ * into the row and overlap their neighbours; both write equal results. With PF_STREAM each cache
+ * line must be written once. */
 typedef struct {
-  global const PF_SENSEL* raw;  /* the first sensel */
-  global const PF_SENSEL* wake; /* and its level */
+  global const PF_SENSEL* raw;        /* the first sensel */
+  global const PF_SENSEL* activation; /* its activation threshold */
   size_t row_stride;
   size_t activation_stride;
-  global uchar* idle; /* the mark of the first block */
+  global uchar* idle; /* flag of the first block */
   uint skew;          /* pillars by which the first block would begin before the row */
-  uint last_col;      /* where the last block begins */
+  uint last_col;      /* first column of the last block */
   uint blocks;
 } Row;
 
-PF_FUNCTION uint col_of_block(Row row, uint at) {
+PF_INLINE uint col_of_block(Row row, uint at) {
   return min(max(at * PF_LANES, row.skew) - row.skew, row.last_col);
 }
 
-/* Prefetches the readings of the pillar row below, and their levels; `sensel` counts from the first
- * of the row. What is silent here is silent there, mostly. */
-PF_FUNCTION void prefetch_readings(Row row, size_t sensel, bool silent) {
-  if (silent) {
+/* Prefetches the readings of the pillar row below and their activation thresholds; `sensel` counts
+ * from the first of the row. Below an idle block there is mostly another one. */
+PF_INLINE void prefetch_readings(Row row, size_t sensel, bool idle) {
+  if (idle) {
     PF_PREFETCH_FAR(row.raw + sensel + 2 * row.row_stride);
     PF_PREFETCH_FAR(row.raw + sensel + 3 * row.row_stride);
   } else {
@@ -157,44 +154,45 @@ PF_FUNCTION void prefetch_readings(Row row, size_t sensel, bool silent) {
     PF_PREFETCH(row.raw + sensel + 3 * row.row_stride);
   }
 #ifdef PF_ACTIVATION_PLANE
-  PF_PREFETCH_FAR(row.wake + sensel + 2 * row.activation_stride);
-  PF_PREFETCH_FAR(row.wake + sensel + 3 * row.activation_stride);
+  PF_PREFETCH_FAR(row.activation + sensel + 2 * row.activation_stride);
+  PF_PREFETCH_FAR(row.activation + sensel + 3 * row.activation_stride);
 #endif
 }
 
-/* Whether a block's results are those of silence already; if not, notes what they are now to be. */
-PF_FUNCTION bool may_skip(Row row, uint at, size_t sensel) {
+/* True if a block is idle and its stored results are already those of an idle block; updates its
+ * flag. */
+PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
 #ifdef PF_SKIP_IDLE
   const bool was_idle = row.idle[at];
   prefetch_readings(row, sensel, was_idle);
-  const bool silent =
-      is_idle(row.raw + sensel, row.row_stride, row.wake + sensel, row.activation_stride);
-  if (silent != was_idle) row.idle[at] = silent;
-  return silent && was_idle;
+  const bool idle =
+      is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
+  if (idle != was_idle) row.idle[at] = idle;
+  return idle && was_idle;
 #else
   prefetch_readings(row, sensel, false);
   return false;
 #endif
 }
 
-/* The first block from `at` on, of this work-item's, that is to be solved. */
-PF_FUNCTION uint next_active(Row row, uint at) {
+/* First of this work-item's blocks from `at` on that must be solved. */
+PF_INLINE uint next_active(Row row, uint at) {
   const uint step = (uint)get_global_size(0);
   while (at < row.blocks && may_skip(row, at, 2 * col_of_block(row, at))) at += step;
   return at;
 }
 
-/* The lanes of the block at `col` that no other block of its row writes. `place` is where it would
- * begin, `skew` before the row's first pillar. */
-PF_FUNCTION Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
+/* Lanes of the block at `col` that no other block of its row writes. `place` is its aligned
+ * beginning, counted from `skew` pillars before the row. */
+PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
   const uint first = max(place, skew) - skew;
   const uint end = min(place + PF_LANES - skew, cols);
   const Lanes lanes = {first - col, end - col};
   return lanes;
 }
 
-/* Solves the blocks of a pillar row that are this work-item's. */
-PF_FUNCTION void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
+/* Solves this work-item's blocks of a pillar row. */
+PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
   const size_t first_index = (size_t)at_row * pillar_cols;
   const Calibration calibration = input.calibration;
   const size_t first_offset = 2 * at_row * calibration.stride;
@@ -223,13 +221,13 @@ PF_FUNCTION void solve_row(Input input, Output output, uint at_row, uint pillar_
   }
 }
 
-/* One work-item solves every get_global_size(0)-th block of PF_LANES pillars, in the rows of its
- * band among get_global_size(1).
+/* Solves a frame. A work-item solves every get_global_size(0)-th block of PF_LANES pillars in its
+ * band of rows.
  *
  * raw          readings, layout.row_stride apart from one row of sensels to the next
- * calibration  its planes, or null
- * results      planes of forces, angles and uncertainty, as the plan asks for them, then the status
- *              and the marks of idle blocks [rows, blocks_of_row(cols)], zero at first */
+ * calibration  planes, or null
+ * results      planes of forces, and of angles and uncertainty if named, then the status bytes and
+ *              the idle flags [rows, blocks_of_row(cols)], zero at first */
 kernel void solve_frame(global const PF_SENSEL* restrict raw,
                         global const uchar* restrict calibration, global uchar* restrict results,
                         Layout layout) {

@@ -1,22 +1,20 @@
-/* The stages of the solve, in their one order: for the device and, as C++, for the host, whose
- * table of them is host/solve/stages.cpp.
+/* The stages of the solve, in their one order, for the device and, as C++, for the host, which
+ * lists them in host/solve/stages.cpp.
  *
- * A stage has a macro, which a program defines where its plan names the stage; others leave no
- * trace. C++ has all of them, and asks PF_NAMED at run time.
+ * A program defines the macro of each stage that its plan names; other stages are not compiled. C++
+ * compiles all of them and tests PF_NAMED at run time.
  *
  * Where a new stage goes:
- * - One that corrects a sensel by itself: in correct_sensel, and in corrected_noise by how much
- *   noise grows. Its numbers per sensel are a plane of calibration and a member of Correction.
- * - One of a pillar by itself: in solve_pillar. Its results are lines of result_planes.h.
- * - One that needs neighbours: an entry point of its own, for a work-item of solve_frame.cl sees
- * the sensels of its block alone. Crosstalk between sensels goes before solve_frame.cl and makes
- * the readings that it loads; what needs neighbouring pillars goes after, as follow_baseline.cl
- * does.
- * - One with a memory: what it remembers is a plane that a frame reads as it does the tare, and
- *   that an entry point after solve_frame.cl brings up to date for the next one. Frames then wait
- *   for each other on the device.
- * Each says in the host's table which of these it is, and whether blocks may be skipped while they
- * are idle: whether activation_thresholds() and level_of() follow from it too. */
+ * - Correction of one sensel: in correct_sensel, its effect on noise in corrected_noise. A
+ *   parameter per sensel is a calibration plane and a member of Correction.
+ * - Quantity of one pillar: in solve_pillar. Its results are lines of result_planes.h.
+ * - Stage with neighbours: an entry point of its own, since a work-item of solve_frame.cl reads
+ *   only the sensels of its block. It runs before solve_frame.cl, as crosstalk between sensels
+ *   would, or after it, as follow_baseline.cl does.
+ * - Stage with state: a plane that a frame reads like the tare and that an entry point after
+ *   solve_frame.cl updates for the next frame. Frames then wait for each other on the device.
+ * The host's table gives the kind of each stage, and whether idle blocks may be skipped: whether
+ * activation_thresholds() and threshold_of_sensel() include it. */
 
 #ifdef __cplusplus
 #define PF_NAMED(stage) stages.stage
@@ -64,10 +62,10 @@ typedef struct {
 } Stages;
 #else
 #define PF_NAMED(stage) 1
-typedef int Stages; /* Its macros tell a program. */
+typedef int Stages; /* A program has macros instead. */
 #endif
 
-/* What calibrates a sensel; the members of stages that are not named are not read. */
+/* Calibration of a sensel; members of stages that are not named are not read. */
 typedef struct {
   Counts tare;
   Real gain;
@@ -75,8 +73,8 @@ typedef struct {
   Counts good; /* zero where the sensel is masked */
 } Correction;
 
-/* A raw reading, and what is wrong with it before any calibration. */
-PF_FUNCTION Sensel validate_reading(Counts raw, Counts good, Stages stages) {
+/* Classifies a raw reading as missing or saturated, before calibration. */
+PF_INLINE Sensel validate_reading(Counts raw, Counts good, Stages stages) {
   Sensel sensel = raw_sensel(raw);
 #ifdef PF_LARGEST_READING
   if (PF_NAMED(range)) sensel = reject_out_of_range(sensel, PF_CONSTANT(Real, PF_LARGEST_READING));
@@ -90,8 +88,8 @@ PF_FUNCTION Sensel validate_reading(Counts raw, Counts good, Stages stages) {
   return sensel;
 }
 
-/* A raw reading through the stages of a sensel. */
-PF_FUNCTION Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
+/* Applies the stages of a sensel to a raw reading. */
+PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = validate_reading(raw, at.good, stages);
 #ifdef PF_TARE
   if (PF_NAMED(tare)) sensel = subtract_tare(sensel, at.tare);
@@ -114,8 +112,8 @@ PF_FUNCTION Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
 }
 
 #ifdef PF_UNCERTAINTY
-/* The noise of a sensel as its corrections leave it, counts. */
-PF_FUNCTION Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
+/* Noise of a sensel after correction, counts. */
+PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) noise = noise * at.gain;
 #endif
@@ -136,7 +134,6 @@ PF_FUNCTION Real corrected_noise(Real noise, Counts raw, Correction at, Stages s
 }
 #endif
 
-/* What is solved of a pillar. */
 typedef struct {
   Force force;
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
@@ -149,27 +146,27 @@ typedef struct {
 #endif
 } Solution;
 
-PF_FUNCTION Force estimate_force(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                 ForceScale scale, Stages stages) {
+PF_INLINE Force estimate_force(Pillar pillar, Diagonals diagonals, ParitySum sum, ForceScale scale,
+                               Stages stages) {
 #ifdef PF_PAPER
   if (PF_NAMED(paper)) return paper_force(pillar, diagonals, sum, scale);
 #endif
   return direct_force(diagonals, sum, scale);
 }
 
-PF_FUNCTION Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stages stages) {
+PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stages stages) {
   Bits status = direct_status(pillar, diagonals, sum, PF_CONSTANT(Counts, PF_MARGIN));
 #ifdef PF_PARITY_TOLERANCE
   if (PF_NAMED(parity_test)) {
-    const Mask at_odds = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
-    status = status | (bits_of(at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
+    const Mask contradictory = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
+    status = status | (bits_of(contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
   }
 #endif
   return status;
 }
 
-/* From corrected sensels to the results; `noise` is that of the sensels after correction. */
-PF_FUNCTION Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
+/* Solves a pillar from corrected sensels; `noise` is their noise after correction. */
+PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
   const ForceScale scale = {PF_CONSTANT(Real, PF_SHEAR_SCALE), PF_CONSTANT(Real, PF_NORMAL_SCALE)};
   const Diagonals diagonals = pillar_diagonals(pillar);
   const ParitySum sum = parity_sum(diagonals, PF_CONSTANT(Fraction, PF_SEGMENT_POINT));

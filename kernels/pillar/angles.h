@@ -6,7 +6,7 @@ typedef struct {
   Real phi;       /* rad in the plane of the skin, [-pi, pi], and 0 where there is no shear */
 } Direction;
 
-/* Within 3 ULP of the exact values of the given components. */
+/* Magnitude and direction of a force, within 3 ULP of the exact values. */
 static inline Direction direction_of(Force force) {
   const Real zero = PF_REAL(0.0);
   const Real shear = length_2(force.shear_x, force.shear_y);

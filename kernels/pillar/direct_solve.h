@@ -1,11 +1,11 @@
 /* The force on one pillar from its four sensels, for all patterns of usable, inactive, missing and
  * saturated ones, without division or trigonometry (docs/derivations/direct_solve.md).
  *
- * The two diagonals 1-3 and 2-4 of a pillar measure the same thing, 2 k normal: the parity sum S.
- * A diagonal with both readings gives S; one with a single reading follows from S; where no
- * diagonal has both, S is only known to lie in an interval. The force is linear in what remains,
- * and it always explains the readings: usable sensels read V, inactive ones hide theirs, saturated
- * ones exceed. */
+ * Both diagonals of a pillar, 1-3 and 2-4, measure the parity sum S = 2 k normal. A diagonal with
+ * two readings gives S; the missing reading of one with a single reading follows from S; if neither
+ * has two, S lies in an interval. The force is linear in S and in the differences over the
+ * diagonals. It is consistent with the readings: V equals a usable reading, is at most the bound of
+ * an inactive sensel and at least a saturated reading. */
 
 /* The four sensels of a pillar, after `classify`. */
 typedef struct {
@@ -23,14 +23,14 @@ typedef struct {
   Real n4;
 } Noise;
 
-/* Two opposite sensels. A sensel stands when V is taken to be its reading. */
+/* Two opposite sensels. A sensel is measured if the solve takes V to be its reading (D4). */
 typedef struct {
   Counts p; /* readings, counts */
   Counts q;
-  Mask p_stands;
-  Mask q_stands;
-  Mask full; /* p + q measures the parity sum */
-  Mask open; /* p + q does not even bound the parity sum: a sensel is missing */
+  Mask p_measured;
+  Mask q_measured;
+  Mask full;      /* p + q measures the parity sum */
+  Mask unbounded; /* a sensel is missing, so p + q does not bound the parity sum */
 } Diagonal;
 
 typedef struct {
@@ -42,7 +42,7 @@ typedef struct {
 typedef struct {
   Counts low;
   Counts high;
-  Counts point;   /* of the interval, at which the force is reported (D10) */
+  Counts point;   /* the parity sum of the reported force (D10) */
   Mask ambiguous; /* low is below high */
 } ParitySum;
 
@@ -56,22 +56,21 @@ static inline Mask is_pressed(Sensel sensel) { return sensel.usable || sensel.sa
 
 static inline Mask both_pressed(Sensel p, Sensel q) { return is_pressed(p) && is_pressed(q); }
 
-/* Which sensels of a diagonal stand (D4): the usable; the saturated, whose reading is a lower
- * bound, unless the other diagonal has `more` and its parity sum leaves that for them; and on a
- * pillar in `contact` the inactive, whose reading is an upper bound, where only they tell how to
- * share the sum. */
+/* Measured sensels of a diagonal (D4): usable ones; saturated ones, whose reading is a lower bound,
+ * unless the other diagonal's sum is larger (`more`) and determines them; and, on a pillar in
+ * `contact`, inactive ones, whose reading is an upper bound, where nothing else divides the sum. */
 static inline Diagonal make_diagonal(Sensel p, Sensel q, Mask more, Mask contact) {
   const Mask p_follows = p.saturated && more && (q.usable || is_inactive(q));
   const Mask q_follows = q.saturated && more && (p.usable || is_inactive(p));
-  const Mask p_answers = is_pressed(p) && !p_follows;
-  const Mask q_answers = is_pressed(q) && !q_follows;
+  const Mask p_active = is_pressed(p) && !p_follows;
+  const Mask q_active = is_pressed(q) && !q_follows;
   Diagonal d;
   d.p = p.reading;
   d.q = q.reading;
-  d.p_stands = p_answers || (contact && is_inactive(p) && (q.missing || q_follows));
-  d.q_stands = q_answers || (contact && is_inactive(q) && (p.missing || p_follows));
-  d.full = p_answers && q_answers && !(more && p.saturated && q.saturated);
-  d.open = p.missing || q.missing;
+  d.p_measured = p_active || (contact && is_inactive(p) && (q.missing || q_follows));
+  d.q_measured = q_active || (contact && is_inactive(q) && (p.missing || p_follows));
+  d.full = p_active && q_active && !(more && p.saturated && q.saturated);
+  d.unbounded = p.missing || q.missing;
   return d;
 }
 
@@ -90,39 +89,40 @@ static inline Diagonals pillar_diagonals(Pillar pillar) {
   return diagonals;
 }
 
-static inline Mask one_stands(Diagonal d) { return d.p_stands || d.q_stands; }
+static inline Mask one_measured(Diagonal d) { return d.p_measured || d.q_measured; }
 
-/* The upper end of the interval where no diagonal is full (D5): the least that a diagonal without a
- * missing sensel allows. Where both have one, nothing bounds the sum; the interval then is the one
- * about the smallest force that explains the readings. Zero without contact: nothing stands. */
+/* Upper end of the parity interval where no diagonal is full, counts (D5): the smaller bound of the
+ * diagonals without a missing sensel. If both have one, the interval is centred on the smallest
+ * force that is consistent with the readings. Zero without contact. */
 static inline Counts parity_bound(Diagonal a, Diagonal b) {
   const Counts a_sum = a.p + a.q;
   const Counts b_sum = b.p + b.q;
   const Counts least = a_sum < b_sum ? a_sum : b_sum;
-  const Mask a_stands = one_stands(a);
-  const Mask b_stands = one_stands(b);
+  const Mask a_measured = one_measured(a);
+  const Mask b_measured = one_measured(b);
 #ifdef PF_WHOLE /* No sensel is missing. */
   const Counts bound = least;
 #else
-  const Counts closed = a.open ? b_sum : (b.open ? a_sum : least);
-  const Real share = (a_stands && b_stands) ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
-  const Counts bound = (a.open && b.open) ? share * (a_sum + b_sum) : closed;
+  const Counts closed = a.unbounded ? b_sum : (b.unbounded ? a_sum : least);
+  const Real factor = (a_measured && b_measured) ? PF_REAL(1.33333333333333333333) : PF_REAL(2.0);
+  const Counts bound = (a.unbounded && b.unbounded) ? factor * (a_sum + b_sum) : closed;
 #endif
-  return (a_stands || b_stands) ? bound : PF_COUNTS(0);
+  return (a_measured || b_measured) ? bound : PF_COUNTS(0);
 }
 
-/* Whether the interval is that of a segment of forces whose upper end a reading sets: a sensel of
- * each diagonal stands, and a diagonal bounds the sum. Of use where no diagonal is full. (D10) */
+/* True if the forces form a segment whose upper end is a reading: a sensel of each diagonal is
+ * measured, and a diagonal bounds the sum (D10). Requires that no diagonal is full. */
 static inline Mask has_segment(Diagonal a, Diagonal b) {
 #ifdef PF_WHOLE /* No sensel is missing. */
-  return one_stands(a) && one_stands(b);
+  return one_measured(a) && one_measured(b);
 #else
-  return one_stands(a) && one_stands(b) && !(a.open && b.open);
+  return one_measured(a) && one_measured(b) && !(a.unbounded && b.unbounded);
 #endif
 }
 
-/* The interval of the parity sum: its measurement, the mean of two (D1, D2), or [0, bound] (D5),
- * of which `segment_point` is reported on a segment and the middle elsewhere (D10). */
+/* Parity sum: measured by one diagonal or as the mean of two (D1, D2), or the interval [0, bound]
+ * (D5). The reported point is `segment_point` of the bound on a segment, its midpoint elsewhere
+ * (D10). */
 static inline ParitySum parity_sum(Diagonals diagonals, Fraction segment_point) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
@@ -141,21 +141,19 @@ static inline ParitySum parity_sum(Diagonals diagonals, Fraction segment_point) 
   return sum;
 }
 
-/* V_p and V_q of a diagonal whose parity sum is `sum`: a sensel that does not stand has what parity
- * leaves for it. Of use where one of the two stands. */
-static inline Counts filled_p(Diagonal d, Counts sum) { return d.p_stands ? d.p : sum - d.q; }
-static inline Counts filled_q(Diagonal d, Counts sum) { return d.q_stands ? d.q : sum - d.p; }
+/* V_p and V_q of a diagonal whose parity sum is `sum`; parity gives the one that is not measured.
+ * Requires that one of the two is. */
+static inline Counts filled_p(Diagonal d, Counts sum) { return d.p_measured ? d.p : sum - d.q; }
+static inline Counts filled_q(Diagonal d, Counts sum) { return d.q_measured ? d.q : sum - d.p; }
 
-/* V_p - V_q of a diagonal whose parity sum is `sum`: two sensels that do not stand share equally
- * (D3). */
+/* V_p - V_q of a diagonal whose parity sum is `sum` (D3); zero if neither sensel is measured. */
 static inline Counts diagonal_difference(Diagonal d, Counts sum) {
   const Counts difference = filled_p(d, sum) - filled_q(d, sum);
-  return one_stands(d) ? difference : PF_COUNTS(0);
+  return one_measured(d) ? difference : PF_COUNTS(0);
 }
 
-/* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 every sum of the
- * interval gives a force that explains the readings: together they are the segment of possible
- * forces. */
+/* The force on a pillar whose parity sum is `sum` counts (D6). In region 3 the sums of the interval
+ * give the feasible segment: all forces that are consistent with the readings. */
 static inline Force force_at(Diagonals diagonals, Counts sum, ForceScale scale) {
   const Counts rising = diagonal_difference(diagonals.rising, sum);
   const Counts falling = diagonal_difference(diagonals.falling, sum);
@@ -174,10 +172,11 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
 
 static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
 
-/* Whether the silent one of four sensels may press, where the three others are usable: its silence
- * hides something, and parity leaves it more than -`margin` counts. That of a usable sensel reads
- * above zero, so the least of all four is asked. (D9) */
-static inline Mask fourth_may_press(Pillar pillar, Diagonals diagonals, Counts sum, Counts margin) {
+/* True if the inactive fourth sensel may carry load while three are usable: its upper bound is
+ * above zero, and parity predicts more than -`margin` counts for it (D9). Usable sensels are above
+ * zero, so the minimum over all four decides. */
+static inline Mask fourth_may_be_loaded(Pillar pillar, Diagonals diagonals, Counts sum,
+                                        Counts margin) {
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Counts least_filled = least_of(least_of(filled_p(a, sum), filled_q(a, sum)),
@@ -204,14 +203,14 @@ static inline State state_of(Sensel sensel) {
   return state;
 }
 
-/* One of two opposite sensels is usable and the other inactive. */
+/* One of two opposite sensels is usable, the other inactive, as Bits. */
 static inline Bits one_inactive_of(State p, State q) {
   return (p.usable & q.inactive) | (p.inactive & q.usable);
 }
 
-/* The status byte, bits 0 to 6. Ambiguous are a force that is one of a segment, and a region that
- * is 1 or 2; what parity says of the latter is off by `margin` counts at most. Two opposite sensels
- * usable while the other two are inactive contradict the model and are inconsistent. */
+/* The status byte, bits 0 to 6. Ambiguous: the force is one of a segment, or the region is 1 or 2
+ * within `margin` counts of parity. Inconsistent: a sensel is missing, or two opposite sensels are
+ * usable and the other two inactive, which contradicts the model. */
 static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts margin) {
   const State s1 = state_of(pillar.s1);
   const State s2 = state_of(pillar.s2);
@@ -222,34 +221,35 @@ static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum s
   const Bits three_usable =
       (rising & one_inactive_of(s2, s4)) | (falling & one_inactive_of(s1, s3));
   const Bits one_or_two =
-      three_usable & bits_of(fourth_may_press(pillar, diagonals, sum.point, margin));
+      three_usable & bits_of(fourth_may_be_loaded(pillar, diagonals, sum.point, margin));
   const Bits ambiguous = bits_of(sum.ambiguous) | one_or_two;
   const Bits saturated = s1.saturated | s2.saturated | s3.saturated | s4.saturated;
   const Bits missing = s1.missing | s2.missing | s3.missing | s4.missing;
-  const Bits at_odds = (rising & s2.inactive & s4.inactive) | (falling & s1.inactive & s3.inactive);
+  const Bits contradictory =
+      (rising & s2.inactive & s4.inactive) | (falling & s1.inactive & s3.inactive);
   return (s1.usable & PF_BITS(PF_STATUS_SENSEL_1)) | (s2.usable & PF_BITS(PF_STATUS_SENSEL_2)) |
          (s3.usable & PF_BITS(PF_STATUS_SENSEL_3)) | (s4.usable & PF_BITS(PF_STATUS_SENSEL_4)) |
          (ambiguous & PF_BITS(PF_STATUS_AMBIGUOUS)) | (saturated & PF_BITS(PF_STATUS_SATURATED)) |
-         ((missing | at_odds) & PF_BITS(PF_STATUS_INCONSISTENT));
+         ((missing | contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
 }
 
-/* Whether one of two opposite sensels is usable and the other inactive. */
+/* True if one of two opposite sensels is usable and the other inactive. */
 static inline Mask one_inactive(Sensel p, Sensel q) {
   return (p.usable && is_inactive(q)) || (is_inactive(p) && q.usable);
 }
 
-/* Whether a redundant reading disagrees by more than `tolerance` counts: with four usable, the
- * parity residual (D7); with three, what parity leaves for the inactive sensel beyond what its
- * silence can hide (D8). */
+/* True if a redundant reading disagrees by more than `tolerance` counts: with four usable, the
+ * parity residual (D7); with three, the excess of the reading that parity predicts for the inactive
+ * sensel over its upper bound (D8). */
 static inline Mask fails_parity(Pillar pillar, ParitySum sum, Counts tolerance) {
   const Mask rising_usable = pillar.s1.usable && pillar.s3.usable;
   const Mask falling_usable = pillar.s2.usable && pillar.s4.usable;
   const Counts rising = pillar.s1.reading + pillar.s3.reading;
   const Counts falling = pillar.s2.reading + pillar.s4.reading;
-  const Mask rising_hides = falling_usable && one_inactive(pillar.s1, pillar.s3);
-  const Mask falling_hides = rising_usable && one_inactive(pillar.s2, pillar.s4);
+  const Mask rising_predicted = falling_usable && one_inactive(pillar.s1, pillar.s3);
+  const Mask falling_predicted = rising_usable && one_inactive(pillar.s2, pillar.s4);
   const Mask residual_fails = (rising - falling > tolerance) || (falling - rising > tolerance);
   return (rising_usable && falling_usable && residual_fails) ||
-         (rising_hides && (sum.high - rising > tolerance)) ||
-         (falling_hides && (sum.high - falling > tolerance));
+         (rising_predicted && (sum.high - rising > tolerance)) ||
+         (falling_predicted && (sum.high - falling > tolerance));
 }

@@ -1,11 +1,10 @@
-/* Lengths and angles. In single precision from + - * / and sqrt alone, so that every device that
- * rounds them correctly gives the same bits, and a vector of lanes costs no call; in double they
- * are those of the C++ library. Largest errors, measured against 113 bits:
- * docs/derivations/elementary.md. */
+/* Lengths and angles. Single precision uses only + - * / and sqrt: every device that rounds them
+ * correctly gives the same bits, and a vector of lanes needs no call. Double precision uses the C++
+ * library. Largest errors, measured against 113 bits: docs/derivations/elementary.md. */
 
 static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
 
-/* A power of two that brings squares of numbers up to `largest` into range, and its inverse. */
+/* A power of two by which squares of numbers up to `largest` stay in range, and its inverse. */
 typedef struct {
   Real down;
   Real up;
@@ -21,20 +20,19 @@ static inline Scaling scaling_for(Real largest) {
   return scaling;
 }
 
-/* Whether squares of numbers up to `largest` leave the range in any lane, so that they must be
- * scaled. Zeros need not be. */
+/* True if squares of numbers up to `largest` leave the range in any lane. Zeros need no scaling. */
 static inline bool needs_scaling(Real largest) {
   const Mask is_small = (largest < PF_REAL(0x1p-40)) && (largest > PF_REAL(0.0));
   return any_lane(is_small || (largest > PF_REAL(0x1p60)));
 }
 
-/* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) of numbers that are scaled already. */
+/* sqrt(x^2 + y^2) and sqrt(x^2 + y^2 + z^2) without scaling. */
 static inline Real plain_length_2(Real x, Real y) { return sqrt(x * x + y * y); }
 static inline Real plain_length_3(Real x, Real y, Real z) { return sqrt(x * x + y * y + z * z); }
 
 #if !defined(__cplusplus) || PF_PRECISION == 32
 
-/* sqrt(x^2 + y^2), without overflow and underflow on the way; 1.25 ULP. */
+/* sqrt(x^2 + y^2) without intermediate overflow and underflow; 1.25 ULP. */
 static inline Real length_2(Real x, Real y) {
   const Real largest = larger_of(fabs(x), fabs(y));
   if (!needs_scaling(largest)) return plain_length_2(x, y);
@@ -42,7 +40,7 @@ static inline Real length_2(Real x, Real y) {
   return plain_length_2(x * scaling.down, y * scaling.down) * scaling.up;
 }
 
-/* sqrt(x^2 + y^2 + z^2), as before; 1.5 ULP. */
+/* sqrt(x^2 + y^2 + z^2) without intermediate overflow and underflow; 1.5 ULP. */
 static inline Real length_3(Real x, Real y, Real z) {
   const Real largest = larger_of(larger_of(fabs(x), fabs(y)), fabs(z));
   if (!needs_scaling(largest)) return plain_length_3(x, y, z);
@@ -50,8 +48,8 @@ static inline Real length_3(Real x, Real y, Real z) {
   return plain_length_3(x * scaling.down, y * scaling.down, z * scaling.down) * scaling.up;
 }
 
-/* A point of the first quadrant as the nearest of its axes and their bisector, and the angle from
- * there, within pi / 8. */
+/* Polar angle of a point in the first quadrant: the nearest of the axes and their bisector, and the
+ * angle from there, at most pi / 8. */
 typedef struct {
   Real nearest; /* rad from the x axis */
   Real part;    /* rad, towards the y axis, or away from it where `is_steep` */
@@ -81,13 +79,13 @@ static inline QuadrantAngle quadrant_angle(Real y, Real x) {
   return angle;
 }
 
-/* The angle of the point (x, y) from the x axis, where neither is negative: [0, pi / 2]; 3 ULP. */
+/* Polar angle of (x, y) with x, y >= 0: [0, pi / 2]; 3 ULP. */
 static inline Real acute_angle_of(Real y, Real x) {
   const QuadrantAngle angle = quadrant_angle(y, x);
   return angle.is_steep ? angle.nearest - angle.part : angle.nearest + angle.part;
 }
 
-/* The same where y is not negative: [0, pi]. */
+/* Polar angle of (x, y) with y >= 0: [0, pi]; 3 ULP. */
 static inline Real upper_angle_of(Real y, Real x) {
   const QuadrantAngle angle = quadrant_angle(y, fabs(x));
   const Mask is_left = x < PF_REAL(0.0);
@@ -95,7 +93,7 @@ static inline Real upper_angle_of(Real y, Real x) {
   return (angle.is_steep != is_left) ? nearest - angle.part : nearest + angle.part;
 }
 
-/* The same of any point: [-pi, pi]; zero at the origin. As of atan2 its sign is that of y. */
+/* Polar angle of (x, y): [-pi, pi], with the sign of y as atan2; zero at the origin; 3 ULP. */
 static inline Real angle_of(Real y, Real x) { return copysign(upper_angle_of(fabs(y), x), y); }
 
 #else

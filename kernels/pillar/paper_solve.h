@@ -1,13 +1,13 @@
-/* The estimator of the paper: its equations (2), (5), (7) and (9), the middle of the contour in
- * region 3 and the four directions of region 4, errata mended (docs/derivations/paper_solve.md).
- * It is the baseline that `direct_force` is compared with.
+/* The paper's estimator: its equations (2), (5), (7) and (9), the midpoint of the contour in region
+ * 3 and the four directions of region 4, with errata corrected (docs/derivations/paper_solve.md).
+ * The baseline for `direct_force`.
  *
- * Readings enter as ratios, as in the paper's (4): here to the largest of the four. Regions 2 to 4
- * have an equation for each of their four places; all are quarter turns of one, in which a is the
- * usable sensel whose clockwise neighbour is not, and b, c, d follow counter-clockwise. A turned
+ * Readings enter as ratios to the largest of the four, as in the paper's (4). Regions 2 to 4 have
+ * one equation for each of four orientations. They are quarter turns of each other: a is the usable
+ * sensel whose clockwise neighbour is not usable, and b, c, d follow counter-clockwise. A turned
  * pillar has a at 45 degrees. */
 
-/* Readings of a turned pillar as shares of the largest; zero where unusable. */
+/* Readings of a turned pillar as fractions of the largest; zero where unusable. */
 typedef struct {
   Real a;
   Real b;
@@ -21,7 +21,7 @@ typedef struct {
   Real phi;
 } Angles;
 
-/* Where sensel a is; at sensel 1 if nowhere else. */
+/* Position of sensel a; sensel 1 if all masks are false. */
 typedef struct {
   Mask at_2;
   Mask at_3;
@@ -50,9 +50,8 @@ static inline Real theta_of_pair(Real v_i, Real cos_i, Real v_j, Real cos_j) {
   return atan2(fabs(v_i - v_j), fabs(v_i * cos_j - v_j * cos_i));
 }
 
-/* Four usable: (7), then (5) with the diagonal along which the shear lies more (P1). No shear where
- * (7) is 0/0: under a force that only presses, and where its products vanish because a whole
- * diagonal reads nearly nothing, which no force does. */
+/* Four usable: (7), then (5) with the diagonal along which the shear lies more (P1). The shear is
+ * zero where (7) is 0/0: under a purely normal force, or where its products underflow. */
 static inline Angles paper_region_1(Ratios v) {
   const Real zero = PF_REAL(0.0);
   const Real up = v.c * v.d - v.a * v.b;
@@ -68,9 +67,9 @@ static inline Angles paper_region_1(Ratios v) {
   return angles;
 }
 
-/* All but d: (9), then (5) with the sensel opposite d and that of its neighbours which differs more
- * from it (P2): the weaker one where d inactive, since b then reads most. Where d is missing the
- * other one may read as much as b, and (5) is 0/0. */
+/* All but d usable: (9), then (5) with b, opposite d, and the neighbour of b that differs more from
+ * it (P2). If d is inactive, that is the weaker one; if d is missing, the weaker one may equal b,
+ * where (5) is 0/0. */
 static inline Angles paper_region_2(Ratios v) {
   Angles angles;
   angles.phi = atan2(v.c - v.b, v.b - v.a);
@@ -80,7 +79,7 @@ static inline Angles paper_region_2(Ratios v) {
   return angles;
 }
 
-/* Only a and b: half way in theta between the contour's ends (P3), where (5) gives phi (P4). */
+/* Only a and b usable: theta is the midpoint of the contour (P3), and (5) gives phi (P4). */
 static inline Angles paper_region_3(Ratios v) {
   const Real one = PF_REAL(1.0);
   const Real quarter_turn = PF_REAL(1.57079632679489661923);
@@ -97,7 +96,7 @@ static inline Angles paper_region_3(Ratios v) {
   return angles;
 }
 
-/* Only a: the direction opposite to it, along the skin. */
+/* Only a usable: the direction opposite to it, in the plane of the skin. */
 static inline Angles paper_region_4(void) {
   Angles angles;
   angles.theta = PF_REAL(1.57079632679489661923);
@@ -123,7 +122,7 @@ static inline Force turned_force(Ratios v, Angles angles, Real largest, Turn tur
   const SenselCosines cosines = sensel_cosines(angles.phi);
   const Real at_largest =
       v.a == one ? cosines.a : (v.b == one ? cosines.b : (v.c == one ? -cosines.a : -cosines.b));
-  /* Shear presses the sensel that it points to; a product that underflowed may say otherwise. */
+  /* Shear presses the sensel that it points to; underflow may reverse the sign. */
   const Real cosine = at_largest > zero ? zero : at_largest;
   const Real cos_theta = cos(angles.theta);
   const Real sin_theta = sin(angles.theta);
@@ -138,9 +137,9 @@ static inline Force turned_force(Ratios v, Angles angles, Real largest, Turn tur
   return force;
 }
 
-/* The force on a pillar by the paper's equations. The paper knows no saturated and no missing
- * sensels: they count as usable and as unusable. Two opposite sensels alone, which it does not know
- * either, are solved directly. */
+/* The force on a pillar by the paper's equations. The paper does not cover saturated and missing
+ * sensels: they count as usable and as unusable. Nor does it cover two opposite sensels alone:
+ * `direct_force` solves them. */
 static inline Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum sum,
                                 ForceScale scale) {
   const Real zero = PF_REAL(0.0);
@@ -151,7 +150,7 @@ static inline Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum su
   const Mask four = u1 && u2 && u3 && u4;
   const Mask adjacent = (u1 || u3) && (u2 || u4);
   const Mask three = adjacent && ((u1 && u3) || (u2 && u4));
-  const Mask unknown = (u1 == u3) && (u2 == u4) && !four;
+  const Mask no_region = (u1 == u3) && (u2 == u4) && !four;
   Turn turn;
   turn.at_2 = u2 && !u1;
   turn.at_3 = u3 && !u2;
@@ -163,7 +162,7 @@ static inline Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum su
   const Real r4 = u4 ? pillar.s4.reading : zero;
   const Real rising = r1 > r3 ? r1 : r3;
   const Real falling = r2 > r4 ? r2 : r4;
-  const Real largest = unknown ? PF_REAL(1.0) : (rising > falling ? rising : falling);
+  const Real largest = no_region ? PF_REAL(1.0) : (rising > falling ? rising : falling);
   const Ratios v = turned_ratios(r1 / largest, r2 / largest, r3 / largest, r4 / largest, turn);
 
   const Angles region_1 = paper_region_1(v);
@@ -178,8 +177,8 @@ static inline Force paper_force(Pillar pillar, Diagonals diagonals, ParitySum su
 
   const Force direct = direct_force(diagonals, sum, scale);
   Force force = turned_force(v, angles, largest, turn, scale);
-  force.shear_x = unknown ? direct.shear_x : force.shear_x;
-  force.shear_y = unknown ? direct.shear_y : force.shear_y;
-  force.normal = unknown ? direct.normal : force.normal;
+  force.shear_x = no_region ? direct.shear_x : force.shear_x;
+  force.shear_y = no_region ? direct.shear_y : force.shear_y;
+  force.normal = no_region ? direct.normal : force.normal;
   return force;
 }

@@ -17,8 +17,8 @@ typedef struct {
   Real v4;
 } Readings;
 
-/* What the four sensels would read if they answered pull as well as push: negative where the pillar
- * lifts off. `counts_per_newton` is k. Each reading is within 5 ULP of the largest of the four. */
+/* Readings of the four sensels, counts, if they responded to tension too: negative where the pillar
+ * lifts off. `counts_per_newton` is k. Each is within 5 ULP of the largest of the four. */
 static inline Readings model_readings(Force force, Real counts_per_newton) {
   const Real cos_45_deg = PF_REAL(0.70710678118654752440);
   const Real pressed = counts_per_newton * force.normal;

@@ -1,17 +1,16 @@
-/* One sensel, from its raw reading to what the solve may believe of it. Each function is a stage;
- * frame/stages.h calls those that a plan names, in its order
- * (docs/derivations/direct_solve.md, section 1). */
+/* Corrects and classifies one sensel. Each function is a stage; frame/stages.h calls those that a
+ * plan names, in order (docs/derivations/direct_solve.md, section 1). */
 
-/* A reading in counts and what it tells of the model's V. After `classify` at most one mask is set;
+/* A reading in counts and its relation to the model's V. After `classify` at most one mask is set;
  * a sensel with none is inactive. */
 typedef struct {
   Counts reading;
   Mask usable;    /* V is the reading, which is above the threshold */
   Mask saturated; /* V is at least the reading, which is above the threshold */
-  Mask missing;   /* tells nothing: dead, absent, masked, or not a number; reads zero */
+  Mask missing;   /* V is unconstrained: dead, absent, masked, or not a number; reads zero */
 } Sensel;
 
-/* A sensel that read `raw` and has nothing wrong with it. */
+/* A valid sensel with the reading `raw`. */
 static inline Sensel raw_sensel(Counts raw) {
   Sensel sensel;
   sensel.reading = raw;
@@ -35,7 +34,7 @@ static inline Sensel apply_mask(Sensel sensel, Counts good) {
   return sensel;
 }
 
-/* A reading of `full_scale` counts or more is saturated; to be asked of the raw reading. */
+/* A raw reading of `full_scale` counts or more is saturated. */
 static inline Sensel mark_saturated(Sensel sensel, Counts full_scale) {
   sensel.saturated = (sensel.reading >= full_scale) && !sensel.missing;
   return sensel;
@@ -52,8 +51,8 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
   return sensel;
 }
 
-/* Straightens a sensel that does not answer in proportion: a reading r above zero stands for
- * V = reference (r / reference)^exponent, `largest` at most. */
+/* Linearises a reading r above zero by the power law V = reference (r / reference)^exponent,
+ * `largest` at most. */
 static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference, Real largest) {
   const Real straight = reference * pow(fabs(sensel.reading) / reference, exponent);
   const Real bounded = straight < largest ? straight : largest;
@@ -61,7 +60,7 @@ static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real referenc
   return sensel;
 }
 
-/* dV / dr of that law, by which small noise grows; a million at most, so that its square is finite.
+/* dV / dr of the power law, the factor on small noise; at most 1e6, so that its square is finite.
  */
 static inline Real power_law_slope(Real reading, Real exponent, Real reference) {
   const Real most = PF_REAL(1e6);
@@ -69,50 +68,49 @@ static inline Real power_law_slope(Real reading, Real exponent, Real reference) 
   return slope < most ? slope : most;
 }
 
-/* The tare of a sensel after one more frame: `rate` of its distance from the raw reading is taken
- * over, where nothing touches the sensel and the reading tells anything. */
+/* Updates the tare of an untouched sensel with a valid reading: adds `rate` times the difference
+ * between the raw reading and the tare. */
 static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate) {
   const Real followed = tare + rate * (raw.reading - tare);
   return (untouched && !(raw.missing || raw.saturated)) ? followed : tare;
 }
 #endif
 
-/* Splits the readings: above `threshold` counts (zero or more) a sensel is usable or saturated. All
- * others are inactive, and read the threshold, which is the most that their silence can hide; or
- * missing, and read zero. A saturated sensel that its calibration brings down to the threshold
- * tells nothing. */
+/* Classifies a reading: above `threshold` counts (zero or more) the sensel is usable or saturated.
+ * Otherwise it is inactive and reads the threshold, the upper bound of V, or missing and reads
+ * zero. A saturated sensel whose corrected reading is not above the threshold is missing. */
 static inline Sensel classify(Sensel sensel, Counts threshold) {
-  const Mask answers = (sensel.reading > threshold) && !sensel.missing;
-  const Mask is_uninformative = sensel.missing || (sensel.saturated && !answers);
+  const Mask is_active = (sensel.reading > threshold) && !sensel.missing;
+  const Mask is_uninformative = sensel.missing || (sensel.saturated && !is_active);
   sensel.missing = is_uninformative;
-  sensel.usable = answers && !sensel.saturated;
-  sensel.saturated = answers && sensel.saturated;
-  sensel.reading = answers ? sensel.reading : (is_uninformative ? PF_COUNTS(0) : threshold);
+  sensel.usable = is_active && !sensel.saturated;
+  sensel.saturated = is_active && sensel.saturated;
+  sensel.reading = is_active ? sensel.reading : (is_uninformative ? PF_COUNTS(0) : threshold);
   return sensel;
 }
 
 #ifndef PF_WHOLE
-/* A level such that every reading below it, in steps of `step` (1: whole readings, 0: any), is
- * silent after tare and gain: the highest but for rounding. It is found by the arithmetic of the
- * stages, which only rises with the reading. `lowest` where numbers are too large to tell. */
+/* Activation threshold of a sensel, raw counts: readings below it, in steps of `step` (1: whole
+ * readings, 0: any), are inactive after tare and gain. It is the highest such threshold but for
+ * rounding, computed with the arithmetic of the stages, which is monotonic in the reading; `lowest`
+ * where rounding leaves none. */
 static inline Real activation_threshold(Real tare, Real gain, Real threshold, Real step,
                                         Real lowest) {
-  const Real silent = floor(tare + threshold / gain);
-  const Real below = silent - PF_REAL(1.0);
-  const Mask is_idle = (silent - tare) * gain <= threshold;
+  const Real largest_inactive = floor(tare + threshold / gain);
+  const Real below = largest_inactive - PF_REAL(1.0);
+  const Mask is_idle = (largest_inactive - tare) * gain <= threshold;
   const Mask is_idle_below = (below - tare) * gain <= threshold;
-  return is_idle ? silent + step : (is_idle_below ? below + step : lowest);
+  return is_idle ? largest_inactive + step : (is_idle_below ? below + step : lowest);
 }
 #endif
 
-/* Gives back the `dead_zone` counts that a sensel swallows before it answers, and that the silence
- * of a inactive one can hide as well. */
+/* Adds the dead zone, counts, to a reading, or to the upper bound of an inactive sensel. */
 static inline Sensel fill_dead_zone(Sensel sensel, Counts dead_zone) {
   sensel.reading = sensel.missing ? sensel.reading : sensel.reading + dead_zone;
   return sensel;
 }
 
-/* Silent and not missing: V is at most the reading, which is threshold and dead zone together. */
+/* True if V is at most the reading: the threshold plus the dead zone. */
 static inline Mask is_inactive(Sensel sensel) {
   return !(sensel.usable || sensel.saturated || sensel.missing);
 }

@@ -5,8 +5,8 @@
 #define PF_STATUS_SENSEL_4 8   /* lower right */
 #define PF_STATUS_AMBIGUOUS 16 /* the force is one of a segment, or the region is 1 or 2 */
 #define PF_STATUS_SATURATED 32
-#define PF_STATUS_INCONSISTENT 64     /* a missing sensel, or readings at odds with each other */
-#define PF_STATUS_FROM_NEIGHBOURS 128 /* ambiguous, and resolved with the help of its contact */
+#define PF_STATUS_INCONSISTENT 64     /* a missing sensel, or contradictory readings */
+#define PF_STATUS_FROM_NEIGHBOURS 128 /* ambiguous, and estimated from its contact */
 
-/* A sensel is usable or saturated: something presses. */
+/* At least one sensel is usable or saturated: the pillar is loaded. */
 #define PF_STATUS_PRESSED (15 | PF_STATUS_SATURATED)

@@ -1,6 +1,5 @@
-/* What a pillar's readings leave open: the standard deviations that the noise of the sensels gives
- * the estimated force, and the ends of what an ambiguous pillar may be
- * (docs/derivations/uncertainty.md). For `direct_force`. */
+/* Uncertainty of `direct_force`: standard deviations from the noise of the sensels, and intervals
+ * of magnitude and direction for an ambiguous pillar (docs/derivations/uncertainty.md). */
 
 /* Weights of the sums p + q of both diagonals in the estimated parity sum. */
 typedef struct {
@@ -23,17 +22,18 @@ static inline ParityWeights parity_weights(Diagonals diagonals, Real segment_poi
   const Diagonal a = diagonals.rising;
   const Diagonal b = diagonals.falling;
   const Mask determined = a.full || b.full;
-  const Mask by_b = a.open || ((a.p + a.q >= b.p + b.q) && !b.open);
+  const Mask by_b = a.unbounded || ((a.p + a.q >= b.p + b.q) && !b.unbounded);
   const Mask has_a = a.full || !(determined || by_b);
-  /* What one diagonal has, the other has not, but where both measure or both are open. */
+  /* The weights add up to `whole` unless both diagonals are unbounded. */
   const Real point = has_segment(a, b) ? segment_point : one_half;
   const Real whole = determined ? one : point;
-  const Real share = (a.full && b.full) ? one_half : (has_a ? whole : zero);
-  const Mask both_open = a.open && b.open && !determined;
-  const Real open_share = (one_stands(a) && one_stands(b)) ? PF_REAL(0.66666666666666666667) : one;
+  const Real weight = (a.full && b.full) ? one_half : (has_a ? whole : zero);
+  const Mask both_unbounded = a.unbounded && b.unbounded && !determined;
+  const Real unbounded_weight =
+      (one_measured(a) && one_measured(b)) ? PF_REAL(0.66666666666666666667) : one;
   ParityWeights weights;
-  weights.rising = both_open ? open_share : share;
-  weights.falling = both_open ? open_share : whole - share;
+  weights.rising = both_unbounded ? unbounded_weight : weight;
+  weights.falling = both_unbounded ? unbounded_weight : whole - weight;
   return weights;
 }
 
@@ -42,20 +42,20 @@ static inline DifferenceWeights difference_weights(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   DifferenceWeights weights;
-  weights.sum = (d.q_stands ? one : zero) - (d.p_stands ? one : zero);
-  weights.p = d.p_stands ? one - weights.sum : zero;
-  weights.q = d.q_stands ? -one - weights.sum : zero;
+  weights.sum = (d.q_measured ? one : zero) - (d.p_measured ? one : zero);
+  weights.p = d.p_measured ? one - weights.sum : zero;
+  weights.q = d.q_measured ? -one - weights.sum : zero;
   return weights;
 }
 
-/* A inactive or missing sensel enters the estimate with a constant, which has no noise. */
+/* Variance of a reading, counts^2; zero for an inactive or missing sensel, a constant. */
 static inline Real variance_of(Sensel sensel, Real noise) {
   return is_pressed(sensel) ? noise * noise : PF_REAL(0.0);
 }
 
-/* Root mean square distance of the true parity sum from that reported, counts, where readings leave
- * it ambiguous (U9): on a segment by what friction leaves of it, elsewhere as if all of the
- * interval were equally likely. Zero where the force is determined. */
+/* Root mean square distance of the true parity sum from the reported one, counts (U9): on a segment
+ * by the distribution under friction, elsewhere by a uniform one over the interval. Zero where the
+ * force is determined. */
 static inline Real ambiguity_of(Diagonals diagonals, ParitySum sum, Real segment_point) {
   const Real away = segment_point - PF_REAL(0.875);
   const Real on_segment = plain_length_2(PF_REAL(0.12), away);
@@ -64,7 +64,7 @@ static inline Real ambiguity_of(Diagonals diagonals, ParitySum sum, Real segment
   return sum.ambiguous ? part * sum.high : PF_REAL(0.0);
 }
 
-/* Standard deviations of the components of `direct_force`, N (U3, U9): exact in regions 1 and 2. */
+/* Standard deviations of the components of `direct_force`, N (U3, U9); exact in regions 1 and 2. */
 static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParitySum sum, Noise noise,
                                      Real segment_point, ForceScale scale) {
   const ParityWeights weights = parity_weights(diagonals, segment_point);
@@ -84,14 +84,14 @@ static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParityS
   const Real var2 = variance_of(pillar.s2, noise.n2);
   const Real var3 = variance_of(pillar.s3, noise.n3);
   const Real var4 = variance_of(pillar.s4, noise.n4);
-  const Real rising_share = weights.rising * weights.rising * (var1 + var3);
-  const Real falling_share = weights.falling * weights.falling * (var2 + var4);
+  const Real rising_variance = weights.rising * weights.rising * (var1 + var3);
+  const Real falling_variance = weights.falling * weights.falling * (var2 + var4);
   Force deviations;
   deviations.shear_x =
       scale.shear * sqrt(x1 * x1 * var1 + x2 * x2 * var2 + x3 * x3 * var3 + x4 * x4 * var4);
   deviations.shear_y =
       scale.shear * sqrt(y1 * y1 * var1 + y2 * y2 * var2 + y3 * y3 * var3 + y4 * y4 * var4);
-  deviations.normal = scale.normal * sqrt(rising_share + falling_share);
+  deviations.normal = scale.normal * sqrt(rising_variance + falling_variance);
   if (!any_lane(sum.ambiguous)) return deviations;
   const Real ambiguity = ambiguity_of(diagonals, sum, segment_point);
   const Real shear = scale.shear * ambiguity;
@@ -101,8 +101,8 @@ static inline Force force_deviations(Pillar pillar, Diagonals diagonals, ParityS
   return deviations;
 }
 
-/* What magnitude and direction may be, noise apart. Angles in the plane run counter-clockwise from
- * phi_low to phi_high, which is below it where that passes pi. */
+/* Intervals of magnitude and direction without noise. phi runs counter-clockwise from phi_low to
+ * phi_high, which is below phi_low where the interval crosses pi. */
 typedef struct {
   Real theta_low; /* rad */
   Real theta_high;
@@ -112,16 +112,16 @@ typedef struct {
   Real magnitude_high;
 } DirectionInterval;
 
-/* Whether both sensels are inactive, so that they share what parity leaves as they like. */
-static inline Mask is_loose(Sensel p, Sensel q) { return is_inactive(p) && is_inactive(q); }
+/* True if parity does not divide the sum between the two sensels of a diagonal. */
+static inline Mask is_unconstrained(Sensel p, Sensel q) { return is_inactive(p) && is_inactive(q); }
 
-/* Whether both ends are the estimate: the parity sum is a point, and no two inactive sensels share
- * it. */
-static inline Mask is_settled(Pillar pillar, ParitySum sum) {
-  return !(sum.ambiguous || is_loose(pillar.s1, pillar.s3) || is_loose(pillar.s2, pillar.s4));
+/* True if the parity sum is a point and neither diagonal is unconstrained. */
+static inline Mask is_determined(Pillar pillar, ParitySum sum) {
+  return !(sum.ambiguous || is_unconstrained(pillar.s1, pillar.s3) ||
+           is_unconstrained(pillar.s2, pillar.s4));
 }
 
-/* The interval about a settled estimate. */
+/* The interval of a determined pillar: both ends are the estimate. */
 static inline DirectionInterval point_interval(Direction estimate) {
   DirectionInterval interval;
   interval.theta_low = estimate.theta;
@@ -145,27 +145,28 @@ static inline DirectionInterval either_interval(Mask condition, DirectionInterva
   return interval;
 }
 
-/* What is known of a pillar, in counts, scaled so that no product overflows or vanishes. */
+/* Readings and parity interval of a pillar, scaled against overflow and underflow, counts. */
 typedef struct {
   Diagonal a; /* rising */
   Diagonal b; /* falling */
-  Mask a_loose;
-  Mask b_loose;
+  Mask a_unconstrained;
+  Mask b_unconstrained;
   Real low;     /* ends of the parity sum */
-  Real high;    /* that of silence bounds it (U4) */
+  Real high;    /* the smaller bound if both diagonals are unconstrained (U4) */
   Real largest; /* reading */
   Real newtons; /* per count */
-} Evidence;
+} ScaledPillar;
 
-static inline Evidence evidence_of(Pillar pillar, Diagonals diagonals, ParitySum sum,
-                                   Real newtons) {
-  Evidence e;
+static inline ScaledPillar scaled_pillar(Pillar pillar, Diagonals diagonals, ParitySum sum,
+                                         Real newtons) {
+  ScaledPillar e;
   e.a = diagonals.rising;
   e.b = diagonals.falling;
-  e.a_loose = is_loose(pillar.s1, pillar.s3);
-  e.b_loose = is_loose(pillar.s2, pillar.s4);
+  e.a_unconstrained = is_unconstrained(pillar.s1, pillar.s3);
+  e.b_unconstrained = is_unconstrained(pillar.s2, pillar.s4);
   e.low = sum.low;
-  e.high = (e.a_loose && e.b_loose) ? least_of(e.a.p + e.a.q, e.b.p + e.b.q) : sum.high;
+  e.high =
+      (e.a_unconstrained && e.b_unconstrained) ? least_of(e.a.p + e.a.q, e.b.p + e.b.q) : sum.high;
   e.largest = larger_of(larger_of(e.a.p, e.a.q), larger_of(e.b.p, e.b.q));
   e.newtons = newtons;
   if (needs_scaling(e.largest)) {
@@ -183,54 +184,51 @@ static inline Evidence evidence_of(Pillar pillar, Diagonals diagonals, ParitySum
 
 /* V_p - V_q of a diagonal at a given parity sum (D3). */
 typedef struct {
-  Mask sloped;   /* one sensel stands, and the difference is twice its reading, less the sum */
-  Mask turned;   /* it is q, and the difference has the other sign */
-  Real standing; /* its reading; zero where not one stands */
+  Mask sloped;   /* one sensel is measured: the difference is twice its reading minus the sum */
+  Mask turned;   /* that sensel is q: the difference has the opposite sign */
+  Real measured; /* its reading; zero unless sloped */
   Real level;    /* the difference where it is not sloped */
 } DifferenceLine;
 
 static inline DifferenceLine difference_line(Diagonal d) {
   const Real zero = PF_REAL(0.0);
   DifferenceLine line;
-  line.sloped = d.p_stands != d.q_stands;
-  line.turned = d.q_stands && !d.p_stands;
-  line.standing = line.sloped ? (d.p_stands ? d.p : d.q) : zero;
-  line.level = (d.p_stands && d.q_stands) ? d.p - d.q : zero;
+  line.sloped = d.p_measured != d.q_measured;
+  line.turned = d.q_measured && !d.p_measured;
+  line.measured = line.sloped ? (d.p_measured ? d.p : d.q) : zero;
+  line.level = (d.p_measured && d.q_measured) ? d.p - d.q : zero;
   return line;
 }
 
-/* The difference at a parity sum, without the sign of a turned line. */
+/* The difference at a parity sum, without the sign of `turned`. */
 static inline Real size_at(DifferenceLine line, Real sum) {
-  return line.sloped ? line.standing - (sum - line.standing) : line.level;
+  return line.sloped ? line.measured - (sum - line.measured) : line.level;
 }
 
 static inline Real signed_as(DifferenceLine line, Real size) { return line.turned ? -size : size; }
 
-/* The difference that two inactive sensels may have at most, either way (U5): zero, where the
- * estimate is, lies between. */
+/* Largest difference of two inactive sensels in one direction (U5). */
 static inline Real most_difference(Real reading, Real sum) {
   return larger_of((reading + reading) - sum, PF_REAL(0.0));
 }
 
 static inline Real squares(Real x, Real y) { return x * x + y * y; }
 
-/* The square of the shear of the longest force, in counts: at the least parity sum it is longest,
- * flattest and, if it may turn, freest. */
-static inline Real longest_shear(Evidence e, Real a_size, Real b_size) {
-  const Real a = e.a_loose ? most_difference(larger_of(e.a.p, e.a.q), e.low) : a_size;
-  const Real b = e.b_loose ? most_difference(larger_of(e.b.p, e.b.q), e.low) : b_size;
+/* Squared shear of the longest force, counts^2: the force at the smallest parity sum. */
+static inline Real longest_shear(ScaledPillar e, Real a_size, Real b_size) {
+  const Real a = e.a_unconstrained ? most_difference(larger_of(e.a.p, e.a.q), e.low) : a_size;
+  const Real b = e.b_unconstrained ? most_difference(larger_of(e.b.p, e.b.q), e.low) : b_size;
   return squares(a, b);
 }
 
-/* The interval of a silent pillar about which nothing is known but how much it may hide (U8), or
- * that hides nothing. */
-static inline DirectionInterval inactive_interval(Evidence e) {
+/* The interval of a pillar without measured sensels, up to the bounds of its inactive ones (U8). */
+static inline DirectionInterval inactive_interval(ScaledPillar e) {
   const Real zero = PF_REAL(0.0);
-  const Mask hides = e.high > zero;
-  const Real pi = hides ? PF_REAL(3.14159265358979323846) : zero;
+  const Mask may_be_loaded = e.high > zero;
+  const Real pi = may_be_loaded ? PF_REAL(3.14159265358979323846) : zero;
   DirectionInterval interval;
   interval.theta_low = zero;
-  interval.theta_high = hides ? PF_REAL(1.57079632679489661923) : zero;
+  interval.theta_high = may_be_loaded ? PF_REAL(1.57079632679489661923) : zero;
   interval.phi_low = zero - pi;
   interval.phi_high = pi;
   interval.magnitude_low = zero;
@@ -238,7 +236,7 @@ static inline DirectionInterval inactive_interval(Evidence e) {
   return interval;
 }
 
-/* phi of the shear whose differences are these (M2, M5); zero without shear. */
+/* phi of the shear with these differences over the diagonals (M2, M5); zero without shear. */
 static inline Real phi_of(Real rising, Real falling) {
   return angle_of(PF_REAL(0.0) - (rising + falling), falling - rising);
 }
@@ -249,7 +247,7 @@ typedef struct {
   Real high;
 } PhiInterval;
 
-/* Between two corners, of which the other way round is longer (U7). */
+/* The shorter interval between two directions of shear (U7). */
 static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to) {
   const Mask clockwise = a_from * b_to < b_from * a_to;
   const Real from = phi_of(a_from, b_from);
@@ -260,26 +258,28 @@ static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real 
   return phi;
 }
 
-/* Between the ends of a line of forces, or of what two inactive sensels leave at the least sum. */
-static inline PhiInterval phi_interval(Evidence e, Real a_flat, Real b_flat, Real a_steep,
+/* phi between the ends of a segment, or of an unconstrained diagonal at the smallest sum. */
+static inline PhiInterval phi_interval(ScaledPillar e, Real a_flat, Real b_flat, Real a_steep,
                                        Real b_steep) {
-  const Mask loose = e.a_loose || e.b_loose;
-  const Real a_from = e.a_loose ? -most_difference(e.a.q, e.low) : a_flat;
-  const Real b_from = e.b_loose ? -most_difference(e.b.q, e.low) : b_flat;
-  const Real a_to = e.a_loose ? most_difference(e.a.p, e.low) : (loose ? a_flat : a_steep);
-  const Real b_to = e.b_loose ? most_difference(e.b.p, e.low) : (loose ? b_flat : b_steep);
+  const Mask unconstrained = e.a_unconstrained || e.b_unconstrained;
+  const Real a_from = e.a_unconstrained ? -most_difference(e.a.q, e.low) : a_flat;
+  const Real b_from = e.b_unconstrained ? -most_difference(e.b.q, e.low) : b_flat;
+  const Real a_to =
+      e.a_unconstrained ? most_difference(e.a.p, e.low) : (unconstrained ? a_flat : a_steep);
+  const Real b_to =
+      e.b_unconstrained ? most_difference(e.b.p, e.low) : (unconstrained ? b_flat : b_steep);
   return phi_between(a_from, b_from, a_to, b_to);
 }
 
 /* The parity sum of the shortest force (U6). */
-static inline Real shortest_sum(Evidence e, DifferenceLine a, DifferenceLine b) {
-  const Real share = (a.sloped && b.sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
-  const Real free = share * (a.standing + b.standing);
+static inline Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b) {
+  const Real factor = (a.sloped && b.sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
+  const Real free = factor * (a.measured + b.measured);
   return free < e.low ? e.low : least_of(free, e.high);
 }
 
-/* The interval of any pillar whose force is not settled. */
-static inline DirectionInterval open_interval(Evidence e, Direction estimate) {
+/* The interval of a pillar whose force is not determined. */
+static inline DirectionInterval ambiguous_interval(ScaledPillar e, Direction estimate) {
   const Real zero = PF_REAL(0.0);
   const DifferenceLine a = difference_line(e.a);
   const DifferenceLine b = difference_line(e.b);
@@ -291,7 +291,7 @@ static inline DirectionInterval open_interval(Evidence e, Direction estimate) {
   const Real flat = longest_shear(e, a_flat, b_flat);
   const Real shortest = squares(size_at(a, least), size_at(b, least)) + least * least;
 
-  /* Either the parity sum begins at zero, where the force lies in the plane; or it is known, and
+  /* Either the parity sum begins at zero, where the force lies in the plane, or it is measured, and
    * the estimate is the steepest force. */
   const Mask from_zero = !(e.low > zero);
   const Real slope = sqrt(from_zero ? squares(a_steep, b_steep) : flat);
@@ -308,22 +308,24 @@ static inline DirectionInterval open_interval(Evidence e, Direction estimate) {
   return interval;
 }
 
-/* The ends of theta, phi and magnitude over all forces that explain the readings of a pillar
- * without missing and saturated sensels (U4 to U8). Both ends are the estimate where the force is
- * determined. `sum` is that of `parity_sum`, `estimate` the direction of `direct_force`.
+/* Intervals of theta, phi and magnitude over all forces that are consistent with the readings of a
+ * pillar without missing and saturated sensels (U4 to U8). Both ends are the estimate where the
+ * force is determined. `sum` comes from `parity_sum`, `estimate` is the direction of
+ * `direct_force`.
  *
- * The general interval costs more than all that is computed otherwise, hence the shorter ways to
- * the same bits where no lane needs it. */
+ * The general interval costs more than the rest of the solve; cheaper formulas give the same bits
+ * where no lane needs it. */
 static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
                                                    ParitySum sum, Direction estimate,
                                                    ForceScale scale) {
-  const Mask settled = is_settled(pillar, sum);
+  const Mask determined = is_determined(pillar, sum);
   const DirectionInterval point = point_interval(estimate);
-  if (!any_lane(!settled)) return point;
-  const Evidence e = evidence_of(pillar, diagonals, sum, scale.normal);
-  const Mask silent =
-      e.a_loose && e.b_loose && (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
-  const DirectionInterval unless_open = either_interval(settled, point, inactive_interval(e));
-  if (!any_lane(!(settled || silent))) return unless_open;
-  return either_interval(settled || silent, unless_open, open_interval(e, estimate));
+  if (!any_lane(!determined)) return point;
+  const ScaledPillar e = scaled_pillar(pillar, diagonals, sum, scale.normal);
+  const Mask inactive = e.a_unconstrained && e.b_unconstrained &&
+                        (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
+  const DirectionInterval simple_interval =
+      either_interval(determined, point, inactive_interval(e));
+  if (!any_lane(!(determined || inactive))) return simple_interval;
+  return either_interval(determined || inactive, simple_interval, ambiguous_interval(e, estimate));
 }

@@ -8,7 +8,7 @@
 
 namespace pillarfield::core_test {
 
-/// What `action` throws as Error; fails the test where it throws nothing.
+/// Message of the Error that `action` throws; fails the test if it throws none.
 template <class Action>
 std::string message_of(Action action) {
   try {

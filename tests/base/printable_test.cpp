@@ -1,4 +1,4 @@
-// Texts that come from files, as a terminal may show them.
+// Texts from files are safe to print on a terminal.
 
 #include "pillarfield/printable.h"
 
@@ -28,7 +28,7 @@ TEST(Printable, LeavesTextAlone) {
   }
 }
 
-TEST(Printable, EscapesWhatCommandsATerminal) {
+TEST(Printable, EscapesTerminalControls) {
   EXPECT_EQ(printable("\x1b[31mred\x1b]0;title\x07"), "\\u001b[31mred\\u001b]0;title\\u0007");
   EXPECT_EQ(printable("a\nb\r\tc\x7f"), "a\\nb\\r\\tc\\u007f");
   EXPECT_EQ(printable(std::string_view("\0", 1)), "\\u0000");

@@ -11,8 +11,8 @@
 namespace pillarfield::random {
 namespace {
 
-/// The known answers that the method's authors publish with it.
-TEST(Random, PhiloxGivesTheKnownAnswers) {
+/// The test vectors of the method's authors.
+TEST(Random, PhiloxGivesThePublishedWords) {
   EXPECT_EQ(philox({0, 0, 0, 0}, {0, 0}), (Block{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
   constexpr std::uint32_t kOnes = 0xffffffff;
   EXPECT_EQ(philox({kOnes, kOnes, kOnes, kOnes}, {kOnes, kOnes}),

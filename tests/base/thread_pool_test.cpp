@@ -32,7 +32,7 @@ TEST(ThreadPool, SharesPieces) {
   EXPECT_EQ(inside, 2);
 }
 
-TEST(ThreadPool, TellsWhoDoesAPiece) {
+TEST(ThreadPool, PassesTheMemberOfAPiece) {
   ThreadPool team(3);
   std::array<std::thread::id, 3> threads;
   std::mutex mutex;
@@ -56,7 +56,7 @@ TEST(ThreadPool, LeavesASinglePieceToTheCaller) {
   }
 }
 
-TEST(ThreadPool, WaitsForWhatOthersDo) {
+TEST(ThreadPool, WaitsForOtherMembers) {
   ThreadPool team(3);
   for (int turn = 0; turn < 20; ++turn) {
     std::atomic<int> done = 0;

@@ -1,4 +1,4 @@
-"""The statistics of bench/compare.py, with made-up times."""
+"""The statistics of bench/compare.py, on synthetic times."""
 
 import os
 import pathlib
@@ -12,11 +12,11 @@ sys.path.insert(0, str(BENCH))
 
 import compare  # noqa: E402  pylint: disable=wrong-import-position
 
-# Prints a row that takes the nanoseconds of its first line, and each time a hundredth more.
+# Prints a case whose time grows by 1 % of the first with each run.
 PROGRAM = """#!/bin/sh
 printf x >>"$0.runs"
 runs=$(wc -c <"$0.runs")
-echo '{"benchmarks": [{"name": "row", "run_type": "iteration", "ns_per_pillar": '$((%d * (100 + runs)))'}]}'
+echo '{"benchmarks": [{"name": "case", "run_type": "iteration", "ns_per_pillar": '$((%d * (100 + runs)))'}]}'
 """
 
 
@@ -39,33 +39,43 @@ class Statistics(unittest.TestCase):
         low, middle, high = compare.spread([0.9] * 19 + [50])
         self.assertEqual((low, middle, high), (0.9, 0.9, 0.9))
 
-    def test_verdict_needs_one_outside(self):
-        self.assertEqual(compare.verdict(0.8, 0.99), "faster")
-        self.assertEqual(compare.verdict(1.01, 1.2), "slower")
-        self.assertEqual(compare.verdict(0.99, 1.2), "same")
-        self.assertEqual(compare.verdict(0.8, 1.0), "same")
+    def test_a_change_needs_both_deciles_on_one_side(self):
+        self.assertEqual(compare.change(0.8, 0.99), "faster")
+        self.assertEqual(compare.change(1.01, 1.2), "slower")
+        self.assertEqual(compare.change(0.99, 1.2), "same")
+        self.assertEqual(compare.change(0.8, 1.0), "same")
 
     def test_ratios_are_taken_within_pairs(self):
-        # The machine slows down to a tenth; the new one takes four fifths of the time throughout.
-        old = [{"row": 10.0 * slow} for slow in range(1, 11)]
-        new = [{"row": 8.0 * slow} for slow in range(1, 11)]
+        # The machine slows down to a tenth; the new program takes 80 % of the time throughout.
+        old = [{"case": 10.0 * slow} for slow in range(1, 11)]
+        new = [{"case": 8.0 * slow} for slow in range(1, 11)]
         line = compare.compare(old, new)[1].split()
-        self.assertEqual(line, ["row", "0.800", "0.800", "0.800", "faster"])
+        self.assertEqual(line, ["case", "0.800", "0.800", "0.800", "faster"])
 
-    def test_rows_of_one_program_only_are_named(self):
+    def test_cases_of_only_one_program_are_named(self):
         text = "\n".join(compare.compare([{"a": 1.0, "b": 1.0}] * 2, [{"b": 1.0, "c": 1.0}] * 2))
-        self.assertRegex(text, r"a +only in the old one")
-        self.assertRegex(text, r"c +only in the new one")
+        self.assertRegex(text, r"a +only in the old program")
+        self.assertRegex(text, r"c +only in the new program")
         self.assertRegex(text, r"b +1\.000 +1\.000 +1\.000  same")
 
 
 class Reports(unittest.TestCase):
-    def test_only_measured_rows_count(self):
-        rows = [{"name": "a", "run_type": "iteration", "ns_per_pillar": 2.5},
-                {"name": "a_mean", "run_type": "aggregate", "ns_per_pillar": 2.5},
-                {"name": "ceiling/memcpy", "run_type": "iteration", "GB_per_s": 9},
-                {"name": "b", "run_type": "iteration", "error_occurred": True}]
-        self.assertEqual(compare.times_of({"benchmarks": rows}), {"a": 2.5})
+    def test_only_measured_cases_count(self):
+        cases = [{"name": "a", "run_type": "iteration", "ns_per_pillar": 2.5},
+                 {"name": "a_mean", "run_type": "aggregate", "ns_per_pillar": 2.5},
+                 {"name": "limit/memcpy", "run_type": "iteration", "GB_per_s": 9},
+                 {"name": "b", "run_type": "iteration", "error_occurred": True}]
+        self.assertEqual(compare.times_of({"benchmarks": cases}), {"a": 2.5})
+
+    def test_cases_of_older_programs_get_their_new_names(self):
+        old = ["opponent/numpy", "by_hand/1024", "ceiling/memcpy", "regions/silent", "size/1024"]
+        cases = [{"name": name, "run_type": "iteration", "ns_per_pillar": 1} for name in old]
+        new = ["baseline/numpy", "intrinsics/1024", "limit/memcpy", "regions/idle", "size/1024"]
+        self.assertEqual(list(compare.times_of({"benchmarks": cases})), new)
+        for before, after in zip(old, new):
+            for name in (before, after):
+                self.assertRegex(name, compare.any_revision(f"^{after}$"))
+        self.assertNotRegex("opponent/cpp", compare.any_revision("^baseline/numpy$"))
 
 
 class Program(unittest.TestCase):
@@ -84,16 +94,16 @@ class Program(unittest.TestCase):
         return subprocess.run([sys.executable, BENCH / "compare.py", *map(str, arguments)],
                               capture_output=True, text=True, timeout=60, check=False)
 
-    def test_both_programs_run_by_turns(self):
+    def test_runs_of_both_programs_are_interleaved(self):
         old = self.write("old", PROGRAM % 3)
         new = self.write("new", PROGRAM % 6)
         result = self.compare("--old", old, "--new", new, "--pairs", 4)
         self.assertEqual(result.returncode, 0, result.stderr)
-        self.assertRegex(result.stdout, r"row +2\.000 +2\.000 +2\.000  slower")
+        self.assertRegex(result.stdout, r"case +2\.000 +2\.000 +2\.000  slower")
         self.assertEqual((self.folder / "old.runs").read_text(), "xxxx")
         self.assertEqual((self.folder / "new.runs").read_text(), "xxxx")
 
-    def test_a_program_that_fails_ends_it(self):
+    def test_a_program_that_fails_ends_the_comparison(self):
         bad = self.write("bad", "#!/bin/sh\nexit 3\n")
         result = self.compare("--old", bad, "--new", bad)
         self.assertEqual(result.returncode, 1)

@@ -1,5 +1,4 @@
-// The errors that stand beside the times: on the bound where they should be, and above it where
-// something is wrong.
+// Force errors equal the Cramér–Rao bound for a correct solve and exceed it for a faulty one.
 
 #include "bench/force_error.h"
 
@@ -10,7 +9,7 @@
 namespace pillarfield::bench {
 namespace {
 
-constexpr std::uint32_t kErrorSide = 160;  ///< of some 12000 pillars with a bound: errors to 0.6 %
+constexpr std::uint32_t kErrorSide = 160;  ///< about 12000 pillars with a bound: errors to 0.6 %
 
 ForceError error_of(const SolveVariant& variant, const SolverPlan& plan,
                     const NoisyFrames& frames) {

@@ -1,4 +1,4 @@
-// Frames show what they are said to.
+// Regions, contact and variety of the benchmark's frames.
 
 #include "bench/frames.h"
 
@@ -25,13 +25,13 @@ std::vector<Region> regions_of(const SolverPlan& plan, const FrameView& frame) {
 
 class EveryType : public testing::TestWithParam<SenselType> {};
 
-TEST_P(EveryType, WholeSkinIsInTheRegionThatIsAskedFor) {
+TEST_P(EveryType, WholeSkinIsInTheChosenRegion) {
   const SolverPlan plan = bare_plan(37, GetParam());
   const std::pair<Touch, Region> touches[] = {{Touch::one, Region::one},
                                               {Touch::two, Region::two},
                                               {Touch::three, Region::three},
                                               {Touch::four, Region::four},
-                                              {Touch::silent, Region::none}};
+                                              {Touch::idle, Region::none}};
   for (const auto& [touch, wanted] : touches) {
     const Frames frames(plan.skin, GetParam(), {touch, 1});
     const auto regions = regions_of(plan, frames[1]);
@@ -39,7 +39,7 @@ TEST_P(EveryType, WholeSkinIsInTheRegionThatIsAskedFor) {
   }
 }
 
-TEST_P(EveryType, MixedFramesHaveAllRegionsAndNothingSilent) {
+TEST_P(EveryType, MixedFramesHaveAllRegionsAndNoIdlePillar) {
   const SolverPlan plan = bare_plan(64, GetParam());
   const Frames frames(plan.skin, GetParam(), {});
   const auto regions = regions_of(plan, frames[0]);
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Types, EveryType,
                          testing::Values(SenselType::u8, SenselType::u16, SenselType::f32),
                          [](const auto& type) { return std::string(name_of(type.param)); });
 
-TEST(Frames, NoTwoAreAlike) {
+TEST(Frames, AreDistinct) {
   const SolverPlan plan = bare_plan(32);
   const Frames frames(plan.skin, plan.sensel_type, {});
   ASSERT_EQ(frames.size(), 64U);
@@ -77,17 +77,17 @@ TEST(Frames, NoTwoAreAlike) {
   EXPECT_EQ(frames[64].data, frames[0].data);
 }
 
-TEST(Frames, ContactsCoverTheirShareAndMove) {
+TEST(Frames, ContactsCoverTheirFractionAndMove) {
   const SolverPlan plan = bare_plan(200);
-  for (const double share : {0.01, 0.1, 0.3}) {
-    const Frames frames(plan.skin, plan.sensel_type, {Touch::mixed, share});
-    EXPECT_NEAR(frames.contact(), share, 0.1 * share);
+  for (const double fraction : {0.01, 0.1, 0.3}) {
+    const Frames frames(plan.skin, plan.sensel_type, {Touch::mixed, fraction});
+    EXPECT_NEAR(frames.contact(), fraction, 0.1 * fraction);
     EXPECT_NE(std::memcmp(frames[0].data, frames[1].data, plan.skin.sensels()), 0);
   }
 }
 
 TEST(Frames, FitIntoAGibibyte) {
-  const Frames frames(bare_plan(4000).skin, SenselType::f32, {Touch::silent, 1});
+  const Frames frames(bare_plan(4000).skin, SenselType::f32, {Touch::idle, 1});
   EXPECT_EQ(frames.size(), 4U);  // of 4 * 8000 * 8000 bytes
 }
 

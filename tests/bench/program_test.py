@@ -1,4 +1,4 @@
-"""pillarfield-bench as a user starts it. No time is checked, only that rows say what they should."""
+"""The command line and the counters of pillarfield-bench; no test checks a time."""
 
 import json
 import os
@@ -18,84 +18,84 @@ def run(*arguments, expect=0, **environment):
     return result
 
 
-def rows(pattern, **environment):
-    """What a short run reports of the rows that match, by name; and the context."""
+def cases(pattern, **environment):
+    """Cases of a short run whose name matches, by name, and the context."""
     report = json.loads(run(f"--benchmark_filter={pattern}", "--benchmark_format=json",
                             "--seconds=0.001", **environment).stdout)
-    return {row["name"]: row for row in report["benchmarks"]}, report["context"]
+    return {case["name"]: case for case in report["benchmarks"]}, report["context"]
 
 
-class Rows(unittest.TestCase):
-    def test_a_solve_says_what_it_took_and_of_which_ceiling(self):
-        found, _ = rows("^size/(1024|10000)$")
+class Cases(unittest.TestCase):
+    def test_a_solve_has_its_time_and_its_copy_bandwidth_limit(self):
+        found, _ = cases("^size/(1024|10000)$")
         self.assertEqual(set(found), {"size/1024", "size/10000"})
-        for name, row in found.items():
+        for name, case in found.items():
             pillars = int(name.split("/")[1])
-            self.assertEqual(row["pillars"], pillars)
-            self.assertEqual(row["bytes_per_pillar"], 17)
-            self.assertGreater(row["of_ceiling"], 0)
-            self.assertGreater(row["copy_cached"], 0)
-            self.assertGreater(row["copy_streaming"], 0)
-            # The row's own time is that of a frame, in microseconds.
-            self.assertAlmostEqual(row["real_time"] * 1e3 / pillars, row["ns_per_pillar"],
-                                   delta=1e-3 * row["ns_per_pillar"])
+            self.assertEqual(case["pillars"], pillars)
+            self.assertEqual(case["bytes_per_pillar"], 17)
+            self.assertGreater(case["of_copy"], 0)
+            self.assertGreater(case["copy_cached"], 0)
+            self.assertGreater(case["copy_streaming"], 0)
+            # real_time is that of a frame, in microseconds.
+            self.assertAlmostEqual(case["real_time"] * 1e3 / pillars, case["ns_per_pillar"],
+                                   delta=1e-3 * case["ns_per_pillar"])
 
-    def test_ceilings(self):
-        found, _ = rows("^ceiling/(empty_launch|copy/10000/none)$")
-        copy = found["ceiling/copy/10000/none"]
+    def test_limits(self):
+        found, _ = cases("^limit/(empty_launch|copy/10000/none)$")
+        copy = found["limit/copy/10000/none"]
         self.assertAlmostEqual(copy["ns_per_pillar"],
                                min(copy[key] for key in copy if key.startswith("copy_")))
-        self.assertIn("p99_us", found["ceiling/empty_launch"])
+        self.assertIn("p99_us", found["limit/empty_launch"])
 
     def test_latency(self):
-        found, _ = rows("^latency/1024$")
-        row = found["latency/1024"]
-        self.assertLessEqual(row["median_us"], row["p99_us"])
-        self.assertGreater(row["of_empty_launch"], 0)
+        found, _ = cases("^latency/1024$")
+        case = found["latency/1024"]
+        self.assertLessEqual(case["median_us"], case["p99_us"])
+        self.assertGreater(case["of_empty_launch"], 0)
 
-    def test_an_opponent_is_compared(self):
-        found, _ = rows("^opponent/cpp_one_thread$")
-        row = found["opponent/cpp_one_thread"]
-        self.assertNotIn("error_occurred", row)
-        self.assertGreater(row["speedup"], 0)
-        self.assertGreater(row["our_ns_per_pillar"], 0)
+    def test_a_baseline_is_compared(self):
+        found, _ = cases("^baseline/cpp_one_thread$")
+        case = found["baseline/cpp_one_thread"]
+        self.assertNotIn("error_occurred", case)
+        self.assertGreater(case["speedup"], 0)
+        self.assertGreater(case["our_ns_per_pillar"], 0)
 
-    def test_a_variant_says_its_error(self):
-        row = rows("^variant/direct/float/u8/none$")[0]["variant/direct/float/u8/none"]
-        self.assertAlmostEqual(row["error_over_bound"], 1, delta=0.005)
-        self.assertGreater(row["error_pillars"], 200_000)
-        self.assertGreater(row["error_counts_all_regions"], row["error_counts"])
+    def test_a_variant_has_its_error(self):
+        case = cases("^variant/direct/float/u8/none$")[0]["variant/direct/float/u8/none"]
+        self.assertAlmostEqual(case["error_over_bound"], 1, delta=0.005)
+        self.assertGreater(case["error_pillars"], 200_000)
+        self.assertGreater(case["error_counts_all_regions"], case["error_counts"])
 
     def test_numpy_agrees(self):
-        found, _ = rows("^opponent/numpy$")
-        row = found["opponent/numpy"]
-        # Where it is left out, the row says what is missing.
-        if row.get("error_occurred"):
-            self.assertIn("python3-numpy", row["error_message"])
+        found, _ = cases("^baseline/numpy$")
+        case = found["baseline/numpy"]
+        # A skipped case names what is missing.
+        if case.get("error_occurred"):
+            self.assertIn("python3-numpy", case["error_message"])
         else:
-            self.assertGreater(row["speedup"], 0)
+            self.assertGreater(case["speedup"], 0)
 
     def test_a_picture_is_drawn(self):
-        found, _ = rows("^render/6241/top/(all|all_copied)$")
+        found, _ = cases("^render/6241/top/(all|all_copied)$")
         self.assertEqual(len(found), 2)
-        for row in found.values():
-            # Where it is left out, the row says what is missing.
-            if row.get("error_occurred"):
-                self.assertRegex(row["error_message"], "^skipped: .+")
+        for case in found.values():
+            # A skipped case names what is missing.
+            if case.get("error_occurred"):
+                self.assertRegex(case["error_message"], "^skipped: .+")
                 continue
-            self.assertAlmostEqual(row["ms"] * 1e6 / (1280 * 720), row["ns_per_pixel"],
-                                   delta=1e-3 * row["ns_per_pixel"])
-            self.assertGreater(row["processor_ms"], 0)
-            self.assertGreater(row["of_clear_and_read"], 0)
+            self.assertAlmostEqual(case["ms"] * 1e6 / (1280 * 720), case["ns_per_pixel"],
+                                   delta=1e-3 * case["ns_per_pixel"])
+            self.assertGreater(case["processor_ms"], 0)
+            self.assertGreater(case["of_clear_and_read"], 0)
 
-    def test_pictures_without_vulkan_are_left_out(self):
-        row = rows("^render/read_back$", VK_ICD_FILENAMES="/nothing.json",
+    def test_pictures_without_vulkan_are_skipped(self):
+        case = cases("^render/read_back$", VK_ICD_FILENAMES="/nothing.json",
                    VK_DRIVER_FILES="/nothing.json")[0]["render/read_back"]
-        self.assertTrue(row["error_occurred"])
-        self.assertRegex(row["error_message"], "^skipped: Vulkan: ")
+        self.assertTrue(case["error_occurred"])
+        self.assertRegex(case["error_message"], "^skipped: Vulkan: ")
 
     def test_context_names_the_machine(self):
-        _, context = rows("^ceiling/empty_launch$")
+        _, context = cases("^limit/empty_launch$")
         for key in ("device", "driver", "compiler", "lanes", "num_cpus", "caches", "build"):
             self.assertIn(key, context)
 
@@ -103,19 +103,19 @@ class Rows(unittest.TestCase):
         listed = run("--benchmark_list_tests=true").stdout
         names = {re.sub("/manual_time$", "", line) for line in listed.splitlines()}
         self.assertLessEqual({
-            "ceiling/memcpy", "ceiling/copy/624100/all", "size/1024", "size/9998244",
+            "limit/memcpy", "limit/copy/624100/all", "size/1024", "size/9998244",
             "contact/0.1/bare", "contact/100/all", "regions/worst", "type/f32", "output/all",
             "estimator/paper", "lanes/16", "stage/none", "stage/all", "latency/6241",
-            "throughput/shared/2", "throughput/staged/3", "opponent/paper_opencl",
-            "opponent/vectorised", "opponent/numpy", "field/mixed/contact_and_contacts",
+            "throughput/shared/2", "throughput/staged/3", "baseline/paper_opencl",
+            "baseline/vectorised", "baseline/numpy", "field/mixed/contact_and_contacts",
             "field/slipping/direct_and_contacts"}, names)
-        self.assertEqual(len(names), len(listed.splitlines()), "a name stands twice")
+        self.assertEqual(len(names), len(listed.splitlines()), "a name occurs twice")
 
 
 class CommandLine(unittest.TestCase):
     def test_help(self):
         text = run("--help").stdout
-        for word in ("--benchmark_filter", "--seconds", "--device", "opponent/"):
+        for word in ("--benchmark_filter", "--seconds", "--device", "baseline/"):
             self.assertIn(word, text)
 
     def test_unknown_arguments_are_refused(self):
@@ -129,7 +129,7 @@ class CommandLine(unittest.TestCase):
     def test_a_device_that_is_not_there(self):
         self.assertIn("abacus", run("--device=abacus", expect=1).stderr)
 
-    def test_a_filter_without_rows(self):
+    def test_a_filter_without_cases(self):
         run("--benchmark_filter=^fly$", expect=1)
 
 

@@ -1,4 +1,4 @@
-// Ways to solve, the frames they are timed on, and the loop in double.
+// Solve variants, their frames, and the loop in double precision.
 
 #include "bench/variants.h"
 
@@ -33,7 +33,7 @@ TEST(SolveVariants, HaveNamesOfTheirOwnAndPlansThatHold) {
   EXPECT_FALSE(names.contains("paper/float/u8/uncertainty"));
 }
 
-/// The standard deviation of what sensels read that nothing presses, counts of a uint8 sensel.
+/// Standard deviation of the readings of unloaded sensels, counts of a uint8 sensel.
 double idle_noise(const SolverPlan& plan) {
   const NoisyFrames frames(plan, 1);
   const auto* const readings = static_cast<const float*>(frames.frames()[0].data);
@@ -62,12 +62,12 @@ TEST(NoisyFrames, AreSolvedToTheForcesTheySay) {
     const NoisyFrames frames(plan, 2);
     const ForceField solved = solve_on_host(plan, frames.frames()[1]);
     const double newtons_per_count = count_scale(type) / plan.skin.counts_per_newton;
-    int pressed_by_four = 0;
+    int in_region_one = 0;
     for (std::uint32_t row = 0; row < kSide; ++row) {
       for (std::uint32_t col = 0; col < kSide; ++col) {
         const std::size_t pillar = row * kSide + col;
         if (solved.status[pillar] != status::kUsable) continue;
-        ++pressed_by_four;
+        ++in_region_one;
         const auto truth = frames.truth(1, row, col);
         const double most = 5 * newtons_per_count;
         EXPECT_NEAR(solved.shear_x[pillar], truth.shear_x, most);
@@ -75,7 +75,7 @@ TEST(NoisyFrames, AreSolvedToTheForcesTheySay) {
         EXPECT_NEAR(solved.normal[pillar], truth.normal, most);
       }
     }
-    EXPECT_GT(pressed_by_four, static_cast<int>(kSide * kSide / 6));
+    EXPECT_GT(in_region_one, static_cast<int>(kSide * kSide / 6));
   }
 }
 
@@ -87,8 +87,8 @@ TEST(NoisyFrames, AreTheSameEachTimeAndDifferFromFrameToFrame) {
   EXPECT_NE(std::memcmp(one.frames()[0].data, one.frames()[1].data, plan.skin.sensels()), 0);
 }
 
-/// Of two fields: the share of pillars whose status or force (by 1e-4 of its size) is another.
-double share_of_others(const ForceFieldView& a, const ForceFieldView& b) {
+/// Fraction of pillars whose status differs, or whose force differs by more than 1e-4 of it.
+double different_fraction(const ForceFieldView& a, const ForceFieldView& b) {
   std::size_t others = 0;
   for (std::size_t i = 0; i < a.status.size(); ++i) {
     const double size = std::hypot(a.shear_x[i], a.shear_y[i], a.normal[i]);
@@ -106,8 +106,8 @@ TEST(DoubleLoop, SolvesEveryVariantAsSinglePrecisionDoesButForRounding) {
     const NoisyFrames frames(plan, 1);
     DoubleLoop loop(plan, 2);
     const ForceField single = solve_on_host(plan, frames.frames()[0]);
-    // A reading so near the threshold that rounding decides is rare.
-    EXPECT_LE(share_of_others(loop.solve(frames.frames()[0]), single.view()), 1e-3)
+    // Rounding rarely moves a reading across the threshold.
+    EXPECT_LE(different_fraction(loop.solve(frames.frames()[0]), single.view()), 1e-3)
         << name_of(variant);
   }
 }
@@ -116,9 +116,9 @@ TEST(DoubleLoop, RefusesAStageThatNoVariantHas) {
   SolverPlan plan = plan_of({}, kSide);
   plan.parity_tolerance_counts = 3;
   EXPECT_THROW(DoubleLoop(plan, 1), Error);
-  SolverPlan tare_alone = plan_of({}, kSide);
-  add_stage(tare_alone, "tare");
-  EXPECT_THROW(DoubleLoop(tare_alone, 1), Error);
+  SolverPlan only_tare = plan_of({}, kSide);
+  add_stage(only_tare, "tare");
+  EXPECT_THROW(DoubleLoop(only_tare, 1), Error);
 }
 
 }  // namespace

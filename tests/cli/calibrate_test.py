@@ -1,4 +1,4 @@
-"""`pillarfield calibrate` as a user meets it: from a new skin to forces that are right."""
+"""`pillarfield calibrate`: from a new skin to calibrated forces."""
 
 import unittest
 
@@ -37,7 +37,7 @@ path = [
 ]
 """
 
-# Presses the whole patch, ever harder.
+# Presses the whole patch with rising load.
 WIDE_BALL = f"""
 [skin]
 pillars = [{SIZE}, {SIZE}]
@@ -54,12 +54,12 @@ path = [
 
 
 class Calibrate(CommandTest):
-    """Each recording is of the same sensels, made from frames that no other has."""
+    """All recordings have the same sensels and different frames of their noise."""
 
     first_frame = 0
 
     def record(self, name, load, sensor=SENSOR, frames=FRAMES):
-        """Simulates `load` with the sensor, uncalibrated, and returns the recording's path."""
+        """Simulates `load` without calibration and returns the path of the recording."""
         scene = self.folder / f"{name}.toml"
         path = self.folder / f"{name}.h5"
         scene.write_text(load + sensor)
@@ -79,7 +79,7 @@ class Calibrate(CommandTest):
         return self.record("unloaded", f"[skin]\npillars = [{SIZE}, {SIZE}]\n", **options)
 
     def pressed(self, newtons, **options):
-        """All pillars carry so much each."""
+        """A load of `newtons` on every pillar."""
         return self.record(f"pressed_{newtons}",
                            f"[chart]\ndirections = {SIZE}\ninclinations = {SIZE}\n"
                            f"max_theta_deg = 0\nmagnitudes_n = [{newtons}]\n", **options)
@@ -122,7 +122,7 @@ class Chain(Calibrate):
         result = run_json("calibrate", "load", high, "--load-n", 0.7 * pillars, low, "--load-n",
                           0.2 * pillars, "--calibration", equal, "-o", loaded)
         self.assertLess(result["misfit"], 2e-3)
-        # The gains' mean is 1, and that of their truths above it by the square of the spread.
+        # The mean of the gains is 1; that of the true gains is larger by the square of the spread.
         self.assertAlmostEqual(result["counts_per_newton"], COUNTS_PER_NEWTON / 1.01, delta=1.5)
         self.assertEqual([load["saturated"] for load in result["loads"]], [0, 0])
 
@@ -132,9 +132,9 @@ class Chain(Calibrate):
         with_truth = self.folder / "known.h5"
         scene = self.folder / "ball.toml"
         run("simulate", scene, "-o", with_truth, "--frames", 50)
-        faultless = self.error_of(with_truth, "--threshold", 5)
-        self.assertLess(found, 1.1 * faultless)
-        self.assertGreater(without, 3 * faultless)
+        reference = self.error_of(with_truth, "--threshold", 5)
+        self.assertLess(found, 1.1 * reference)
+        self.assertGreater(without, 3 * reference)
 
         copy = self.folder / "copy.h5"
         run("calibrate", "apply", loaded, ball, "-o", copy)
@@ -222,11 +222,11 @@ class Apply(Calibrate):
 
 
 class WrongInput(Calibrate):
-    """One clear line, exit status 1, and nothing written."""
+    """Wrong input ends with one line and exit status 1, and writes nothing."""
 
-    def assert_refused(self, *arguments, says):
+    def assert_refused(self, *arguments, names):
         output = self.folder / "new.h5"
-        self.assert_fails("calibrate", *arguments, "-o", output, says=says)
+        self.assert_fails("calibrate", *arguments, "-o", output, names=names)
         self.assertFalse(output.exists())
         self.assertFalse((self.folder / "new.h5.part").exists())
 
@@ -238,25 +238,25 @@ class WrongInput(Calibrate):
         ball = self.record("ball", BALL, frames=20)
         few = self.record("few", f"[skin]\npillars = [{SIZE}, {SIZE}]\n", frames=4)
         small = self.record("small", f"[skin]\npillars = [{SIZE}, 20]\n", frames=20)
-        self.assert_refused("tare", few, says=["few.h5", "4 frames", "at least 10"])
-        self.assert_refused("tare", ball, says=["ball.h5", "touched", "preloaded"])
-        self.assert_refused("tare", small, "--calibration", tared, says=["60 x 40", "60 x 60"])
-        self.assert_refused("equilibrate", bare, *equilibrate, says=["unloaded.h5", "not answer"])
-        self.assert_refused("equilibrate", ball, *equilibrate, says=["ball.h5", "not answer"])
-        self.assert_refused("equilibrate", few, *equilibrate, says=["few.h5", "at least 5"])
-        self.assert_refused("equilibrate", small, *equilibrate, says=["60 x 40", "60 x 60"])
-        self.assert_refused("load", bare, *load, says=["unloaded.h5", "no contact"])
-        self.assert_refused("load", ball, *load, "--model", "power", says=["20 to 20 N"])
-        self.assert_refused("faults", bare, "--calibration", tared, says=["no sensel moved"])
-        self.assert_refused("faults", few, "--calibration", tared, says=["few.h5", "at least 30"])
+        self.assert_refused("tare", few, names=["few.h5", "4 frames", "at least 10"])
+        self.assert_refused("tare", ball, names=["ball.h5", "touched", "preloaded"])
+        self.assert_refused("tare", small, "--calibration", tared, names=["60 x 40", "60 x 60"])
+        self.assert_refused("equilibrate", bare, *equilibrate, names=["unloaded.h5", "not answer"])
+        self.assert_refused("equilibrate", ball, *equilibrate, names=["ball.h5", "not answer"])
+        self.assert_refused("equilibrate", few, *equilibrate, names=["few.h5", "at least 5"])
+        self.assert_refused("equilibrate", small, *equilibrate, names=["60 x 40", "60 x 60"])
+        self.assert_refused("load", bare, *load, names=["unloaded.h5", "no contact"])
+        self.assert_refused("load", ball, *load, "--model", "power", names=["20 to 20 N"])
+        self.assert_refused("faults", bare, "--calibration", tared, names=["no sensel moved"])
+        self.assert_refused("faults", few, "--calibration", tared, names=["few.h5", "at least 30"])
         self.assert_refused("faults", ball, "--calibration", bare,
-                            says=["unloaded.h5", "pillarfield-recording"])
+                            names=["unloaded.h5", "pillarfield-recording"])
         self.assert_refused("faults", ball, "--calibration", self.folder / "absent.h5",
-                            says=["absent.h5", "No such file"])
-        self.assert_refused("apply", tared, small, says=["60 x 40", "60 x 60"])
-        self.assert_refused("apply", tared, tared, says=["tared.h5", "a calibration"])
+                            names=["absent.h5", "No such file"])
+        self.assert_refused("apply", tared, small, names=["60 x 40", "60 x 60"])
+        self.assert_refused("apply", tared, tared, names=["tared.h5", "a calibration"])
         self.assert_fails("solve", small, "--calibration", tared, "-o", self.folder / "new.h5",
-                          says=["small.h5", "60 x 40", "60 x 60"])
+                          names=["small.h5", "60 x 40", "60 x 60"])
 
 
 if __name__ == "__main__":

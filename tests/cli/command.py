@@ -1,6 +1,6 @@
-"""Runs the `pillarfield` command for the tests beside this file.
+"""Runs the `pillarfield` command for the tests in this folder.
 
-The environment gives PILLARFIELD, the program, and PILLARFIELD_SOURCE, the project's folder.
+PILLARFIELD names the program and PILLARFIELD_SOURCE the source folder.
 """
 
 import json
@@ -47,46 +47,46 @@ def run(*arguments, expect=0, **options):
 
 
 def run_json(*arguments):
-    """Runs the command with --json and returns what it printed, which must be JSON and all of it."""
+    """Runs the command with --json and returns its output, which must be one JSON value."""
     return json.loads(run(*arguments, "--json").stdout)
 
 
-def on_terminal(words, watch=lambda process, said: True, **options):
-    """Runs `words` with standard error a terminal: exit status, standard output, what was said there.
-    watch(process, said) is called with all of it so far until it returns true."""
+def on_terminal(words, watch=lambda process, messages: True, **options):
+    """Runs `words` with a terminal as standard error; returns exit status, output and messages. Calls
+    watch(process, messages so far) until it returns true."""
     controller, terminal = pty.openpty()
     with tempfile.TemporaryFile("w+") as out, subprocess.Popen(
             words, stdout=out, stderr=terminal, stdin=subprocess.DEVNULL, **options) as process:
         os.close(terminal)
-        said, watched = "", False
+        messages, watched = "", False
         try:
             while chunk := os.read(controller, 4096).decode():
-                # PoCL lets its compiler say so where a kernel is not in its cache yet.
-                said += re.sub(r"\d+ warnings? generated.\r?\n", "", chunk)
-                watched = watched or watch(process, said)
+                # PoCL passes on warnings of its compiler for kernels outside its cache.
+                messages += re.sub(r"\d+ warnings? generated.\r?\n", "", chunk)
+                watched = watched or watch(process, messages)
         except OSError:
-            pass  # Nobody has the other end any more.
+            pass  # The process closed the terminal.
         os.close(controller)
         status = process.wait(timeout=120)
         out.seek(0)
-        return status, out.read(), said
+        return status, out.read(), messages
 
 
 class CommandTest(unittest.TestCase):
-    """A test with a folder of its own, `self.folder`."""
+    """A test with its own folder, `self.folder`."""
 
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
         self.addCleanup(scratch.cleanup)
         self.folder = pathlib.Path(scratch.name)
 
-    def assert_fails(self, *arguments, says=(), status=1):
-        """The command ends with `status` and one line on standard error that says all of `says`."""
+    def assert_fails(self, *arguments, names=(), status=1):
+        """The command ends with `status` and one line on standard error with all `names`."""
         result = run(*arguments, expect=status)
         lines = result.stderr.strip().splitlines()
         self.assertEqual(len(lines), 1, result.stderr)
         self.assertTrue(lines[0].startswith("pillarfield: "), lines[0])
-        for words in says:
+        for words in names:
             self.assertIn(words, lines[0])
         self.assertEqual(result.stdout, "")
         return lines[0]

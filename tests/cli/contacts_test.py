@@ -1,4 +1,4 @@
-"""`pillarfield solve --contacts`, as a user meets it."""
+"""`pillarfield solve --contacts`."""
 
 import csv
 import json
@@ -14,7 +14,7 @@ from command import PROGRAM, SCENES, CommandTest, run, run_json
 
 WORDS = {"friction_source", "slip"}
 
-# A punch that is pressed on, dragged while it sticks, and dragged on until it slides, after 0.9 s.
+# A punch that is pressed, dragged while it sticks, and slides after 0.9 s.
 PUNCH = """
 title = "A punch that sticks"
 [skin]
@@ -75,7 +75,7 @@ class Contacts(CommandTest):
             self.assertAlmostEqual(float(row["friction"]), 0.6, delta=0.02)
             self.assertAlmostEqual(float(row["centre_of_pressure_y_mm"]), 20, delta=0.2)
 
-    def test_every_format_says_the_same(self):
+    def test_formats_agree(self):
         self.solve("--contacts", self.csv)
         self.solve("--contacts", self.json)
         table = json.loads(self.json.read_text(encoding="utf-8"))
@@ -148,15 +148,15 @@ class Contacts(CommandTest):
             self.assertEqual(sum(row["row"] == "patch" for row in self.rows()), 40)
 
     def friction_of(self, *arguments):
-        """What the table says of all rows, and what the force file says it was given."""
+        """The friction values of the table, and the given friction of the force file."""
         run("solve", self.recording, "-o", self.forces, "--contacts", self.csv, *arguments)
         with h5py.File(self.forces) as file:
             given = file["contacts"].attrs.get("given_friction")
-        told = {(row["friction"], row["friction_source"]) for row in self.rows()
+        found = {(row["friction"], row["friction_source"]) for row in self.rows()
                 if row["row"] != "ended"}
-        return told, given
+        return found, given
 
-    def test_friction_that_the_solver_is_told_is_that_of_contacts(self):
+    def test_given_friction_is_that_of_contacts(self):
         scene = self.folder / "frictional.toml"
         text = (SCENES / "several_contacts.toml").read_text(encoding="utf-8")
         for estimator in ("direct", "contact"):
@@ -176,7 +176,7 @@ class Contacts(CommandTest):
             for friction, source in found:
                 self.assertEqual(friction == "", source == "prior")
 
-    def test_what_is_known_of_friction_counts_for_contacts_of_direct_forces(self):
+    def test_friction_options_apply_to_contacts_of_direct_forces(self):
         def first(*known):
             self.solve("--contacts", self.csv, *known)
             return [(row["friction"], row["friction_source"], row["friction_deviation"])
@@ -215,23 +215,23 @@ class Contacts(CommandTest):
                     self.assertEqual((row["friction"], row["friction_deviation"]), ("", ""), row)
                     self.assertEqual(row["friction_source"], "prior")
 
-    def test_wrong_names_end_before_any_work(self):
+    def test_wrong_names_are_refused_first(self):
         before = sorted(path.name for path in self.folder.iterdir())
         cases = {"contacts.txt": ".csv or .json", "contacts": ".csv or .json",
                  "other.h5": ".csv or .json", "no/such/folder.csv": "no/such/folder.csv"}
-        for name, says in cases.items():
+        for name, names in cases.items():
             with self.subTest(name=name):
                 self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts",
-                                  self.folder / name, says=[name, says])
+                                  self.folder / name, names=[name, names])
                 self.assert_folder_holds(*before)
         table = self.folder / "both.csv"
         self.assert_fails("solve", self.recording, "-o", table, "--contacts", table,
-                          says=["both.csv", "share"])
-        # Nothing is read before: the error is not that of the recording.
+                          names=["both.csv", "share"])
+        # The error precedes that of the absent recording.
         self.assert_fails("solve", self.folder / "absent.h5", "-o", self.forces, "--contacts",
-                          "c.txt", says=["c.txt"])
+                          "c.txt", names=["c.txt"])
         self.assert_fails("solve", self.recording, "-o", self.forces, "--contacts", self.csv,
-                          "--contact-reach", "1e9", says=["the command line"])
+                          "--contact-reach", "1e9", names=["the command line"])
         self.assert_folder_holds(*before)
 
     def test_interrupt_leaves_no_half_table(self):

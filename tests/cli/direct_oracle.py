@@ -1,4 +1,4 @@
-"""The direct solve once more: double precision, pseudo-inverses, no code in common with kernels/.
+"""Independent direct solve in double precision by pseudo-inverses, without code of kernels/.
 
 Sensel n at angle a_n reads V_n = k (N + X cos a_n + Y sin a_n), which is equation (2) of the paper
 with X = -F sin(theta) cos(phi), Y = -F sin(theta) sin(phi), N = F cos(theta).
@@ -19,7 +19,7 @@ def sensels_of(frame):
 
 
 def solve_pattern(usable, readings, threshold):
-    """Forces (X, Y, N) in counts, k = 1, of pillars [n, 4] that all have the same usable sensels. Silent
+    """Forces (X, Y, N) in counts, k = 1, of pillars [n, 4] with one pattern of usable sensels. Inactive
     ones may read up to the threshold."""
     chosen = [n for n in range(4) if usable[n]]
     known = readings[:, chosen]
@@ -28,9 +28,9 @@ def solve_pattern(usable, readings, threshold):
     normal = np.zeros(len(readings))
     if len(chosen) == 2 and (chosen[1] - chosen[0]) % 2 == 1:  # adjacent: 7/8 of the segment
         normal = 7 / 8 * (known.min(axis=1) + threshold) / 2
-    elif len(chosen) == 2:  # opposite: a fault; the two alone give the normal force
+    elif len(chosen) == 2:  # opposite: a fault; their mean is the normal force
         normal = known.mean(axis=1)
-    elif len(chosen) == 1:  # the middle; both neighbours alike
+    elif len(chosen) == 1:  # the midpoint; both neighbours are equal
         normal[:] = threshold / 2
         chosen = [n for n in range(4) if n != (chosen[0] + 2) % 4]
         known = np.where(usable[chosen], readings[:, chosen], normal[:, None])
@@ -41,11 +41,11 @@ def solve_pattern(usable, readings, threshold):
 
 
 def may_be_region_one(usable, readings, threshold):
-    """Whether parity leaves the silent one of four sensels [n, 4] more than zero."""
+    """Whether parity predicts a positive reading of the inactive sensel of [n, 4]."""
     if usable.sum() != 3 or threshold == 0:
         return np.zeros(len(readings), dtype=bool)
-    silent = int(np.flatnonzero(~usable)[0])
-    sign = np.array([1, -1, 1, -1]) * (1 if silent % 2 else -1)
+    inactive = int(np.flatnonzero(~usable)[0])
+    sign = np.array([1, -1, 1, -1]) * (1 if inactive % 2 else -1)
     return readings @ sign > 0
 
 

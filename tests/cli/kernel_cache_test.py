@@ -1,4 +1,4 @@
-"""Compiled kernels are code: where the command takes them from, and what it says meanwhile."""
+"""The cache of compiled kernels: trusted directories and messages."""
 
 import os
 import pathlib
@@ -14,7 +14,7 @@ PLANTED = "__attribute__((constructor)) static void planted(void) { _Exit(42); }
 
 
 def environment(**changes):
-    """That of the test, without any variable that says where kernels are kept but `changes`."""
+    """The environment with `changes` as its only variables of the kernel cache."""
     kept = {name: value for name, value in os.environ.items()
             if name not in ("POCL_CACHE_DIR", "XDG_CACHE_HOME", "HOME", "TMPDIR")}
     return kept | {name: str(value) for name, value in changes.items()}
@@ -36,18 +36,18 @@ class KernelCache(CommandTest):
         return path
 
     def output(self):
-        """A file that is not there yet."""
+        """The path of a new file."""
         self.outputs += 1
         return self.folder / f"forces_{self.outputs}.npy"
 
     def solve(self, *more, **changes):
-        """The result of solving in that environment."""
+        """Solves in the environment `changes`."""
         command = [PROGRAM, "solve", self.recording, "-o", self.output(), *more]
         return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False,
                               env=environment(**changes))
 
     def plant(self, kernels, *places):
-        """Copies `kernels` to `places`, with a library that ends the process for each of theirs."""
+        """Copies `kernels` to `places` and replaces each by PLANTED."""
         source = self.folder / "planted.c"
         source.write_text("#include <stdlib.h>\n" + PLANTED)
         library = self.folder / "planted.so"
@@ -64,12 +64,12 @@ class KernelCache(CommandTest):
         kernels = self.folder / "home/.cache/pillarfield/kernels"
         self.assertEqual(self.solve(HOME=self.folder / "home").returncode, 0)
         self.assertTrue(list(kernels.rglob("*.so")))
-        # Where only this user can write they would be loaded: that is what a cache is.
+        # A directory that only this user can write is trusted.
         own = self.directory("own")
         self.plant(kernels, own)
         self.assertEqual(self.solve(POCL_CACHE_DIR=own).returncode, 42)
 
-        open_to_all = self.directory("open", mode=0o777)
+        open_to_all = self.directory("shared", mode=0o777)
         for below in ("", ".cache"):
             self.plant(kernels, open_to_all / below / "pillarfield/kernels",
                        open_to_all / below / "pocl/kcache")
@@ -81,7 +81,7 @@ class KernelCache(CommandTest):
         self.assertEqual(result.returncode, 1)
         self.assertRegex(result.stderr, r"^pillarfield: POCL_CACHE_DIR: others can write .*\n$")
 
-    def test_info_says_where(self):
+    def test_info_names_the_directory(self):
         home = self.directory("home")
         command = [PROGRAM, "info", "--devices", "--json"]
         for changes, place, reason in (
@@ -94,25 +94,25 @@ class KernelCache(CommandTest):
     def test_compiling_is_announced_on_a_terminal(self):
         home = self.directory("home")
         self.assertIn(f"the next start finds them in {home}/.cache/pillarfield/kernels",
-                      self.said(HOME=home))
+                      self.messages(HOME=home))
         shared = pathlib.Path("/tmp/pocl").exists()
         temporary = self.directory("temporary")
         self.assertIn("as at every start: HOME and XDG_CACHE_HOME are not set",
-                      self.said(TMPDIR=temporary))
+                      self.messages(TMPDIR=temporary))
         self.assertEqual(list(temporary.iterdir()), [])
         self.assertEqual(pathlib.Path("/tmp/pocl").exists(), shared)
-        self.assertNotIn("Compiling", self.said("--quiet", HOME=self.directory("other")))
+        self.assertNotIn("Compiling", self.messages("--quiet", HOME=self.directory("other")))
 
-    def said(self, *more, **changes):
-        """What solving says to standard error where that is a terminal."""
-        status, _, said = on_terminal(
+    def messages(self, *more, **changes):
+        """Messages of solving on a terminal."""
+        status, _, messages = on_terminal(
             [PROGRAM, "solve", self.recording, "-o", self.output(), *more],
             env=environment(**changes))
-        self.assertEqual(status, 0, said)
-        return said
+        self.assertEqual(status, 0, messages)
+        return messages
 
     @unittest.skipIf("ASAN_OPTIONS" in os.environ, "AddressSanitizer needs much address space")
-    def test_a_driver_that_does_not_fit_is_said(self):
+    def test_a_limited_address_space_is_reported(self):
         limit = 200 << 20
         for command in (["solve", self.recording, "-o", self.folder / "a.npy"],
                         ["info", "--devices"]):

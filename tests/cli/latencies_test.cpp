@@ -1,4 +1,4 @@
-#include "cli/latencies.h"
+#include "cli/pace/latencies.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-/// Frames that took 1, 2, ... `solved` microseconds, in another order, and some that were dropped.
-LiveResult ramp(std::uint64_t solved, std::uint64_t dropped = 0) {
-  LiveResult result;
+/// Latencies of 1, 2, ... `solved` us, shuffled, and dropped frames.
+PaceResult ramp(std::uint64_t solved, std::uint64_t dropped = 0) {
+  PaceResult result;
   for (std::uint64_t i = 1; i <= solved; ++i) result.latencies.push_back(microseconds(i));
   std::shuffle(result.latencies.begin(), result.latencies.end(), std::mt19937(1));
   result.dropped = dropped;
@@ -32,13 +32,13 @@ TEST(Latencies, QuantilesAreExact) {
   }
 }
 
-TEST(Latencies, AQuantileOfFewFramesIsOneOfThem) {
+TEST(Latencies, AQuantileOfFewFramesIsALatency) {
   const Latencies latencies(ramp(3));
   EXPECT_EQ(latencies.quantile(0.5), microseconds(2));
   EXPECT_EQ(latencies.quantile(0.99), microseconds(3));
 }
 
-TEST(Latencies, DroppedFramesNeverCome) {
+TEST(Latencies, DroppedFramesCountAsInfinite) {
   const Latencies latencies(ramp(990, 10));
   EXPECT_EQ(latencies.quantile(0.5), microseconds(500));
   EXPECT_EQ(latencies.quantile(0.99), microseconds(990));
@@ -46,15 +46,15 @@ TEST(Latencies, DroppedFramesNeverCome) {
   EXPECT_EQ(latencies.largest(), microseconds(990));
 }
 
-TEST(Latencies, WithoutAFrameThereIsNothingToSay) {
-  const Latencies latencies{LiveResult()};
+TEST(Latencies, WithoutFramesAreUnset) {
+  const Latencies latencies{PaceResult()};
   EXPECT_EQ(latencies.quantile(0.5), std::nullopt);
   EXPECT_EQ(latencies.largest(), std::nullopt);
   EXPECT_EQ(latencies.later_than(Nanoseconds(0)), 0);
   EXPECT_TRUE(latencies.histogram().empty());
 }
 
-TEST(Latencies, AFrameThatComesAtItsDeadlineIsInTime) {
+TEST(Latencies, AFrameAtItsDeadlineIsInTime) {
   const Latencies latencies(ramp(100));
   EXPECT_EQ(latencies.later_than(microseconds(60)), 40);
   EXPECT_EQ(latencies.later_than(microseconds(60) - Nanoseconds(1)), 41);
@@ -62,7 +62,7 @@ TEST(Latencies, AFrameThatComesAtItsDeadlineIsInTime) {
 }
 
 TEST(Latencies, HistogramHoldsEveryFrameInTenBinsToTheDecade) {
-  LiveResult result;
+  PaceResult result;
   std::mt19937 random(7);
   std::lognormal_distribution<double> time_ns(13, 2);
   for (int i = 0; i < 10'000; ++i) {
@@ -90,7 +90,7 @@ TEST(Latencies, HistogramHoldsEveryFrameInTenBinsToTheDecade) {
 }
 
 TEST(Latencies, BinsBeginAtPowersOfTen) {
-  LiveResult result;
+  PaceResult result;
   result.latencies = {Nanoseconds(3), milliseconds(1), milliseconds(1) - Nanoseconds(1)};
   const std::vector<LatencyBin> bins = Latencies(result).histogram();
   EXPECT_EQ(bins.size(), 31);

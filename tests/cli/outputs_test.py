@@ -1,14 +1,10 @@
-"""What the commands write: never onto what they read, never two at once, never over a recording.
-
-`outputs_test.py --pairs 20` races so many pairs of writers.
-"""
+"""Outputs of the commands never replace inputs, recordings or a concurrent output."""
 
 import os
 import resource
 import shutil
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
@@ -16,8 +12,6 @@ import h5py
 import numpy
 
 from command import PROGRAM, CommandTest, run, run_json
-
-PAIRS = 6
 
 SCENE = """
 [skin]
@@ -39,9 +33,7 @@ position_mm = [0, 0]
 
 
 def content_of(path):
-    """All that a file holds, in a form that can be compared."""
-    if path.suffix != ".h5":
-        return path.read_bytes()
+    """The datasets of an HDF5 file, for comparison."""
     found = {}
     with h5py.File(path, "r") as file:
         file.visititems(lambda name, item: found.update(
@@ -61,7 +53,7 @@ class OutputTest(CommandTest):
 
 
 class Inputs(OutputTest):
-    """A file that is read is never written, however it is called."""
+    """An input is never written, whatever its path."""
 
     def setUp(self):
         super().setUp()
@@ -118,7 +110,7 @@ class Inputs(OutputTest):
             ("calibrate", "apply", calibration, recording, "-o", "soft_cal.h5"),
             ("calibrate", "apply", calibration, "new.h5.part", "-o", "new.h5"),
         ]
-        # A table of contacts that is the scene, by a further name.
+        # Another name of the scene, given as table of contacts.
         os.link(self.scene, self.folder / "ball.csv")
         before = {path: path.read_bytes() for path in self.folder.iterdir() if path.is_file()}
         names = sorted(path.name for path in self.folder.iterdir())
@@ -127,31 +119,21 @@ class Inputs(OutputTest):
         for arguments in aims:
             for leave in ((), ("--overwrite",)):
                 with self.subTest(arguments=arguments, leave=leave):
-                    line = self.assert_fails(*arguments, *leave, says=["read"])
+                    line = self.assert_fails(*arguments, *leave, names=["read"])
                     self.assertIn("write to another file", line)
         self.assert_folder_holds(*names)
         for path, content in before.items():
             self.assertEqual(path.read_bytes(), content, path)
 
-    def test_two_outputs_of_a_command_are_two_files(self):
-        os.chdir(self.folder)
-        self.addCleanup(os.chdir, "/")
-        (self.folder / "link.csv").symlink_to("x.csv")
-        for table in ("x.csv", "./x.csv", "here/x.csv", "link.csv"):
-            self.assert_fails("solve", "rec.h5", "-o", "x.csv", "--contacts", table,
-                              says=["share this file"])
-        self.assertFalse((self.folder / "x.csv").exists())
-
-
 class Existing(OutputTest):
-    def test_what_cannot_be_made_again_is_replaced_only_when_told(self):
+    def test_recordings_are_replaced_only_with_overwrite(self):
         recording = self.record()
         before = recording.read_bytes()
         other = self.record("other.h5", "--seed", 7)
         for arguments in (("simulate", self.scene, "-o", recording),
                           ("solve", other, "-o", recording),
                           ("calibrate", "tare", other, "-o", recording)):
-            self.assert_fails(*arguments, says=["rec.h5", "holds a recording", "--overwrite"])
+            self.assert_fails(*arguments, names=["rec.h5", "holds a recording", "--overwrite"])
         self.assertEqual(recording.read_bytes(), before)
         run("simulate", self.scene, "-o", recording, "--seed", 7, "--overwrite")
         self.assertEqual(content_of(recording), content_of(other))
@@ -163,122 +145,15 @@ class Existing(OutputTest):
             run("solve", recording, "-o", output)
             run("solve", recording, "-o", output)
             output.write_text("my notes\n", encoding="utf-8")
-            self.assert_fails("solve", recording, "-o", output, says=[name, "--overwrite"])
+            self.assert_fails("solve", recording, "-o", output, names=[name, "--overwrite"])
             self.assertEqual(output.read_text(encoding="utf-8"), "my notes\n")
             run("solve", recording, "-o", output, "--overwrite")
         notes = self.folder / "notes.toml"
         notes.write_text("[a]\n", encoding="utf-8")
-        self.assert_fails("simulate", self.scene, "-o", notes, says=["notes.toml", "TOML"])
-
-    def test_a_link_at_the_name_stays(self):
-        (self.folder / "far").mkdir()
-        (self.folder / "f.csv").symlink_to("far/real.csv")
-        run("solve", self.record(), "-o", self.folder / "f.csv")
-        self.assertTrue((self.folder / "f.csv").is_symlink())
-        self.assertIn("frame,time_s", (self.folder / "far/real.csv").read_text(encoding="utf-8"))
-
-    def test_a_link_at_the_part_is_no_way_to_other_files(self):
-        victim = self.folder / "victim"
-        victim.write_text("precious", encoding="utf-8")
-        recording = self.record()
-        for name in ("f.h5", "f.csv", "f.npy"):
-            (self.folder / (name + ".part")).symlink_to("victim")
-            self.assert_fails("solve", recording, "-o", self.folder / name,
-                              says=[name + ".part", "symbolic link"])
-        (self.folder / "new.h5.part").symlink_to("victim")
-        self.assert_fails("simulate", self.scene, "-o", self.folder / "new.h5",
-                          says=["symbolic link"])
-        self.assertEqual(victim.read_text(encoding="utf-8"), "precious")
-
-
-class Race(OutputTest):
-    """Two writers of one output: one wins whole, the other ends with one line."""
-
-    FRAMES = 1500
-
-    def start(self, command, errors):
-        # pylint: disable=consider-using-with
-        return subprocess.Popen([PROGRAM, *map(str, command), "--quiet"],
-                                stdout=subprocess.DEVNULL, stderr=errors)
-
-    @staticmethod
-    def writers_of(processes, part):
-        """Those that have the part open."""
-        def has_it(process):
-            folder = f"/proc/{process.pid}/fd"
-            try:
-                return any(os.readlink(f"{folder}/{name}") == str(part)
-                           for name in os.listdir(folder))
-            except OSError:
-                return False
-        return [process for process in processes if has_it(process)]
-
-    def race(self, commands, output, wait_s):
-        """Starts two commands `wait_s` apart. Once one of them writes, it is held until the other
-        has ended, so that they meet on a slow machine too. Returns the index of the winner."""
-        logs = [open(self.folder / f"log_{index}", "w+", encoding="utf-8") for index in range(2)]
-        processes = [self.start(commands[0], logs[0])]
-        time.sleep(wait_s)
-        processes.append(self.start(commands[1], logs[1]))
-        part = output.with_name(output.name + ".part")
-        held = []
-        while not held and all(process.poll() is None for process in processes):
-            held = self.writers_of(processes, part)
-            for process in held:
-                process.send_signal(signal.SIGSTOP)
-            if len(held) == 2:  # One of them will find it locked.
-                for process in held:
-                    process.send_signal(signal.SIGCONT)
-                held = []
-        others = [process for process in processes if process not in held]
-        if held:
-            others[0].wait(60)
-            held[0].send_signal(signal.SIGCONT)
-        statuses = [process.wait(60) for process in processes]
-        texts = []
-        for log in logs:
-            log.seek(0)
-            texts.append(log.read())
-            log.close()
-        self.assertEqual(sorted(statuses), [0, 1], texts)
-        winner = statuses.index(0)
-        self.assertEqual(texts[winner], "")
-        loser = texts[1 - winner].strip().splitlines()
-        self.assertEqual(len(loser), 1, texts)
-        self.assertRegex(loser[0], "being written by another process|exists and holds")
-        self.assertFalse(part.exists())
-        return winner
-
-    def test_pairs(self):
-        scene = self.scene.read_text(encoding="utf-8")
-        self.scene.write_text(scene.replace("frames = 4", f"frames = {self.FRAMES}"),
-                              encoding="utf-8")
-        sources = [self.record(f"seed_{seed}.h5", "--seed", seed) for seed in (1, 2)]
-        expected = {".rec": [content_of(source) for source in sources]}
-        for ending in (".h5", ".csv"):
-            expected[ending] = []
-            for index, source in enumerate(sources):
-                reference = self.folder / f"reference_{index}{ending}"
-                run("solve", source, "-o", reference)
-                expected[ending].append(content_of(reference))
-                reference.unlink()
-        for pair in range(PAIRS):
-            kind = (".rec", ".h5", ".csv")[pair % 3]
-            wait_s = 0 if pair % 2 == 0 else 0.005 * (pair % 7)
-            with self.subTest(pair=pair, kind=kind, wait_s=wait_s):
-                output = self.folder / ("both" + (".h5" if kind == ".rec" else kind))
-                if kind == ".rec":
-                    commands = [("simulate", self.scene, "--seed", seed, "-o", output)
-                                for seed in (1, 2)]
-                else:
-                    commands = [("solve", source, "-o", output) for source in sources]
-                winner = self.race(commands, output, wait_s)
-                self.assertTrue(content_of(output) == expected[kind][winner], "it is mixed")
-                output.unlink()
-
+        self.assert_fails("simulate", self.scene, "-o", notes, names=["notes.toml", "TOML"])
 
 class Ends(OutputTest):
-    """Signals and limits end in one line, and what was flushed stays."""
+    """Signals and limits end in one line and keep flushed frames."""
 
     def setUp(self):
         super().setUp()
@@ -295,8 +170,8 @@ class Ends(OutputTest):
                     until(process)
                     break
                 time.sleep(0.01)
-            _, complaint = process.communicate(timeout=60)
-        return process.returncode, complaint.strip().splitlines()
+            _, error = process.communicate(timeout=60)
+        return process.returncode, error.strip().splitlines()
 
     def assert_part_is_read(self):
         with h5py.File(self.part, "r", swmr=True) as file:
@@ -324,7 +199,17 @@ class Ends(OutputTest):
         self.assertEqual(run_json("solve", self.part, "-o", forces)["frames"], facts["frames"])
         self.assertLess(run_json("compare", forces, self.part)["regions"]["1"]["rms_n"], 1.5 / 320)
 
-    def test_hang_up_is_ignored_where_it_was(self):
+    def test_a_second_writer_is_refused(self):
+        def write_again_then_stop(process):
+            self.assert_fails("simulate", self.scene, "-o", self.folder / "long.h5",
+                              names=["long.h5", "being written by another process"])
+            self.assertIsNone(process.poll())
+            process.send_signal(signal.SIGTERM)
+        status, lines = self.simulate(write_again_then_stop)
+        self.assertEqual((status, len(lines)), (1, 1), lines)
+        self.assert_part_is_read()
+
+    def test_hang_up_stays_ignored(self):
         def hang_up_then_stop(process):
             process.send_signal(signal.SIGHUP)
             size = self.part.stat().st_size
@@ -350,22 +235,5 @@ class Ends(OutputTest):
         self.assertIn("File too large", lines[0])
         self.assert_part_is_read()
 
-    def test_limit_of_the_file_size_of_forces(self):
-        recording = self.record("rec.h5", "--frames", 300)
-        for name in ("f.csv", "f.npy", "f.h5"):
-            result = subprocess.run(
-                [PROGRAM, "solve", recording, "-o", self.folder / name], capture_output=True,
-                text=True, check=False, timeout=60, preexec_fn=lambda: resource.setrlimit(
-                    resource.RLIMIT_FSIZE, (100_000, 100_000)))
-            lines = result.stderr.strip().splitlines()
-            self.assertEqual((result.returncode, len(lines)), (1, 1), lines)
-            self.assertIn("File too large", lines[0])
-            self.assertFalse((self.folder / name).exists())
-
-
 if __name__ == "__main__":
-    if "--pairs" in sys.argv:
-        at = sys.argv.index("--pairs")
-        PAIRS = int(sys.argv[at + 1])
-        del sys.argv[at:at + 2]
     unittest.main()

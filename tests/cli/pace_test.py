@@ -1,4 +1,4 @@
-"""`pillarfield pace`: frames at a fixed rate. No absolute speed is asked of this computer."""
+"""`pillarfield pace`: frames at a fixed rate. The tests require no absolute speed."""
 
 import signal
 import time
@@ -24,7 +24,7 @@ class PaceTest(CommandTest):
         self.scene.write_text(SCENE)
 
     def pace(self, *arguments):
-        """The report of a run, whose parts must fit together."""
+        """Runs `pace` and returns its report, checked for consistency."""
         report = run_json("pace", *arguments)
         self.assertEqual(list(report), KEYS)
         self.assertEqual(report["scheduled"], report["solved"] + report["dropped"])
@@ -75,7 +75,7 @@ class Run(PaceTest):
         if report["dropped"] > 200:
             self.assertIsNone(report["latency_p99_ms"])
 
-    def test_no_frame_is_in_time_for_a_deadline_of_nothing(self):
+    def test_every_frame_misses_a_deadline_of_a_microsecond(self):
         arguments = (self.scene, "--rate", 100, "--seconds", 0.1, "--deadline", 0.001)
         report = self.pace(*arguments)
         self.assertEqual(report["missed"], report["solved"])
@@ -83,7 +83,7 @@ class Run(PaceTest):
         self.assertIn("10 of 10 frames", result.stderr)
         self.assertIn('"missed":', result.stdout)
 
-    def test_strict_is_content_with_a_run_without_fault(self):
+    def test_strict_accepts_a_run_without_failures(self):
         run("pace", self.scene, "--rate", 10, "--seconds", 0.3, "--deadline", 60000, "--backlog",
             100, "--strict")
 
@@ -103,11 +103,11 @@ class Run(PaceTest):
         from_scene = self.pace(self.scene, "--rate", 50, "--seconds", 0.1)
         self.assertEqual(from_scene["stages"], report["stages"])
 
-    def test_everything_of_solve_is_the_same(self):
+    def test_everything_has_the_stages_of_solve(self):
         recording = self.folder / "ball.h5"
         run("simulate", self.scene, "-o", recording)
         solve = ("solve", recording, "-o", self.folder / "forces.h5", "--everything")
-        self.assert_fails(*solve, says=["noise"])
+        self.assert_fails(*solve, names=["noise"])
         solved = run_json(*solve, "--noise", 0.5)
         paced = self.pace(recording, "--rate", 50, "--seconds", 0.1, "--everything", "--noise", 0.5)
         self.assertEqual(solved["stages"], paced["stages"])
@@ -124,10 +124,10 @@ class Run(PaceTest):
         self.assertIn('"frames_loaded":2,', result.stdout)
         self.assertIn("2 of 6 frames fit into 1 MiB", result.stderr)
         scene.write_text(SCENE.replace("[16, 16]", "[600, 600]"))
-        line = self.assert_fails(*arguments, says=["large.toml", "1440000 bytes"])
+        line = self.assert_fails(*arguments, names=["large.toml", "1440000 bytes"])
         self.assertIn("--memory-limit 2", line)
 
-    def test_realtime_is_granted_or_refused_aloud(self):
+    def test_realtime_is_granted_or_warned_of(self):
         result = run("pace", self.scene, "--rate", 50, "--seconds", 0.1, "--realtime", "--json")
         for key, words in (("scheduling", "real-time scheduling: refused"),
                            ("locked_memory", "locked memory: refused")):
@@ -139,10 +139,11 @@ class Run(PaceTest):
                       "cores", "In contact"):
             self.assertIn(words, text)
 
-    def test_square_metre_asks_for_everything(self):
-        stages = run("info", "--kernel", SCENES / "square_metre_live.toml").stdout
+    def test_square_metre_has_every_stage(self):
+        kernel = run("info", "--kernel", SCENES / "square_metre_live.toml").stdout
+        plan = kernel.split("\n#line 1 ", 1)[0]
         for plane in ("TARE", "GAIN", "DEAD_ZONE", "MASK", "ANGLES", "UNCERTAINTY"):
-            self.assertIn(f"#define PF_{plane}", stages)
+            self.assertIn(f"#define PF_{plane}", plan)
 
 
 class Interruption(PaceTest):
@@ -156,30 +157,30 @@ class Interruption(PaceTest):
             self.assertEqual("interrupted after" in text, "--strict" in extra)
 
     def interrupted(self, arguments):
-        """Exit status and all output of the command, on a terminal, after Ctrl-C in its run."""
-        def interrupt(process, said):
-            if "Pacing for 60 s at 100 Hz, 6 frames over and over" in said:
+        """Exit status and all output on a terminal after Ctrl-C during the run."""
+        def interrupt(process, messages):
+            if "Pacing for 60 s at 100 Hz, 6 frames repeated" in messages:
                 time.sleep(0.3)
                 process.send_signal(signal.SIGINT)
                 return True
             return False
-        status, out, said = on_terminal([PROGRAM, *map(str, arguments)], interrupt)
-        return status, out + said
+        status, out, messages = on_terminal([PROGRAM, *map(str, arguments)], interrupt)
+        return status, out + messages
 
 
 class BadArguments(PaceTest):
     def test_runs_of_no_length(self):
         for seconds in (0, 1e7):
-            self.assert_fails("pace", self.scene, "--seconds", seconds, says=["--seconds", "give"])
+            self.assert_fails("pace", self.scene, "--seconds", seconds, names=["--seconds", "give"])
 
     def test_sources_that_cannot_be_read(self):
-        self.assert_fails("pace", self.folder / "absent.h5", says=["absent.h5"])
-        self.assert_fails("pace", self.folder / "absent.toml", says=["absent.toml"])
+        self.assert_fails("pace", self.folder / "absent.h5", names=["absent.h5"])
+        self.assert_fails("pace", self.folder / "absent.toml", names=["absent.toml"])
         self.assert_fails("pace", self.scene, "--calibration", self.folder / "none.h5",
-                          says=["none.h5"])
+                          names=["none.h5"])
         noise = self.folder / "noise.h5"
         noise.write_bytes(b"\x89HDF\r\n\x1a\n" + bytes(100))
-        self.assert_fails("pace", noise, says=["noise.h5"])
+        self.assert_fails("pace", noise, names=["noise.h5"])
 
     def test_source_without_frames(self):
         import h5py  # pylint: disable=import-outside-toplevel
@@ -189,8 +190,8 @@ class BadArguments(PaceTest):
             frames = file["frames"]
             for name in ("raw", "time"):
                 frames[name].resize(0, axis=0)
-        complaint = run("pace", recording, expect=1).stderr.splitlines()[-1]
-        self.assertRegex(complaint, "^pillarfield: .*ball.h5: it has no frames; give ")
+        error = run("pace", recording, expect=1).stderr.splitlines()[-1]
+        self.assertRegex(error, "^pillarfield: .*ball.h5: it has no frames; give ")
 
 
 if __name__ == "__main__":

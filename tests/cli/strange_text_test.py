@@ -1,4 +1,4 @@
-"""Texts from files and names of files: bytes that are not UTF-8, and such as command a terminal."""
+"""Invalid UTF-8 and terminal escapes in files and their names."""
 
 import json
 import os
@@ -18,7 +18,7 @@ ESCAPED = r"a\u001b[31mb\u001b]0;c\u0007\u009b2Jd\u007f"
 
 
 def output_of(*arguments, expect=0):
-    """The bytes that the command prints, on standard output and error."""
+    """The bytes on standard output and error."""
     result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120, check=False)
     assert result.returncode == expect, (arguments, result)
     return result.stdout, result.stderr
@@ -31,12 +31,12 @@ class StrangeText(CommandTest):
         self.scene.write_text(SCENE.format(title="A ball"))
 
     def assert_harmless(self, output):
-        """No control character but the ends of lines, and all of it UTF-8."""
+        """The output is UTF-8 without control characters except line ends."""
         text = output.decode()
         self.assertTrue(text.replace("\n", "").isprintable(), repr(text))
         return text
 
-    def test_json_is_valid_whatever_a_file_is_called(self):
+    def test_json_is_valid_for_any_file_name(self):
         def name(text):
             return os.fsencode(self.folder) + b"/" + text
 
@@ -64,7 +64,7 @@ class StrangeText(CommandTest):
         for command in (["info", forces], ["info", calibration], ["compare", forces, recording]):
             self.assert_harmless(output_of(*command)[0])
 
-    def test_texts_of_files_do_not_command_the_terminal(self):
+    def test_texts_of_files_are_escaped(self):
         recording = self.folder / "recording.h5"
         forces = self.folder / "forces.h5"
         run("simulate", self.scene, "-o", recording)
@@ -74,8 +74,8 @@ class StrangeText(CommandTest):
             shutil.copy(forces, changed)
             with h5py.File(changed, "r+") as file:
                 file.attrs[kind] = numpy.bytes_(ESCAPES.encode())
-            output, complaint = self.either("info", changed)
-            self.assertIn(ESCAPED, output + complaint)
+            output, error = self.either("info", changed)
+            self.assertIn(ESCAPED, output + error)
         escapes_in_toml = "".join(f"\\u{ord(character):04x}" for character in ESCAPES)
         self.scene.write_text(SCENE.format(title=escapes_in_toml))
         self.assertIn(ESCAPED, self.either("info", self.scene)[0])
@@ -84,7 +84,7 @@ class StrangeText(CommandTest):
         self.scene.write_text(SCENE.format(title="") + f'"{escapes_in_toml}" = 1\n')
         self.assertIn(ESCAPED, self.either("info", self.scene)[1])
 
-    def test_names_of_files_do_not_command_the_terminal(self):
+    def test_names_of_files_are_escaped(self):
         absent = self.folder / f"{ESCAPES}.h5"
         for command in (["info", absent], ["solve", absent, "-o", "a.h5"],
                         ["compare", absent, absent], ["pace", absent],
@@ -94,7 +94,7 @@ class StrangeText(CommandTest):
         self.assertIn(ESCAPED, self.either("solve", absent, "-o", f"{absent}.npy")[0])
 
     def either(self, *arguments):
-        """What the command prints, harmless, whether it fails or not."""
+        """Output and error of the command, checked, with exit status 0 or 1."""
         result = subprocess.run([PROGRAM, *arguments], capture_output=True, timeout=120,
                                 check=False)
         self.assertIn(result.returncode, (0, 1))

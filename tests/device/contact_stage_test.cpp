@@ -1,5 +1,5 @@
-// The estimator `contact` of a processor against the direct solve and the estimator as a C++ loop:
-// 0 ULP, whatever the memory and whatever is known of friction.
+// The estimator `contact` of a processor against direct solve and estimator in C++: 0 ULP with all
+// kinds of memory and of friction.
 
 #include <gtest/gtest.h>
 
@@ -101,13 +101,12 @@ void expect_same_runs(std::span<const ContactRun> actual, std::span<const Contac
   }
 }
 
-/// What differs from one way to run it to the next.
-struct Way {
+struct Path {
   const char* name;
   Memory memory;
 };
 
-class EveryWay : public testing::TestWithParam<Way> {
+class EveryPath : public testing::TestWithParam<Path> {
  protected:
   void SetUp() override {
     if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
@@ -135,13 +134,13 @@ class EveryWay : public testing::TestWithParam<Way> {
   }
 };
 
-TEST_P(EveryWay, HasTheBitsOfTheHost) {
+TEST_P(EveryPath, HasTheBitsOfTheHost) {
   SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
   plan.friction.memory = false;
   expect_host_bits(plan);
 }
 
-TEST_P(EveryWay, WhatIsKnownOfFrictionHasTheBitsOfTheHost) {
+TEST_P(EveryPath, EverySourceOfFrictionHasTheBitsOfTheHost) {
   SolverPlan plan = plan_of(Simulator(parse_scene(kScene, "scene")));
   plan.friction = {.median = 2, .spread = 0.2, .bound = 2.5, .memory = false};
   plan.segment_point = 0.5;
@@ -150,7 +149,7 @@ TEST_P(EveryWay, WhatIsKnownOfFrictionHasTheBitsOfTheHost) {
   expect_host_bits(plan);
 }
 
-TEST_P(EveryWay, FrictionIsCarriedFromFrameToFrame) {
+TEST_P(EveryPath, FrictionIsCarriedFromFrameToFrame) {
   const Simulator simulator(parse_scene(kScene, "scene"));
   SolverPlan plan = plan_of(simulator);
   SolverPlan direct = plan;
@@ -169,10 +168,10 @@ TEST_P(EveryWay, FrictionIsCarriedFromFrameToFrame) {
     expect_same_bits(forces, expected.view());
     any_differs |= solve_on_host(plan, raw.view()).normal != expected.normal;
   }
-  EXPECT_TRUE(any_differs);  // from frames by themselves
+  EXPECT_TRUE(any_differs);  // from frames solved without history
 }
 
-TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
+TEST_P(EveryPath, ReturnsTheContactsOfTheFrame) {
   const Simulator simulator(parse_scene(kScene, "scene"));
   const SolverPlan plan = plan_of(simulator);
   Processor solver = processor(plan);
@@ -192,7 +191,7 @@ TEST_P(EveryWay, LendsTheContactsOfTheFrame) {
   }
 }
 
-TEST_P(EveryWay, RandomFramesHaveTheBitsOfTheHost) {
+TEST_P(EveryPath, RandomFramesHaveTheBitsOfTheHost) {
   for (const SenselType type : {SenselType::u8, SenselType::f32}) {
     SolverPlan plan = full_plan(66, 2 * 41, type, 5);
     plan.estimator = Estimator::contact;
@@ -206,7 +205,7 @@ TEST_P(EveryWay, RandomFramesHaveTheBitsOfTheHost) {
   }
 }
 
-TEST_P(EveryWay, AnglesAreThoseOfTheForces) {
+TEST_P(EveryPath, AnglesAreThoseOfTheForces) {
   const Simulator simulator(parse_scene(kScene, "scene"));
   SolverPlan plan = plan_of(simulator);
   plan.angles = true;
@@ -229,11 +228,11 @@ TEST_P(EveryWay, AnglesAreThoseOfTheForces) {
   EXPECT_GT(resolved, 500U);
 }
 
-constexpr Way kWays[] = {{"shared", Memory::shared}, {"staged", Memory::staged}};
-INSTANTIATE_TEST_SUITE_P(Ways, EveryWay, testing::ValuesIn(kWays),
-                         [](const auto& way) { return std::string(way.param.name); });
+constexpr Path kPaths[] = {{"shared", Memory::shared}, {"staged", Memory::staged}};
+INSTANTIATE_TEST_SUITE_P(Ways, EveryPath, testing::ValuesIn(kPaths),
+                         [](const auto& path) { return std::string(path.param.name); });
 
-TEST(ContactStage, OfOthersNoContactsAreLent) {
+TEST(ContactStage, OtherEstimatorsHaveNoContacts) {
   const SolverPlan plan = bare_plan(20, 20, SenselType::u8);
   Processor solver(test_device(), plan);
   const FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
@@ -248,7 +247,7 @@ TEST(ContactStage, IsNamedAmongTheStages) {
   EXPECT_EQ(kernel_stages(plan).back(), "estimate_contacts");
 }
 
-TEST(ContactStage, RefusesKnowledgeOutOfRange) {
+TEST(ContactStage, RefusesFrictionOutOfRange) {
   SolverPlan plan = bare_plan(20, 20, SenselType::u8);
   plan.estimator = Estimator::contact;
   plan.friction.given = -1;

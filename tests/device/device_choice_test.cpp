@@ -1,4 +1,4 @@
-// Which device is opened, and what is said where none can be.
+// The choice of a device, and errors where there is none.
 
 #include <gtest/gtest.h>
 
@@ -62,7 +62,7 @@ TEST(Programs, AreBuiltOncePerDeviceAndSource) {
   EXPECT_NE(first(), device.state().program(source + "\n")());
 }
 
-TEST(Programs, ThatDoNotCompileSayWhy) {
+TEST(Programs, ThatDoNotCompileHaveALog) {
   try {
     open_device().state().program("kernel void broken() { undeclared = 1; }");
     FAIL() << "it compiled";

@@ -1,4 +1,4 @@
-// Where compiled kernels, which are loaded as code, may lie.
+// Directories for compiled kernels, which are loaded as code.
 
 #include "device/kernel_cache.h"
 
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr uid_t kNobody = 65534;
 
-/// The choice, made with an environment and folders of its own.
+/// Chooses a directory in a separate environment and folder.
 class KernelCacheTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -51,7 +51,7 @@ class KernelCacheTest : public testing::Test {
 
   KernelCache choose() { return choose_kernel_cache(temporary_); }
 
-  /// The choice is a temporary directory, for a reason that says `why`.
+  /// Expects a temporary directory with a reason that contains `why`.
   void expect_temporary(const std::string& why) {
     const KernelCache cache = choose();
     ASSERT_NE(temporary_, nullptr) << cache.directory;
@@ -65,7 +65,7 @@ class KernelCacheTest : public testing::Test {
     EXPECT_FALSE(fs::exists(cache.directory));
   }
 
-  /// What the user asks for is refused in one line that says `why`.
+  /// Expects the user's directory to be refused in one line that contains `why`.
   void expect_refused(const fs::path& asked_for, const std::string& why) {
     set("POCL_CACHE_DIR", asked_for);
     try {
@@ -82,7 +82,7 @@ class KernelCacheTest : public testing::Test {
   std::unique_ptr<TemporaryDirectory> temporary_;
 };
 
-TEST_F(KernelCacheTest, WhatIsMissingIsMadeForThisUserAlone) {
+TEST_F(KernelCacheTest, MissingDirectoriesAreCreatedForThisUserAlone) {
   const mode_t before = umask(0);
   for (const char* variable : {"HOME", "XDG_CACHE_HOME"}) {  // The second goes before the first.
     set(variable, folder_ / variable);
@@ -108,10 +108,10 @@ TEST_F(KernelCacheTest, WithoutAHomeItIsNotKept) {
   EXPECT_FALSE(fs::exists("relative"));
 }
 
-TEST_F(KernelCacheTest, WhatOthersCanWriteIsPassedOver) {
-  set("XDG_CACHE_HOME", directory("open", 0777));
-  expect_temporary("others can write " + (folder_ / "open").string());
-  EXPECT_TRUE(fs::is_empty(folder_ / "open"));
+TEST_F(KernelCacheTest, DirectoriesThatOthersCanWriteAreSkipped) {
+  set("XDG_CACHE_HOME", directory("writable", 0777));
+  expect_temporary("others can write " + (folder_ / "writable").string());
+  EXPECT_TRUE(fs::is_empty(folder_ / "writable"));
 
   const fs::path home = directory("home", 0755);
   set("HOME", home);  // The next choice.
@@ -124,12 +124,12 @@ TEST_F(KernelCacheTest, WhatOthersCanWriteIsPassedOver) {
   expect_temporary("others can write");
 }
 
-TEST_F(KernelCacheTest, LinksAreJudgedByWhereTheyLead) {
-  const fs::path open = directory("open", 0777);
+TEST_F(KernelCacheTest, LinksAreResolvedFirst) {
+  const fs::path writable = directory("writable", 0777);
   const fs::path home = directory("home", 0755);
-  fs::create_directory_symlink(open, home / ".cache");
+  fs::create_directory_symlink(writable, home / ".cache");
   set("HOME", home);
-  expect_temporary("others can write " + open.string());
+  expect_temporary("others can write " + writable.string());
   fs::remove(home / ".cache");
   fs::create_directory_symlink(directory("mine", 0700), home / ".cache");
   EXPECT_EQ(choose().directory, folder_ / "mine/pillarfield/kernels");
@@ -141,7 +141,7 @@ TEST_F(KernelCacheTest, InAStickyDirectoryOnesOwnIsSafe) {
   expect_refused(folder_ / "sticky", "others can write");
 }
 
-TEST_F(KernelCacheTest, DirectoriesOfOthersArePassedOver) {
+TEST_F(KernelCacheTest, DirectoriesOfOthersAreSkipped) {
   const fs::path theirs = directory("theirs", 0755);
   if (chown(theirs.c_str(), kNobody, kNobody) != 0) GTEST_SKIP() << "only root gives files away";
   set("HOME", theirs);
@@ -159,8 +159,8 @@ TEST_F(KernelCacheTest, AGroupOfOthersIsOthers) {
   expect_refused(shared, "others can write");
 }
 
-TEST_F(KernelCacheTest, WhatTheUserAsksForIsTakenOrRefused) {
-  expect_refused(directory("open", 0777), "others can write");
+TEST_F(KernelCacheTest, TheUsersDirectoryIsUsedOrRefused) {
+  expect_refused(directory("writable", 0777), "others can write");
   std::ofstream(folder_ / "file") << "text";
   expect_refused(folder_ / "file", "is not a directory");
   expect_refused(folder_ / "file/below", "");
@@ -178,14 +178,14 @@ TEST_F(KernelCacheTest, AHomeThatCannotBeWrittenIsNoFailure) {
   std::ofstream(folder_ / "file") << "text";
   set("HOME", folder_ / "file");
   expect_temporary("");
-  set("TMPDIR", directory("open", 0777));  // Nor a bad folder for temporary files.
+  set("TMPDIR", directory("writable", 0777));  // Nor a bad folder for temporary files.
   expect_temporary("");
-  EXPECT_TRUE(fs::is_empty(folder_ / "open"));
+  EXPECT_TRUE(fs::is_empty(folder_ / "writable"));
   set("TMPDIR", directory("mine", 0700));
   EXPECT_EQ(choose().directory.parent_path(), folder_ / "mine");
 }
 
-TEST_F(KernelCacheTest, AFullDiskIsSaid) {
+TEST_F(KernelCacheTest, AFullDiskIsReported) {
   const PrivateDirectory found = private_directory(folder_ / "kernels", UINTMAX_MAX);
   EXPECT_TRUE(found.path.empty());
   EXPECT_NE(found.refused.find("KiB left"), std::string::npos) << found.refused;

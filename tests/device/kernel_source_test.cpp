@@ -1,4 +1,4 @@
-// The program that a plan makes: its stages, its constants, its files.
+// The program of a plan: its stages, constants and files.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ TEST(KernelSource, ABarePlanHasNoStageItDoesNotNeed) {
   }
 }
 
-TEST(KernelSource, EveryWishOfAPlanIsAStage) {
+TEST(KernelSource, EveryOptionOfAPlanIsAStage) {
   SolverPlan plan = full_plan(8, 8, SenselType::f32, 1);
   plan.angles = true;
   plan.uncertainty = true;
@@ -58,12 +58,12 @@ TEST(KernelSource, EveryWishOfAPlanIsAStage) {
   EXPECT_EQ(kernel_stages(plan), expected);
 }
 
-TEST(KernelSource, TheDoubtIsFiveDeviationsOfThreeReadings) {
+TEST(KernelSource, TheMarginIsFiveDeviationsOfThreeReadings) {
   SolverPlan plan = bare_plan(8, 8, SenselType::f32);
   const auto margin = [&] {
     return std::strtof(macro(kernel_source(plan, 1), "PF_MARGIN").c_str(), nullptr);
   };
-  EXPECT_EQ(margin(), 0) << "the noise is not known";
+  EXPECT_EQ(margin(), 0) << "the noise is unknown";
   plan.noise_counts = 2;
   EXPECT_FLOAT_EQ(margin(), 5 * std::sqrt(3.0F) * 2);
   plan.calibration.noise.assign(64, 4.0F);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kLargePage = std::size_t{1} << 21U;
 
-TEST(LargePages, BeginOnALargePageAndHoldWhatWasAskedFor) {
+TEST(LargePages, BeginOnALargePageAndHoldTheRequestedBytes) {
   for (const std::size_t bytes : {std::size_t{1}, std::size_t{4095}, std::size_t{4097}, kLargePage,
                                   kLargePage + 1, 3 * kLargePage}) {
     const LargePages memory = allocate_large_pages(bytes);
@@ -27,7 +27,7 @@ TEST(LargePages, BeginOnALargePageAndHoldWhatWasAskedFor) {
 }
 
 TEST(LargePages, AreWholePagesToTheirEnd) {
-  // What is sent to a device ends with a page, beyond what was asked for.
+  // The device reads up to the end of a page, beyond the requested bytes.
   const LargePages small = allocate_large_pages(1);
   std::ranges::fill(std::span(small.get(), 4096), std::byte{1});
   const LargePages large = allocate_large_pages(kLargePage + 1);

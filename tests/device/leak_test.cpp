@@ -1,6 +1,5 @@
-// What a processor takes it gives back. LeakSanitizer cannot say so beside PoCL's threads, so the
-// heap is measured: one that kept a plane, a frame or a kernel would grow by far more than is
-// allowed here.
+// A processor frees its memory. LeakSanitizer does not work with PoCL's threads, so the test
+// measures the heap: a leaked plane, frame or kernel would exceed the limit by far.
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -14,7 +13,7 @@ namespace {
 
 constexpr std::uint32_t kSensels = 128;  // on a side: a plane of results takes 16 KiB
 
-/// Bytes that the heap has given out, large blocks of their own included.
+/// Allocated bytes of the heap, including large blocks.
 std::size_t heap_bytes() {
   const struct mallinfo2 heap = mallinfo2();
   return heap.uordblks + heap.hblkhd;

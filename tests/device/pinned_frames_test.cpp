@@ -118,7 +118,7 @@ TEST_P(PinnedFrames, GivingBackFreesTheSlot) {
   EXPECT_EQ(ring.pinned(), 0);
 }
 
-TEST_P(PinnedFrames, ExhaustionIsOneClearLineAndCanBeMended) {
+TEST_P(PinnedFrames, ExhaustionIsOneClearLineAndRecoverable) {
   const SolverPlan plan = bare_plan(16, 16, SenselType::u8);
   Processor ring = processor(plan, 2);
   const std::vector<RandomFrame> frames = frames_of(plan, 2);
@@ -143,21 +143,21 @@ TEST_P(PinnedFrames, ExhaustionIsOneClearLineAndCanBeMended) {
   expect_solved(ring.receive(), plan, frames[0]);
 }
 
-TEST_P(PinnedFrames, SilentBlocksOfASlotAreSkippedRightly) {
+TEST_P(PinnedFrames, IdleBlocksOfASlotKeepTheirResults) {
   const SolverPlan plan = bare_plan(32, 64, SenselType::u8);
   Processor ring = processor(plan, 3);
-  FrameBuffer silent(SenselType::u8, 32, 64);
-  const RandomFrame loud(plan, 0, 5);
+  FrameBuffer idle(SenselType::u8, 32, 64);
+  const RandomFrame active(plan, 0, 5);
   std::mt19937 random(7);
   std::deque<Processor::PinnedResult> pinned;
   std::deque<std::pair<ForceFieldView, bool>> seen;
   for (int i = 0; i < 60; ++i) {
-    const bool is_loud = random() % 2 == 0;
-    ring.submit(is_loud ? loud.view() : silent.view());
+    const bool is_active = random() % 2 == 0;
+    ring.submit(is_active ? active.view() : idle.view());
     const ForceFieldView forces = ring.receive();
-    EXPECT_EQ(std::ranges::count(forces.status, 0) == std::ssize(forces.status), !is_loud);
-    if (is_loud) expect_solved(forces, plan, loud);
-    seen.emplace_back(forces, is_loud);
+    EXPECT_EQ(std::ranges::count(forces.status, 0) == std::ssize(forces.status), !is_active);
+    if (is_active) expect_solved(forces, plan, active);
+    seen.emplace_back(forces, is_active);
     pinned.push_back(ring.pin());
     const auto stays = static_cast<std::size_t>(random() % 3);
     for (; pinned.size() > stays; pinned.pop_front(), seen.pop_front()) {
@@ -222,7 +222,7 @@ TEST_P(PinnedFrames, AreGivenBackFromAnotherThreadWhileFramesAreSolved) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST_P(PinnedFrames, OnlyTheLastReceivedCanBeKept) {
+TEST_P(PinnedFrames, OnlyTheLastReceivedCanBePinned) {
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   Processor ring = processor(plan, 2);
   const RandomFrame frame(plan, 0, 1);
@@ -235,8 +235,8 @@ TEST_P(PinnedFrames, OnlyTheLastReceivedCanBeKept) {
   EXPECT_THROW(static_cast<void>(ring.pin()), Error) << "it is pinned already";
 }
 
-/// What Processor promises of results that are not pinned.
-TEST(SlotScheduler, ASlotIsUsedAgainAfterAsManyFramesAsAreNotKept) {
+/// The lifetime of results that are not pinned.
+TEST(SlotScheduler, ASlotIsUsedAgainAfterAsManyFramesAsAreNotPinned) {
   for (std::size_t slots = 1; slots <= 6; ++slots) {
     for (std::size_t pinned = 0; pinned < slots; ++pinned) {
       SlotScheduler turns(slots);

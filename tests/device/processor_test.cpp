@@ -1,4 +1,4 @@
-// The frame solver against the same mathematics as a C++ loop: 0 ULP on every path.
+// The kernels against the C++ path: 0 ULP on every path.
 
 #include "pillarfield/processor.h"
 
@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
 
-/// Within so many units in the last place of `scale`, which is at least |expected|.
+/// Equal within `ulps` units in the last place of `scale`, which is at least |expected|.
 void expect_near(float actual, float expected, float scale, float ulps, const char* plane,
                  std::size_t pillar) {
   const float tolerance = ulps * std::max(std::numeric_limits<float>::epsilon() * scale, kSmallest);
@@ -38,7 +38,7 @@ void expect_same_turn(float actual, float expected, float ulps, const char* plan
   expect_near(turn, 0, 4, ulps, plane, pillar);
 }
 
-/// Where functions of a library take part: 8 ULP of the value, of a half turn for phi.
+/// Tolerance with library functions: 8 ULP of the value, of a half turn for phi.
 void expect_same_uncertainty(const ForceFieldView& actual, const ForceFieldView& expected) {
   constexpr float kUlps = 8;
   for (std::size_t index = 0; index < kUncertaintyPlanes; ++index) {
@@ -57,7 +57,7 @@ void expect_same_uncertainty(const ForceFieldView& actual, const ForceFieldView&
   }
 }
 
-/// Where functions of a library come first: so many ULP of the force's magnitude.
+/// Tolerance with library functions before the solve: ULP of the force's magnitude.
 void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expected, float ulps) {
   for (std::size_t i = 0; i < actual.normal.size(); ++i) {
     const float scale = std::hypot(expected.shear_x[i], expected.shear_y[i], expected.normal[i]);
@@ -68,7 +68,7 @@ void expect_same_forces(const ForceFieldView& actual, const ForceFieldView& expe
   }
 }
 
-/// A skin whose columns leave a rest for every lane width, and one that is smaller than any.
+/// A skin whose columns are no multiple of any lane width, and one smaller than all of them.
 struct Path {
   SenselType type;
   int lanes;
@@ -112,7 +112,7 @@ class EveryPath : public testing::TestWithParam<Path> {
   }
 };
 
-/// Stages that are whole programs more: not on all paths, for compiling takes its time.
+/// Stages that need further programs: not on all paths, because compiling is slow.
 class FurtherStages : public EveryPath {};
 
 TEST_P(EveryPath, BareSolveHasTheBitsOfTheHost) {
@@ -124,12 +124,12 @@ TEST_P(EveryPath, AllStagesHaveTheBitsOfTheHost) {
 }
 
 TEST_P(FurtherStages, UncertaintyIsThatOfTheHost) {
-  SolverPlan known = full_plan(14, 2 * 21, GetParam().type, 9);
-  known.uncertainty = true;
+  SolverPlan with_uncertainty = full_plan(14, 2 * 21, GetParam().type, 9);
+  with_uncertainty.uncertainty = true;
   SolverPlan plain = bare_plan(12, 2 * 19, GetParam().type);
   plain.uncertainty = true;
   plain.noise_counts = 0.7;
-  for (const SolverPlan& plan : {known, plain}) {
+  for (const SolverPlan& plan : {with_uncertainty, plain}) {
     Processor processor(test_device(), plan, {.memory = GetParam().memory},
                         {.lanes = GetParam().lanes});
     const RandomFrame frame(plan, 3, 1);
@@ -154,7 +154,7 @@ TEST_P(FurtherStages, PaperSolveIsThatOfTheHost) {
   }
 }
 
-/// Of random readings few exceed this: many pillars are untouched.
+/// A threshold that few random readings exceed: many pillars are untouched.
 SolverPlan following_plan(std::uint32_t rows, std::uint32_t cols, SenselType type) {
   SolverPlan plan = full_plan(rows, cols, type, 11);
   const double largest = type == SenselType::u16 ? 4095 : (type == SenselType::u8 ? 255 : 300);
@@ -363,7 +363,7 @@ TEST(Processor, AFullRingRefusesAnotherFrame) {
   expect_same_bits(processor.receive(), solve_on_host(plan, frame.view()).view());
 }
 
-TEST(Processor, AProcessorMayGoWhileFramesAreInFlight) {
+TEST(Processor, AProcessorMayBeDestroyedWhileFramesAreInFlight) {
   const SolverPlan plan = bare_plan(512, 512, SenselType::u8);
   const RandomFrame frame(plan, 0, 1);
   for (const Memory memory : {Memory::automatic, Memory::staged}) {
@@ -375,7 +375,7 @@ TEST(Processor, AProcessorMayGoWhileFramesAreInFlight) {
   }
 }
 
-TEST(Processor, RefusesWhatDoesNotFit) {
+TEST(Processor, RefusesFramesThatDoNotFit) {
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   Processor processor(test_device(), plan);
   const RandomFrame frame(plan, 0, 1);

@@ -39,7 +39,7 @@ std::vector<Value> random_plane(Random& random, std::size_t size, double low, do
 RandomFrame::RandomFrame(const SolverPlan& plan, std::size_t padding, std::uint32_t seed)
     : skin_(plan.skin), type_(plan.sensel_type), row_stride_(plan.skin.cols + padding) {
   Random random(seed);
-  // Not a reading more than the frame has: reading beyond it is then an error a sanitizer sees.
+  // No reading more than the frame has, so that a sanitizer detects reads beyond it.
   const std::size_t size = (skin_.rows - 1) * row_stride_ + skin_.cols;
   for (std::size_t i = 0; i < size; ++i) {
     switch (type_) {

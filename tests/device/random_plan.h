@@ -25,10 +25,10 @@ class RandomFrame {
   std::vector<float> f32_;
 };
 
-/// A plan for a skin of so many sensels with no stage but the bare solve.
+/// A plan for a skin of rows x cols sensels without optional stages.
 SolverPlan bare_plan(std::uint32_t rows, std::uint32_t cols, SenselType type);
 
-/// The same with saturation, parity test and all calibration planes.
+/// A plan with saturation, parity test and all calibration planes.
 SolverPlan full_plan(std::uint32_t rows, std::uint32_t cols, SenselType type, std::uint32_t seed);
 
 }  // namespace pillarfield

@@ -1,5 +1,5 @@
-// However a frame is solved faster, the result is the same, bit for bit: every way against the one
-// that skips nothing and stores as usual, over frames in which contacts come and go.
+// All speed paths give the same bits as the one that skips nothing and stores through the caches,
+// over frames in which contacts appear and vanish.
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace pillarfield {
 namespace {
 
-/// Frames of a skin that is silent but for one contact, which moves, and is absent at times.
+/// Frames of an idle skin with one moving contact, which is absent at times.
 class MovingContact {
  public:
   MovingContact(const SolverPlan& plan, std::uint32_t seed) : plan_(plan), random_(seed) {}
@@ -55,7 +55,7 @@ class MovingContact {
       case SenselType::f32:
         break;
     }
-    // Once in a while a sensel drops out, or its converter does.
+    // Sometimes a sensel or its converter fails.
     constexpr float kAbsurd[] = {std::numeric_limits<float>::quiet_NaN(), -1e38F, 1e38F};
     const double kind = uniform(0, 1);
     frame.readings<float>()[at] = kind < 0.998
@@ -93,7 +93,7 @@ void expect_all_bits(const ForceFieldView& actual, const ForceFieldView& expecte
 
 constexpr SpeedPaths kPlain = {.skip_idle = false, .stores = Stores::cached};
 
-/// Both ways through the same frames, two in flight, so that slots are used by turns.
+/// Solves the same frames on both paths, two in flight, so that slots alternate.
 void expect_same(const Device& device, const SolverPlan& plan, int lanes, const SpeedPaths& paths,
                  Memory memory = Memory::automatic) {
   Processor reference(device, plan, {}, {.lanes = lanes, .paths = kPlain});
@@ -111,7 +111,7 @@ void expect_same(const Device& device, const SolverPlan& plan, int lanes, const 
   EXPECT_EQ(fast.tare(), reference.tare());
 }
 
-/// Little is silent by chance: the noise of MovingContact stays below every threshold.
+/// The noise of MovingContact stays below every threshold.
 SolverPlan quiet_plan(std::uint32_t rows, std::uint32_t cols, SenselType type) {
   SolverPlan plan = full_plan(rows, cols, type, 3);
   for (float& tare : plan.calibration.tare) tare = std::abs(tare);
@@ -130,7 +130,7 @@ class SpeedPathTest : public testing::TestWithParam<SpeedPath> {
   Device device_ = open_device();
 };
 
-TEST_P(SpeedPathTest, SkippingSilentBlocksChangesNoBit) {
+TEST_P(SpeedPathTest, SkippingIdleBlocksChangesNoBit) {
   expect_same(device_, quiet_plan(40, 2 * 53, GetParam().type), GetParam().lanes,
               {.skip_idle = true, .stores = Stores::cached});
 }
@@ -147,7 +147,7 @@ TEST_P(SpeedPathTest, BothTogetherWithACopyOfTheResultsChangeNoBit) {
               Memory::staged);
 }
 
-TEST_P(SpeedPathTest, SilenceIsThatOfTheTareThatFollows) {
+TEST_P(SpeedPathTest, IdleBlocksFollowTheTare) {
   SolverPlan plan = quiet_plan(40, 2 * 37, GetParam().type);
   plan.uncertainty = false;
   plan.baseline_rate = 0.3;
@@ -166,8 +166,8 @@ INSTANTIATE_TEST_SUITE_P(
       return std::string(name_of(path.param.type)) + "_lanes" + std::to_string(path.param.lanes);
     });
 
-/// That blocks are skipped at all: what is written into a silent block's results stays there.
-TEST(SpeedPaths, ASilentBlockIsNotWrittenAgain) {
+/// Idle blocks are skipped: a value written into their results stays.
+TEST(SpeedPaths, AnIdleBlockIsNotWrittenAgain) {
   const Device device = open_device();
   if (!device.info().shares_memory) GTEST_SKIP() << "the device does not share memory";
   SolverPlan plan = bare_plan(8, 2 * 64, SenselType::u8);
@@ -177,7 +177,7 @@ TEST(SpeedPaths, ASilentBlockIsNotWrittenAgain) {
     FrameBuffer frame(SenselType::u8, plan.skin.rows, plan.skin.cols);
     processor.submit(frame.view());
     const ForceFieldView forces = processor.receive();
-    const_cast<float&>(forces.normal[5]) = 42;  // The test's mark, against the contract.
+    const_cast<float&>(forces.normal[5]) = 42;  // Breaks the contract, to detect a write.
     processor.submit(frame.view());
     EXPECT_EQ(processor.receive().normal[5], skip ? 42.0F : 0.0F);
   }

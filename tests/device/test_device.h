@@ -9,7 +9,7 @@
 namespace pillarfield {
 
 /// One device for all tests of a program, so that kernels are compiled once. It is closed before
-/// the process ends: drivers must not be called while their own statics go.
+/// the process ends: drivers must not be called while their statics are destroyed.
 class DeviceForTests : public testing::Environment {
  public:
   void SetUp() override { device = open_device(); }

@@ -1,5 +1,5 @@
-// The solve in 16-bit integers: the bits of the host's single precision, whatever a pillar reads
-// and wherever a plan puts its limits.
+// The solve in 16-bit integers gives the bits of the host's single precision for all readings and
+// limits.
 
 #include <gtest/gtest.h>
 
@@ -17,11 +17,11 @@
 namespace pillarfield {
 namespace {
 
-/// Readings about every limit of the plans below.
+/// Readings around the limits of the plans below.
 constexpr std::array<std::uint8_t, 13> kReadings = {0,  1,   2,   3,   4,   7,  20,
                                                     21, 127, 250, 251, 254, 255};
 
-/// All combinations of four of them, a pillar each; the order mixes them within a block.
+/// All combinations of four of these readings, one per pillar; the order mixes them within a block.
 FrameBuffer all_pillars() {
   constexpr std::size_t kSide = kReadings.size() * kReadings.size();
   FrameBuffer frame(SenselType::u8, 2 * kSide, 2 * kSide);
@@ -51,7 +51,6 @@ class WholeNumbers : public testing::Test {
     return plan;
   }
 
-  /// The plan on the device, against the host.
   static void expect_host_bits(const SolverPlan& plan, int lanes = 0) {
     const ForceField expected = solve_on_host(plan, frame_.view());
     Processor processor(*device_, plan, {}, {.lanes = lanes});
@@ -85,7 +84,7 @@ TEST_F(WholeNumbers, EveryThreshold) {
   }
 }
 
-/// Those that whole numbers hold exactly, and others.
+/// Segment points that whole numbers represent exactly, and others.
 TEST_F(WholeNumbers, EverySegmentPoint) {
   for (const double point : {1e-3, 0.5, 0.7, 0.75, 0.875, 0.9375, 1.0}) {
     for (const double threshold : {0.0, 2.0, 3.5, 20.5, 253.5}) {
@@ -128,7 +127,7 @@ TEST_F(WholeNumbers, EveryParityTolerance) {
 }
 
 /// The margin of 0.636 is a little more than 6 counts, by which readings 7, 7 and 20 differ.
-TEST_F(WholeNumbers, EveryDoubt) {
+TEST_F(WholeNumbers, EveryMargin) {
   for (const double noise : {0.0, 0.1, 0.4, 0.636, 3.0, 20.0, 1e6}) {
     SCOPED_TRACE(noise);
     SolverPlan plan = plan_of(2);

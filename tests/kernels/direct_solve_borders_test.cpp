@@ -1,5 +1,5 @@
-// The force as a reading comes and goes: continuous where the model says so, and where it does not,
-// the answer before lies on the segment after.
+// The force as a reading appears and vanishes: continuous where the model is; elsewhere the force
+// before lies on the segment after.
 
 #include <gtest/gtest.h>
 
@@ -68,7 +68,7 @@ TYPED_TEST(DirectSolveBorders, RegionOneToTwoAtAThreshold) {
 
 TYPED_TEST(DirectSolveBorders, RegionTwoMeetsTheEndOfRegionThree) {
   for (std::size_t first = 0; first < 4; ++first) {
-    // Sensels 1 and 2 pressed, 4 inactive, 3 about to lift.
+    // Sensels 1 and 2 pressed, 4 inactive, 3 about to become inactive.
     const auto in_two = TestFixture::turned({70, 90, TestFixture::kLeast, 0}, first);
     const auto in_three = TestFixture::turned({70, 90, 0, 0}, first);
     const auto segment = solve<TypeParam>(pillar_of<TypeParam>(in_three), 1);

@@ -23,7 +23,8 @@ double distance(const Force& a, const Force& b) {
 template <class Precision>
 class DirectSolveSegment : public testing::Test {
  protected:
-  /// Calls `check(truth, readings)` for random forces that lift two adjacent sensels.
+  /// Calls `check(truth, readings)` for random forces under which two adjacent sensels are
+  /// inactive.
   template <class Check>
   static void for_random_region_three(int cases, Check check) {
     Random random(51);
@@ -82,13 +83,14 @@ TYPED_TEST(DirectSolveSegment, HoldsTheTruthAndTheForceAtItsPoint) {
   }
 }
 
-/// The normal force of a pillar of counts_per_newton 1/2, whose parity sum that is.
+/// The normal force of a pillar with counts_per_newton 1/2: equal to its parity sum.
 template <class Precision>
 double sum_of(const PillarOf<Precision>& pillar, double segment_point) {
   return static_cast<double>(solve<Precision>(pillar, 0.5, segment_point).force.normal);
 }
 
-TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheMiddleElsewhere) {
+TYPED_TEST(DirectSolveSegment,
+           HasItsPointWhereASenselOfEachDiagonalIsMeasuredAndTheMidpointElsewhere) {
   using Real = RealOf<TypeParam>;
   const auto usable = TypeParam::raw_sensel(40);
   const auto inactive = TypeParam::raw_sensel(0);
@@ -104,10 +106,10 @@ TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheM
     EXPECT_EQ(at(usable, usable, inactive, inactive, part), part * 44);
     EXPECT_EQ(at(saturated, saturated, inactive, inactive, part), part * 64);
     EXPECT_EQ(at(usable, saturated, inactive, inactive, part), part * 44);
-    // One is missing: the other diagonal bounds the sum.
+    // One sensel is missing: the other diagonal bounds the sum.
     EXPECT_EQ(at(usable, usable, missing, inactive, part), part * 44);
     EXPECT_EQ(at(usable, inactive, inactive, missing, part), part * 44);
-    // Thresholds alone, or the smallest force, set the end of the others.
+    // Thresholds or the smallest force set the upper end.
     EXPECT_EQ(at(usable, inactive, inactive, inactive, part), 4);
     EXPECT_EQ(at(usable, inactive, missing, inactive, part), 4);
     EXPECT_NEAR(at(usable, usable, missing, missing, part), 160 / 3.0, 1e-4);
@@ -118,7 +120,7 @@ TYPED_TEST(DirectSolveSegment, HasItsPointWhereASenselOfEachDiagonalTellsAndTheM
   }
 }
 
-TYPED_TEST(DirectSolveSegment, ExplainsTheReadingsAllAlong) {
+TYPED_TEST(DirectSolveSegment, IsConsistentWithTheReadings) {
   using Real = RealOf<TypeParam>;
   TestFixture::for_random_region_three(2'000, [](const auto&, const auto& readings) {
     const auto solved =
@@ -140,7 +142,7 @@ TYPED_TEST(DirectSolveSegment, ExplainsTheReadingsAllAlong) {
   });
 }
 
-TYPED_TEST(DirectSolveSegment, KnowsTheShearAlongThePressedSideExactly) {
+TYPED_TEST(DirectSolveSegment, HasTheExactShearAlongThePressedSide) {
   TestFixture::for_random_region_three(20'000, [](const auto& truth, const auto& readings) {
     const auto solved =
         solve<TypeParam>(pillar_of<TypeParam>(readings), TestFixture::kCountsPerNewton);
@@ -191,12 +193,13 @@ TYPED_TEST(DirectSolveSegment, HoldsTheTruthBehindADeadZone) {
     const double k = TestFixture::kCountsPerNewton;
     const auto truth = random.force(random.decades(0.05, 2));
     const auto readings = rounded_readings<TypeParam>(truth, k);
-    const auto answer = [&](Real reading) {
+    const auto response = [&](Real reading) {
       return fill_dead_zone(classify(TypeParam::raw_sensel(reading - dead_zone), Real{0}),
                             dead_zone);
     };
-    const auto solved = solve<TypeParam>(
-        {answer(readings[0]), answer(readings[1]), answer(readings[2]), answer(readings[3])}, k);
+    const auto solved = solve<TypeParam>({response(readings[0]), response(readings[1]),
+                                          response(readings[2]), response(readings[3])},
+                                         k);
     if (!(solved.sum.low < solved.sum.high)) continue;
     EXPECT_NE(solved.status & status::kAmbiguous, 0);
     ++ambiguous;

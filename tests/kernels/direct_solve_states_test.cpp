@@ -1,5 +1,5 @@
-// Every combination of usable, inactive, missing and saturated sensels has an answer and a status,
-// and the answer explains the readings.
+// Every combination of usable, inactive, missing and saturated sensels has a force and a status,
+// and the force is consistent with the readings.
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,8 @@ class DirectSolveStates : public testing::Test {
     return force.shear_x == 0 && force.shear_y == 0 && force.normal == 0;
   }
 
-  /// States that a pillar with these readings can have: inactive where they are not positive.
+  /// States that a pillar with these readings can have: inactive sensels where they are not
+  /// positive.
   static bool fit(const States& states, const FourReadings<Precision>& readings) {
     for (std::size_t n = 0; n < 4; ++n) {
       if (states[n] != missing && (states[n] == inactive) != (readings[n] <= 0)) return false;
@@ -57,7 +58,7 @@ class DirectSolveStates : public testing::Test {
     return true;
   }
 
-  /// Saturated sensels stop at a share of what they should read.
+  /// Saturated sensels read a fraction of their true reading.
   static FourReadings<Precision> clipped(Random& random, const States& states,
                                          FourReadings<Precision> readings) {
     for (std::size_t n = 0; n < 4; ++n) {
@@ -67,9 +68,9 @@ class DirectSolveStates : public testing::Test {
     return readings;
   }
 
-  /// Whether the readings of `force` are what sensels in these states would show.
-  static void expect_explained(const ForceOf<Precision>& force, const States& states,
-                               const FourReadings<Precision>& readings) {
+  /// True if sensels in these states would show the readings of `force`.
+  static void expect_consistent(const ForceOf<Precision>& force, const States& states,
+                                const FourReadings<Precision>& readings) {
     const oracle::Readings implied = oracle::readings_of(to_exact(force), kCountsPerNewton);
     RealOf<Precision> largest = 0;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -132,7 +133,7 @@ TYPED_TEST(DirectSolveStates, OneSenselAloneIsShearAlongItsDiagonal) {
   }
 }
 
-/// The status bits of a pillar in these states, but for the ambiguous one.
+/// The status bits of a pillar in these states, without the ambiguous bit.
 int expected_status(const States& states) {
   static constexpr States kRisingAlone = {usable, inactive, usable, inactive};
   static constexpr States kFallingAlone = {inactive, usable, inactive, usable};
@@ -168,7 +169,7 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsFiniteAndHasItsBits) {
   }
 }
 
-TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
+TYPED_TEST(DirectSolveStates, EveryForceIsConsistent) {
   Random random(63);
   const std::array<States, 256> all = all_states();
   std::array<int, 256> seen{};
@@ -183,7 +184,7 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
       const auto shown = TestFixture::clipped(random, states, readings);
       const auto solved =
           solve<TypeParam>(pillar_in<TypeParam>(states, shown), TestFixture::kCountsPerNewton);
-      TestFixture::expect_explained(solved.force, states, shown);
+      TestFixture::expect_consistent(solved.force, states, shown);
     }
   }
   // A diagonal that is inactive at both ends has no parity sum above zero: no force has that.
@@ -197,9 +198,11 @@ TYPED_TEST(DirectSolveStates, EveryCombinationIsExplained) {
 
 TYPED_TEST(DirectSolveStates, ABoundedParitySumHoldsTheTruth) {
   const auto bounded = [](const States& states) {
-    const auto tells = [&](std::size_t n) { return states[n] == usable || states[n] == inactive; };
+    const auto is_bounded = [&](std::size_t n) {
+      return states[n] == usable || states[n] == inactive;
+    };
     const bool measured = std::ranges::count(states, saturated) == 0;
-    return measured && ((tells(0) && tells(2)) || (tells(1) && tells(3)));
+    return measured && ((is_bounded(0) && is_bounded(2)) || (is_bounded(1) && is_bounded(3)));
   };
   Random random(65);
   for (const States& states : all_states()) {
@@ -278,19 +281,20 @@ TYPED_TEST(DirectSolveStates, NothingBoundsTheSmallestForce) {
 
 TYPED_TEST(DirectSolveStates, UnequalDeadZonesAloneAreNoContact) {
   using Real = RealOf<TypeParam>;
-  const auto silent = [](Real dead_zone) {
+  const auto unloaded = [](Real dead_zone) {
     return fill_dead_zone(sensel_in<TypeParam>(inactive, 0), dead_zone);
   };
   const auto gone = sensel_in<TypeParam>(missing, 9);
-  for (const auto& pillar : {PillarOf<TypeParam>{silent(1), silent(2), silent(3), silent(4)},
-                             PillarOf<TypeParam>{silent(1), silent(2), gone, gone}}) {
+  for (const auto& pillar :
+       {PillarOf<TypeParam>{unloaded(1), unloaded(2), unloaded(3), unloaded(4)},
+        PillarOf<TypeParam>{unloaded(1), unloaded(2), gone, gone}}) {
     const auto solved = solve<TypeParam>(pillar, 50);
     EXPECT_TRUE(TestFixture::is_zero(solved.force));
     EXPECT_EQ(solved.status & (status::kAmbiguous | status::kUsable), 0);
   }
 }
 
-TYPED_TEST(DirectSolveStates, HostileReadingsAreMissingOrHarmless) {
+TYPED_TEST(DirectSolveStates, ExtremeReadingsAreMissingOrHarmless) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   const std::array<Real, 10> hostile = {Limits::quiet_NaN(),

@@ -1,5 +1,5 @@
-// The paper's printed equations are wrong where docs/derivations/pillar_model.md says so, and what
-// it puts in their place is right.
+// The paper's printed equations have the errors that docs/derivations/pillar_model.md lists, and
+// its corrections are right.
 
 #include "evaluation/errata.h"
 
@@ -13,14 +13,14 @@ namespace {
 
 class Errata : public testing::TestWithParam<Erratum> {};
 
-TEST_P(Errata, WhatIsPrintedIsWrong) {
+TEST_P(Errata, ThePrintedEquationIsWrong) {
   const Deviation printed = GetParam().measure_printed();
   // A tangent of the wrong sign is right where it vanishes.
   EXPECT_GE(printed.wrong, 0.95 * printed.cases);
   EXPECT_GT(printed.worst_rad, 0.3);
 }
 
-TEST_P(Errata, WhatIsMendedIsRight) {
+TEST_P(Errata, TheCorrectedEquationIsRight) {
   const Deviation mended = GetParam().measure_mended();
   EXPECT_GT(mended.cases, 0);
   EXPECT_EQ(mended.wrong, 0);

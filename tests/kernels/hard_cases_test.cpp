@@ -21,8 +21,8 @@
 namespace pillarfield::hard_cases {
 namespace {
 
-/// How far a component may be from the exact answer, in epsilons of the magnitude
-/// (docs/derivations/conditioning.md, C4 and C5).
+/// Largest error of a component, in epsilons of the magnitude (docs/derivations/conditioning.md, C4
+/// and C5).
 double allowed_error(Estimator estimator, double condition) {
   if (estimator == Estimator::direct) return 3;
   return 42 + (std::isnan(condition) ? 0 : condition / 2);
@@ -64,7 +64,7 @@ TEST_P(HardCases, AreSolvedAsExactlyAsTheirConditionAllows) {
   }
 }
 
-TEST_P(HardCases, HaveFiniteOutputsAndAStatusThatSaysSo) {
+TEST_P(HardCases, HaveFiniteOutputsAndTheirStatus) {
   const auto& [hard_case, estimator, precision] = GetParam();
   for (const Example& example : hard_case.examples(precision)) {
     SCOPED_TRACE(text_of(example));
@@ -95,7 +95,7 @@ TEST(AllHardCases, HaveNamesOfTheirOwn) {
   }
 }
 
-/// Any reading: absurd, at a limit, or ordinary.
+/// Any reading: out of range, at a limit, or ordinary.
 double any_reading(std::mt19937_64& engine) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -107,7 +107,7 @@ double any_reading(std::mt19937_64& engine) {
   return std::exp(static_cast<double>(engine() % 1000) / 50 - 8);
 }
 
-TEST(AllHardCases, AndAnyReadingsAtAllHaveFiniteOutputs) {
+TEST(AllHardCases, AnyReadingsHaveFiniteOutputs) {
   std::mt19937_64 engine(71);
   for (int i = 0; i < 200'000; ++i) {
     Example example;

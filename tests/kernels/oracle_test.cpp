@@ -1,4 +1,4 @@
-// The oracle itself, against what is known without it.
+// The oracle against closed forms.
 
 #include "evaluation/oracle.h"
 
@@ -92,7 +92,7 @@ TEST(Oracle, ResidualsOfTheBestFitAreOrthogonalToTheModel) {
   expect_close(residual[1], residual[3]);
 }
 
-TEST(Oracle, TheSegmentEndsWhereALiftedSenselWouldRead) {
+TEST(Oracle, TheSegmentEndsWhereAnInactiveSenselWouldRead) {
   const SomeReadings usable = {Exact(2), Exact(3), std::nullopt, std::nullopt};
   const Segment segment = segment_of(usable, 1);
   expect_close(segment.low.normal, 0);
@@ -110,7 +110,8 @@ TEST(Oracle, OnePressedSenselAloneHasAForceAlongTheSkin) {
   const Force expected = force_from(Exact(3) / 2, exact::pi() / 2, 5 * exact::pi() / 4);
   expect_same(flat, expected);
   expect_same(paper_force(usable, 2, {}), expected);
-  // Silence that hides two counts leaves a segment; at its end the neighbours read two.
+  // Inactive sensels with a bound of two counts leave a segment; at its end the neighbours read
+  // two.
   const Readings at_end = readings_of(segment_of(usable, 2, 2).high, 2);
   expect_close(at_end[0], 3);
   expect_close(at_end[1], 2);
@@ -161,7 +162,7 @@ TEST(Oracle, ThePapersEquationsFindTheForceOfRegionsOneAndTwo) {
   EXPECT_GT(cases, 500);
 }
 
-TEST(Oracle, ThePapersForceOfRegionThreeExplainsTheReadingsHalfWayInTheta) {
+TEST(Oracle, ThePapersForceOfRegionThreeIsTheMidpointInTheta) {
   int cases = 0;
   for_directions([&](const Force&, const SomeReadings& usable) {
     if (count_of(usable) != 2) return;
@@ -181,7 +182,7 @@ TEST(Oracle, ThePapersForceOfRegionThreeExplainsTheReadingsHalfWayInTheta) {
   EXPECT_GT(cases, 100);
 }
 
-TEST(Oracle, ConditionOfTheDirectSolveIsWhatItsLinearFormSays) {
+TEST(Oracle, ConditionOfTheDirectSolveFollowsFromItsLinearForm) {
   int cases = 0;
   for_directions([&](const Force& force, const SomeReadings& usable) {
     const auto estimate = [](const SomeReadings& some) { return direct_force(some, 5); };

@@ -1,4 +1,4 @@
-// The paper's estimator: right where the force is determined, half way along the contour in
+// The paper's estimator: exact where the force is determined, the midpoint of the contour in
 // region 3.
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class PaperSolve : public testing::Test {
     return solve<Precision>(pillar, kCountsPerNewton).force;
   }
 
-  /// Distance of two forces as a share of the second.
+  /// Distance of two forces as a fraction of the second.
   template <class Actual, class Expected>
   static double error(const Actual& actual, const Expected& expected) {
     const auto of = [](auto x) { return static_cast<double>(x); };
@@ -151,7 +151,7 @@ TYPED_TEST(PaperSolve, MissingIsUnusableAndSaturatedUsable) {
   }
 }
 
-TYPED_TEST(PaperSolve, WhatThePaperDoesNotKnowIsSolvedDirectly) {
+TYPED_TEST(PaperSolve, OppositeSenselsAloneAreSolvedDirectly) {
   using Readings = FourReadings<TypeParam>;
   for (const Readings& readings : {Readings{10, 0, 30, 0}, Readings{0, 7, 0, 5}}) {
     const auto pillar = pillar_of<TypeParam>(readings);

@@ -1,4 +1,4 @@
-// The two tests of consistency: the parity residual, and the surplus of a inactive sensel.
+// Both consistency tests: the parity residual, and the excess of an inactive sensel.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,6 @@ class Parity : public testing::Test {
     return fails_parity(pillar, sum, tolerance) != 0;
   }
 
-  /// Turned by so many quarters.
   static FourReadings<Precision> turned(const FourReadings<Precision>& readings,
                                         std::size_t turns) {
     FourReadings<Precision> result;
@@ -44,9 +43,9 @@ TYPED_TEST(Parity, ResidualPassesUpToItsTolerance) {
   }
 }
 
-TYPED_TEST(Parity, SurplusPassesUpToThresholdAndTolerance) {
+TYPED_TEST(Parity, ExcessPassesUpToThresholdAndTolerance) {
   using Real = RealOf<TypeParam>;
-  // Sensel 1 is silent though parity leaves 20 + 24 - 33 = 11 counts for it.
+  // Sensel 1 is inactive although parity predicts 20 + 24 - 33 = 11 counts for it.
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto under = [&](Real threshold) {
       return pillar_of<TypeParam>(TestFixture::turned({0, 20, 33, 24}, turns), threshold);
@@ -57,15 +56,15 @@ TYPED_TEST(Parity, SurplusPassesUpToThresholdAndTolerance) {
   }
 }
 
-TYPED_TEST(Parity, ALiftedSenselMayLackAnyAmount) {
-  // Parity leaves 20 + 24 - 90 = -46 counts for sensel 1, as where a pillar lifts off.
+TYPED_TEST(Parity, ANegativePredictionPasses) {
+  // Parity predicts 20 + 24 - 90 = -46 counts for sensel 1, as under a pillar that lifts off.
   for (std::size_t turns = 0; turns < 4; ++turns) {
     const auto pillar = pillar_of<TypeParam>(TestFixture::turned({0, 20, 90, 24}, turns));
     EXPECT_FALSE(TestFixture::fails(pillar, 0));
   }
 }
 
-TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
+TYPED_TEST(Parity, ADeadZoneRaisesTheBoundOfAnInactiveSensel) {
   using Real = RealOf<TypeParam>;
   auto pillar = pillar_of<TypeParam>({0, 20, 33, 24});
   EXPECT_TRUE(TestFixture::fails(pillar, 6));
@@ -73,9 +72,9 @@ TYPED_TEST(Parity, ADeadZoneExcusesSilence) {
   EXPECT_FALSE(TestFixture::fails(pillar, 6));
 }
 
-TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
+TYPED_TEST(Parity, AnInactiveSenselThatMayBeLoadedLeavesTheRegionAmbiguous) {
   using Real = RealOf<TypeParam>;
-  const auto open = [](const PillarOf<TypeParam>& pillar, Real margin) {
+  const auto ambiguous = [](const PillarOf<TypeParam>& pillar, Real margin) {
     const auto diagonals = pillar_diagonals(pillar);
     return (direct_status(pillar, diagonals,
                           parity_sum(diagonals, static_cast<Real>(kSegmentPoint)), margin) &
@@ -85,15 +84,15 @@ TYPED_TEST(Parity, ASilentSenselThatMayPressLeavesTheRegionOpen) {
     const auto under = [&](Real opposite, Real threshold) {
       return pillar_of<TypeParam>(TestFixture::turned({0, 20, opposite, 24}, turns), threshold);
     };
-    // Parity leaves 44 - 41 = 3 counts for sensel 1, then -3.
-    EXPECT_TRUE(open(under(41, 5), 0));
-    EXPECT_FALSE(open(under(47, 5), 0));
-    EXPECT_FALSE(open(under(47, 5), 3)) << "at the margin, not within it";
-    EXPECT_TRUE(open(under(47, 5), Real{3.25}));
-    EXPECT_FALSE(open(under(41, 0), 9)) << "silence hides nothing here";
+    // Parity predicts 44 - 41 = 3 counts for sensel 1, then -3.
+    EXPECT_TRUE(ambiguous(under(41, 5), 0));
+    EXPECT_FALSE(ambiguous(under(47, 5), 0));
+    EXPECT_FALSE(ambiguous(under(47, 5), 3)) << "at the margin, not within it";
+    EXPECT_TRUE(ambiguous(under(47, 5), Real{3.25}));
+    EXPECT_FALSE(ambiguous(under(41, 0), 9)) << "the bound of the inactive sensel is zero";
   }
   const auto four = pillar_of<TypeParam>({20, 20, 20, 20}, 5);
-  EXPECT_FALSE(open(four, 9));
+  EXPECT_FALSE(ambiguous(four, 9));
 }
 
 TYPED_TEST(Parity, NothingRedundantNeverFails) {

@@ -1,4 +1,4 @@
-// The forward model against equation (2) as it stands in the paper.
+// The forward model against equation (2) as printed in the paper.
 
 #include <gtest/gtest.h>
 

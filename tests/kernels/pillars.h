@@ -8,7 +8,7 @@
 #include "pillarfield/solver_plan.h"
 #include "precisions.h"
 
-/// Pillars to test with: sensels in any state, solved, and random ones.
+/// Pillars for tests: sensels in any state, solved pillars, and random ones.
 namespace pillarfield {
 
 enum class State { usable, inactive, missing, saturated };
@@ -18,7 +18,7 @@ inline constexpr std::array<State, 4> kStates = {State::usable, State::inactive,
 
 using States = std::array<State, 4>;
 
-/// All 256 of them.
+/// All 256 combinations of states.
 inline std::array<States, 256> all_states() {
   std::array<States, 256> all{};
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -38,7 +38,7 @@ inline std::string name_of(const States& states) {
   return name;
 }
 
-/// A sensel in a state that its stages gave it; `reading` is positive.
+/// A sensel in a state as its stages return it; `reading` is positive.
 template <class Precision>
 SenselOf<Precision> sensel_in(State state, RealOf<Precision> reading) {
   using Real = RealOf<Precision>;
@@ -68,7 +68,7 @@ PillarOf<Precision> pillar_of(const FourReadings<Precision>& readings,
           classify(Precision::raw_sensel(readings[3]), threshold)};
 }
 
-/// What the oracle may know of a pillar: its usable readings.
+/// The oracle's input: usable readings.
 template <class Pillar>
 oracle::SomeReadings usable_readings(const Pillar& pillar) {
   oracle::SomeReadings some;
@@ -79,7 +79,7 @@ oracle::SomeReadings usable_readings(const Pillar& pillar) {
   return some;
 }
 
-/// A pillar and all that is solved of it.
+/// A pillar and its results.
 template <class Precision>
 struct Solved {
   typename Precision::Diagonals diagonals;
@@ -88,7 +88,6 @@ struct Solved {
   ForceOf<Precision> force;
   int status;
 
-  /// The ends of the segment of possible forces.
   [[nodiscard]] ForceOf<Precision> low() const { return force_at(diagonals, sum.low, scale); }
   [[nodiscard]] ForceOf<Precision> high() const { return force_at(diagonals, sum.high, scale); }
 };
@@ -107,7 +106,6 @@ Solved<Precision> solve(const PillarOf<Precision>& pillar, double k,
   return solved;
 }
 
-/// Random numbers that are the same on every run.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
@@ -115,14 +113,14 @@ class Random {
   double uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
-  /// Of every magnitude alike.
+  /// Log-uniform.
   double decades(double low, double high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }
   std::size_t below(std::size_t count) { return engine_() % count; }
   double normal() { return normal_(engine_); }
 
-  /// A force of `magnitude` that presses, from every direction of the hemisphere alike.
+  /// A force of `magnitude` that presses, uniform over the hemisphere.
   double_precision::Force force(double magnitude) {
     const double cosine = uniform(0, 1);
     const double sine = std::sqrt(1 - cosine * cosine);

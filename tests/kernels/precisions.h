@@ -70,7 +70,7 @@ double ulp_at(oracle::Exact x) {
                   std::ldexp(1.0, std::ilogb(static_cast<double>(x)) + 1 - Limits::digits));
 }
 
-/// How far `actual` is from `expected`, in units in the last place of `scale`.
+/// Error of `actual`, in units in the last place of `scale`.
 template <class Real>
 double ulps(Real actual, oracle::Exact expected, oracle::Exact scale) {
   return static_cast<double>(exact::abs(oracle::Exact(actual) - expected)) / ulp_at<Real>(scale);

@@ -43,7 +43,7 @@ class SenselStages : public testing::Test {
 };
 TYPED_TEST_SUITE(SenselStages, Precisions, PrecisionNames);
 
-TYPED_TEST(SenselStages, ARawSenselHasNothingWrong) {
+TYPED_TEST(SenselStages, ARawSenselIsValid) {
   using Limits = std::numeric_limits<RealOf<TypeParam>>;
   for (const auto raw : {Limits::quiet_NaN(), Limits::infinity(), RealOf<TypeParam>{7}}) {
     const auto sensel = TypeParam::raw_sensel(raw);
@@ -51,7 +51,7 @@ TYPED_TEST(SenselStages, ARawSenselHasNothingWrong) {
   }
 }
 
-TYPED_TEST(SenselStages, AbsurdReadingsAreMissing) {
+TYPED_TEST(SenselStages, ReadingsOutOfRangeAreMissing) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   const Real largest = static_cast<Real>(1e33);
@@ -70,7 +70,7 @@ TYPED_TEST(SenselStages, AbsurdReadingsAreMissing) {
   }
 }
 
-TYPED_TEST(SenselStages, AThresholdIsNotAboveItselfAndHidesUnderSilence) {
+TYPED_TEST(SenselStages, AThresholdIsNotAboveItselfAndBoundsInactiveSensels) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   for (const Real threshold : {Real{0}, Limits::denorm_min(), Real{3}, Real{250.5}}) {
@@ -115,7 +115,7 @@ TYPED_TEST(SenselStages, TareAndGainApplyInTheirOrder) {
   TestFixture::expect_inactive(classify(unloaded, Real{0}));
 }
 
-TYPED_TEST(SenselStages, APowerLawStraightensToItsAccuracy) {
+TYPED_TEST(SenselStages, APowerLawLinearisesToItsAccuracy) {
   using Real = RealOf<TypeParam>;
   const Real largest = static_cast<Real>(1e33);
   for (const Real exponent : {Real{0.25}, Real{0.75}, Real{1}, Real{1.25}, Real{5}}) {
@@ -131,7 +131,7 @@ TYPED_TEST(SenselStages, APowerLawStraightensToItsAccuracy) {
   }
 }
 
-TYPED_TEST(SenselStages, APowerLawKeepsItsReferenceAndWhatDoesNotAnswer) {
+TYPED_TEST(SenselStages, APowerLawKeepsItsReferenceAndReadingsUpToZero) {
   using Real = RealOf<TypeParam>;
   using Limits = std::numeric_limits<Real>;
   const auto straight = [](Real reading, Real exponent) {
@@ -168,14 +168,14 @@ TYPED_TEST(SenselStages, SaturationIsOfTheRawReading) {
   TestFixture::expect_saturated(classify(sensel, Real{0}), 400);
 }
 
-TYPED_TEST(SenselStages, SaturationBelowTheThresholdTellsNothing) {
+TYPED_TEST(SenselStages, SaturationBelowTheThresholdIsMissing) {
   using Real = RealOf<TypeParam>;
   const auto marked = mark_saturated(TypeParam::raw_sensel(10), Real{10});
   TestFixture::expect_missing(classify(subtract_tare(marked, Real{30}), Real{0}));
   TestFixture::expect_missing(classify(marked, Real{10}));
 }
 
-TYPED_TEST(SenselStages, ADeadZoneIsGivenBackAndHidesUnderSilence) {
+TYPED_TEST(SenselStages, ADeadZoneIsAddedAndBoundsInactiveSensels) {
   using Real = RealOf<TypeParam>;
   using Sensel = SenselOf<TypeParam>;
   const auto filled = [](const Sensel& sensel) { return fill_dead_zone(sensel, Real{4}); };

@@ -50,8 +50,8 @@ TYPED_TEST(Deviations, AreTheClosedFormsOfRegionsOneToThree) {
   EXPECT_NEAR(region_2[2], unit / std::numbers::sqrt2, 1e-8);
 }
 
-/// 30 counts are the largest parity sum, 30 / 2k the largest normal force. Noise alone, as the
-/// derivatives of the force say: those of s_y are 1 - part and 1 over sqrt(2) k, of N part / 2k.
+/// 30 counts are the largest parity sum, 30 / 2k the largest normal force. Noise alone, by the
+/// derivatives of the force: those of s_y are 1 - part and 1 over sqrt(2) k, of N part / 2k.
 TYPED_TEST(Deviations, OfRegionThreeHoldWhatFrictionLeavesOfTheSegmentToo) {
   const double unit = 2 / kCountsOfOneNewton;
   const double high = 30 / (2 * kCountsOfOneNewton);
@@ -77,7 +77,7 @@ TYPED_TEST(Deviations, OfRegionFourAreThoseOfTheWholeInterval) {
   EXPECT_NEAR(region_4[1], region_4[2] / std::numbers::sqrt2, 1e-8);
 }
 
-/// What the ambiguity of the parity sum adds: the force moves along with it.
+/// Deviation due to the ambiguity of the parity sum: the force is linear in it.
 Components deviations_by_ambiguity(const Solved<Double>& solved, double spread) {
   const auto low = components(solved.low());
   const auto high = components(solved.high());
@@ -133,8 +133,9 @@ TEST(Deviations, AreThoseOfTheEstimateForAllStates) {
   }
 }
 
-/// A force that explains readings, in the terms of docs/derivations/pillar_model.md (M4, M5).
-struct Explanation {
+/// A force that is consistent with readings, as parity sum and differences
+/// (docs/derivations/pillar_model.md, M4, M5).
+struct ConsistentForce {
   double sum;
   double rising;
   double falling;
@@ -149,7 +150,7 @@ struct Explanation {
   }
 };
 
-constexpr double kHidden = 20;  // what silence hides: a threshold of 8 and a dead zone of 12
+constexpr double kHidden = 20;  // bound of inactive sensels: a threshold of 8 and a dead zone of 12
 
 template <class Precision>
 PillarOf<Precision> hiding_pillar(const std::array<double, 4>& readings) {
@@ -173,7 +174,7 @@ struct Ends {
                                   solved.scale);
   }
 
-  /// How far phi lies counter-clockwise of phi_low, and how far phi_high does.
+  /// Counter-clockwise angles of phi and of phi_high from phi_low.
   [[nodiscard]] double turn(double phi) const {
     const double angle = std::remainder(phi - static_cast<double>(interval.phi_low), 2 * kHalfTurn);
     return angle < -slack ? angle + 2 * kHalfTurn : angle;
@@ -187,30 +188,30 @@ struct Ends {
 template <class Precision>
 class DirectionIntervals : public testing::Test {
  protected:
-  static void expect_holds(const Ends<Precision>& ends, const Explanation& truth) {
+  static void expect_holds(const Ends<Precision>& ends, const ConsistentForce& truth) {
     const auto& interval = ends.interval;
     EXPECT_GE(truth.theta(), static_cast<double>(interval.theta_low) - ends.slack);
     EXPECT_LE(truth.theta(), static_cast<double>(interval.theta_high) + ends.slack);
     EXPECT_GE(truth.magnitude(), static_cast<double>(interval.magnitude_low) * (1 - ends.slack));
     EXPECT_LE(truth.magnitude(), static_cast<double>(interval.magnitude_high) * (1 + ends.slack));
-    if (truth.theta() < 1e-3) return;  // phi means nothing.
+    if (truth.theta() < 1e-3) return;  // phi is undefined.
     EXPECT_LE(ends.turn(truth.phi()), ends.turn_high() + ends.slack / truth.theta());
   }
 };
 TYPED_TEST_SUITE(DirectionIntervals, Precisions, PrecisionNames);
 
-Explanation random_truth(Random& random) {
+ConsistentForce random_truth(Random& random) {
   const auto force = random.force(random.decades(0.05, 4));
   const double k = kCountsOfOneNewton;
   return {2 * k * force.normal, std::numbers::sqrt2 * k * (force.shear_x + force.shear_y),
           std::numbers::sqrt2 * k * (force.shear_y - force.shear_x)};
 }
 
-TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsSilent) {
+TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsInactive) {
   Random random(72);
   std::array<int, 5> usable{};
   for (int i = 0; i < 100'000; ++i) {
-    const Explanation truth = random_truth(random);
+    const ConsistentForce truth = random_truth(random);
     const auto readings = truth.readings();
     ++usable[static_cast<std::size_t>(
         std::ranges::count_if(readings, [](double v) { return v > kHidden; }))];
@@ -219,7 +220,7 @@ TYPED_TEST(DirectionIntervals, HoldTheTruthWhateverIsSilent) {
   for (const int cases : usable) EXPECT_GT(cases, 1'000);
 }
 
-/// The extremes that explanations reach: those with the same usable readings and silence elsewhere.
+/// The extremes over consistent forces: equal usable readings, the other sensels inactive.
 struct Reached {
   double theta_low = kHalfTurn;
   double theta_high = 0;
@@ -228,7 +229,7 @@ struct Reached {
   double magnitude_low = std::numeric_limits<double>::infinity();
   double magnitude_high = 0;
 
-  void add(const Explanation& force, const Ends<Double>& ends) {
+  void add(const ConsistentForce& force, const Ends<Double>& ends) {
     theta_low = std::min(theta_low, force.theta());
     theta_high = std::max(theta_high, force.theta());
     magnitude_low = std::min(magnitude_low, force.magnitude());
@@ -238,8 +239,8 @@ struct Reached {
   }
 };
 
-/// Whether a force gives the usable readings back and leaves the others silent.
-bool explains(const Explanation& force, const std::array<double, 4>& readings) {
+/// True if a force has the usable readings and leaves the other sensels inactive.
+bool is_consistent(const ConsistentForce& force, const std::array<double, 4>& readings) {
   const auto back = force.readings();
   for (std::size_t n = 0; n < 4; ++n) {
     const bool usable = readings[n] > kHidden;
@@ -248,8 +249,8 @@ bool explains(const Explanation& force, const std::array<double, 4>& readings) {
   return true;
 }
 
-/// Scans the forces that explain readings: every parity sum, and where a diagonal is silent every
-/// difference.
+/// Scans the forces that are consistent with readings: parity sums, and differences of inactive
+/// diagonals.
 Reached scan(const std::array<double, 4>& readings, const Ends<Double>& ends) {
   constexpr int kSteps = 400;
   Reached reached;
@@ -265,15 +266,15 @@ Reached scan(const std::array<double, 4>& readings, const Ends<Double>& ends) {
     const double sum = 4.0 * kHidden * i / kSteps;
     for (const double rising : differences(sum, readings[0], readings[2])) {
       for (const double falling : differences(sum, readings[1], readings[3])) {
-        const Explanation force = {sum, rising, falling};
-        if (explains(force, readings)) reached.add(force, ends);
+        const ConsistentForce force = {sum, rising, falling};
+        if (is_consistent(force, readings)) reached.add(force, ends);
       }
     }
   }
   return reached;
 }
 
-TEST(DirectionIntervals, EndWhereTheExplanationsEnd) {
+TEST(DirectionIntervals, EndWhereConsistentForcesEnd) {
   const std::array<std::array<double, 4>, 7> idle_somewhere = {{
       {30, 40, 0, 0},
       {0, 50, 21, 0},

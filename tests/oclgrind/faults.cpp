@@ -1,5 +1,5 @@
-// One kernel, right or with a fault, to see that running a test program under Oclgrind tells them
-// apart. Each test but the last passes by itself: what fails it is Oclgrind's report.
+// One kernel, correct or with a fault, to check that a test program under Oclgrind distinguishes
+// them. Each test but the last passes by itself; only Oclgrind's report fails it.
 
 #define CL_HPP_ENABLE_EXCEPTIONS
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120

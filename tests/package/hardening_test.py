@@ -1,6 +1,4 @@
-"""How the programs are hardened, read from the files themselves: they take no library from the current
-directory, their addresses are random, their tables of functions read-only, and overruns of buffers end
-the program. PILLARFIELD_PROGRAMS names them, with colons between."""
+"""Hardening of the programs, as readelf reports it. PILLARFIELD_PROGRAMS lists them, separated by colons."""
 
 import os
 import subprocess

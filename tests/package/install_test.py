@@ -1,5 +1,7 @@
-"""What a new user does: installs a copy, builds the examples against it and runs them, and follows the
-README. PILLARFIELD_BUILD is the build tree that is installed, PILLARFIELD_WORK a folder for it all."""
+"""Installs a copy, builds and runs the examples against it, and runs the README.
+
+PILLARFIELD_BUILD is the installed build tree, PILLARFIELD_WORK the folder of the test.
+"""
 
 import csv
 import io

@@ -1,4 +1,4 @@
-"""What tools/report/field.py makes of scores that nobody measured."""
+"""tools/report/field.py on synthetic scores."""
 
 import os
 import sys
@@ -16,7 +16,7 @@ def score(ambiguous, squares, held=0, total_error=0.0):
 
 
 def recording(friction=1.2, pillars=40, learnt=(), **squares):
-    """By method, squares of the errors of its pillars."""
+    """A recording with squared errors of its pillars by method."""
     return {"friction": friction, "learnt": learnt, "name": "made up",
             "scores": {method: score(pillars, pillars * square)
                        for method, square in ({"noise": 0} | squares).items()}}
@@ -44,7 +44,7 @@ class Goals(unittest.TestCase):
         values = {"contact": contact, "given": given}
         return field.goal("what", "≤ 1", values.get, str, lambda value: value <= 1)[3::3]
 
-    def test_what_bounds_a_goal(self):
+    def test_the_bound_of_a_goal(self):
         self.assertEqual(self.bound_by(1, 2), ["met", ""])
         self.assertEqual(self.bound_by(2, 1), ["**not met**", "friction"])
         self.assertEqual(self.bound_by(2, 2), ["**not met**", "more than friction"])

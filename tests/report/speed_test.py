@@ -1,4 +1,4 @@
-"""What tools/report/speed.py makes of runs of pillarfield-bench that nobody made."""
+"""tools/report/speed.py on synthetic runs of pillarfield-bench."""
 
 import os
 import sys
@@ -13,44 +13,44 @@ import speed  # noqa: E402
 
 
 def made_up(**rows):
-    """Counters of rows, whose names have __ instead of /."""
+    """A run with these counters by case; names have __ instead of /."""
     return speed.Bench("made_up.json", {
         "context": {"device": "none"},
         "benchmarks": [{"name": name.replace("__", "/"), **row} for name, row in rows.items()]})
 
 
 class BenchTest(unittest.TestCase):
-    def test_rows_have_counters(self):
+    def test_cases_have_counters(self):
         bench = made_up(size__1024={"ns_per_pillar": 1.5}, size__10000={"ns_per_pillar": 0.5},
                         stage__none={"ns_per_pillar": 0.25})
         self.assertEqual(bench.value("size/1024", "ns_per_pillar"), 1.5)
         self.assertEqual(bench.find("stage/none", "ns_per_pillar"), 0.25)
         self.assertEqual(bench.group("size"), ["size/1024", "size/10000"])
 
-    def test_a_row_that_is_not_there(self):
+    def test_a_missing_case(self):
         bench = made_up(size__1024={"ns_per_pillar": 1.5})
         self.assertIsNone(bench.find("size/10000", "ns_per_pillar"))
-        with self.assertRaisesRegex(page.Failure, "made_up.json: there is no row 'size/10000'; "
+        with self.assertRaisesRegex(page.Failure, "made_up.json: there is no case 'size/10000'; "
                                                   "measure again with ./dev report speed"):
             bench.value("size/10000", "ns_per_pillar")
 
-    def test_a_counter_that_is_not_there(self):
+    def test_a_missing_counter(self):
         bench = made_up(size__1024={"ns_per_pillar": 1.5})
         for read in (bench.value, bench.find):
-            with self.assertRaisesRegex(page.Failure, "'size/1024' has no 'of_ceiling'"):
-                read("size/1024", "of_ceiling")
+            with self.assertRaisesRegex(page.Failure, "'size/1024' has no 'of_copy'"):
+                read("size/1024", "of_copy")
 
-    def test_a_row_that_was_left_out(self):
-        bench = made_up(opponent__numpy={"error_occurred": True,
+    def test_a_skipped_case(self):
+        bench = made_up(baseline__numpy={"error_occurred": True,
                                          "error_message": "skipped: no NumPy"},
                         size__1024={"ns_per_pillar": 1.5})
-        self.assertEqual(bench.left_out("opponent/numpy"), "skipped: no NumPy")
+        self.assertEqual(bench.left_out("baseline/numpy"), "skipped: no NumPy")
         self.assertEqual(bench.left_out("size/1024"), "")
-        self.assertIsNone(bench.find("opponent/numpy", "speedup"))
+        self.assertIsNone(bench.find("baseline/numpy", "speedup"))
         with self.assertRaisesRegex(page.Failure, "no NumPy"):
-            bench.value("opponent/numpy", "speedup")
+            bench.value("baseline/numpy", "speedup")
 
-    def test_what_is_no_run(self):
+    def test_files_that_are_not_runs(self):
         for measured in ([], {}, {"context": {}, "benchmarks": [{}]}):
             with self.assertRaisesRegex(page.Failure, "torn.json"):
                 speed.Bench("torn.json", measured)
@@ -72,36 +72,36 @@ class Goals(unittest.TestCase):
     LIVE = {"missed": 0, "dropped": 0}
 
     def goal(self, words, live=None, **rows):
-        """What was measured, and the verdict, of the goal with these words."""
+        """Measured value and outcome of the goal that contains these words."""
         (row,) = (row for row in speed.goal_rows(made_up(**rows), live or self.LIVE)
                   if words in row[0])
         return row[2:]
 
     def test_at_the_limit_and_below(self):
-        for share, verdict in ((0.95, "met"), (0.949, "**not met**")):
+        for share, outcome in ((0.95, "met"), (0.949, "**not met**")):
             self.assertEqual(
-                self.goal("10⁶", size__1000000={"of_ceiling": share, "ns_per_pillar": 1}),
-                [f"{share}", verdict])
+                self.goal("10⁶", size__1000000={"of_copy": share, "ns_per_pillar": 1}),
+                [f"{share}", outcome])
 
     def test_times_are_met_below_their_limit(self):
-        self.assertEqual(self.goal("All stages", stage__all={"of_ceiling": 0.8}), ["1.25", "met"])
-        self.assertEqual(self.goal("All stages", stage__all={"of_ceiling": 0.75})[1],
+        self.assertEqual(self.goal("All stages", stage__all={"of_copy": 0.8}), ["1.25", "met"])
+        self.assertEqual(self.goal("All stages", stage__all={"of_copy": 0.75})[1],
                          "**not met**")
 
-    def test_without_a_row(self):
+    def test_without_a_case(self):
         for row in speed.goal_rows(made_up(), self.LIVE)[:-1]:
             self.assertEqual(row[2:], ["–", "not measured"], row[0])
 
-    def test_races_are_compared_by_their_copies(self):
-        # The second race met a machine half as fast.
+    def test_timings_are_compared_by_their_copies(self):
+        # The machine was half as fast in the second timing.
         self.assertEqual(self.goal("1 % in contact",
-                                   contact__100__bare={"ns_per_pillar": 1, "of_ceiling": 0.8},
-                                   contact__1__bare={"ns_per_pillar": 0.4, "of_ceiling": 4}),
+                                   contact__100__bare={"ns_per_pillar": 1, "of_copy": 0.8},
+                                   contact__1__bare={"ns_per_pillar": 0.4, "of_copy": 4}),
                          ["0.2", "met"])
 
     def test_sizes_take_the_slowest_over_the_fastest(self):
         times = {99856: 0.5, 624100: 0.6, 1000000: 0.4, 9998244: 0.5}
-        rows = {f"size__{size}": {"ns_per_pillar": time, "of_ceiling": 1}
+        rows = {f"size__{size}": {"ns_per_pillar": time, "of_copy": 1}
                 for size, time in times.items()}
         self.assertEqual(self.goal("10⁷", **rows)[0], "1.5")
 
@@ -111,7 +111,7 @@ class Goals(unittest.TestCase):
 
 
 class ParetoFront(unittest.TestCase):
-    def test_has_what_nothing_is_as_cheap_and_more_exact_than(self):
+    def test_has_the_points_that_no_other_dominates(self):
         points = [(4, 1.0), (1, 3.0), (2, 2.0), (3, 2.5), (2.5, 2.0), (5, 0.5)]
         self.assertEqual(speed.pareto_front(points, 0), [1, 2, 0, 5])
 
@@ -120,7 +120,7 @@ class ParetoFront(unittest.TestCase):
         self.assertEqual(speed.pareto_front(points, 0.003), [0, 2, 3])
         self.assertEqual(speed.pareto_front(points, 0.02), [0])
 
-    def test_of_equal_costs_has_the_more_exact(self):
+    def test_has_the_most_exact_of_equal_costs(self):
         self.assertEqual(speed.pareto_front([(1, 2.0), (1, 1.0), (1, 1.0)], 0), [1])
 
     def test_of_nothing_is_nothing(self):
@@ -134,7 +134,7 @@ class Texts(unittest.TestCase):
                                                      ("Unified", 3, 32 << 10, 2))]
         self.assertEqual(speed.caches_text(caches), "level 1: 32 KiB, level 3: 32 MiB for 2 cores")
 
-    def test_latencies_of_frames_that_never_came(self):
+    def test_latencies_of_dropped_frames(self):
         live = {"latency_p50_ms": 0.5, "latency_p99_ms": None, "latency_p99_9_ms": None,
                 "latency_longest_ms": 1.2}
         self.assertEqual(list(speed.latencies(live).values()), ["0.500", "never", "never", "1.200"])

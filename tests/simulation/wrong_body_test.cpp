@@ -135,10 +135,10 @@ TEST(WrongBody, IsRefusedInOneLine) {
            still,
        "folder/s.toml: body 1: edge_radius_mm is 4; it may be half of length_mm"},
   };
-  for (const auto& [text, message] : table) {
+  for (const auto& entry : table) {
     const std::string is =
-        core_test::message_of([&] { static_cast<void>(parsed_scene(scene_text(text))); });
-    EXPECT_EQ(is, message) << text;
+        core_test::message_of([&] { static_cast<void>(parsed_scene(scene_text(entry.text))); });
+    EXPECT_EQ(is, entry.message) << entry.text;
     EXPECT_EQ(is.find('\n'), std::string::npos);
   }
 }

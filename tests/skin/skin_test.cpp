@@ -30,7 +30,7 @@ TEST(Skin, CountsPillars) {
   EXPECT_NEAR(1 / (skin.pillar_pitch_mm() * skin.pillar_pitch_mm()), 0.625, 1e-9);
 }
 
-TEST(Skin, RefusesWhatIsOutOfRangeByName) {
+TEST(Skin, RefusesValuesOutOfRangeByName) {
   static constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   struct Case {
     const char* name;

@@ -1,4 +1,4 @@
-// Readings below a sensel's wake level must not matter, and those from it on should.
+// Readings below a sensel's activation threshold do not change a result; those from it on do.
 
 #include "solve/activation_thresholds.h"
 
@@ -37,7 +37,7 @@ FrameBuffer frame_of(const SolverPlan& plan, const std::vector<float>& readings)
   return frame;
 }
 
-/// Pillars whose sensels all have a level above zero: others are active whatever they read.
+/// Pillars whose sensels all have a threshold above zero: others are always active.
 std::vector<std::uint8_t> can_be_idle(const SolverPlan& plan, const std::vector<float>& levels) {
   std::vector<std::uint8_t> can(plan.skin.pillars(), 1);
   for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -53,7 +53,7 @@ void expect_lower_readings_do_not_matter(const SolverPlan& plan, int largest) {
   const std::vector<float> levels = activation_thresholds(plan);
   const std::vector<std::uint8_t> can = can_be_idle(plan, levels);
   const std::vector<float> zero(levels.size());
-  const ForceField silence = solve_on_host(plan, frame_of<Reading>(plan, zero).view());
+  const ForceField idle = solve_on_host(plan, frame_of<Reading>(plan, zero).view());
   for (int reading = 0; reading <= largest; ++reading) {
     std::vector<float> readings(levels.size());
     for (std::size_t i = 0; i < levels.size(); ++i) {
@@ -62,9 +62,9 @@ void expect_lower_readings_do_not_matter(const SolverPlan& plan, int largest) {
     const ForceField field = solve_on_host(plan, frame_of<Reading>(plan, readings).view());
     for (std::size_t i = 0; i < field.pillars(); ++i) {
       if (can[i] == 0) continue;
-      ASSERT_EQ(field.status[i], silence.status[i]) << "pillar " << i << ", reading " << reading;
-      ASSERT_EQ(field.normal[i], silence.normal[i]);
-      ASSERT_EQ(field.shear_x[i], silence.shear_x[i]);
+      ASSERT_EQ(field.status[i], idle.status[i]) << "pillar " << i << ", reading " << reading;
+      ASSERT_EQ(field.normal[i], idle.normal[i]);
+      ASSERT_EQ(field.shear_x[i], idle.shear_x[i]);
     }
   }
 }
@@ -88,9 +88,9 @@ TEST(ActivationThresholds, FractionsBelowThemDoNotMatter) {
   std::vector<float> readings = levels;
   for (float& reading : readings) reading = std::nextafter(reading, -1e30F);
   const ForceField field = solve_on_host(plan, frame_of<float>(plan, readings).view());
-  const ForceField silence =
+  const ForceField idle =
       solve_on_host(plan, frame_of<float>(plan, std::vector<float>(levels.size(), -1000)).view());
-  EXPECT_EQ(field.status, silence.status);
+  EXPECT_EQ(field.status, idle.status);
 }
 
 TEST(ActivationThresholds, OfWholeReadingsAreTheHighest) {

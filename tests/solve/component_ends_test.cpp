@@ -1,4 +1,4 @@
-// The ends of what the components of a force may be.
+// Intervals of the components of a force.
 
 #include "pillarfield/component_ends.h"
 
@@ -21,7 +21,7 @@ constexpr auto kEnds = [](std::size_t component) {
   return std::pair{2 * component, 2 * component + 1};
 };
 
-/// A pillar whose four sensels read this, 1, 2, 3 and 4 of the paper, solved.
+/// Solves a pillar from the readings of its sensels 1 to 4.
 ForceField solved(const std::array<float, 4>& readings, SolverPlan& plan) {
   plan.skin = {};
   plan.skin.rows = 2;
@@ -55,8 +55,8 @@ TEST(ComponentEnds, OfADeterminedForceAreItsDeviations) {
   }
 }
 
-/// Region 3, the upper, left, lower or right two usable: every parity sum from none to the smaller
-/// reading and the threshold explains the readings.
+/// Region 3, with the upper, left, lower or right two sensels usable: parity sums from zero to the
+/// smaller reading plus the threshold are consistent with the readings.
 TEST(ComponentEnds, OfADirectForceHoldItsSegment) {
   for (const std::array<float, 4>& readings :
        {std::array<float, 4>{60, 45, 0, 0}, {0, 60, 45, 0}, {0, 0, 45, 60}, {45, 0, 0, 60}}) {
@@ -91,7 +91,7 @@ TEST(ComponentEnds, OfADirectForceHoldItsSegment) {
   }
 }
 
-/// However the direct solve chose the force, its segment is the same.
+/// The segment does not depend on the segment point.
 TEST(ComponentEnds, OfADirectForceDoNotDependOnItsPoint) {
   std::array<float, kComponentEnds> first{};
   for (const double point : {0.25, 0.5, 0.875, 1.0}) {

@@ -1,4 +1,4 @@
-// What a caller may give to the solve on the host, and what it says of the rest.
+// Errors of the solve on the host.
 
 #include "pillarfield/host_solve.h"
 

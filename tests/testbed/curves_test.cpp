@@ -11,7 +11,7 @@
 namespace pillarfield::testbed {
 namespace {
 
-/// The bracket of equation (2), written out anew.
+/// The bracket of equation (2), written independently.
 double bracket(int n, double theta, double phi) {
   return std::cos(theta) - std::sin(theta) * std::cos(kPi / 4 * (2 * n - 1) - phi);
 }
@@ -27,25 +27,18 @@ TEST(Border, IsEquationThree) {
   }
 }
 
-TEST(RegionLabels, StandInTheirRegions) {
-  for (const RegionLabel& label : kRegionLabels) {
-    const std::string_view name = label.name;
-    for (int n = 1; n <= 4; ++n) {
-      const bool inactive = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
-      EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) <= 0, inactive) << name << ' ' << n;
-    }
+void expect_inactive_as_named(const RegionLabel& label, double tolerance) {
+  const std::string_view name = label.name;
+  for (int n = 1; n <= 4; ++n) {
+    const bool inactive = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
+    EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) <= tolerance, inactive)
+        << name << ' ' << n;
   }
 }
 
-TEST(RegionLabels, CornersHaveOneReading) {
-  for (const RegionLabel& label : kCornerLabels) {
-    const std::string_view name = label.name;
-    for (int n = 1; n <= 4; ++n) {
-      const bool inactive = name.find(static_cast<char>('0' + n), 1) != std::string_view::npos;
-      EXPECT_EQ(bracket(n, label.place.theta, label.place.phi) < 1e-9, inactive)
-          << name << ' ' << n;
-    }
-  }
+TEST(RegionLabels, NameTheInactiveSensels) {
+  for (const RegionLabel& label : kRegionLabels) expect_inactive_as_named(label, 0);
+  for (const RegionLabel& label : kCornerLabels) expect_inactive_as_named(label, 1e-9);
 }
 
 class Contour : public testing::TestWithParam<double> {};

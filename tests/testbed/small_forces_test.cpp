@@ -15,46 +15,46 @@ const std::vector<SmallForcePoint>& points() {
   return result;
 }
 
-/// Shares of the hemisphere by another way: equation (2) on a grid of equal areas.
-struct Shares {
-  double unfelt = 0;
+/// Fractions of the hemisphere by equation (2) on a grid of equal areas.
+struct Fractions {
+  double undetected = 0;
   double wrong_region = 0;
 };
 
-Shares expected_shares(double load) {
+Fractions expected_fractions(double load) {
   constexpr int kGrid = 200;
-  const double hidden_share =
+  const double hidden_fraction =
       (kStudyDeadZoneCounts + kStudyThresholdCounts + 0.5) / kStudyDeadZoneCounts / load;
-  Shares shares;
+  Fractions fractions;
   for (int i = 0; i < kGrid; ++i) {
     const double theta = std::acos((i + 0.5) / kGrid);
     for (int j = 0; j < kGrid; ++j) {
       const double phi = 2 * pi * (j + 0.5) / kGrid;
       int pressed = 0;
-      int answering = 0;
+      int usable = 0;
       for (int n = 1; n <= 4; ++n) {
         const double v = std::cos(theta) - std::sin(theta) * std::cos(pi / 4 * (2 * n - 1) - phi);
         pressed += v > 0 ? 1 : 0;
-        answering += v > hidden_share ? 1 : 0;
+        usable += v > hidden_fraction ? 1 : 0;
       }
-      shares.unfelt += answering == 0 ? 1 : 0;
-      shares.wrong_region += answering != 0 && answering != pressed ? 1 : 0;
+      fractions.undetected += usable == 0 ? 1 : 0;
+      fractions.wrong_region += usable != 0 && usable != pressed ? 1 : 0;
     }
   }
-  return {shares.unfelt / (kGrid * kGrid), shares.wrong_region / (kGrid * kGrid)};
+  return {fractions.undetected / (kGrid * kGrid), fractions.wrong_region / (kGrid * kGrid)};
 }
 
-TEST(SmallForces, SharesAreThoseOfTheModel) {
+TEST(SmallForces, FractionsMatchTheModel) {
   for (const SmallForcePoint& point : points()) {
-    const Shares expected = expected_shares(point.load);
+    const Fractions expected = expected_fractions(point.load);
     for (const SmallForceErrors* errors : {&point.paper, &point.naive, &point.direct}) {
-      EXPECT_NEAR(errors->unfelt, expected.unfelt, 0.02) << point.load;
+      EXPECT_NEAR(errors->undetected, expected.undetected, 0.02) << point.load;
       EXPECT_NEAR(errors->wrong_region, expected.wrong_region, 0.02) << point.load;
     }
   }
 }
 
-TEST(SmallForces, NoWrongRegionGoesUnflaggedOnceTheDeadZoneIsKnown) {
+TEST(SmallForces, CalibrationFlagsEveryWrongRegion) {
   bool unflagged_before = false;
   for (const SmallForcePoint& point : points()) {
     EXPECT_EQ(point.direct.unflagged, 0) << point.load;
@@ -63,17 +63,16 @@ TEST(SmallForces, NoWrongRegionGoesUnflaggedOnceTheDeadZoneIsKnown) {
   EXPECT_TRUE(unflagged_before);
 }
 
-TEST(SmallForces, EndsHoldTheTruthOnceTheDeadZoneIsKnown) {
+TEST(SmallForces, CalibratedIntervalsHoldTheTruth) {
   for (const SmallForcePoint& point : points()) {
     EXPECT_GE(point.direct.held, 0.995) << point.load;
     EXPECT_LE(point.naive.held, 0.5) << point.load;
   }
 }
 
-// With three or four usable sensels a dead zone takes z counts from each: the shear is right, and
-// the normal force z / k short. Once it is known, noise remains: at most sqrt(5/2) deviations over
-// k.
-TEST(SmallForces, WhereReadingsDetermineTheForceNoiseIsLeft) {
+// With three or four usable sensels a dead zone takes z counts from each: the shear is exact, the
+// normal force z / k short. Calibration leaves noise of at most sqrt(5/2) deviations over k.
+TEST(SmallForces, CalibrationLeavesOnlyNoiseInDeterminedForces) {
   const double noise = std::hypot(kStudyNoiseCounts, 1 / std::sqrt(12.0)) / kStudyDeadZoneCounts;
   for (const SmallForcePoint& point : points()) {
     if (std::isnan(point.direct.determined)) continue;

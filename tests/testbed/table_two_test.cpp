@@ -34,8 +34,8 @@ TEST(Statistics, OfLessThanTwoAnglesAreNotNumbers) {
   EXPECT_TRUE(std::isnan(statistics_of(std::vector<double>{1}, 1).deviation));
 }
 
-// What the paper says of region 1: "primarily caused by one of the sensors remaining zero for small
-// forces". With the dead zone that does it, and a solve that knows of it, the scatter is gone.
+// The paper attributes the scatter in region 1 to "one of the sensors remaining zero for small
+// forces". With the fitted dead zone, calibrated, the scatter vanishes.
 TEST(TableTwo, DirectHasAtMostAFifthOfThePapersScatterInRegion1) {
   constexpr double kPublished = 0.240;
   const Parameters parameters;
@@ -49,7 +49,7 @@ TEST(TableTwo, DirectHasAtMostAFifthOfThePapersScatterInRegion1) {
     }
     above += statistics_of(theta, kSites[0].theta_rad).deviation > kPublished / 5 ? 1 : 0;
   }
-  // Where the probe leans by more than 0.04 rad, a second sensel is silent at 10 N.
+  // Beyond a misalignment of 0.04 rad a second sensel is inactive at 10 N.
   EXPECT_LE(above, 50);
 }
 
@@ -63,10 +63,10 @@ TEST(TableTwo, PapersEquationsScatterInRegion1AsInThePaper) {
 TEST(TableTwo, ExpectationAndSpreadAreThoseOfTheRuns) {
   const TableTwo table = table_two({}, 2);
   for (const Row& row : table.rows) {
-    for (const Answer& answer : {row.paper, row.direct}) {
-      // Of two runs the first is one standard deviation over the root of two from the mean.
-      EXPECT_NEAR(std::abs(answer.run.mean - answer.expected.mean),
-                  answer.spread.mean / std::sqrt(2.0), 1e-12);
+    for (const RowEstimate& estimate : {row.paper, row.direct}) {
+      // The first of two runs is one standard deviation / sqrt(2) from the mean.
+      EXPECT_NEAR(std::abs(estimate.run.mean - estimate.expected.mean),
+                  estimate.spread.mean / std::sqrt(2.0), 1e-12);
     }
   }
 }
@@ -78,7 +78,7 @@ TEST(TableTwo, RowsAreThoseOfThePaper) {
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     EXPECT_EQ(table.rows[row].published.mean, means.at(row));
     EXPECT_EQ(table.rows[row].truth_rad, truths.at(row));
-    // What is printed is consistent: no mean is farther from the truth than errors are on average.
+    // The published figures are consistent: |mean - truth| is at most the mean error.
     EXPECT_LE(std::abs(means.at(row) - truths.at(row)),
               table.rows[row].published.mean_error + 0.001);
   }
@@ -90,7 +90,7 @@ TEST(TableTwo, FiguresArePrintedAsInThePaper) {
   EXPECT_EQ(as_printed(5.89), "5.890");
 }
 
-// The usable sensels often tell a wrong region; the status byte must say that it may be.
+// The region is often wrong; the status byte must flag it.
 TEST(TableTwo, NoWrongRegionGoesUnflagged) {
   for (const double dead_zone_counts : {0.0, 20.0, 90.0, 144.0, 170.0}) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -117,7 +117,7 @@ TEST(TableTwo, WithoutADeadZoneRegionsAreRight) {
   EXPECT_EQ(table_two(parameters, 2).audit.wrong_regions, 0U);
 }
 
-TEST(TableTwo, ForcesThatNobodyFeelsAreLeftOut) {
+TEST(TableTwo, UndetectedForcesAreLeftOut) {
   Parameters parameters;
   parameters.sensor.dead_zone_counts = 1e6;
   for (const Row& row : table_two(parameters, 2).rows) {
@@ -126,7 +126,7 @@ TEST(TableTwo, ForcesThatNobodyFeelsAreLeftOut) {
   }
 }
 
-// The dead zone of Parameters is the one that a scan finds.
+// The scan finds the dead zone of Parameters.
 TEST(DeadZoneScan, ChoosesTheDefault) {
   const std::vector<ScanPoint> points = scan_dead_zones({}, 100);
   ASSERT_EQ(points.size(), 101U);

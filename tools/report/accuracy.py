@@ -1,7 +1,7 @@
 """accuracy.py DOCS MEASURED PILLARFIELD: writes DOCS/accuracy.md with its pictures.
 
-MEASURED is what measure_accuracy printed; PILLARFIELD is the program, whose `testbed` command draws
-the paper's figures."""
+MEASURED is the output of measure_accuracy; PILLARFIELD is the program, whose `testbed` command
+computes the paper's figures."""
 
 import json
 import math
@@ -17,7 +17,7 @@ from page import percent, root_mean_square, text
 # --- Error against the Cramér–Rao bound ---
 
 def ratio_rows(table):
-    """A row for each inclination; the noises follow each other within it."""
+    """A row for each inclination, with columns for each noise."""
     result = []
     for cell in table:
         if not result or result[-1][0] != f"{cell['theta_deg']}°":
@@ -155,7 +155,7 @@ STATISTICS = ("mean", "deviation", "mean_error")
 
 
 def testbed(program, *options):
-    """What `pillarfield testbed` measures."""
+    """Output of `pillarfield testbed`."""
     command = [program, "testbed", "--json", *options]
     try:
         return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
@@ -168,7 +168,7 @@ def name_of(row):
 
 
 def as_printed(figure):
-    """With the three digits that the paper gives, or four."""
+    """Three decimals as in the paper, or four."""
     return f"{figure:.4f}".removesuffix("0")
 
 
@@ -193,7 +193,7 @@ def expected_rows(table):
 
 
 def scan_rows(scan):
-    """Every tenth point, and those next to the nearest, which is bold."""
+    """Every tenth point and the neighbours of the nearest one, which is bold."""
     nearest = min(range(len(scan)), key=lambda i: scan[i]["distance_rad"])
     for i, point in enumerate(scan):
         if i % 10 == 0 or abs(i - nearest) <= 3:
@@ -203,7 +203,7 @@ def scan_rows(scan):
 
 
 def difference(table):
-    """RMS over the paper's 18 figures of what is printed less what is expected, rad."""
+    """RMS difference of the printed and the expected values of the paper's 18 figures, rad."""
     return root_mean_square(row["paper"]["expected"][key] - row["published"][key]
                             for row in table for key in STATISTICS)
 
@@ -216,7 +216,7 @@ def nearest_threshold(program):
 
 
 def band(figure, site):
-    """Half of what uncertain angles make of an applied force, percent."""
+    """Half-width of the band of uncertain angles, percent of the applied force."""
     point = next(point for point in figure if point["site"] == site)
     return percent((point["uncertain_high_n"] - point["uncertain_low_n"]) / point["applied_n"] / 2)
 

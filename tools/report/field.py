@@ -1,4 +1,4 @@
-"""field.py DOCS MEASURED: writes DOCS/field.md with its pictures, of what measure_field printed."""
+"""field.py DOCS MEASURED: writes DOCS/field.md with its pictures from measure_field's output."""
 
 import math
 from pathlib import Path
@@ -8,12 +8,12 @@ import pictures
 from page import percent, text
 
 FRICTIONS = (0.8, 1.2, 1.6, 2.2, 3.0, 4.5)
-LARGEST_USUAL = 3.0  # friction that goals are about: larger ones are rare
-ENOUGH_PILLARS = 30  # of region 3, for a ratio or a share of a recording's own
+LARGEST_USUAL = 3.0  # largest friction of the goals: larger ones are rare
+ENOUGH_PILLARS = 30  # of region 3, for a ratio or a fraction of one recording
 LOADINGS = ("slide", "twist", "turn", "reverse", "swing", "load grows", "load falls", "touch again")
 INDENTERS = ("sphere", "fingertip", "cylinder", "flat punch", "rough ball", "key", "two fingers")
 RADII = (3, 5, 8, 12, 16, 22)  # pillars
-COMPONENTS = 3  # the first intervals are those of the components of force
+COMPONENTS = 3  # number of force components, whose intervals come first
 
 NAMES = {
     "direct": "`direct`",
@@ -32,7 +32,7 @@ NAMES |= PRIORS
 
 
 class Score:
-    """The scores of a method in some recordings, their pillars of region 3 taken together."""
+    """Scores of a method over the region 3 pillars of all given recordings."""
 
     def __init__(self, recordings, method):
         scores = [recording["scores"][method] for recording in recordings]
@@ -109,8 +109,8 @@ LEAST_HELD = 0.88  # by a recording's stated 95 %
 
 
 def goal(what, wanted, measure, shown, met, method="contact", noise=""):
-    """A row of the table of goals. `measure` gives the value of a method, `shown` its text. Where
-    the goal is not met, the value of `contact` with the true friction says what bounds it."""
+    """A row of the table of goals. `measure` gives the value of a method, `shown` its text. The
+    value of `contact` with the true friction decides what bounds a missed goal."""
     value, given = measure(method), measure("given")
     bound = "" if met(value) else "friction" if met(given) else "more than friction"
     return [what, wanted, shown(value), "met" if met(value) else "**not met**", shown(given),
@@ -118,7 +118,7 @@ def goal(what, wanted, measure, shown, met, method="contact", noise=""):
 
 
 def error_goals(histories):
-    """Friction by friction."""
+    """The goals of the RMS error by friction."""
     goals = [("contact", friction, limit) for friction, limit in CONTACT_GOALS.items()]
     goals += [("unrelated", friction, UNRELATED_FACTOR * limit)
               for friction, limit in CONTACT_GOALS.items()]
@@ -131,7 +131,7 @@ def error_goals(histories):
 
 
 def worse_than_paper(histories, method="contact"):
-    """From the worst on."""
+    """Recordings with their ratio to `paper`, the worst first."""
     recordings = [(over_paper([recording], method), recording)
                   for recording in with_pillars(usual(histories), 1)]
     return sorted(((ratio, recording) for ratio, recording in recordings
@@ -139,7 +139,7 @@ def worse_than_paper(histories, method="contact"):
 
 
 def true_recordings(histories, method, interval):
-    """The share of recordings in which an interval of a method holds the truth often enough."""
+    """Fraction of recordings in which an interval of a method covers the truth often enough."""
     recordings = with_pillars(histories, ENOUGH_PILLARS)
     return sum(Score([recording], method).coverage[interval] >= LEAST_HELD
                for recording in recordings) / len(recordings)
@@ -218,8 +218,8 @@ def draw_errors(histories, folder):
     pictures.save(figure, folder, "error_by_friction")
 
 
-def body_rows(histories):
-    """By body, motion and size."""
+def indenter_rows(histories):
+    """By indenter, motion and size."""
     for key, values, name in (("indenter", INDENTERS, "{}"), ("loading", LOADINGS, "{}"),
                               ("radius_pillars", RADII, "radius of {} pillars")):
         for value in values:
@@ -233,8 +233,8 @@ def body_rows(histories):
 # --- Friction learnt ---
 
 def narrow_contacts(histories, limit, holds):
-    """How many contacts of ten pillars or more, for which `holds`, have a posterior with a spread
-    of at most `limit`; and how many of these are off by more than 10 and by more than 20 %."""
+    """Number of contacts of at least ten pillars that satisfy `holds` and have a posterior spread
+    of at most `limit`; number of these that are wrong by more than 10 and by more than 20 %."""
     errors = [abs(contact["median"] / history["friction"] - 1)
               for history in histories for contact in history["learnt"]
               # Smaller contacts are fragments at the rim of others.
@@ -344,7 +344,7 @@ def main(docs, measured):
         error_rows=friction_rows(histories, ("direct", "direct_0.75", "direct_0.5", "paper",
                                              "contact", "unrelated", "given", "noise")),
         pillars=" | ".join(str(Score(some, "noise").ambiguous) for some in by_friction.values()),
-        body_rows=body_rows(histories),
+        indenter_rows=indenter_rows(histories),
         prior_rows=friction_rows(histories, (*PRIORS, "bounded", "given", "paper")),
         learnt_rows=learnt_rows(histories), sticking=sticking, sticking_off=sticking_off,
         coverage_rows=coverage_rows(histories),

@@ -1,4 +1,4 @@
-"""What the pages of ./dev report have in common: JSON is read, a Markdown template is filled."""
+"""Common parts of the pages of ./dev report: reads JSON, fills a Markdown template."""
 
 import json
 import math
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 class Failure(Exception):
-    """One line for the user: what failed, where, and the mend."""
+    """One line for the user: place, failure and remedy."""
 
 
 def load(path):
@@ -45,15 +45,15 @@ def text(value, pattern=".2f", otherwise="–"):
 
 
 def write(docs, name, **values):
-    """Fills the template NAME.md beside this script, whose fields are those of str.format, and
-    writes it into the folder of documents. Values whose name ends in _rows are rows of a table."""
+    """Fills the str.format template NAME.md beside this script and writes it into the folder of
+    documents. Values whose name ends in _rows are rows of a table."""
     template = Path(__file__).with_name(f"{name}.md").read_text(encoding="utf-8")
     values = {key: rows(value) if key.endswith("_rows") else value for key, value in values.items()}
     Path(docs, f"{name}.md").write_text(template.format_map(values), encoding="utf-8")
 
 
 def run(main):
-    """Runs a script's main function on the words of its command line."""
+    """Runs a script's main function on its command-line arguments."""
     if len(sys.argv) - 1 != main.__code__.co_argcount:
         print(sys.modules["__main__"].__doc__, file=sys.stderr)
         sys.exit(2)

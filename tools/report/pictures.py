@@ -28,7 +28,7 @@ STYLE = {
 
 
 def panels(width_px, height_px, *grid, **options):
-    """A figure and its axes, as pyplot.subplots has them."""
+    """A figure and its axes, as from pyplot.subplots."""
     # Imported here: the tests of the pages need no matplotlib.
     import matplotlib
     matplotlib.use("Agg")

@@ -1,7 +1,7 @@
 """speed.py DOCS BENCH LIVE: writes DOCS/performance.md with its pictures.
 
-BENCH is what pillarfield-bench printed with --benchmark_format=json, LIVE what `pillarfield live
---json` printed."""
+BENCH is the output of pillarfield-bench --benchmark_format=json, LIVE that of `pillarfield pace
+--json`."""
 
 import math
 import os
@@ -14,40 +14,40 @@ from page import Failure, percent, text
 
 
 class Bench:
-    """The rows of a run of pillarfield-bench."""
+    """The cases of a run of pillarfield-bench."""
 
     def __init__(self, name, measured):
         self.name = name
         try:
             self.context = measured["context"]
-            self.rows = {row["name"]: row for row in measured["benchmarks"]}
+            self.cases = {case["name"]: case for case in measured["benchmarks"]}
         except (KeyError, TypeError) as error:
-            raise Failure(f"{name}: is no run of pillarfield-bench: there is no {error}; "
+            raise Failure(f"{name}: not a run of pillarfield-bench: there is no {error}; "
                           "measure again with ./dev report speed") from error
 
-    def row(self, name):
-        """A row, also one that was left out."""
-        if name not in self.rows:
-            raise Failure(f"{self.name}: there is no row '{name}'; "
+    def case(self, name):
+        """A case, measured or skipped."""
+        if name not in self.cases:
+            raise Failure(f"{self.name}: there is no case '{name}'; "
                           "measure again with ./dev report speed")
-        return self.rows[name]
+        return self.cases[name]
 
     def left_out(self, name):
-        """Why a row was left out; empty where it was measured."""
-        row = self.row(name)
-        return row.get("error_message", "failed") if row.get("error_occurred") else ""
+        """Why a case was skipped; empty where it was measured."""
+        case = self.case(name)
+        return case.get("error_message", "failed") if case.get("error_occurred") else ""
 
     def value(self, name, counter):
         if self.left_out(name):
-            raise Failure(f"{self.name}: the row '{name}' was not measured: {self.left_out(name)}")
-        if counter not in self.row(name):
-            raise Failure(f"{self.name}: the row '{name}' has no '{counter}'; "
+            raise Failure(f"{self.name}: the case '{name}' was not measured: {self.left_out(name)}")
+        if counter not in self.case(name):
+            raise Failure(f"{self.name}: the case '{name}' has no '{counter}'; "
                           "measure again with ./dev report speed")
-        return self.row(name)[counter]
+        return self.case(name)[counter]
 
     def find(self, name, counter):
-        """None where the row is not there or was left out."""
-        if name not in self.rows or self.left_out(name):
+        """None where the case is missing or was skipped."""
+        if name not in self.cases or self.left_out(name):
             return None
         return self.value(name, counter)
 
@@ -57,7 +57,7 @@ class Bench:
                 for key, pattern in (word.split(":") for word in formats.split())]
 
     def group(self, name):
-        return [row for row in self.rows if row.startswith(f"{name}/")]
+        return [case for case in self.cases if case.startswith(f"{name}/")]
 
 
 # --- Goals ---
@@ -66,46 +66,46 @@ def ratio(numerator, denominator):
     return None if numerator is None or denominator is None else numerator / denominator
 
 
-def of_ceiling(row):
-    return lambda bench, live: bench.find(row, "of_ceiling")
+def of_copy(case):
+    return lambda bench, live: bench.find(case, "of_copy")
 
 
-def speedup(opponent):
-    return lambda bench, live: bench.find(f"opponent/{opponent}", "speedup")
+def speedup(baseline):
+    return lambda bench, live: bench.find(f"baseline/{baseline}", "speedup")
 
 
 def unevenness(bench, live):
-    """The slowest of the large skins over the fastest."""
+    """Most over least time per pillar of the large skins."""
     times = [bench.find(f"size/{pillars}", "ns_per_pillar")
              for pillars in (99856, 624100, 1000000, 9998244)]
     return None if None in times else max(times) / min(times)
 
 
 GOALS = (
-    ("Bare solve of 10⁶ pillars from memory: share of the copy's speed", "≥", 0.95,
-     of_ceiling("size/1000000")),
-    ("Bare solve of 10⁵ pillars in the cache: share of the copy's speed", "≥", 0.85,
-     of_ceiling("size/99856")),
-    ("Times as fast as the loop vectorised by hand", "≥", 1, speedup("vectorised")),
-    ("Times as fast as the paper's equations in OpenCL, one pillar per work-item", "≥", 80,
+    ("Bare solve of 10⁶ pillars from memory: fraction of the copy's speed", "≥", 0.95,
+     of_copy("size/1000000")),
+    ("Bare solve of 10⁵ pillars in the cache: fraction of the copy's speed", "≥", 0.85,
+     of_copy("size/99856")),
+    ("Speed over that of the loop of vector intrinsics", "≥", 1, speedup("vectorised")),
+    ("Speed over that of the paper's equations in OpenCL, one pillar per work-item", "≥", 80,
      speedup("paper_opencl")),
-    ("Times as fast as NumPy", "≥", 50, speedup("numpy")),
+    ("Speed over that of NumPy", "≥", 50, speedup("numpy")),
     ("All stages: time over the copy of the same bytes", "≤", 1.3,
-     lambda bench, live: ratio(1, bench.find("stage/all", "of_ceiling"))),
-    # Both rows have the same bytes: over their copies they compare as if in one race.
+     lambda bench, live: ratio(1, bench.find("stage/all", "of_copy"))),
+    # The two cases move equal bytes: relative to their copies they compare as in one timing.
     ("1 % in contact: time over that of the whole skin in contact", "≤", 0.3,
-     lambda bench, live: ratio(bench.find("contact/100/bare", "of_ceiling"),
-                               bench.find("contact/1/bare", "of_ceiling"))),
+     lambda bench, live: ratio(bench.find("contact/100/bare", "of_copy"),
+                               bench.find("contact/1/bare", "of_copy"))),
     ("10⁵ to 10⁷ pillars: most over least time per pillar", "≤", 1.25, unevenness),
     ("One frame of 79 × 79 pillars: time over that of an empty launch", "≤", 1.5,
      lambda bench, live: bench.find("latency/6241", "of_empty_launch")),
-    ("A square metre at 1 kHz, live: frames missed or dropped", "≤", 0,
+    ("A square metre at 1 kHz, paced: frames missed or dropped", "≤", 0,
      lambda bench, live: live["missed"] + live["dropped"]),
 )
 
 
 def goal_row(what, sign, limit, measured):
-    """Three digits of what was measured, and all of whole numbers."""
+    """Numbers have three significant digits, from 100 on all of their whole digits."""
     if measured is None:
         return [what, f"{sign} {limit:g}", "–", "not measured"]
     met = measured >= limit if sign == "≥" else measured <= limit
@@ -120,12 +120,12 @@ def goal_rows(bench, live):
 
 # --- Error against time ---
 
-RESOLUTION = 0.003  # of an error: smaller differences are none
+RESOLUTION = 0.003  # of an error: smaller differences count as equal
 
 
 def pareto_front(points, resolution):
-    """The indices of the points (cost, error), from the cheapest on, than which none as cheap has
-    a smaller error. Of errors that differ by no more than `resolution` the cheapest stands."""
+    """Indices of the Pareto-optimal points (cost, error), by cost. Errors that differ by at most
+    `resolution` count as equal."""
     front = []
     least = math.inf
     for i in sorted(range(len(points)), key=lambda i: points[i]):
@@ -136,16 +136,16 @@ def pareto_front(points, resolution):
 
 
 def variants(bench):
-    """The ways to solve, from the fastest on."""
-    keys = ("ns_per_pillar", "of_ceiling", "over_bare_copy", "error_counts", "error_over_bound",
+    """The solve variants, from the fastest on."""
+    keys = ("ns_per_pillar", "of_copy", "over_bare_copy", "error_counts", "error_over_bound",
             "error_pillars", "error_counts_all_regions", "ambiguous")
     found = []
-    for row in bench.group("variant"):
-        estimator, arithmetic, sensels, stages = row.split("/")[1:]
+    for case in bench.group("variant"):
+        estimator, arithmetic, sensels, stages = case.split("/")[1:]
         found.append({
             "name": ", ".join((estimator, arithmetic, sensels, stages)),
             "solve": f"{estimator}, {arithmetic}", "sensels": sensels,
-            "stages": stages, **{key: bench.value(row, key) for key in keys}})
+            "stages": stages, **{key: bench.value(case, key) for key in keys}})
     return sorted(found, key=lambda way: way["over_bare_copy"])
 
 
@@ -162,7 +162,7 @@ def front_text(front, error, unit):
 def variant_rows(ways, front):
     for way in ways:
         cells = [way["name"], *page.cells(
-            way, "ns_per_pillar:.3g of_ceiling:.3f over_bare_copy:.3g error_counts:.3f "
+            way, "ns_per_pillar:.3g of_copy:.3f over_bare_copy:.3g error_counts:.3f "
                  "error_over_bound:.3f error_counts_all_regions:.2f"),
             f"{percent(way['ambiguous'])} %"]
         if way in front:
@@ -177,7 +177,7 @@ MARKERS = {"none": "o", "angles": "^", "uncertainty": "v", "calibration": "s", "
 
 
 def draw_variants(ways, front, folder):
-    """A strip for each type of sensel."""
+    """A panel for each type of sensel."""
     figure, axes = pictures.panels(960, 600, 3, 1, sharex=True, sharey=True)
     for axis, sensels in zip(axes, ("u8", "u16", "f32")):
         axis.axhline(1, color=pictures.GREY, linewidth=1, zorder=1)
@@ -211,21 +211,21 @@ def draw_variants(ways, front, folder):
 # --- Size and contact ---
 
 def sizes(bench):
-    """From the races with the loop by hand, or without it where the processor has none."""
-    for row in bench.group("by_hand"):
-        raced = not bench.left_out(row)
-        ours = row if raced else row.replace("by_hand", "size")
-        time = bench.value(ours, "our_ns_per_pillar" if raced else "ns_per_pillar")
-        share = bench.value(ours, "of_ceiling")
+    """From the timings with the loop of intrinsics, or without it where the processor has none."""
+    for case in bench.group("intrinsics"):
+        measured = not bench.left_out(case)
+        ours = case if measured else case.replace("intrinsics", "size")
+        time = bench.value(ours, "our_ns_per_pillar" if measured else "ns_per_pillar")
+        share = bench.value(ours, "of_copy")
         yield {"pillars": bench.value(ours, "pillars"), "ours": time, "copy": time * share,
-               "of_ceiling": share, "by_hand": bench.find(row, "ns_per_pillar")}
+               "of_copy": share, "intrinsics": bench.find(case, "ns_per_pillar")}
 
 
 def contact_costs(bench, what):
     for share in ("0.1", "1", "10", "100"):
-        row = f"contact/{share}/{what}"
-        time = bench.value(row, "ns_per_pillar")
-        over_copy = 1 / bench.value(row, "of_ceiling")
+        case = f"contact/{share}/{what}"
+        time = bench.value(case, "ns_per_pillar")
+        over_copy = 1 / bench.value(case, "of_copy")
         yield {"percent": share, "time": time, "over_copy": over_copy, "copy": time / over_copy}
 
 
@@ -233,7 +233,7 @@ def draw_sizes(found, bare, every, folder):
     figure, (left, right) = pictures.panels(960, 400, 1, 2)
     pillars = [size["pillars"] for size in found]
     for key, label, style, colour in (("copy", "copy", "o--", pictures.BLACK),
-                                      ("by_hand", "by hand", "s-", pictures.ORANGE),
+                                      ("intrinsics", "intrinsics", "s-", pictures.ORANGE),
                                       ("ours", "ours", "o-", pictures.BLUE)):
         left.plot(pillars, [math.nan if size[key] is None else size[key] for size in found], style,
                   color=colour, label=label)
@@ -249,7 +249,7 @@ def draw_sizes(found, bare, every, folder):
     right.set(xscale="log", yscale="log", xlabel="share of the skin in contact (%)",
               ylabel="ns per pillar")
     pictures.plain_ticks(right.xaxis, (0.1, 1, 10, 100))
-    # Room for the legend above the lines.
+    # Space for the legend above the lines.
     right.set_ylim(top=5 * right.get_ylim()[1])
     for axis in (left, right):
         pictures.plain_ticks(axis.yaxis)
@@ -261,12 +261,12 @@ def draw_sizes(found, bare, every, folder):
 def size_rows(found):
     for size in found:
         yield [f"{size['pillars']:.0f}", text(size["ours"], ".3g"), text(size["copy"], ".3g"),
-               text(size["by_hand"], ".3g", "unmeasured"), text(size["of_ceiling"]),
-               text(ratio(size["by_hand"], size["ours"]))]
+               text(size["intrinsics"], ".3g", "unmeasured"), text(size["of_copy"]),
+               text(ratio(size["intrinsics"], size["ours"]))]
 
 
 def contact_rows(bare, every):
-    """Times are taken over the copies of the same bytes before they are compared."""
+    """Times are divided by those of copies of the same bytes before they are compared."""
     for costs in zip(bare, every):
         cells = [f"{costs[0]['percent']} %"]
         for cost, whole in zip(costs, (bare[-1], every[-1])):
@@ -280,13 +280,13 @@ SPREAD = "spread/6241"
 
 
 def spread(bench, who):
-    """Shares of the times by the lower end of their bin in µs, ten bins a decade; of the counters
-    "<who>_from_<end>us"."""
+    """Fractions of the times by the lower end of their bin in µs, ten bins a decade, from the
+    counters "<who>_from_<end>us"."""
     beginning = f"{who}_from_"
     found = {float(key.removeprefix(beginning).removesuffix("us")): share
-             for key, share in bench.row(SPREAD).items() if key.startswith(beginning)}
+             for key, share in bench.case(SPREAD).items() if key.startswith(beginning)}
     if not found:
-        raise Failure(f"{bench.name}: the row '{SPREAD}' has no times of '{who}'; "
+        raise Failure(f"{bench.name}: the case '{SPREAD}' has no times of '{who}'; "
                       "measure again with ./dev report speed")
     return found
 
@@ -317,14 +317,14 @@ def draw_latency(bench, live, folder):
 
 
 def latency_rows(bench):
-    return [bench.cells(row, "pillars:.0f median_us:.1f p99_us:.1f of_empty_launch:.2f")
-            for row in bench.group("latency")]
+    return [bench.cells(case, "pillars:.0f median_us:.1f p99_us:.1f of_empty_launch:.2f")
+            for case in bench.group("latency")]
 
 
-# --- Opponents, stages, lanes ---
+# --- Baselines, stages, lanes ---
 
-OPPONENTS = {
-    "vectorised": "the same solve by hand for this processor",
+BASELINES = {
+    "vectorised": "loop of vector intrinsics",
     "cpp_all_threads": "C++ loop over the same mathematics, all threads",
     "cpp_one_thread": "C++ loop, one thread",
     "numpy": "NumPy, array expressions",
@@ -332,27 +332,27 @@ OPPONENTS = {
 }
 
 
-def opponent_rows(bench):
-    for name, what in OPPONENTS.items():
-        row = f"opponent/{name}"
-        if why := bench.left_out(row):
+def baseline_rows(bench):
+    for name, what in BASELINES.items():
+        case = f"baseline/{name}"
+        if why := bench.left_out(case):
             yield [what, f"unmeasured: {why.removeprefix('skipped: ')}", *"––––"]
             continue
-        yield [what, bench.row(row)["label"], *bench.cells(
-            row, "ns_per_pillar:.3g our_ns_per_pillar:.3g speedup:.3g of_ceiling:.3f")]
+        yield [what, bench.case(case)["label"], *bench.cells(
+            case, "ns_per_pillar:.3g our_ns_per_pillar:.3g speedup:.3g of_copy:.3f")]
 
 
 def stage_rows(bench):
     bare = bench.value("stage/none", "ns_per_pillar")
-    for row in bench.group("stage"):
-        time, share = bench.value(row, "ns_per_pillar"), bench.value(row, "of_ceiling")
-        yield [row.removeprefix("stage/"), f"{bench.value(row, 'bytes_per_pillar'):.0f}",
+    for case in bench.group("stage"):
+        time, share = bench.value(case, "ns_per_pillar"), bench.value(case, "of_copy")
+        yield [case.removeprefix("stage/"), f"{bench.value(case, 'bytes_per_pillar'):.0f}",
                f"{time:.3g}", f"{share * time:.3g}", text(share), text(time / bare)]
 
 
 def lane_rows(bench):
-    for row in bench.group("lanes"):
-        yield [row.removeprefix("lanes/"), *bench.cells(row, "ns_per_pillar:.3g of_ceiling:.3f")]
+    for case in bench.group("lanes"):
+        yield [case.removeprefix("lanes/"), *bench.cells(case, "ns_per_pillar:.3g of_copy:.3f")]
     if "(GPU)" not in bench.context["device"]:
         yield ["GPU, 1 lane: unmeasured, there was none", "–", "–"]
 
@@ -360,7 +360,7 @@ def lane_rows(bench):
 # --- The machine ---
 
 def caches_text(caches):
-    """"level 1: 32 KiB, level 2: 1 MiB for 2 cores": of data, from the nearest on."""
+    """"level 1: 32 KiB, level 2: 1 MiB for 2 cores": the data caches."""
     texts = []
     for cache in caches:
         if cache["type"] != "Instruction":
@@ -405,9 +405,9 @@ def main(docs, bench_json, live_json):
         front_by_counts=front_text(front_by(ways, "error_counts"), "error_counts", "counts"),
         variant_rows=variant_rows(ways, front), size_rows=size_rows(found),
         contact_rows=contact_rows(bare, every), latency_rows=latency_rows(bench),
-        spread_times=bench.row(SPREAD)["label"], live=live, latencies=latencies(live),
+        spread_times=bench.case(SPREAD)["label"], live=live, latencies=latencies(live),
         live_pillars=live["pillar_rows"] * live["pillar_cols"],
-        contact_share=percent(live["contact_share"]), opponent_rows=opponent_rows(bench),
+        contact_share=percent(live["contact_share"]), baseline_rows=baseline_rows(bench),
         stage_rows=stage_rows(bench), lane_rows=lane_rows(bench),
         context={"commit": "unknown"} | bench.context, processor=processor_name(),
         caches=caches_text(bench.context["caches"]),

@@ -108,7 +108,7 @@ PF_WIDE void average(const Values& fixed, const Values& moving, const Values& hi
 /// Some ambiguous pillars of a contact: their segments, and the normal forces on them.
 struct ContactEstimator::Batch {
   std::array<std::uint32_t, kBatchPillars> index{};
-  Values fixed{};  ///< as in Segment, N
+  Values fixed{};  ///< as in FeasibleSegment, N
   Values moving{};
   Values high{};
   Values mean{};    ///< of the normal force, N
@@ -132,11 +132,11 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
   const auto add = [&](std::uint32_t index) {
     if (!is_ambiguous(field.status[index])) return;
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormalN)) return;
-    const Segment segment =
-        segment_of(force_of(field, index), moves_vertically(field.status[index]), end_);
+    const FeasibleSegment segment =
+        segment_of(force_of(field, index), shear_y_is_free(field.status[index]), end_);
     batch.index[batch.pillars] = index;
-    batch.fixed[batch.pillars] = segment.fixed;
-    batch.moving[batch.pillars] = segment.moving;
+    batch.fixed[batch.pillars] = segment.known_shear;
+    batch.moving[batch.pillars] = segment.free_shear;
     batch.high[batch.pillars] = segment.high;
     if (++batch.pillars == kBatchPillars) finish();
   };
@@ -160,7 +160,7 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
                              const Batch& batch, std::size_t i) const {
   const std::uint32_t index = batch.index[i];
   const maths::Force point = force_of(field, index);
-  const bool vertical = moves_vertically(field.status[index]);
+  const bool vertical = shear_y_is_free(field.status[index]);
   const double noise_n = model.noise_n;
   const double high = batch.high[i];
   double mean = batch.mean[i];

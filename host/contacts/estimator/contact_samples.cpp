@@ -92,7 +92,7 @@ void ContactSamples::ask(std::uint32_t row, std::uint32_t col, double noise_n,
   const double least = parameters.least_normal * noise_n;
   if (!(normal > 0 && normal < kMostNormalN)) return;
   if (is_ambiguous(status)) {
-    const Segment segment = segment_at(forces_, index, end_);
+    const FeasibleSegment segment = segment_at(forces_, index, end_);
     const double high = segment.high;
     ambiguous_.push_back(index);
     peak_n_ = std::max(peak_n_, high);

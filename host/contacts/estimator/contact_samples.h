@@ -103,9 +103,9 @@ class ContactSamples {
 }
 
 /// The segment of an ambiguous pillar.
-[[nodiscard]] inline Segment segment_at(const ForceFieldView& forces, std::uint32_t index,
-                                        const SegmentEnd& end) {
-  return segment_of(force_at(forces, index), moves_vertically(forces.status[index]), end);
+[[nodiscard]] inline FeasibleSegment segment_at(const ForceFieldView& forces, std::uint32_t index,
+                                                const SegmentEnd& end) {
+  return segment_of(force_at(forces, index), shear_y_is_free(forces.status[index]), end);
 }
 
 /// Relative standard deviation of a ratio of shear to a normal force, N.

@@ -123,7 +123,7 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   const std::size_t step = (ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
   for (std::size_t i = 0; i < ambiguous.size(); i += step) {
     const std::uint32_t index = ambiguous[i];
-    const Segment segment = segment_at(forces, index, sensor_.segment_end);
+    const FeasibleSegment segment = segment_at(forces, index, sensor_.segment_end);
     const std::uint32_t row = index / forces.cols;
     const auto found = model.predicted(row, index - row * forces.cols, segment.high, parameters_);
     if (!found) continue;

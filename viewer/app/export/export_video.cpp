@@ -101,7 +101,7 @@ struct VideoWriter::State {
         height(picture_height) {}
 
   [[noreturn]] void fail() const {
-    throw Error(file.path().string(), "ffmpeg failed: " + ffmpeg.complaint(),
+    throw Error(file.path().string(), "ffmpeg failed: " + ffmpeg.error_line(),
                 "fix that, or write a sequence of PNG files");
   }
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "bench/session.h"
+
+namespace pillarfield::bench {
+
+// Each function registers the cases of some groups, which docs/benchmark.md describes. The session
+// must outlive them.
+
+void add_limit_cases(const Session& session);       ///< limit/
+void add_size_cases(const Session& session);        ///< size/, contact/, regions/
+void add_plan_cases(const Session& session);        ///< type/, output/, estimator/, lanes/, stage/
+void add_time_cases(const Session& session);        ///< latency/, throughput/
+void add_baseline_cases(const Session& session);    ///< baseline/
+void add_intrinsics_cases(const Session& session);  ///< intrinsics/
+void add_spread_cases(const Session& session);      ///< spread/
+void add_variant_cases(const Session& session);     ///< variant/
+void add_field_cases(const Session& session);       ///< field/
+void add_render_cases(const Session& session);      ///< render/
+
+}  // namespace pillarfield::bench

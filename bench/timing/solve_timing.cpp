@@ -1,0 +1,60 @@
+#include "bench/timing/solve_timing.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace pillarfield::bench {
+
+CopyEntries::CopyEntries(InterleavedTiming& timing, const Device& device, const SolverPlan& plan,
+                         const Frames& frames, int frames_in_flight)
+    : pillars_(static_cast<double>(plan.skin.pillars())) {
+  for (const CopyKind& kind : kCopyKinds) {
+    auto kernel = std::make_unique<CopyKernel>(device, plan, frames, kind, frames_in_flight);
+    const std::size_t candidate =
+        timing.add([copy = kernel.get()](int count) { copy->run(count); });
+    entries_.push_back({fmt::format("copy_{}", kind.name), std::move(kernel), candidate});
+    // A device with a work-item for each pillar has one kind.
+    if (device.info().lanes == 1) return;
+  }
+}
+
+std::size_t CopyEntries::fastest(const InterleavedTiming& timing) const {
+  std::vector<std::size_t> candidates;
+  for (const Entry& entry : entries_) candidates.push_back(entry.candidate);
+  return timing.fastest(candidates);
+}
+
+void CopyEntries::report(const InterleavedTiming& timing, Measurement& measured) const {
+  for (const Entry& entry : entries_) {
+    measured.counters[entry.name] = timing.median(entry.candidate) * 1e9 / pillars_;
+  }
+}
+
+Measurement measurement_of(const InterleavedTiming& timing, std::size_t candidate,
+                           const SolverPlan& plan) {
+  const auto pillars = static_cast<double>(plan.skin.pillars());
+  Measurement measured;
+  measured.seconds = timing.median(candidate);
+  measured.counters["ns_per_pillar"] = measured.seconds * 1e9 / pillars;
+  measured.counters["bytes_per_pillar"] = static_cast<double>(streams_of(plan).bytes_per_pillar());
+  measured.counters["pillars"] = pillars;
+  return measured;
+}
+
+Measurement time_solve(const Session& session, const SolverPlan& plan, const Scenario& scenario,
+                       const Processor::Options& options, const ProcessorTuning& tuning) {
+  const Frames frames(plan.skin, plan.sensel_type, scenario);
+  FrameSolver solver(session.device, plan, frames, options, tuning);
+  InterleavedTiming timing;
+  const std::size_t solve = timing.add([&](int count) { solver.run(count); });
+  CopyEntries copies(timing, session.device, plan, frames, options.frames_in_flight);
+  timing.run(session.length);
+  Measurement measured = measurement_of(timing, solve, plan);
+  measured.counters["of_copy"] = timing.ratio(copies.fastest(timing), solve);
+  copies.report(timing, measured);
+  measured.label = fmt::format("{} frames", frames.size());
+  return measured;
+}
+
+}  // namespace pillarfield::bench

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/commands.h"
+#include "pillarfield/frame_statistics.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/skin_calibration.h"
+
+namespace pillarfield::cli {
+
+/// Throws Error where the output cannot be written or is an input of the step.
+void check_step_output(const std::vector<std::string>& files, const StepOptions& options,
+                       OutputKind kind);
+
+/// Opens frames and prints their warnings to standard error.
+std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOptions& options);
+
+/// Returns the calibration to extend, or a blank one for the skin of `source`, and masks the
+/// sensels missing in `source`. Throws Error where the two do not fit.
+SkinCalibration initial_calibration(const StepOptions& options, const FrameSource& source,
+                                    const std::string& file);
+
+struct StepInput {
+  SkinCalibration calibration;
+  std::vector<FrameStatistics> files;
+  std::uint64_t frames = 0;  ///< in all files
+};
+
+/// Checks the output, a calibration, and reads all frames of `files` and the calibration to extend.
+StepInput read_input(const std::vector<std::string>& files, const StepOptions& options);
+
+}  // namespace pillarfield::cli

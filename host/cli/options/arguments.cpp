@@ -1,0 +1,660 @@
+// The command line: every command's options in groups, their help and its examples.
+
+#include "cli/options/arguments.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "cli/commands.h"
+#include "cli/options/completion.h"
+#include "cli/options/help.h"
+#include "cli/options/nearest_word.h"
+#include "pillarfield/printable.h"
+
+namespace pillarfield::cli {
+namespace {
+
+using Work = std::function<void()>;
+
+constexpr double kAny = std::numeric_limits<double>::max();
+
+/// Scenes store seeds as integers of TOML.
+constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
+
+/// Prints that a former name works in this release only.
+void note_former_name(const std::string& former, const std::string& name) {
+  fmt::print(stderr, "pillarfield: '{}' is now '{}'; the former name works in this release only\n",
+             former, name);
+}
+
+/// Accepts a finite number in [least, most]; CLI::Range also accepts NaN.
+CLI::Validator number_in(double least, double most) {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    double value = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    if (is_number && value >= least && value <= most) return {};
+    if (most == kAny) return fmt::format("'{}' is not a number", text);
+    return fmt::format("'{}' is not a number from {:g} to {:g}", text, least, most);
+  };
+  return {error_of, ""};
+}
+
+/// Accepts a whole number in [least, most] in decimal digits. CLI::Range reads "-1" as a large
+/// number, too many digits as the largest, and "010" as eight.
+CLI::Validator whole_number_in(std::uint64_t least, std::uint64_t most) {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    const bool octal = text.size() > 1 && text.front() == '0';
+    const bool is_number = parsed.ec == std::errc{} && parsed.ptr == end && !octal;
+    if (is_number && value >= least && value <= most) return {};
+    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  return {error_of, ""};
+}
+
+/// Accepts one of `words`, and `former`.
+CLI::Validator one_of(const std::vector<std::string>& words, const std::string& former = "") {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    if (text == former || std::ranges::find(words, text) != words.end()) return {};
+    return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
+                       suggestion(text, words));
+  };
+  return {error_of, ""};
+}
+
+std::string stream_error(const std::string& text) {
+  return text == "-" ? "'-' names no stream; ./- is a file of this name" : "";
+}
+
+/// Adds arguments under one heading of the help.
+class Group {
+ public:
+  Group(CLI::App* command, std::string heading) : command_(command), heading_(std::move(heading)) {}
+
+  template <class Target>
+  CLI::Option* text(const std::string& names, Target& target, const char* kind,
+                    const std::string& description) {
+    return command_->add_option(names, target, description)
+        ->type_name(kind)
+        ->group(heading_)
+        ->check(CLI::Validator(stream_error, ""));
+  }
+
+  template <class Target>
+  void file(const std::string& name, Target& target, const char* description) {
+    text(name, target, "FILE", description)->required();
+  }
+
+  template <class Target>
+  CLI::Option* number(const std::string& names, Target& target, const char* unit,
+                      const char* description, double least = -kAny, double most = kAny) {
+    return text(names, target, unit, description)->check(number_in(least, most));
+  }
+
+  template <class Target>
+  CLI::Option* whole(const std::string& names, Target& target, const char* unit,
+                     const char* description, std::uint64_t least, std::uint64_t most) {
+    return text(names, target, unit, description)->check(whole_number_in(least, most));
+  }
+
+  /// Adds an option of one number per file, separated by commas or repeated.
+  CLI::Option* numbers(const std::string& names, std::vector<double>& target, const char* unit,
+                       const char* description) {
+    return number(names, target, unit, description, 1e-6, 1e6)
+        ->required()
+        ->delimiter(',')
+        ->allow_extra_args(false);
+  }
+
+  /// Adds an option that sets `target` to the value of a word; `former` is a former name of `word`.
+  template <class Value, class Target>
+  void choice(const std::string& name, Target& target,
+              const std::vector<std::pair<std::string, Value>>& choices, const char* description,
+              const std::string& former = "", const std::string& word = "") {
+    std::vector<std::string> words(choices.size());
+    std::ranges::transform(choices, words.begin(), &std::pair<std::string, Value>::first);
+    const auto assign = [=, &target](const std::string& given) {
+      if (given == former) note_former_name(name + " " + former, name + " " + word);
+      const std::string& current = given == former ? word : given;
+      target = std::ranges::find(choices, current, &std::pair<std::string, Value>::first)->second;
+    };
+    command_->add_option_function<std::string>(name, assign, description)
+        ->type_name(fmt::format("{}", fmt::join(words, "|")))
+        ->check(one_of(words, former))
+        ->group(heading_);
+  }
+
+  CLI::Option* flag(const std::string& names, bool& target, const char* description) {
+    return command_->add_flag(names, target, description)->group(heading_);
+  }
+
+ private:
+  CLI::App* command_;
+  std::string heading_;
+};
+
+// Arguments of several commands.
+
+void add_help(CLI::App* command) {
+  command->set_help_flag("-h,--help", "Print this help and exit")->group("General");
+}
+
+void add_general(CLI::App* command, PrintOptions& options, const char* json, const char* quiet) {
+  Group general(command, "General");
+  general.flag("--json", options.json, json);
+  general.flag("-q,--quiet", options.quiet, quiet);
+  add_help(command);
+}
+
+constexpr const char* kQuietWriter = "Print only errors, warnings and the output of --json";
+constexpr const char* kQuietReport = "Show no progress";
+
+void add_overwrite(CLI::App* command, Replace& replace) {
+  command
+      ->add_flag_callback(
+          "--overwrite", [&replace] { replace = Replace::anything; },
+          "Replace an existing output of any kind; inputs are never replaced")
+      ->group("Output");
+}
+
+void add_output(CLI::App* command, WriteOptions& options, const std::string& description) {
+  Group(command, "Output").text("-o,--output", options.output, "FILE", description)->required();
+  add_overwrite(command, options.replace);
+}
+
+void add_trust(CLI::App* command, ReadOptions& options) {
+  Group(command, "Input")
+      .flag("--trust-input", options.trust,
+            "Read HDF5 files without checking them first in a separate process");
+}
+
+void add_sensor(CLI::App* command, PlanOptions& plan) {
+  Group input(command, "Input");
+  input.text("--scene", plan.scene, "FILE",
+             "Scene to take the sensor's constants and the solver's settings from");
+  input.text("--calibration", plan.calibration, "FILE",
+             "Calibration to take planes and constants from");
+  add_trust(command, plan.read);
+  Group sensor(command, "Sensor");
+  sensor.number("--threshold", plan.threshold_counts, "COUNTS",
+                "Readings above this are usable [the file's]");
+  sensor.number("--counts-per-newton", plan.counts_per_newton, "COUNTS",
+                "Counts per newton and pillar [the file's]");
+  sensor.number("--full-scale", plan.full_scale_counts, "COUNTS",
+                "Readings of this or more are saturated [the file's]");
+  sensor.number("--noise", plan.noise_counts, "COUNTS",
+                "Standard deviation of a reading [the calibration's or scene's]");
+  sensor.number("--follow-baseline", plan.baseline_time_s, "SECONDS",
+                "Time constant with which the tare of untouched sensels follows drift [constant "
+                "tare]",
+                1e-6, 1e9);
+  sensor.whole("--baseline-interval", plan.baseline_interval, "N",
+               "Follow it in one of N pillar rows per frame, at 1/N of the cost [1; with "
+               "--everything up to 16]",
+               1, 1024);
+}
+
+void add_solver(CLI::App* command, PlanOptions& plan) {
+  Group solver(command, "Solver");
+  solver.choice<Estimator>(
+      "--estimator", plan.estimator,
+      {{"direct", Estimator::direct}, {"paper", Estimator::paper}, {"contact", Estimator::contact}},
+      "direct: each pillar from its own readings; paper: the paper's equations; contact: "
+      "ambiguous pillars from the friction of their contact [direct]",
+      "field", "contact");
+  solver
+      .text("--outputs", plan.outputs, "WORDS",
+            "Planes to compute, separated by commas: forces; angles adds magnitude, theta and "
+            "phi; uncertainty adds standard deviations and intervals [forces]")
+      ->check(one_of({"forces", "angles", "uncertainty"}))
+      ->delimiter(',');
+  solver.number("--segment-point", plan.segment_point, "RATIO",
+                "Reported point of a region 3 pillar on its feasible segment, as a fraction of the "
+                "largest normal force; 0.5 minimises the largest error [0.875]",
+                1e-6, 1);
+  solver.number("--parity-tolerance", plan.parity_tolerance_counts, "COUNTS",
+                "Flag pillars whose parity residual is larger [not tested]");
+  solver.flag("--everything", plan.everything,
+              "All outputs, the parity test and --follow-baseline; needs the noise");
+  Group friction(command, "Friction");
+  friction.number("--friction", plan.friction, "RATIO",
+                  "Friction coefficient of all contacts, known to 3 % [estimated]", 0.1, 9.9);
+  friction.number("--friction-bound", plan.friction_bound, "RATIO",
+                  "Upper bound of friction coefficients [none]", 0.1, 100);
+  friction
+      .number("--friction-prior", plan.friction_prior, "MEDIAN,SPREAD",
+              "Log-normal prior of friction coefficients [1,0.5]", 0.01, 9.9)
+      ->expected(2)
+      ->delimiter(',');
+  friction.flag("--unrelated-frames", plan.unrelated_frames,
+                "Carry no friction over from earlier frames");
+}
+
+void add_device(CLI::App* command, DeviceOptions& options) {
+  Group device(command, "Device");
+  device.text("--device", options.name, "DEVICE",
+              "OpenCL device, by index or part of its name [the best]; see info --devices");
+  device.choice<Memory>(
+      "--memory", options.memory,
+      {{"auto", Memory::automatic}, {"shared", Memory::shared}, {"staged", Memory::staged}},
+      "shared: zero copy; staged: copied to the device [auto]");
+}
+
+/// Adds a command; its options live as long as the work.
+template <class Options>
+std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Work& work,
+                                                           void (*run)(const Options&),
+                                                           const char* name,
+                                                           const char* description,
+                                                           const std::string& examples) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = parent.add_subcommand(name, description);
+  command->footer(examples);
+  command->callback([=, &work] { work = [=] { run(*options); }; });
+  return {command, options};
+}
+
+void add_simulate(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<SimulateOptions>(
+      parent, work, simulate, "simulate",
+      "Make a recording from a scene: frames of the sensor and the true forces.",
+      "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
+      "  pillarfield simulate scenes/sliding.toml -o noisy.h5 --frames 20 --seed 7\n");
+  Group input(command, "Input");
+  input.file("SCENE", options->scene, "Scene (TOML), see docs/scenes.md");
+  input.whole("--frames", options->frames, "N", "Number of frames [the scene's]", 1, 100'000'000);
+  input.whole("--seed", options->seed, "N", "Seed of the sensor's noise [the scene's]", 0,
+              kLargestSeed);
+  add_output(command, *options, "Recording (HDF5)");
+  Group(command, "Output")
+      .flag("--uncalibrated", options->uncalibrated,
+            "Leave out the sensor's calibration, as for a new skin");
+  add_general(command, *options, "Print the summary as JSON", kQuietWriter);
+}
+
+void add_solve(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<SolveOptions>(
+      parent, work, solve, "solve",
+      "Turn frames into fields of three-axis force, in newtons per pillar.",
+      "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
+      "  pillarfield solve demo.h5 -o forces.h5\n"
+      "  pillarfield solve demo.h5 -o forces.npy --outputs angles,uncertainty --noise 0.5\n"
+      "  pillarfield solve demo.h5 -o forces.h5 --estimator contact --contacts contacts.csv\n");
+  Group input(command, "Input");
+  input.file("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export");
+  add_output(command, *options,
+             "Force fields; the ending sets the format: " + endings_of(OutputKind::forces));
+  add_sensor(command, options->plan);
+  add_solver(command, options->plan);
+  Group contacts(command, "Contacts");
+  CLI::Option* const file =
+      contacts.text("--contacts", options->contacts_file, "FILE",
+                    "Track contacts and write them: " + endings_of(OutputKind::contacts) +
+                        "; the .h5 of --output holds them too");
+  ContactOptions& found = options->contacts;
+  contacts
+      .whole("--minimum-pillars", found.minimum_pillars, "N",
+             "Leave out contacts of fewer pillars [1]", 0,
+             std::numeric_limits<std::uint32_t>::max())
+      ->needs(file);
+  contacts
+      .number("--contact-reach", found.reach_mm, "MM",
+              "Largest movement of a contact between frames [10]")
+      ->needs(file);
+  add_device(command, options->device);
+  add_general(command, *options, "Print the summary as JSON", kQuietWriter);
+}
+
+void add_pace(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<PaceOptions>(
+      parent, work, pace, "pace",
+      "Solve frames at a fixed rate and report the latency of their forces.",
+      "  pillarfield pace scenes/demo.toml --seconds 2\n"
+      "  pillarfield pace scenes/demo.toml --rate 500 --everything --seconds 2\n");
+  command->alias("live");
+  Group input(command, "Input");
+  input.file("SOURCE", options->source,
+             "Scene (TOML), recording (HDF5) or Tekscan ASCII export, replayed from memory");
+  input.whole("--memory-limit", options->memory_limit_mib, "MIB",
+              "Memory limit of the frames loaded beforehand [1024]", 1, 1U << 20U);
+  Group pacing(command, "Pace");
+  pacing.number("--rate", options->rate_hz, "HZ", "Frames per second [1000]", 0.01, 1e5);
+  pacing.number("--seconds", options->seconds, "SECONDS", "Duration of the run [10]");
+  pacing.number("--deadline", options->deadline_ms, "MS",
+                "Latency above which a frame counts as missed [one period]", 1e-3, 1e6);
+  pacing.whole("--backlog", options->backlog_frames, "FRAMES",
+               "Drop a frame that is late by more periods [4]", 0, 1000);
+  pacing.flag("--strict", options->strict,
+              "Fail if a frame was dropped or missed its deadline, or the run was interrupted");
+  add_sensor(command, options->plan);
+  add_solver(command, options->plan);
+  add_device(command, options->device);
+  Group device(command, "Device");
+  device.whole("--in-flight", options->frames_in_flight, "FRAMES",
+               "Number of frames in the solver at once [2]", 1, 64);
+  device.number("--spin", options->spin_us, "US", "Busy-wait for this last part of each wait [0]",
+                0, 1e6);
+  device.flag("--realtime", options->realtime,
+              "Request real-time scheduling and locked memory; warn if refused");
+  add_general(command, *options, "Print the report as JSON", kQuietReport);
+}
+
+void add_compare(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<CompareOptions>(
+      parent, work, compare, "compare", "Compare solved forces with the truth by region.",
+      "  pillarfield simulate scenes/sliding.toml -o sliding.h5\n"
+      "  pillarfield solve sliding.h5 -o sliding_forces.h5\n"
+      "  pillarfield compare sliding_forces.h5 sliding.h5\n"
+      "  pillarfield compare sliding_forces.h5 sliding.h5 --json\n");
+  Group input(command, "Input");
+  input.file("FORCES", options->forces, "Force fields of solve (.h5)");
+  input.file("RECORDING", options->recording, "Recording that they were solved from, with truth");
+  add_trust(command, options->read);
+  add_general(command, *options, "Print the table as JSON", kQuietReport);
+}
+
+/// Adds the arguments of all steps.
+void add_step(CLI::App* command, StepOptions& options, bool needs_calibration, const char* output) {
+  if (needs_calibration) {
+    Group(command, "Input")
+        .text("--calibration", options.calibration, "FILE", "Calibration to extend")
+        ->required();
+  }
+  add_trust(command, options.read);
+  add_output(command, options, output);
+  add_general(command, options, "Print the summary as JSON", kQuietWriter);
+}
+
+constexpr const char* kCalibration = "Calibration (HDF5)";
+
+// Examples of several steps.
+constexpr const char* kIdleSkin =
+    "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
+    "  pillarfield calibrate tare idle.h5 -o tared.h5\n";
+constexpr const char* kPressedSkin =
+    "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
+    "  pillarfield simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5\n"
+    "  pillarfield calibrate tare idle.h5 -o tared.h5\n";
+
+/// Throws unless `option` has one value per file.
+void require_one_each(const char* option, const std::vector<std::string>& files,
+                      const std::vector<double>& values) {
+  if (files.size() == values.size()) return;
+  throw CLI::ValidationError(option, fmt::format("{} files and {} values; give one per file",
+                                                 files.size(), values.size()));
+}
+
+void add_tare(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<TareCommand>(
+      parent, work, calibrate, "tare",
+      "Tare, noise and threshold from frames of the unloaded skin.",
+      std::string(kIdleSkin) +
+          "  pillarfield calibrate tare idle.h5 -o strict.h5 --threshold-factor 6\n");
+  Group input(command, "Input");
+  input.file("UNLOADED", options->unloaded, "Frames in which nothing touches the skin");
+  input.text("--calibration", options->calibration, "FILE",
+             "Calibration whose tare is replaced [none]");
+  Group step(command, "Tare");
+  step.number("--threshold-factor", options->tare.threshold_factor, "RATIO",
+              "Threshold as a multiple of the noise of a reading [4]", 0, kMaxThresholdFactor);
+  step.flag("--preloaded", options->tare.preloaded,
+            "Accept readings that resemble a touch, as of a bent or covered skin");
+  add_step(command, *options, false, kCalibration);
+}
+
+void add_equilibrate(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<EquilibrateCommand>(
+      parent, work, calibrate, "equilibrate",
+      "Gains, and from several pressures dead zones, under uniform pressure.",
+      std::string(kPressedSkin) +
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
+          "tared.h5 "
+          "-o equal.h5\n");
+  Group(command, "Input")
+      .file("UNIFORM", options->files, "Frames under uniform pressure, one file per pressure");
+  Group step(command, "Equilibration");
+  step.numbers("--pressure-kpa", options->pressures_kpa, "P1,P2,...",
+               "Pressure of each file, in order");
+  step.number("--max-unevenness", options->equilibration.most_unevenness, "RATIO",
+              "Largest variation of the pressure from pillar to pillar [0.1]", 0, 1e6);
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback([options = options] {
+    require_one_each("--pressure-kpa", options->files, options->pressures_kpa);
+  });
+}
+
+void add_load(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<LoadCommand>(
+      parent, work, calibrate, "load", "Counts per newton, and a power law, from known loads.",
+      std::string(kPressedSkin) +
+          "  pillarfield calibrate load pressed.h5 --load-n 200 --calibration tared.h5 -o "
+          "loaded.h5\n");
+  Group(command, "Input")
+      .file("FRAMES", options->files, "Frames under a constant load, one file per load");
+  Group step(command, "Load");
+  step.numbers("--load-n", options->loads_n, "L1,L2,...", "Normal load of each file, in order");
+  step.choice<LoadModel>("--model", options->model,
+                         {{"linear", LoadModel::linear}, {"power", LoadModel::power}},
+                         "linear: proportional; power: power law, from at least two loads "
+                         "[linear]");
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback(
+      [options = options] { require_one_each("--load-n", options->files, options->loads_n); });
+}
+
+void add_faults(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<FaultsCommand>(
+      parent, work, calibrate, "faults",
+      "Find dead, stuck and saturated sensels by parity, and mask them.",
+      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
+      "  pillarfield simulate scenes/new_skin_rolled.toml --uncalibrated -o rolled.h5\n"
+      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
+      "  pillarfield calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5\n");
+  Group(command, "Input")
+      .file("FRAMES", options->frames, "Frames in which all of the skin is pressed");
+  Group step(command, "Faults");
+  FaultOptions& faults = options->faults;
+  step.whole("--min-frames", faults.least_frames, "N",
+             "Smallest number of frames in which parity predicts a sensel [30]", 2, 1'000'000'000);
+  step.number("--still", faults.still_factor, "RATIO",
+              "Largest range of a constant reading, in multiples of its noise [10]", 1e-6, 1e6);
+  step.number("--moving", faults.moving_factor, "RATIO",
+              "Smallest deviation of a changing prediction, in multiples of its noise [5]", 1e-6,
+              1e6);
+  add_step(command, *options, true, kCalibration);
+}
+
+void add_apply(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<ApplyCommand>(
+      parent, work, calibrate, "apply",
+      "Copy a recording with unchanged raw readings and add a calibration.",
+      std::string(kIdleSkin) + "  pillarfield calibrate apply tared.h5 idle.h5 -o calibrated.h5\n");
+  Group input(command, "Input");
+  input.file("CALIBRATION", options->calibration, "Calibration");
+  input.file("RECORDING", options->recording, "Recording or Tekscan export to copy");
+  add_step(command, *options, false, "Recording (HDF5)");
+}
+
+void add_calibrate(CLI::App& parent, Work& work) {
+  CLI::App* const steps =
+      parent.add_subcommand("calibrate", "Calibrate a skin step by step; see docs/calibration.md.");
+  steps->footer(
+      std::string(kPressedSkin) +
+      "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration tared.h5 "
+      "-o equal.h5\n"
+      "  pillarfield solve pressed.h5 --calibration equal.h5 -o forces.h5\n");
+  steps->require_subcommand(1);
+  add_tare(*steps, work);
+  add_equilibrate(*steps, work);
+  add_load(*steps, work);
+  add_faults(*steps, work);
+  add_apply(*steps, work);
+  add_help(steps);
+}
+
+void add_testbed(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<TestbedOptions>(
+      parent, work, run_testbed, "testbed",
+      "Repeat the paper's experiment on one pillar: Table II and figures.",
+      "  pillarfield testbed --runs 100\n"
+      "  pillarfield testbed --runs 100 --dead-zone 0 --json\n");
+  testbed::Parameters& parameters = options->parameters;
+  PillarSensor& sensor = parameters.sensor;
+  Group setup(command, "Sensor");
+  setup.number("--counts-per-newton", sensor.counts_per_newton, "COUNTS",
+               "Counts per newton and pillar [20]");
+  setup.number("--dead-zone", sensor.dead_zone_counts, "COUNTS",
+               "Counts that a sensel loses before it responds [144]");
+  setup.number("--threshold", sensor.threshold_counts, "COUNTS",
+               "Readings above this are usable [3]");
+  setup.number("--noise", sensor.noise_counts, "COUNTS", "Standard deviation of a reading [0.5]");
+  setup.number("--full-scale", sensor.full_scale_counts, "COUNTS",
+               "Largest reading of the converter [4095]");
+  Group probe(command, "Probe");
+  probe.number("--positioner", parameters.positioner_rad, "RAD",
+               "Largest error of an angle [0.04]");
+  probe.number("--play", parameters.play_rad, "RAD",
+               "Largest rotation of the direction as the force rises [0.01]");
+  probe.number("--probe-resolution", parameters.probe_resolution_n, "NEWTONS",
+               "Resolution of the applied force [0.1]");
+  probe.whole("--runs", options->runs, "N", "Repetitions of the experiment [1000]", 2, 1'000'000);
+  probe.whole("--seed", parameters.seed, "N", "Seed of all randomness [1]", 0, kLargestSeed);
+  Group(command, "Output")
+      .text("--figures", options->figures, "FOLDER",
+            "Folder for Figures 3, 4, 5 and 8 as SVG and PNG (gnuplot)");
+  add_overwrite(command, options->replace);
+  add_general(command, *options, "Print the results as JSON", kQuietReport);
+}
+
+void add_info(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<InfoOptions>(
+      parent, work, info, "info", "Describe a file, the OpenCL devices, or the kernel of a scene.",
+      "  pillarfield info scenes/demo.toml\n"
+      "  pillarfield info --devices\n"
+      "  pillarfield info --kernel scenes/demo.toml\n");
+  Group input(command, "Input");
+  CLI::Option* const file =
+      input.text("FILE", options->file, "FILE",
+                 "Recording, Tekscan export, force fields, calibration or scene to describe");
+  CLI::Option* const devices = input.flag("--devices", options->devices, "List OpenCL devices");
+  CLI::Option* const kernel =
+      input.text("--kernel", options->kernel, "SCENE",
+                 "Print the stages of a scene and the OpenCL C compiled for it");
+  add_trust(command, options->read);
+  file->excludes(devices)->excludes(kernel);
+  devices->excludes(kernel);
+  add_general(command, *options, "Print as JSON", kQuietReport);
+  kernel->excludes(command->get_option("--json"));
+}
+
+void add_completion(CLI::App& parent, Work& work) {
+  CLI::App* const command =
+      parent.add_subcommand("completion", "Print a shell's completion script.");
+  command->footer(
+      "  pillarfield completion bash >pillarfield.bash\n"
+      "  source <(pillarfield completion bash)\n");
+  const auto shell = std::make_shared<std::string>();
+  const auto words = std::make_shared<std::vector<std::string>>();
+  Group input(command, "Input");
+  input.text("SHELL", *shell, "SHELL", "bash, zsh or fish")
+      ->required()
+      ->check(one_of({"bash", "zsh", "fish"}, "words"));
+  // The scripts call `completion words -- calibrate tare`.
+  command->add_option("WORDS", *words)->group("");
+  add_help(command);
+  command->callback([=, &parent, &work] {
+    work = [text = *shell == "words" ? completion_words(parent, *words)
+                                     : completion_script(*shell)] { fmt::print("{}", text); };
+  });
+}
+
+/// Returns the innermost command of a command line.
+const CLI::App& called_of(const CLI::App& app) {
+  const std::vector<CLI::App*> called = app.get_subcommands();
+  return called.empty() ? app : called_of(*called.back());
+}
+
+std::string message_of(const CLI::App& command, const CLI::ParseError& error) {
+  std::vector<std::string> commands;
+  for (const CLI::App* each : command.get_subcommands({})) commands.push_back(each->get_name());
+  const std::vector<std::string> left = command.remaining();
+  if (left.empty()) {
+    if (commands.empty() || dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) {
+      return error.what();
+    }
+    return fmt::format("no command is given; it is one of {}", fmt::join(commands, ", "));
+  }
+  const std::string word = left.front().substr(0, left.front().find('='));
+  if (word.starts_with('-')) {
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command.get_options()) {
+      for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    }
+    return fmt::format("'{}' is not an option{}", word, suggestion(word, options));
+  }
+  if (commands.empty()) return fmt::format("'{}' is one argument too many", left.front());
+  return fmt::format("'{}' is not a command{}", left.front(), suggestion(word, commands));
+}
+
+}  // namespace
+
+Work parse_arguments(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  Work work;
+  CLI::App app("Turns frames of a high-density artificial skin into fields of three-axis force.",
+               "pillarfield");
+  app.formatter_fn([](const CLI::App* command, const std::string&, CLI::AppFormatMode) {
+    return help_of(*command);
+  });
+  app.footer(
+      "  pillarfield simulate scenes/demo.toml -o demo.h5\n"
+      "  pillarfield solve demo.h5 -o forces.h5\n"
+      "  pillarfield compare forces.h5 demo.h5\n");
+  add_simulate(app, work);
+  add_solve(app, work);
+  add_pace(app, work);
+  add_compare(app, work);
+  add_calibrate(app, work);
+  add_testbed(app, work);
+  add_info(app, work);
+  add_completion(app, work);
+  bool version = false;
+  bool json = false;
+  Group general(&app, "General");
+  CLI::Option* const version_flag =
+      general.flag("--version", version, "Print version, build and libraries, and exit");
+  general.flag("--json", json, "With --version: print JSON")->needs(version_flag);
+  add_help(&app);
+  try {
+    std::ranges::reverse(words);
+    app.parse(words);
+    if (version) return [json] { print_version(json); };
+    if (!work) throw CLI::RequiredError("COMMAND");
+  } catch (const CLI::CallForHelp&) {
+    fmt::print("{}", help_of(called_of(app)));
+    return [] {};
+  } catch (const CLI::ParseError& error) {
+    const CLI::App& command = called_of(app);
+    const std::string name = full_name(command);
+    std::string message = message_of(command, error);
+    if (!message.ends_with('?')) message += fmt::format("; see '{} --help'", name);
+    if (&command == &app) throw WrongCommandLine(message);
+    throw WrongCommandLine(name.substr(app.get_name().size() + 1) + ": " + message);
+  }
+  if (std::string_view(argv[1]) == "live") note_former_name("live", "pace");
+  return work;
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,41 @@
+#include "cli/options/completion.h"
+
+#include <fmt/format.h>
+
+namespace pillarfield::cli {
+
+std::string completion_words(const CLI::App& app, std::span<const std::string> words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    for (const CLI::App* command : app.get_subcommands({})) {
+      if (command->get_name() == words[i]) return completion_words(*command, words.subspan(i + 1));
+    }
+  }
+  std::string lines;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    lines += fmt::format("{}\t{}\n", command->get_name(), command->get_description());
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      lines += fmt::format("--{}\t{}\n", name, option->get_description());
+    }
+  }
+  return lines;
+}
+
+std::string completion_script(const std::string& shell) {
+  if (shell == "fish") {
+    return "complete -c pillarfield -a '(pillarfield completion words -- "
+           "(commandline -opc)[2..])'\n";
+  }
+  const std::string bash = R"(_pillarfield() {
+  local current=${COMP_WORDS[COMP_CWORD]} words
+  words=$(pillarfield completion words -- "${COMP_WORDS[@]:1:COMP_CWORD-1}" | cut -f1)
+  [[ $current == -* ]] || words=$(grep -v '^-' <<<"$words")
+  COMPREPLY=($(compgen -W "$words" -- "$current"))
+}
+complete -o default -F _pillarfield pillarfield
+)";
+  return shell == "zsh" ? "autoload -U +X bashcompinit && bashcompinit\n" + bash : bash;
+}
+
+}  // namespace pillarfield::cli
