@@ -1,4 +1,4 @@
-// A recording to contacts over time: solves every frame, tracks its contacts, and prints a table.
+// Reads a recording, solves every frame, tracks its contacts, and prints them as a table.
 #include <pillarfield/pillarfield.h>
 
 #include <cstdio>
@@ -16,7 +16,7 @@ int main(int argc, char** argv) try {
   plan.skin = recording->skin();
   plan.sensel_type = recording->sensel_type();
   plan.calibration = recording->calibration();
-  plan.estimator = pf::Estimator::contact;  // estimates friction, and ambiguous pillars by it
+  plan.estimator = pf::Estimator::contact;  // estimates friction, and from it ambiguous pillars
   pf::Processor processor(pf::open_device(), plan);
 
   pf::ContactOptions options;

@@ -1,5 +1,5 @@
 // A live loop: takes the tare of the unloaded skin, then solves each frame as it arrives and prints
-// the total force. Replace Sensor by the driver of your own.
+// the total force. Replace Sensor by your own driver.
 #include <pillarfield/pillarfield.h>
 
 #include <cstdio>
@@ -45,7 +45,7 @@ int main() try {
   pf::FrameBuffer frame(plan.sensel_type, kRows, kCols);
   const std::span readings = frame.readings<std::uint16_t>();
 
-  // Tare: mean and noise of each sensel, a threshold, and a mask of sensels that cannot be right.
+  // Tare: mean and noise of each sensel, a threshold, and a mask of faulty sensels.
   pf::FrameStatistics unloaded("unloaded frames", plan.skin, plan.sensel_type);
   for (int i = 0; i < 100; ++i) {
     sensor.read(readings, 0);

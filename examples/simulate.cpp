@@ -1,4 +1,5 @@
-// A scene to a recording with its truth, and how far from it the solved forces are. Uses no OpenCL.
+// Simulates a scene, writes a recording with its truth, and prints the error of the solved forces.
+// Uses no OpenCL.
 #include <pillarfield/pillarfield.h>
 
 #include <cstdio>

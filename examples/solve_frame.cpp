@@ -1,4 +1,4 @@
-// From readings in memory to forces: a frame in which one pillar is pressed and pulled right.
+// Solves a frame in memory in which one pillar is pressed and sheared to the right.
 #include <pillarfield/pillarfield.h>
 
 #include <cstdio>

@@ -9,7 +9,7 @@ void read_forces(const std::filesystem::path& path, [[maybe_unused]] const ReadO
   (void)is_force_file(path, options);
   const ForceFileReader reader(path, options);
   const ForceFileInfo& info = reader.info();
-  if (std::uint64_t{info.rows} * info.cols > kMostRead) return;
+  if (std::uint64_t{info.rows} * info.cols > kMaxRead) return;
   ForceField forces(info.rows, info.cols);
   Comparison comparison;
   for (const std::uint64_t index : some_frames(reader.frames())) {

@@ -21,7 +21,7 @@ SolverPlan plan_of_source(const FrameSource& source) {
 void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
   const auto source = open_frames(path, options);
   const Skin& skin = source->skin();
-  if (skin.sensels() > kMostRead) return;
+  if (skin.sensels() > kMaxRead) return;
   const SolverPlan plan = plan_of_source(*source);
   check(plan, path.native());
   FrameBuffer frame(plan.sensel_type, skin.rows, skin.cols);
@@ -30,7 +30,7 @@ void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadO
   for (const std::uint64_t index : some_frames(source->frames())) {
     const double time_s = source->read(index, frame);
     if (source->has_truth()) source->read_truth(index, truth);
-    if (skin.sensels() > kMostSolved) continue;
+    if (skin.sensels() > kMaxSolved) continue;
     tracker.update(solve_on_host(plan, frame.view()).view(), time_s);
   }
 }

@@ -1,7 +1,6 @@
-// The entry point of libFuzzer: one program for each target, PILLARFIELD_FUZZ_READ being its
-// function. The readers take a path, so the bytes become a file. They trust it: crashes
-// within libhdf5 end the fuzzer's process, and thousands of files a second need no child process
-// each.
+// Entry point of libFuzzer: one program per target, whose function is PILLARFIELD_FUZZ_READ.
+// Readers need a path, so the bytes are written to a file. Readers trust it, since a child process
+// per file would be too slow; crashes in libhdf5 end the fuzzer's process.
 
 #include <unistd.h>
 
@@ -15,8 +14,8 @@
 
 namespace {
 
-/// A file of the directory for temporary files, which should lie in memory. HDF5 opens no file that
-/// has no name, as those of memfd_create().
+/// A file in the directory for temporary files, ideally in memory. HDF5 cannot open files without a
+/// name, as memfd_create() makes them.
 class TemporaryFile {
  public:
   TemporaryFile(const std::uint8_t* data, std::size_t size)

@@ -1,8 +1,8 @@
-"""Finds the checksummed blocks of an HDF5 file and mends their checksums.
+"""Finds the checksummed blocks of an HDF5 file and corrects their checksums.
 
-Newer HDF5 files end each block of metadata with Jenkins' lookup3 hash of it. Without the mend, a
-mutant of such a file hardly gets beyond its first wrong checksum. Where a block ends is not parsed:
-of all lengths, it is the one whose hash stands behind it.
+Newer HDF5 files end each block of metadata with Jenkins' lookup3 hash of it, so an uncorrected mutant
+seldom gets past its first wrong checksum. The end of a block is not parsed: it is the length whose hash
+follows the block.
 """
 
 import re
@@ -45,7 +45,7 @@ def finished(a, b, c):
 
 
 def checksums(data, lengths):
-    """lookup3 of data[:n] for each n of `lengths`, which rise from 1 or more."""
+    """lookup3 of data[:n] for each n of `lengths`, which increase from 1 or more."""
     lengths = numpy.asarray(lengths, "u4")
     data = numpy.frombuffer(bytes(data) + bytes(12), "u1")
     a = b = c = lengths + numpy.uint32(0xDEADBEEF)
@@ -79,8 +79,8 @@ def find_blocks(data):
     return blocks
 
 
-def mend(data, original, blocks):
-    """Gives each of the blocks that differs from `original` the checksum of what it holds now."""
+def correct(data, original, blocks):
+    """Sets the checksum of each block that differs from `original`."""
     for begin, end in blocks:
         if data[begin:end] != original[begin:end]:
             value = int(checksums(data[begin:end], [end - begin])[0])

@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the files of fuzz/corpus that can be made.
+"""Makes the seed_* and hostile_* files of fuzz/corpus.
 
     fuzz/make_corpus.py --program build/release/bin/pillarfield [--folder fuzz/corpus]
 
-seed_* are small valid files of every kind, in every format that HDF5 may give them; hostile_* are made
-by hand to mislead a reader. Files that a fuzzer damaged stay as they are. fuzz/mutants.py makes its
-seeds by the same functions.
+seed_* are small valid files of every kind, in all HDF5 formats; hostile_* are designed to mislead a
+reader. Files damaged by a fuzzer do not change. fuzz/mutants.py makes its seeds with these functions.
 """
 
 import argparse
@@ -46,7 +45,7 @@ path = [
 ]
 """
 
-# One of each shape and motion, and every section.
+# Every shape, motion and section.
 SCENE_OF_ALL = """\
 title = "Everything"
 [skin]
@@ -147,7 +146,7 @@ TEKSCAN_HEADER = ["DATA_TYPE MOVIE", "VERSION Measurement 1.0", "ROWS {rows}", "
 
 
 def tekscan(frames, line_end="\n", header=True, times=False, sums=False, trailing=""):
-    """An export of these frames; a reading below zero is a place without a sensel."""
+    """An export of these frames; a reading below zero marks an absent sensel."""
     lines = []
     if header:
         lines = [line.format(rows=len(frames[0]), cols=len(frames[0][0]), frames=len(frames))
@@ -188,15 +187,15 @@ def copy_attributes(source, copy, variable):
         copy.attrs[name] = text if variable else value
 
 
-def growing(item):
-    """The layout of a dataset that grows along its first axis, as ours do."""
+def extendible(item):
+    """The layout of a dataset that is extendible along its first axis, as in our files."""
     return {"maxshape": (None, *item.shape[1:]), "chunks": (2, *item.shape[1:])}
 
 
 def convert(source, target, variable=False, layout=None, swmr=False, **file_options):
-    """Copies a file object by object: strings of variable length where `variable`, datasets of frames
-    in the `layout` of h5py, the file of the version that `file_options` say. With `swmr` it is
-    `target` as a writer leaves it that was killed after a flush."""
+    """Copies a file object by object: with strings of variable length if `variable`, datasets of frames
+    in the h5py `layout`, and the file version of `file_options`. With `swmr`, `target` is left as by a
+    writer that was killed after a flush."""
     unfinished = target.with_name("unfinished.h5") if swmr else target
     with h5py.File(source, "r") as old, h5py.File(unfinished, "w", **file_options) as new:
         copy_attributes(old, new, variable)
@@ -207,7 +206,7 @@ def convert(source, target, variable=False, layout=None, swmr=False, **file_opti
                 return
             options = {}
             if item.ndim > 0 and item.size > 0:
-                options = growing(item) if layout == "growing" else layout if item.ndim > 1 else {}
+                options = extendible(item) if layout == "extendible" else layout if item.ndim > 1 else {}
             made = new.create_dataset(name, data=item[()], **(options or {}))
             copy_attributes(item, made, variable)
 
@@ -220,25 +219,25 @@ def convert(source, target, variable=False, layout=None, swmr=False, **file_opti
         unfinished.unlink()
 
 
-# How an HDF5 file may look: old and new format, compressed, checked, in strings of variable length.
+# Variants of an HDF5 file: old and new format, compressed, checksummed, with strings of variable length.
 VARIANTS = {
     "old": {},
     "old_gzip_variable": {"variable": True, "layout": {"compression": "gzip", "shuffle": True}},
     "latest": {"libver": "latest"},
     "latest_gzip": {"libver": "latest", "layout": {"compression": "gzip", "fletcher32": True}},
     "latest_variable": {"libver": "latest", "variable": True},
-    "growing": {"libver": "latest", "layout": "growing"},
+    "extendible": {"libver": "latest", "layout": "extendible"},
 }
 
 
 def write_variants(ours, folder):
-    """The variants of a file of ours, which is far larger: its chunks are of 256 KiB."""
+    """All variants of one of our files, which are far smaller than it: its chunks have 256 KiB."""
     for name, options in VARIANTS.items():
         convert(ours, folder / f"seed_{name}_{ours.stem}.h5", **options)
 
 
 def write_plain_recording(path, dtype, **file_options):
-    """A recording as a user writes it with h5py, without most of what may be there."""
+    """A recording as a user writes it with h5py, without most optional objects."""
     raw = numpy.random.default_rng(3).uniform(0, 250, (4, 7, 9)).astype(dtype)
     if raw.dtype.kind == "f":
         raw[0, 0, :3] = numpy.nan, numpy.inf, -1
@@ -275,7 +274,7 @@ def map_elsewhere(file):
 
 
 def claim_frames(count, chunk):
-    """Frames that take no bytes: no chunk of theirs is stored."""
+    """Frames without any stored chunk."""
     def change(file):
         del file["frames/raw"]
         del file["frames/time"]
@@ -345,7 +344,7 @@ HOSTILE_SCENES = {
 
 
 def write_seeds(folder, program):
-    """Makes all seeds in the folders `folder`/KIND."""
+    """Writes all seeds to the folders `folder`/KIND."""
     for kind in KINDS:
         (folder / kind).mkdir(parents=True, exist_ok=True)
         for old in (folder / kind).glob("seed_*"):
@@ -360,7 +359,7 @@ def write_seeds(folder, program):
         recording = scratch / "slide.h5"
         run(program, "simulate", scene, "-o", recording)
         write_variants(recording, folder / "recording")
-        convert(recording, folder / "recording" / "seed_killed_slide.h5", layout="growing", swmr=True,
+        convert(recording, folder / "recording" / "seed_killed_slide.h5", layout="extendible", swmr=True,
                 libver="latest")
         for dtype in ("u1", ">u2", "<f4"):
             name = numpy.dtype(dtype).name

@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
-"""Gives mutants of valid files to the command and checks how each run ends.
+"""Runs the command on mutants of valid files and checks how each run ends.
 
     fuzz/mutants.py --program build/release/bin/pillarfield [--count 10000] [--seed N] [--jobs 2]
 
-Each mutant goes through `info` and `solve` (a scene through `simulate` as well, for `solve` takes
-its sensor only); with --more also through `compare`, `calibrate` or the other outputs. A run is in order
-where it ends by itself within 5 s and 1 GB; with status 0, or with
-status 1 and one line "pillarfield: ..." on standard error; where no other line is printed than
-warnings on the file, none holds a control character; and where nothing is left: no output after a
-failure, no part after a success, no process. With --twice, each solve that works runs again with
-other bytes in fresh memory, and must write the same file: what is not in the file is not read.
+Each mutant goes through `info` and `solve` (a scene also through `simulate`, since `solve` uses only its
+sensor); with --more also through `compare`, `calibrate` or other outputs. A run passes if it ends within
+5 s and 1 GB with status 0, or with status 1 and one line "pillarfield: ..." on standard error; prints no
+other lines than warnings about the file and no control characters; and leaves no output after a failure,
+no part after a success, and no process. With --twice, each successful solve runs again with different
+bytes in fresh memory and must write the same file.
 
-Mutants depend on --seed and their number alone; --only N makes that one and runs it. Failing
-mutants are kept in --keep with the command, and what it printed. Exit status: 0, or 1 on a failure.
+Mutants depend only on --seed and their number; --only N runs that one. Failing mutants are stored in
+--keep with the command and its output. Exit status: 0, or 1 after a failure.
 """
 
 import argparse
@@ -32,17 +31,17 @@ import time
 import make_corpus
 import mutations
 
-MOST_SECONDS = 5
-# A run is ended here. Others use the computer too, so one over 5 s runs again, up to twice, and its
-# quickest run counts.
+MAX_SECONDS = 5
+# Hard limit of a run. On a busy computer a run may exceed 5 s, so it is repeated up to twice and the
+# fastest run counts.
 KILLED_AFTER = 20
-MOST_KILOBYTES = 1 << 20
-# What a run away writes or takes must not take the computer down.
-MOST_WRITTEN = 512 << 20
-MOST_ADDRESSES = 16 << 30
+MAX_KILOBYTES = 1 << 20
+# Limits that protect the computer from a runaway command.
+MAX_WRITTEN = 512 << 20
+MAX_ADDRESSES = 16 << 30
 
-# A kind's commands: IN is the mutant, GOOD a valid recording with truth, FORCES its forces, OUT an
-# output of some ending.
+# Commands for each kind: IN is the mutant, GOOD a valid recording with truth, FORCES its forces, OUT an
+# output of any extension.
 COMMANDS = {
     "recording": ["info IN", "solve -q IN -o OUT"],
     "forces": ["info IN", "solve -q IN -o OUT"],
@@ -59,22 +58,22 @@ MORE = {
     "scene": ["info --json IN"],
 }
 ENDINGS = (".h5", ".csv", ".npy")
-# HDF5 files hold the time at which they were made.
+# HDF5 files contain their creation time, so they are not compared.
 ENDINGS_TO_COMPARE = (".csv", ".npy")
 
 Run = collections.namedtuple("Run", "status signal seconds processor kilobytes output errors lives_on")
 
 
 class Runner:
-    """Runs commands of one worker in a folder of its own."""
+    """Runs the commands of one worker in a separate folder."""
 
     def __init__(self, options, good):
         self.options, self.good = options, good
         self.folder = pathlib.Path(tempfile.mkdtemp(dir=options.scratch))
         self.out = self.folder / "out"
         self.child = 0
-        for what, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_FSIZE, MOST_WRITTEN),
-                           (resource.RLIMIT_AS, MOST_ADDRESSES)):
+        for what, most in ((resource.RLIMIT_CORE, 0), (resource.RLIMIT_FSIZE, MAX_WRITTEN),
+                           (resource.RLIMIT_AS, MAX_ADDRESSES)):
             resource.setrlimit(what, (most, most))
         signal.signal(signal.SIGALRM, self.kill)
 
@@ -118,16 +117,16 @@ class Runner:
                    *(path.read_bytes() for path in printed), lives_on)
 
     def timed(self, words, **environment):
-        """The run, or a quicker one of the same where it takes too long."""
+        """The run, or its fastest repetition if it exceeds the time limit."""
         for _ in range(3):
             run = self.run(words, **environment)
-            if run.seconds <= MOST_SECONDS:
+            if run.seconds <= MAX_SECONDS:
                 break
         return run
 
 
 def fault_of_text(run, file):
-    """What is wrong with what was printed, or None."""
+    """The fault in the printed text, or None."""
     if re.search(rb"[\x00-\x08\x0b-\x1f\x7f]", run.output + run.errors):
         return "prints control characters"
     lines = [line for line in run.errors.decode(errors="replace").split("\n") if line]
@@ -140,12 +139,12 @@ def fault_of_text(run, file):
 
 
 def fault_of(run, file, left):
-    """What is wrong with a run, or None."""
-    if run.seconds > MOST_SECONDS:
-        return f"over {MOST_SECONDS} s"
+    """The fault of a run, or None."""
+    if run.seconds > MAX_SECONDS:
+        return f"over {MAX_SECONDS} s"
     if run.signal is not None:
         return f"killed by {signal.Signals(run.signal).name}"
-    if run.kilobytes > MOST_KILOBYTES:
+    if run.kilobytes > MAX_KILOBYTES:
         return "over 1 GB"
     if run.status not in (0, 1):
         return f"status {run.status}"
@@ -159,7 +158,7 @@ def fault_of(run, file, left):
 
 
 def differs(runner, words):
-    """Whether a second run, with other bytes in fresh memory, writes something else."""
+    """Whether a second run, with different bytes in fresh memory, writes another file."""
     written = {path.name: path.read_bytes() for path in runner.out.iterdir()}
     runner.run(words, MALLOC_PERTURB_="85")
     again = {path.name: path.read_bytes() for path in runner.out.iterdir()}
@@ -202,7 +201,7 @@ def start_worker(options, good):
 
 
 def work(number):
-    """Summary lines of a mutant, and the failing runs kept."""
+    """Summary lines of a mutant; stores its failing runs."""
     results = []
     for seed, command, outcome, run, data, words in try_mutant(RUNNER, number):
         kept = None

@@ -15,7 +15,7 @@ WORDS = [b"nan", b"inf", b"-inf", b"1e999", b"-1", b"-0.0", b"1e-320", b"0", b"9
 
 
 class Seed:
-    """A valid file, and where its checksums are if it is HDF5."""
+    """A valid file, with the positions of its checksums if it is HDF5."""
 
     def __init__(self, kind, name, data):
         self.kind, self.name, self.data = kind, name, data
@@ -25,7 +25,7 @@ class Seed:
 
 
 def place_in(random, data, seed):
-    """Where to change something: half of the time where the seed is not zero."""
+    """A position to change: with probability 1/2 one at which the seed is not zero."""
     if random.random() < 0.5:
         return min(random.choice(seed.not_zero), len(data) - 1)
     return random.randrange(len(data))
@@ -88,7 +88,7 @@ def change_word(random, data, seed):
 
 
 def change_line(random, data, seed):
-    """Removes, repeats or moves a line; repeats it often, now and then."""
+    """Removes, repeats or moves a line; sometimes repeats it often."""
     lines = bytes(data).split(b"\n")
     at = random.randrange(len(lines))
     line = lines[at]
@@ -110,14 +110,14 @@ OF_TEXT = (change_word,) * 4 + (change_line,) * 2 + OF_BYTES
 
 
 def mutant_of(random, seed):
-    """A mutant of the seed. Four of five HDF5 files keep their size and get right checksums."""
+    """A mutant of the seed. Four of five HDF5 files keep their size and get correct checksums."""
     data = bytearray(seed.data)
-    mended = not seed.is_text and random.random() < 0.8
-    changes = OF_TEXT if seed.is_text else IN_PLACE if mended else OF_BYTES
+    checksummed = not seed.is_text and random.random() < 0.8
+    changes = OF_TEXT if seed.is_text else IN_PLACE if checksummed else OF_BYTES
     for _ in range(random.choice((1, 1, 1, 2) if seed.is_text else (1, 1, 1, 2, 3, 6))):
         random.choice(changes)(random, data, seed)
         if not data:
             data += b"\0"
-    if mended:
-        hdf5_checksums.mend(data, seed.data, seed.blocks)
+    if checksummed:
+        hdf5_checksums.correct(data, seed.data, seed.blocks)
     return bytes(data)

@@ -1,13 +1,12 @@
-// Reads every file of a corpus through its target, each in a process of its own.
+// Reads every file of a corpus with its target, each in a separate process.
 //
 //     fuzz_replay CORPUS [FILE...]
 //
-// CORPUS has a folder for each target; FILE limits the run to these of its files, named as
-// FOLDER/NAME. A file fails when a signal ends its process, when it takes more than 5 s of
-// processor time (20 s with sanitizers; other programs may use the computer too), a minute in all
-// or 1 GiB (without sanitizers), when it ends in anything but a pillarfield::Error, when its name
-// begins with "seed_" and it is refused, or when it does not and it is read. Exit status: 0, or 1
-// where a file fails.
+// CORPUS has a folder for each target; FILE, as FOLDER/NAME, limits the run to these files. A file
+// fails if its process ends by a signal, takes more than 5 s of processor time (20 s with
+// sanitizers), a minute of wall time or 1 GiB (without sanitizers), or ends in anything but a
+// pillarfield::Error. A file "seed_*" also fails if it is refused, any other if it is read. Exit
+// status: 0, or 1 if a file fails.
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -39,11 +38,11 @@ constexpr bool kSanitized = false;
 namespace pillarfield::fuzz {
 namespace {
 
-constexpr unsigned kMostSeconds = kSanitized ? 20 : 5;  ///< of processor time
-constexpr unsigned kMostWait = 60;                      ///< seconds by the clock
-constexpr rlim_t kMostBytes = 1 << 30;
+constexpr unsigned kMaxSeconds = kSanitized ? 20 : 5;  ///< processor time
+constexpr unsigned kMaxWait = 60;                      ///< wall time, seconds
+constexpr rlim_t kMaxBytes = 1 << 30;
 
-// Exit statuses of a child, none of them one that a sanitizer uses.
+// Exit statuses of a child that no sanitizer uses.
 constexpr int kRead = 10;
 constexpr int kRefused = 11;
 constexpr int kOtherException = 12;
@@ -53,22 +52,22 @@ void limit(decltype(RLIMIT_AS) resource, rlim_t most) {
   setrlimit(resource, &both);
 }
 
-/// The child's work: its message goes to `message`, a pipe.
+/// Runs in the child; writes its message to the pipe `message`.
 int read_under_limits(const Target& target, const std::filesystem::path& path, int message) {
-  const auto tell = [&](const char* text) {
+  const auto report = [&](const char* text) {
     if (write(message, text, std::strlen(text)) < 0) _exit(kOtherException);
   };
   limit(RLIMIT_CORE, 0);
-  if (!kSanitized) limit(RLIMIT_AS, kMostBytes);
-  alarm(kMostWait);
+  if (!kSanitized) limit(RLIMIT_AS, kMaxBytes);
+  alarm(kMaxWait);
   try {
     target.read(path, {.trust = false});
     return kRead;
   } catch (const Error& error) {
-    tell(error.what());
+    report(error.what());
     return kRefused;
   } catch (const std::exception& error) {
-    tell(error.what());
+    report(error.what());
     return kOtherException;
   }
 }
@@ -86,14 +85,14 @@ double seconds_of(const rusage& used) {
   return seconds(used.ru_utime) + seconds(used.ru_stime);
 }
 
-/// `used`: by the child and those that it waited for.
+/// `used`: resources of the child and its own children.
 Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::string& message) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
-    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMostWait)};
+    if (signal == SIGALRM) return {true, false, fmt::format("takes over {} s", kMaxWait)};
     return {true, false, fmt::format("killed by signal {}, {}", signal, strsignal(signal))};
   }
-  if (seconds_of(used) > kMostSeconds) {
+  if (seconds_of(used) > kMaxSeconds) {
     return {true, false, fmt::format("takes {:.1f} s of processor time", seconds_of(used))};
   }
   switch (WEXITSTATUS(status)) {
@@ -102,7 +101,7 @@ Outcome outcome_of(int status, const rusage& used, bool is_seed, const std::stri
     case kRefused:
       return {is_seed, true, "refused: " + message};
     case kOtherException:
-      return {true, false, "ends in an exception that is no Error: " + message};
+      return {true, false, "ends in an exception other than Error: " + message};
     default:
       return {true, false, fmt::format("ends with exit status {}", WEXITSTATUS(status))};
   }
@@ -122,9 +121,9 @@ std::string all_of(int pipe_end) {
 Outcome replay(const Target& target, const std::filesystem::path& path) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw Error(path.string(), "no pipe", "close some programs");
+    throw Error(path.string(), "cannot create a pipe", "close some programs");
   const pid_t child = fork();
-  if (child < 0) throw Error(path.string(), "no process", "close some programs");
+  if (child < 0) throw Error(path.string(), "cannot create a process", "close some programs");
   if (child == 0) {
     close(ends[0]);
     _exit(read_under_limits(target, path, ends[1]));
@@ -165,7 +164,8 @@ int replay_all(const std::filesystem::path& corpus, std::vector<std::filesystem:
   for (const auto& file : files) {
     const std::string folder = file.parent_path().filename().string();
     const Target* const target = target_named(folder);
-    if (target == nullptr) throw Error(file.string(), "lies in no folder of a target", "move it");
+    if (target == nullptr)
+      throw Error(file.string(), "is not in the folder of a target", "move it");
     const Outcome outcome = replay(*target, corpus / folder / file.filename());
     failed += outcome.failed ? 1 : 0;
     refused += outcome.refused && !outcome.failed ? 1 : 0;

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""Fuzzes the readers and tells what was found; `./dev fuzz` calls it.
+"""Fuzzes the readers and prints the findings; called by `./dev fuzz`.
 
     fuzz/run.py [TARGET] [SECONDS] [--programs build/fuzz/bin] [--findings build/fuzz/findings]
 
-libFuzzer mutates the files of fuzz/corpus/TARGET for SECONDS (60) and goes on after a crash; without
-TARGET, each target has so many seconds. New inputs that reach new code are kept beside the findings
-and used the next time. Afterwards each input that failed is run once more by itself, and the
-symbolised stack of that run says where it fails: in our code, or within libhdf5 (which a command
-meets in a child process of its own; SECURITY.md). Of inputs that fail alike one is kept and printed.
+libFuzzer mutates the files of fuzz/corpus/TARGET for SECONDS (60), through all crashes; without TARGET,
+each target gets SECONDS. Inputs that reach new code are stored beside the findings for the next run.
+Each failing input then runs again alone, and the symbolised stack of that run gives its owner: our code,
+or libhdf5 (which a command first runs in a child process; SECURITY.md). One input per distinct failure
+is stored and printed.
 
-Exit status: 0, or 1 where something fails in our code.
+Exit status: 0, or 1 after a failure in our code.
 """
 
 import argparse
@@ -24,10 +24,10 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 TARGETS = ("recording", "forces", "calibration", "tekscan", "scene")
 
-# Generous beside the 5 s and 1 GB of the commands: sanitizers take both.
+# Above the 5 s and 1 GB of the commands, since sanitizers need more.
 TIMEOUT_S = 15
 MEMORY_MB = 2048
-MOST_BYTES = 65536
+MAX_BYTES = 65536
 
 ENVIRONMENT = {
     **os.environ,
@@ -41,19 +41,19 @@ Finding = collections.namedtuple("Finding", "owner kind place caller file")
 
 
 def memory_folder():
-    """A scratch folder, in memory where the system has such: each run writes and reads a file."""
+    """A scratch folder, in memory if possible, since each run writes and reads a file."""
     memory = pathlib.Path("/dev/shm")
     return tempfile.TemporaryDirectory(prefix="fuzz-", dir=memory if memory.is_dir() else None)
 
 
 def fuzz(program, target, seconds, folders):
-    """Runs libFuzzer; its artifacts are in folders["raw"]."""
+    """Runs libFuzzer, which writes its artifacts to folders["raw"]."""
     seeds = [ROOT / "fuzz" / "corpus" / target]
     if target == "scene":
         seeds.append(ROOT / "scenes")
     command = [program, "-fork=1", "-print_funcs=0", "-ignore_crashes=1", "-ignore_timeouts=1", "-ignore_ooms=1",
                f"-max_total_time={seconds}", f"-timeout={TIMEOUT_S}",
-               f"-rss_limit_mb={MEMORY_MB}", f"-max_len={MOST_BYTES}", "-detect_leaks=0",
+               f"-rss_limit_mb={MEMORY_MB}", f"-max_len={MAX_BYTES}", "-detect_leaks=0",
                f"-artifact_prefix={folders['raw']}/", folders["grown"], *seeds]
     with open(folders["log"], "wb") as log:
         subprocess.run([str(word) for word in command], stdout=log, stderr=log, env=ENVIRONMENT,
@@ -67,11 +67,10 @@ def fuzz(program, target, seconds, folders):
 
 
 def failure_of(program, artifact):
-    """What the program prints about one input, or None where it ends well."""
+    """The output of the program for a failing input, or None if it succeeds."""
     command = [program, f"-timeout={TIMEOUT_S}", f"-rss_limit_mb={MEMORY_MB}", "-detect_leaks=0",
                f"-artifact_prefix={artifact.parent}/again-", artifact]
-    # libhdf5 has no frame pointers, so stacks through it take the slow unwinder, which gives up now
-    # and then.
+    # libhdf5 has no frame pointers, so stacks through it need the slow unwinder, which sometimes fails.
     slow = ":fast_unwind_on_malloc=0:fast_unwind_on_fatal=0:malloc_context_size=60"
     report = None
     for unwinder in (slow, ""):
@@ -111,7 +110,7 @@ def owner_of(place):
 
 
 def top_of(stack, owners=(OURS, HDF5)):
-    """Owner and name of the topmost frame of these owners, or None."""
+    """Owner and name of the topmost frame that belongs to `owners`, or None."""
     for function, place in stack:
         owner = owner_of(place)
         if owner in owners:
@@ -130,9 +129,9 @@ def kind_of(report):
     return "a failure"
 
 
-def judge(report):
-    """Owner, kind and place of a failure, and which code of ours called. Memory whose allocation is
-    ours makes libhdf5's access beyond it ours: we gave it too little."""
+def classify(report):
+    """Owner, kind and place of a failure, and our calling function. An access of libhdf5 beyond memory
+    that our code allocated is ours."""
     kind = kind_of(report)
     stacks = stacks_of(report)
     tops = [top for top in map(top_of, stacks) if top]
@@ -148,15 +147,15 @@ def judge(report):
 
 
 def collect(program, target, folders):
-    """The distinct findings among the artifacts, one file of each kept."""
+    """The distinct findings among the artifacts; stores one file of each."""
     found = {}
     for artifact in sorted(folders["raw"].iterdir()):
         if not re.match(r"(crash|timeout|oom|leak)-", artifact.name):
             continue
         report = failure_of(program, artifact)
         if report is None and not artifact.name.startswith("crash"):
-            continue  # slow or large only after many other inputs in the same process
-        owner, kind, place, caller = (judge(report) if report is not None
+            continue  # slow or large only after many inputs in one process
+        owner, kind, place, caller = (classify(report) if report is not None
                                       else (UNKNOWN, "a crash", "not when run alone", ""))
         key = (owner, kind, place)
         if key in found:

@@ -7,19 +7,19 @@
 namespace pillarfield::fuzz {
 namespace {
 
-/// Largest scene that is simulated, in sensels, and in sensels times contacts.
-constexpr std::uint64_t kMostSensels = 1 << 12;
-constexpr std::uint64_t kMostWork = 1 << 14;
+/// Largest simulated scene, in sensels and in sensels times contacts.
+constexpr std::uint64_t kMaxSceneSensels = 1 << 12;
+constexpr std::uint64_t kMaxSceneWork = 1 << 14;
 
-/// Whether a body's contact is of a few pillars, solved in a few steps, and no file is its shape.
+/// Whether a body's contact has few pillars and few steps, and its shape is not in a file.
 bool is_small(const Body& body, const Scene& scene) {
-  constexpr double kMostPillars = 8;
-  constexpr double kMostSteps = 2;
-  const double most_mm = kMostPillars * scene.skin.pillar_pitch_mm();
+  constexpr double kMaxPillars = 8;
+  constexpr double kMaxSteps = 2;
+  const double most_mm = kMaxPillars * scene.skin.pillar_pitch_mm();
   const double reach_mm = std::max({body.radius_mm, body.radii_mm[0], body.radii_mm[1],
                                     body.shape == BodyShape::cylinder ? body.length_mm : 0});
   const double steps = body.path.back().time_s * scene.rate_hz * body.substeps;
-  return body.shape != BodyShape::height_map && reach_mm <= most_mm && steps <= kMostSteps;
+  return body.shape != BodyShape::height_map && reach_mm <= most_mm && steps <= kMaxSteps;
 }
 
 bool is_small(const Scene& scene) {
@@ -27,7 +27,7 @@ bool is_small(const Scene& scene) {
   if (!scene.bodies.empty() && !is_small(scene.bodies.front(), scene)) return false;
   const auto* const contacts = std::get_if<std::vector<Contact>>(&scene.load);
   const std::uint64_t each = contacts == nullptr ? 1 : contacts->size();
-  return scene.skin.sensels() <= kMostSensels && scene.skin.sensels() * each <= kMostWork;
+  return scene.skin.sensels() <= kMaxSceneSensels && scene.skin.sensels() * each <= kMaxSceneWork;
 }
 
 }  // namespace

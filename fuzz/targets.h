@@ -8,23 +8,23 @@
 
 namespace pillarfield::fuzz {
 
-// Each function opens one file with the reader that the commands use and reads what a command
-// would: first, last and some frames, their truth, contacts and planes. Throws Error where the file
-// is refused, which is the expected outcome for damaged files; anything else is a finding.
+// Each function opens a file with the commands' reader and reads the first, the last and some other
+// frames, with their truth, contacts and planes. It throws Error if the file is refused, as
+// expected for damaged files; any other failure is a finding.
 
-/// A recording or a Tekscan export; its frames are also solved in C++, and their contacts tracked.
+/// Reads a recording or a Tekscan export; also solves its frames in C++ and tracks their contacts.
 void read_frames(const std::filesystem::path& path, const ReadOptions& options);
 
-/// A force file; its frames are also compared with themselves.
+/// Reads a force file; also compares its frames with themselves.
 void read_forces(const std::filesystem::path& path, const ReadOptions& options);
 
-/// A calibration; it is also applied to a skin of its size.
+/// Reads a calibration; also applies it to a skin of its size.
 void read_calibration(const std::filesystem::path& path, const ReadOptions& options);
 
-/// A scene; a small one is also simulated, its first frame and its last.
+/// Reads a scene; also simulates the first and the last frame of a small one.
 void read_scene(const std::filesystem::path& path, const ReadOptions& options);
 
-/// A kind of input, named like its folder in fuzz/corpus.
+/// A kind of input, named after its folder in fuzz/corpus.
 struct Target {
   std::string_view name;
   void (*read)(const std::filesystem::path& path, const ReadOptions& options);

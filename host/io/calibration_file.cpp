@@ -21,8 +21,8 @@
 namespace pillarfield {
 namespace {
 
-/// A history has some ten steps; a damaged file must not make anyone read for ever.
-constexpr int kMostSteps = 10000;
+/// Limit for damaged files; a real history has about ten steps.
+constexpr int kMaxSteps = 10000;
 
 Skin size_of_skin(const SkinCalibration& calibration) {
   Skin skin;
@@ -44,8 +44,8 @@ void write_step(const hdf5::File& file, const std::string& name, const Calibrati
   };
   write(calibration_format::kStep, step.step);
   write(calibration_format::kSources, fmt::format("{}", fmt::join(step.sources, "\n")));
-  constexpr std::uint64_t kMostFrames = std::numeric_limits<int>::max();
-  write(calibration_format::kStepFrames, static_cast<int>(std::min(step.frames, kMostFrames)));
+  constexpr std::uint64_t kMaxFrames = std::numeric_limits<int>::max();
+  write(calibration_format::kStepFrames, static_cast<int>(std::min(step.frames, kMaxFrames)));
   write(calibration_format::kParameters, step.parameters);
   write(calibration_format::kDate, step.date_utc);
   write(calibration_format::kProgramVersion, step.program_version);
@@ -109,7 +109,7 @@ CalibrationStep read_step(const hdf5::File& file, const std::string& name) {
   step.sources = lines_of(text(calibration_format::kSources));
   const double frames =
       hdf5::read_number(file, group.get(), calibration_format::kStepFrames).value_or(0);
-  // Beyond 2^53 it is no count, and NaN is none either.
+  // NaN and values above 2^53 are not counts.
   step.frames = frames >= 0 && frames < 0x1p53 ? static_cast<std::uint64_t>(frames) : 0;
   step.parameters = text(calibration_format::kParameters);
   step.date_utc = text(calibration_format::kDate);
@@ -119,7 +119,7 @@ CalibrationStep read_step(const hdf5::File& file, const std::string& name) {
 
 std::vector<CalibrationStep> read_history(const hdf5::File& file) {
   std::vector<CalibrationStep> history;
-  for (int number = 1; number <= kMostSteps; ++number) {
+  for (int number = 1; number <= kMaxSteps; ++number) {
     const std::string name = group_of_step(number);
     if (!hdf5::exists(file, name)) break;
     history.push_back(read_step(file, name));

@@ -1,6 +1,6 @@
 #pragma once
 
-// The names in a calibration file that a recording does not have (docs/formats.md).
+// Names in a calibration file that a recording lacks (docs/formats.md).
 namespace pillarfield::calibration_format {
 
 inline constexpr const char* kName = "pillarfield-calibration";

@@ -12,12 +12,12 @@ namespace pillarfield {
 namespace {
 
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
-constexpr int kWords = 4;  // of either list
+constexpr int kWords = 4;  // in each list
 
-/// Counts end where doubles stop being exact.
+/// Clamps to the counts that a double holds exactly.
 std::uint64_t as_count(double value) {
-  constexpr double kMost = 0x1p53;
-  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMost)) : 0;
+  constexpr double kMaxExact = 0x1p53;
+  return value > 0 ? static_cast<std::uint64_t>(std::min(value, kMaxExact)) : 0;
 }
 
 std::optional<std::uint64_t> as_identity(double value) {
@@ -31,7 +31,7 @@ std::optional<double> as_number(double value) {
   return value;
 }
 
-/// Unknown words are the first, which says least.
+/// An unknown index becomes the first word, which claims least.
 template <class Word>
 Word as_word(double value) {
   const std::uint64_t place = as_count(value);

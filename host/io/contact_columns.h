@@ -8,43 +8,43 @@
 
 namespace pillarfield {
 
-/// What the numbers of a column stand for.
+/// Meaning of a column's values.
 enum class ColumnKind : std::uint8_t {
   count,     ///< a whole number
-  identity,  ///< the same, where 0 stands for none
-  number,    ///< NaN stands for unset
-  word,      ///< the place of a word in its list
+  identity,  ///< a whole number; 0: none
+  number,    ///< NaN: unset
+  word,      ///< index in a list of words
 };
 
-/// A column of a table of contacts, the same in every format. All values pass as double, which
-/// holds every count there can be.
+/// A column of a table of contacts, shared by all formats. Values are doubles, which hold every
+/// possible count exactly.
 template <class Row>
 struct ContactColumn {
   const char* name = "";  ///< with its unit: "shear_x_n"
   const char* unit = "";  ///< "N", "mm", ...; empty for plain numbers
   ColumnKind kind = ColumnKind::count;
   double (*get)(const Row&) = nullptr;
-  void (*set)(Row&, double) = nullptr;    ///< takes any number, which may come from a damaged file
-  const char* (*word)(double) = nullptr;  ///< of kind word
-  bool later = false;                     ///< files of earlier versions lack it
+  void (*set)(Row&, double) = nullptr;    ///< accepts any number: the file may be damaged
+  const char* (*word)(double) = nullptr;  ///< only for ColumnKind::word
+  bool optional = false;                  ///< absent from files of earlier versions
 };
 
-/// id, parent, number, first_time_s, age_s.
+/// The columns id, parent, number, first_time_s, age_s.
 [[nodiscard]] std::span<const ContactColumn<TrackedContact>> identity_columns();
 
-/// The members of ContactQuantities.
+/// One column for each member of ContactQuantities.
 [[nodiscard]] std::span<const ContactColumn<ContactQuantities>> quantity_columns();
 
-/// id, merged_into, first_time_s, last_time_s.
+/// The columns id, merged_into, first_time_s, last_time_s.
 [[nodiscard]] std::span<const ContactColumn<EndedContact>> ended_columns();
 
-/// A value as text, in the fewest digits that read back as the same; words without quotes. Where
-/// it is unset, `unset`.
+/// Formats a value with the fewest digits that read back as the same double; words have no quotes.
+/// Returns `unset` if the value is unset.
 template <class Row>
 [[nodiscard]] std::string text_of(const ContactColumn<Row>& column, const Row& row,
                                   const char* unset);
 
-/// The words of a column in the order of their numbers, "none, given, ...".
+/// The words of a column in the order of their indices: "none, given, ...".
 template <class Row>
 [[nodiscard]] std::string words_of(const ContactColumn<Row>& column);
 

@@ -22,7 +22,7 @@ std::ifstream open_binary(const std::filesystem::path& path) {
   return file;
 }
 
-/// Of the open file: whatever its name stands for by now.
+/// Size of the open file, even if its name now refers to another one.
 std::uint64_t size_of(std::ifstream& file) {
   file.seekg(0, std::ios::end);
   const std::streamoff end = file.tellg();
@@ -38,7 +38,7 @@ std::string bytes_at(std::ifstream& file, std::uint64_t offset, std::size_t coun
   return bytes;
 }
 
-/// A user block may stand before the superblock: it begins at 0, 512, 1024, 2048 …
+/// Offset of the superblock: 0, 512, 1024, 2048 … if a user block precedes it.
 std::optional<std::uint64_t> superblock_offset(std::ifstream& file, std::uint64_t size) {
   for (std::uint64_t offset = 0; offset < size; offset = offset == 0 ? 512 : 2 * offset) {
     if (bytes_at(file, offset, kSignature.size()) == kSignature) return offset;
@@ -57,13 +57,13 @@ void require_regular_file(const std::filesystem::path& path) {
     throw Error(path.string(), "is a directory", "name a file in it");
   }
   if (!std::filesystem::is_regular_file(status)) {
-    throw Error(path.string(), "is no regular file", "copy what it gives into a file first");
+    throw Error(path.string(), "is not a regular file", "copy its content into a file first");
   }
 }
 
 }  // namespace
 
-FileLook look_at(const std::filesystem::path& path) {
+DetectedFormat detect_format(const std::filesystem::path& path) {
   require_regular_file(path);
   std::ifstream file = open_binary(path);
   const std::uint64_t size = size_of(file);
@@ -80,7 +80,7 @@ WriterState writer_state(const std::filesystem::path& path) {
   const std::string superblock = bytes_at(file, *offset, 12);
   constexpr std::size_t kVersionAt = 8;
   constexpr std::size_t kFlagsAt = 11;
-  // Older superblocks carry no flags.
+  // Older superblocks have no flags.
   if (superblock.size() <= kFlagsAt || superblock[kVersionAt] < 3) return WriterState::closed;
   const auto flags = static_cast<unsigned char>(superblock[kFlagsAt]);
   if ((flags & 4u) != 0) return WriterState::swmr;

@@ -8,28 +8,28 @@ namespace pillarfield {
 
 struct SourceFormat;  // io/frame_source.h
 
-/// What a file is, told by its first bytes and never by its name.
+/// The kind of a file by its first bytes, whatever its name.
 enum class FileKind : std::uint8_t {
   hdf5,
-  frames,  ///< of a SourceFormat
+  frames,  ///< a SourceFormat
   other
 };
 
-struct FileLook {
+struct DetectedFormat {
   FileKind kind = FileKind::other;
-  const SourceFormat* frames = nullptr;  ///< with FileKind::frames
+  const SourceFormat* frames = nullptr;  ///< set for FileKind::frames
 };
 
-/// Throws Error where `path` is no regular file, is empty or cannot be read.
-[[nodiscard]] FileLook look_at(const std::filesystem::path& path);
+/// Throws Error if `path` is not a regular file, is empty or cannot be read.
+[[nodiscard]] DetectedFormat detect_format(const std::filesystem::path& path);
 [[nodiscard]] inline FileKind kind_of(const std::filesystem::path& path) {
-  return look_at(path).kind;
+  return detect_format(path).kind;
 }
 
-/// How the last writer of an HDF5 file left it.
+/// State in which the last writer of an HDF5 file left it.
 enum class WriterState : std::uint8_t {
-  closed,     ///< cleanly
-  swmr,       ///< killed or still writing, in the mode that keeps flushed frames readable
+  closed,     ///< closed cleanly
+  swmr,       ///< killed or still writing in SWMR mode: flushed frames are readable
   abandoned,  ///< killed or still writing in another mode: nothing can be read
 };
 

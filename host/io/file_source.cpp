@@ -12,7 +12,7 @@ FileSource::FileSource(std::filesystem::path path, std::string format)
     : path_(std::move(path)), format_(std::move(format)) {}
 
 void FileSource::read_truth(std::uint64_t, ForceField&) {
-  throw Error(path_.string(), "holds no true forces", "ask has_truth() first");
+  throw Error(path_.string(), "holds no true forces", "call has_truth() first");
 }
 
 void FileSource::require_frame(std::uint64_t index) const {
@@ -32,12 +32,12 @@ void FileSource::require_fitting(const FrameBuffer& frame) const {
 
 void FileSource::warn_of_size() {
   if (skin_.rows % 2 != 0) {
-    warnings_.push_back(fmt::format(
-        "No pillar stands on the last of the {} sensel rows; it is left out.", skin_.rows));
+    warnings_.push_back(
+        fmt::format("The last of the {} sensel rows has no pillars; it is ignored.", skin_.rows));
   }
   if (skin_.cols % 2 != 0) {
     warnings_.push_back(fmt::format(
-        "No pillar stands on the last of the {} sensel columns; it is left out.", skin_.cols));
+        "The last of the {} sensel columns has no pillars; it is ignored.", skin_.cols));
   }
   if (frames_ == 0) warnings_.push_back("The file holds no frames.");
 }

@@ -8,7 +8,7 @@
 
 namespace pillarfield {
 
-/// What is the same for frames of every file format.
+/// The part of FrameSource that all file formats share.
 class FileSource : public FrameSource {
  public:
   [[nodiscard]] const std::string& format() const override { return format_; }
@@ -26,7 +26,7 @@ class FileSource : public FrameSource {
   void require_frame(std::uint64_t index) const;
   void require_fitting(const FrameBuffer& frame) const;
 
-  /// Warnings what no pillar stands on, and that a file has no frame.
+  /// Warns of an odd last row or column, which has no pillars, and of a file without frames.
   void warn_of_size();
 
   std::filesystem::path path_;

@@ -30,7 +30,7 @@ struct OpenForces {
   void require_frame(std::uint64_t index) const;
 
   hdf5::File file;
-  std::vector<hdf5::StoredFrames> planes;  // shear_x, shear_y, normal, and the uncertainty if any
+  std::vector<hdf5::StoredFrames> planes;  // shear_x, shear_y, normal, then uncertainty if present
   hdf5::StoredFrames status;
   hdf5::StoredFrames time;
   std::optional<ContactTablesReader> contacts;
@@ -39,7 +39,7 @@ struct OpenForces {
   std::vector<std::string> warnings;
 };
 
-/// The angles and the ends of components are not: they follow from the rest.
+/// Angles and interval ends are not read, since they follow from the other planes.
 bool is_read(const ResultPlane& plane) {
   return plane.set == PlaneSet::forces || plane.set == PlaneSet::uncertainty;
 }
@@ -48,9 +48,9 @@ void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const cha
                    const std::filesystem::path& path) {
   if (frames.value_class() == kind) return;
   throw Error(path.string(),
-              fmt::format("{} holds no {} but {}", frames.name(), kind_name,
+              fmt::format("{} must hold {}, not {}", frames.name(), kind_name,
                           hdf5::name_of_type(frames.type())),
-              "docs/formats.md tells its type");
+              "see docs/formats.md");
 }
 
 OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
@@ -87,7 +87,7 @@ void OpenForces::read_size() {
     if (plane.shape() == shape) continue;
     throw Error(file.path.string(),
                 fmt::format("{} and {} differ in size", plane.name(), status.name()),
-                "the file is damaged; solve again");
+                "the file is damaged; solve the recording again");
   }
   info.rows = static_cast<std::uint32_t>(shape[0]);
   info.cols = static_cast<std::uint32_t>(shape[1]);
@@ -102,8 +102,8 @@ void OpenForces::read_info() {
   const auto pitch_mm = hdf5::read_number(file, root, force_format::kPillarPitch);
   if (!pitch_mm) {
     info.pillar_pitch_mm = Skin().pillar_pitch_mm();
-    warnings.push_back(fmt::format("The file gives no pillar pitch; {:.6g} mm are assumed.",
-                                   info.pillar_pitch_mm));
+    warnings.push_back(
+        fmt::format("The file has no pillar pitch; {:.6g} mm is assumed.", info.pillar_pitch_mm));
     return;
   }
   if (!std::isfinite(*pitch_mm) || *pitch_mm <= 0) {
@@ -119,7 +119,7 @@ void OpenForces::count_frames() {
   if (contacts) frames = std::min(frames, contacts->frames());
   if (file.unclosed) {
     warnings.push_back(fmt::format(
-        "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
+        "The file was not closed: its writer was killed or is still running. The {} flushed frames "
         "are read.",
         frames));
   }

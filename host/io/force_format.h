@@ -1,6 +1,6 @@
 #pragma once
 
-// The names in an HDF5 file of force fields (docs/formats.md).
+// Names in an HDF5 file of force fields (docs/formats.md).
 namespace pillarfield::force_format {
 
 inline constexpr const char* kName = "pillarfield-forces";
@@ -25,7 +25,7 @@ inline constexpr const char* kContacts = "/contacts";
 inline constexpr const char* kPatch = "/contacts/patch";
 inline constexpr const char* kEnded = "/contacts/ended";
 inline constexpr const char* kFrameColumn = "frame";
-/// Of a frame: where its rows of /contacts and /contacts/ended begin, and how many they are.
+/// First row and number of rows of a frame in /contacts and in /contacts/ended.
 inline constexpr const char* kPatchRows[] = {"first_contact", "contacts", "first_ended", "ended"};
 inline constexpr const char* kWords = "words";
 inline constexpr const char* kMinimumPillars = "minimum_pillars";

@@ -19,7 +19,7 @@ FramePlanes::FramePlanes(const ForceFileInfo& info) : uncertainty_(info.uncertai
   if (info.estimator == name_of(Estimator::direct)) direct_point_ = info.segment_point;
 }
 
-void FramePlanes::take(const ForceFieldView& forces) {
+void FramePlanes::set_frame(const ForceFieldView& forces) {
   forces_ = forces;
   if (!uncertainty_) return;
   for (auto& plane : ends_) plane.resize(forces.normal.size());

@@ -11,17 +11,18 @@
 
 namespace pillarfield {
 
-/// The planes of a file, status apart: first shear_x, shear_y and normal, which every file has.
+/// The planes of a file without status; the first are shear_x, shear_y and normal, which every file
+/// has.
 [[nodiscard]] std::vector<ResultPlane> planes_of(const ForceFileInfo& info);
 
-/// The values of the planes of a frame.
+/// Values of a frame's planes.
 class FramePlanes {
  public:
   explicit FramePlanes(const ForceFileInfo& info);
 
-  /// Computes the ends of components where the file has them. `forces` must live as long as its
-  /// planes are asked for.
-  void take(const ForceFieldView& forces);
+  /// Sets the frame; computes the interval ends of components if the file has them. `forces` must
+  /// outlive the calls of of().
+  void set_frame(const ForceFieldView& forces);
   [[nodiscard]] std::span<const float> of(const ResultPlane& plane) const;
 
  private:

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "io/ending.h"
+#include "io/extension.h"
 #include "io/force_planes.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
@@ -24,7 +24,7 @@ SinkFormat contact_json_format();
 
 namespace {
 
-/// All formats, in the order in which messages name their endings.
+/// All formats, in the order in which messages list their extensions.
 std::span<const SinkFormat> sink_formats() {
   static const std::array formats = {force_hdf5_format(), force_csv_format(), force_npy_format(),
                                      contact_csv_format(), contact_json_format()};
@@ -32,11 +32,11 @@ std::span<const SinkFormat> sink_formats() {
 }
 
 const SinkFormat& format_of(const std::filesystem::path& path, OutputKind kind) {
-  if (const SinkFormat* const format = format_by_ending(path, kind)) return *format;
+  if (const SinkFormat* const format = format_by_extension(path, kind)) return *format;
   throw Error(path.string(),
-              kind == OutputKind::forces ? "its ending is not that of a force file"
-                                         : "its ending names no table of contacts",
-              "end it in " + endings_of(kind));
+              kind == OutputKind::forces ? "its extension is not that of a force file"
+                                         : "its extension is not that of a table of contacts",
+              "use " + endings_of(kind));
 }
 
 void check_time(const SolvedFrame& frame, const std::string& where) {
@@ -65,12 +65,12 @@ void check(const SolvedFrame& frame, const ForceFileInfo& info, const std::strin
   if (forces.rows != info.rows || forces.cols != info.cols || !complete(forces.shear_x) ||
       !complete(forces.shear_y) || !complete(forces.normal) || forces.status.size() != pillars) {
     throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
-                fmt::format("the file takes whole frames of {} x {}", info.rows, info.cols));
+                fmt::format("the file needs frames of {} x {}", info.rows, info.cols));
   }
   for (const ResultPlane& plane : planes_of(info)) {
     if (plane.index >= kSolvedPlanes || complete(plane_of(forces, plane.index))) continue;
     throw Error(where, fmt::format("a frame without {}", plane.field()),
-                "solve with all outputs that the file shall have");
+                "solve with all outputs that the file needs");
   }
   check_time(frame, where);
   if (info.contacts) static_cast<void>(contacts_of(frame, where));
@@ -82,12 +82,13 @@ const FrameContacts& contacts_of(const SolvedFrame& frame, const std::string& wh
   throw Error(where, "a frame without its contacts", "track them, or write forces alone");
 }
 
-const SinkFormat* format_by_ending(const std::filesystem::path& path, OutputKind kind) {
-  const std::string ending = ending_of(path);
+const SinkFormat* format_by_extension(const std::filesystem::path& path, OutputKind kind) {
+  const std::string extension = extension_of(path);
   for (const SinkFormat& format : sink_formats()) {
-    const auto& endings = format.endings;
-    const bool has_ending = std::find(endings.begin(), endings.end(), ending) != endings.end();
-    if (format.kind == kind && !ending.empty() && has_ending) return &format;
+    const auto& extensions = format.extensions;
+    const bool has_extension =
+        std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+    if (format.kind == kind && !extension.empty() && has_extension) return &format;
   }
   return nullptr;
 }
@@ -100,16 +101,16 @@ const SinkFormat* format_by_beginning(std::string_view head) {
 }
 
 std::string endings_of(OutputKind kind) {
-  std::vector<std::string_view> endings;
+  std::vector<std::string_view> extensions;
   for (const SinkFormat& format : sink_formats()) {
-    for (const std::string_view ending : format.endings) {
-      if (format.kind == kind && !ending.empty()) endings.push_back(ending);
+    for (const std::string_view extension : format.extensions) {
+      if (format.kind == kind && !extension.empty()) extensions.push_back(extension);
     }
   }
-  if (endings.empty()) return "";
-  const std::string_view last = endings.back();
-  endings.pop_back();
-  return fmt::format("{} or {}", fmt::join(endings, ", "), last);
+  if (extensions.empty()) return "";
+  const std::string_view last = extensions.back();
+  extensions.pop_back();
+  return fmt::format("{} or {}", fmt::join(extensions, ", "), last);
 }
 
 PlannedOutput planned_force_file(const std::filesystem::path& path) {
@@ -125,8 +126,8 @@ std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
   check(info, path.string());
   const SinkFormat& format = format_of(path, OutputKind::forces);
   if (info.contacts && format.recognises != nullptr) {
-    throw Error(path.string(), "only HDF5 files hold contacts beside the forces",
-                "end it in .h5, or write the contacts to a file of their own");
+    throw Error(path.string(), "only HDF5 files can hold contacts beside forces",
+                "use .h5, or write the contacts to a separate file");
   }
   return format.create(path, info, replace);
 }

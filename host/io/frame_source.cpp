@@ -27,9 +27,9 @@ const SourceFormat* source_format(std::string_view head) {
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
                                          const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  const FileLook look = look_at(path);
-  if (look.kind == FileKind::hdf5) return read_recording(open_probed(path, options));
-  if (look.frames != nullptr) return look.frames->open(path);
+  const DetectedFormat detected = detect_format(path);
+  if (detected.kind == FileKind::hdf5) return read_recording(open_probed(path, options));
+  if (detected.frames != nullptr) return detected.frames->open(path);
   std::string known = "an HDF5 recording";
   for (const SourceFormat& format : source_formats()) known += std::string(" nor a ") + format.name;
   throw Error(path.string(), "is neither " + known, "docs/formats.md describes them");

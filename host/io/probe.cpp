@@ -22,9 +22,9 @@ namespace pillarfield {
 namespace {
 
 constexpr const char* kDamagedOrTrusted =
-    "the file is damaged; take another copy, or say that you trust it (--trust-input)";
+    "the file is damaged; use another copy, or trust it with --trust-input";
 
-/// What the child answers: a letter, and after kRefused the text of an Error.
+/// Answer of the child: one letter; the text of an Error follows kRefused.
 constexpr char kReadable = 'k';
 constexpr char kRefused = 'e';
 constexpr char kNoMemory = 'm';
@@ -53,8 +53,8 @@ std::string answer_about(const std::filesystem::path& path) {
   }
 }
 
-/// HDF5 gives a second opener of a file what the first one has read, so nothing is left to try; and
-/// a child would share that state.
+/// HDF5 shares its state of an open file with a second opener, so a probe tests nothing; a child
+/// would also share that state.
 bool is_open_already(const std::filesystem::path& path) {
   struct stat wanted = {};
   if (stat(path.c_str(), &wanted) != 0) return false;
@@ -72,8 +72,8 @@ bool is_open_already(const std::filesystem::path& path) {
   return false;
 }
 
-/// A fork while no other thread is in HDF5: HDF5 holds its lock while it calls back, and the child
-/// must not inherit one that nobody will free.
+/// Forks from an HDF5 callback, during which HDF5 holds its lock: no other thread is in HDF5, and
+/// the child does not inherit a lock held by another thread.
 int fork_within_hdf5() {
   pid_t child = -1;
   H5Piterate(
@@ -99,14 +99,14 @@ void probe_file(const std::filesystem::path& path) {
   const ChildEnd end =
       run_in_child(path.string(), {}, fork_within_hdf5, [&] { return answer_about(path); });
   if (end.returned && end.text[0] == kReadable) return;
-  // The text has its place in it already.
+  // The text already names the place.
   if (end.returned && end.text[0] == kRefused) throw Error({}, end.text.substr(1));
   if (end.returned) {
-    throw Error(path.string(), "opening it takes more than a gigabyte of memory",
-                kDamagedOrTrusted);
+    throw Error(path.string(), "opening it needs more than 1 GB of memory", kDamagedOrTrusted);
   }
   if (!end.in_time) {
-    throw Error(path.string(), "opening it does not come to an end", kDamagedOrTrusted);
+    throw Error(path.string(), "opening it does not finish within its time limit",
+                kDamagedOrTrusted);
   }
   throw Error(path.string(),
               fmt::format("reading it crashes the HDF5 library (signal {}, {})", end.signal,

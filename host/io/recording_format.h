@@ -4,7 +4,7 @@
 
 #include "pillarfield/skin.h"
 
-// The names and types in a recording (docs/formats.md).
+// Names and types in a recording (docs/formats.md).
 namespace pillarfield::recording_format {
 
 inline constexpr const char* kName = "pillarfield-recording";
@@ -32,7 +32,7 @@ inline constexpr const char* kNoise = "/calibration/noise";
 inline constexpr const char* kTruth = "/truth";
 inline constexpr const char* kTruthPlanes[] = {"/truth/shear_x", "/truth/shear_y", "/truth/normal"};
 
-/// HDF5's name of a reading's type in the file, and in this machine's memory.
+/// HDF5 type of a reading in the file, and in memory.
 [[nodiscard]] hid_t stored_type_of(SenselType type);
 [[nodiscard]] hid_t memory_type_of(SenselType type);
 

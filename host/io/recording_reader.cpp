@@ -37,7 +37,7 @@ class Recording final : public FileSource {
   hdf5::File file_;
   hdf5::StoredFrames raw_;
   hdf5::StoredFrames time_;
-  std::vector<hdf5::StoredFrames> truth_;  // none, or shear_x, shear_y, normal
+  std::vector<hdf5::StoredFrames> truth_;  // empty, or shear_x, shear_y, normal
 };
 
 SenselType sensel_type_of(const hdf5::StoredFrames& raw, const std::filesystem::path& path) {
@@ -45,7 +45,8 @@ SenselType sensel_type_of(const hdf5::StoredFrames& raw, const std::filesystem::
   for (const SenselType each : {SenselType::u8, SenselType::u16, SenselType::f32}) {
     if (type == name_of(each)) return each;
   }
-  throw Error(path.string(), fmt::format("{} is {}, which readings are not", raw.name(), type),
+  throw Error(path.string(),
+              fmt::format("{} is {}, which is not a type of readings", raw.name(), type),
               "store uint8, uint16 or float32");
 }
 
@@ -53,7 +54,7 @@ void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::pat
   if (frames.value_class() == H5T_FLOAT) return;
   throw Error(
       path.string(),
-      fmt::format("{} holds no floats but {}", frames.name(), hdf5::name_of_type(frames.type())),
+      fmt::format("{} must hold floats, not {}", frames.name(), hdf5::name_of_type(frames.type())),
       "store floats");
 }
 
@@ -93,7 +94,7 @@ void Recording::take_skin() {
     if (constant) {
       value = *constant;
     } else {
-      warnings_.push_back(fmt::format("The file gives no {}; {} is assumed.", name, value));
+      warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, value));
     }
   };
   take(recording_format::kPitch, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
@@ -125,12 +126,12 @@ void Recording::count_frames() {
   }
   if (file_.unclosed) {
     warnings_.push_back(fmt::format(
-        "The file was not closed: its writer was killed or still writes. The {} frames it flushed "
+        "The file was not closed: its writer was killed or is still running. The {} flushed frames "
         "are read.",
         frames_));
   } else if (most != frames_) {
     warnings_.push_back(
-        fmt::format("The datasets of the file have {} to {} frames; the first {} are read.",
+        fmt::format("The datasets of the file have {} to {} frames; only the first {} are read.",
                     frames_, most, frames_));
   }
 }

@@ -44,9 +44,9 @@ struct RecordingWriter::State {
   std::filesystem::path path;
   OutputFile part;
   hdf5::File file;
-  hdf5::GrowingDataset raw;
-  hdf5::GrowingDataset time;
-  std::array<hdf5::GrowingDataset, 3> truth;  // shear_x, shear_y, normal
+  hdf5::ExtendibleDataset raw;
+  hdf5::ExtendibleDataset time;
+  std::array<hdf5::ExtendibleDataset, 3> truth;  // shear_x, shear_y, normal
   std::uint64_t frames = 0;
   std::uint64_t flushed = 0;
 };
@@ -70,7 +70,7 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
 }
 
 RecordingWriter::State::~State() {
-  const bool unflushed_are_safe = file.health->error_number == 0;
+  const bool unflushed_are_safe = file.write_status->error_number == 0;
   if ((unflushed_are_safe ? frames : flushed) > 0) part.keep();
 }
 
@@ -96,8 +96,8 @@ void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
   if (!std::isfinite(time_s))
     throw Error(where, fmt::format("its time is {}", time_s), "give seconds");
   if ((field != nullptr) != options.truth) {
-    throw Error(where, options.truth ? "comes without its truth" : "comes with a truth",
-                "say in the options whether frames have one");
+    throw Error(where, options.truth ? "has no truth" : "has a truth",
+                "set Options::truth if frames have one");
   }
   if (field == nullptr) return;
   for (const auto* plane : {&field->shear_x, &field->shear_y, &field->normal}) {

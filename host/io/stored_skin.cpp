@@ -15,7 +15,7 @@
 namespace pillarfield {
 namespace {
 
-/// A plane of floats, its name in the file, and where it is kept.
+/// A plane of floats: its name in the file and its member.
 struct FloatPlane {
   const char* name;
   std::vector<float> Calibration::*member;
@@ -33,12 +33,12 @@ std::optional<PowerLaw> read_power_law(const hdf5::File& file, hid_t skin) {
     throw Error(fmt::format("{}: {}", file.path.string(), recording_format::kSkin),
                 fmt::format("has no attribute '{}'",
                             exponent ? recording_format::kReference : recording_format::kExponent),
-                "a power law needs both its numbers");
+                "a power law needs both attributes");
   }
   return PowerLaw{*exponent, *reference_counts};
 }
 
-/// A mask may be stored as numbers of any type.
+/// Converts a mask, which a file may store in any number type.
 std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& skin,
                                   const std::string& place) {
   std::vector<std::uint8_t> mask(plane.size());

@@ -8,8 +8,7 @@
 
 namespace pillarfield {
 
-/// The constants of a skin as /skin keeps them, in recordings and in calibration files; each may be
-/// absent.
+/// Constants of a skin in the group /skin of recordings and calibration files; each may be absent.
 struct StoredSkin {
   std::optional<double> sensel_pitch_mm;
   std::optional<double> counts_per_newton;
@@ -18,21 +17,21 @@ struct StoredSkin {
   std::optional<PowerLaw> power_law;
 };
 
-/// Makes the group /skin with the constants that there are, and returns it.
+/// Creates the group /skin with the constants that are set, and returns it.
 hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);
 
-/// What /skin holds; nothing where it is absent. Throws Error where one is no number, or half of a
-/// power law is missing.
+/// Reads /skin; all constants are unset if it is absent. Throws Error if one is not a number or one
+/// of the two power-law constants is missing.
 [[nodiscard]] StoredSkin read_skin(const hdf5::File& file);
 
-/// The object /skin; invalid where it is absent.
+/// The object /skin; invalid if absent.
 [[nodiscard]] hdf5::Handle open_skin(const hdf5::File& file);
 
-/// Makes the group /calibration with the planes that are not empty; none where all are.
+/// Creates the group /calibration with the non-empty planes; no group if all are empty.
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration);
 
-/// The planes that the file has, one value per sensel of `skin`, whose readings are of this type
-/// where it is known. Throws Error where one is of another size or out of its range.
+/// Reads the planes in the file, one value per sensel of `skin`; `type` is that of its readings,
+/// unset if unknown. Throws Error if a plane has another size or a value is out of range.
 [[nodiscard]] Calibration read_planes(const hdf5::File& file, const Skin& skin,
                                       std::optional<SenselType> type = {});
 

@@ -4,7 +4,7 @@
 
 namespace pillarfield {
 
-/// Time that a paced stream goes by; tests have one of their own.
+/// The clock of a paced stream; tests supply their own.
 class Clock {
  public:
   Clock() = default;

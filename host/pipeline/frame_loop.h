@@ -8,17 +8,18 @@
 
 namespace pillarfield {
 
-/// Sends the frames of a stream through a ring: each as soon as it is there and the ring has room,
-/// and while none comes, the oldest is delivered. Only where frames come faster than they are
-/// solved is more than one in flight. Takes no memory.
+/// Sends the frames of a stream through a ring: submits each frame on arrival if a slot is free,
+/// and delivers the oldest while none arrives. More than one frame is in flight only if frames
+/// arrive faster than they are solved. Allocates no memory.
 ///
-/// Ring: `int capacity()`; `int in_flight()`; `StreamedFrame& vacant()`, the place for the next
-/// frame; `submit()`, which starts the frame in it; and `deliver()`, which waits for the oldest.
+/// A Ring has `int capacity()`; `int in_flight()`; `StreamedFrame& vacant()`, the buffer of the
+/// next frame; `submit()`, which starts that frame; and `deliver()`, which waits for the oldest
+/// one.
 template <class Ring>
 void run_frames(FrameStream& stream, Ring& ring, const std::function<bool()>& stop,
                 PipelineStatistics& done) {
   constexpr std::chrono::milliseconds kPatience(100);
-  std::uint64_t expected = 0;  // the sequence number that comes next
+  std::uint64_t expected = 0;  // next sequence number
   bool knows_expected = false;
   for (bool open = true; open || ring.in_flight() > 0;) {
     if (open && stop && stop()) {

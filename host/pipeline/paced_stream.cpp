@@ -17,15 +17,14 @@ using std::chrono::nanoseconds;
 
 class MonotonicClock final : public Clock {
  public:
-  /// Sleeps of this thread end when they should. Linux otherwise delays them by up to 50
-  /// microseconds in order to wake less often.
+  /// Disables timer slack, by which Linux delays wake-ups of a thread by up to 50 microseconds.
   MonotonicClock() { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
   [[nodiscard]] nanoseconds now() override {
     return std::chrono::steady_clock::now().time_since_epoch();
   }
 
-  /// Returns early where a signal comes in.
+  /// Returns early on a signal.
   void sleep_until(nanoseconds time) override {
     const auto whole = std::chrono::duration_cast<std::chrono::seconds>(time);
     const timespec until = {.tv_sec = whole.count(), .tv_nsec = (time - whole).count()};
@@ -56,18 +55,18 @@ class PacedStream final : public FrameStream {
   std::unique_ptr<FrameStream> stream_;
   Pace pace_;
   std::shared_ptr<Clock> clock_;
-  StreamedFrame ahead_;                    ///< taken from the stream before it is due
-  Arrival ahead_is_ = Arrival::timed_out;  ///< what `ahead_` holds
-  nanoseconds due_{0};                     ///< when that comes
-  std::optional<nanoseconds> start_;       ///< when the first frame came
+  StreamedFrame ahead_;                    ///< the next frame, read before it is due
+  Arrival ahead_is_ = Arrival::timed_out;  ///< state of `ahead_`
+  nanoseconds due_{0};                     ///< time at which `ahead_` is due
+  std::optional<nanoseconds> start_;       ///< time of the first frame
   std::uint64_t first_sequence_ = 0;
   double first_time_s_ = 0;
 };
 
-/// When what `ahead_` holds is due. At the end of a stream without a rate that is an earlier frame,
+/// Time at which `ahead_` is due. At the end of a stream without a rate it is an earlier frame,
 /// whose time has passed.
 nanoseconds PacedStream::due_ahead() const {
-  constexpr double kLongest = 1e9;  // seconds; clocks of sensors may say anything
+  constexpr double kLongest = 1e9;  // seconds; a sensor's clock may return any time
   if (!pace_.rate_hz) {
     const double after_s = std::clamp(ahead_.time_s - first_time_s_, 0.0, kLongest);
     return *start_ + nanoseconds(std::llround(after_s * 1e9));
@@ -79,7 +78,7 @@ nanoseconds PacedStream::due_ahead() const {
 void PacedStream::sleep(nanoseconds now, nanoseconds timeout) {
   const nanoseconds until = std::min(due_ - pace_.spin, now + timeout);
   if (now < until) clock_->sleep_until(until);
-  // What is left is spun away by those who call next() again.
+  // The caller spins through the remaining time by calling next() again.
 }
 
 Arrival PacedStream::next(StreamedFrame& frame, nanoseconds timeout) {

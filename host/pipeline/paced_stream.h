@@ -7,7 +7,7 @@
 
 namespace pillarfield {
 
-/// As the public function, by a clock that is given.
+/// The public paced_stream() with another clock.
 [[nodiscard]] std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream,
                                                         const Pace& pace,
                                                         std::shared_ptr<Clock> clock);

@@ -10,7 +10,7 @@
 
 namespace pillarfield {
 
-/// The ring that run_frames() goes by.
+/// The ring of run_frames().
 struct Pipeline::State {
   State(FrameStream& frame_stream, Processor& frame_processor, std::vector<ForceSink*> frame_sinks,
         Options run_options)
@@ -68,12 +68,12 @@ void Pipeline::State::deliver() {
   ++done.frames;
 }
 
-/// Waits until the device has left the frames in flight, whose memory may go then.
+/// Waits for all frames in flight, so that their memory may be freed.
 void Pipeline::State::abandon() {
   try {
     while (processor.in_flight() > 0) static_cast<void>(processor.receive());
   } catch (const Error&) {
-    // The device failed; what is thrown says why.
+    // The device failed; run() rethrows the original error.
   }
   delivered = submitted;
 }

@@ -21,7 +21,7 @@ using io_test::write_bytes;
 
 using Names = std::vector<std::string>;
 
-/// All that a calibration can have, of 6 x 8 sensels.
+/// A calibration of 6 x 8 sensels with every member set.
 SkinCalibration full_calibration() {
   SkinCalibration calibration;
   calibration.rows = 6;
@@ -108,7 +108,7 @@ TEST(CalibrationFile, AFailureLeavesTheOldOne) {
       {"no/cal.h5"}));
 }
 
-TEST(CalibrationFile, IsToldFromItsCousins) {
+TEST(CalibrationFile, RefusesOtherFormats) {
   const TemporaryDirectory directory;
   const auto path = directory / "cal.h5";
   write_calibration_file(path, full_calibration());
@@ -127,7 +127,7 @@ TEST(CalibrationFile, IsToldFromItsCousins) {
                       {"text", "is not an HDF5 file"}));
 }
 
-// What the cases below do to the file, in the words of the HDF5 library.
+// Edits of the cases below, by calls of HDF5.
 
 void set_number(hid_t file, const char* object, const char* name, double value) {
   if (H5Aexists_by_name(file, object, name, H5P_DEFAULT) > 0) {
@@ -173,10 +173,10 @@ const Damage kDamages[] = {
        H5Gclose(H5Gcreate2(f, "/history/1", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
        set_number(f, "/history/1", "step", 1);
      },
-     {"'step' is no string"}},
+     {"'step' must be a string"}},
 };
 
-TEST(CalibrationFile, DamageIsToldInOneClearError) {
+TEST(CalibrationFile, DamageEndsInOneError) {
   const TemporaryDirectory directory;
   const auto path = directory / "cal.h5";
   for (const Damage& damage : kDamages) {
@@ -192,13 +192,13 @@ TEST(CalibrationFile, DamageIsToldInOneClearError) {
   }
 }
 
-/// Whatever is broken, the answer is an Error or a calibration in range, and nothing worse.
+/// A damaged file gives an Error or a calibration in range, never a crash.
 TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   const TemporaryDirectory directory;
   write_calibration_file(directory / "whole.h5", full_calibration());
   const std::string whole = bytes_of(directory / "whole.h5");
   const auto path = directory / "broken.h5";
-  // Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
+  // The checksums of our own files keep HDF5 from crashing in the test process.
   constexpr ReadOptions kTrusted = {.trust = true};
   const auto try_to_read = [&](const std::string& bytes) {
     write_bytes(path, bytes);

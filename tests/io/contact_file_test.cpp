@@ -82,7 +82,7 @@ TEST(ContactColumns, SetWhatTheyGet) {
   EXPECT_EQ(cells_of(quantity_columns(), set), cells_of(quantity_columns(), expected));
 }
 
-/// Values of damaged files.
+/// Damaged files hold any value.
 TEST(ContactColumns, TakeAnyNumber) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double value :
@@ -208,7 +208,7 @@ TEST(ContactsOfForceFile, AreKept) {
   }
 }
 
-TEST(ContactsOfForceFile, AreThereOnlyWhereAskedFor) {
+TEST(ContactsOfForceFile, AreWrittenOnlyOnRequest) {
   const TemporaryDirectory directory;
   const auto sink = create_force_sink(directory / "f.h5", force_info(std::nullopt));
   append(*sink, 0);
@@ -280,7 +280,7 @@ TEST(ContactsOfForceFile, DamageIsAnError) {
   }
 }
 
-/// Files of earlier versions have no deviation of the friction.
+/// Files of earlier versions lack the friction's standard deviation.
 TEST(ContactTables, WithoutTheFrictionsDeviationAreRead) {
   const TemporaryDirectory directory;
   const auto path = directory / "f.h5";

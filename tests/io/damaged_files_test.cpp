@@ -1,4 +1,4 @@
-// Files that once crashed a reader, hung it, or were read as if they were good.
+// Files that once crashed a reader, hung it, or were read without an error.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -18,7 +18,7 @@ using io_test::has_all;
 
 const std::filesystem::path kDamagedFiles = PILLARFIELD_DAMAGED_FILES;
 
-/// Reads all frames of a recording, and the truth.
+/// Reads all frames of a recording, with their truth.
 void read_recording_whole(const std::filesystem::path& path) {
   const auto source = open_frames(path);
   FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
@@ -48,20 +48,20 @@ const DamagedFile kRefused[] = {
     {"recording/ext_link_fifo.h5", read_recording_whole, {"is a link", "another file"}},
     {"forces/fc_swmr_loop.h5", read_forces_whole, {"/force/", "1099511627776"}},
     {"recording/frames_2e62.h5", read_recording_whole, {"/frames/", "4611686018427387903"}},
-    // HDF5 reads a text from beside its heap: what it finds there is chance, or it never ends.
+    // HDF5 reads a string outside its heap, so its content is random, or the read never ends.
     {"recording/hang_variable_string.h5", read_recording_whole, {}},
     {"recording/short_chunk.h5",
      read_recording_whole,
-     {"/frames/raw", "inflates to 16 bytes", "20480"}},
+     {"/frames/raw", "inflates to 16 bytes instead of 20480"}},
     {"recording/sigabrt_variable_string.h5", read_recording_whole, {"damaged"}},
-    {"recording/sigbus_number_type.h5", read_recording_whole, {"is no number but"}},
+    {"recording/sigbus_number_type.h5", read_recording_whole, {"must be a number, not"}},
     {"recording/sigfpe_chunk_of_zero.h5", read_recording_whole, {"damaged"}},
     {"forces/sigsegv_attribute_name.h5", read_recording_whole, {"damaged"}},
     {"recording/sigsegv_dense_links.h5", read_recording_whole, {"damaged"}},
     {"recording/sigsegv_variable_string.h5", read_recording_whole, {"damaged"}},
 };
 
-/// Of this process and of the children that it has waited for.
+/// Of this process and of its children.
 double processor_seconds() {
   double seconds = 0;
   for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -87,7 +87,7 @@ TEST(DamagedFiles, EndInOneLine) {
   }
 }
 
-/// Whatever a file claims to be, no reader crashes or hangs over it.
+/// No reader crashes or hangs on a file of another format.
 TEST(DamagedFiles, EndInEveryReader) {
   for (const DamagedFile& file : kRefused) {
     SCOPED_TRACE(file.name);
@@ -100,8 +100,8 @@ TEST(DamagedFiles, EndInEveryReader) {
   }
 }
 
-/// A child of a process with threads takes no lock that one of them holds.
-TEST(DamagedFiles, AreToldWhileOtherThreadsRead) {
+/// A child of a process with threads acquires no lock that another thread holds.
+TEST(DamagedFiles, AreDetectedWhileOtherThreadsRead) {
   std::vector<std::jthread> readers;
   for (int thread = 0; thread < 4; ++thread) {
     readers.emplace_back([] {

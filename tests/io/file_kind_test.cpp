@@ -1,4 +1,4 @@
-// What a file is, by its content, whatever happens to its name meanwhile.
+// Detection of a file's kind by its content, also while it is renamed.
 
 #include "io/file_kind.h"
 
@@ -20,11 +20,11 @@ using io_test::write_bytes;
 
 const std::string kSignature = "\x89HDF\r\n\x1a\n";
 
-TEST(FileKind, IsToldByTheContent) {
+TEST(FileKind, FollowsFromTheContent) {
   const TemporaryDirectory directory;
   write_bytes(directory / "a", kSignature + std::string(100, 'x'));
-  write_bytes(directory / "b", std::string(1024, 'u') + kSignature);  // behind a user block
-  write_bytes(directory / "c", std::string(1000, 'u') + kSignature);  // where none may begin
+  write_bytes(directory / "b", std::string(1024, 'u') + kSignature);  // after a user block
+  write_bytes(directory / "c", std::string(1000, 'u') + kSignature);  // at an invalid offset
   write_bytes(directory / "d",
               "\xef\xbb\xbf"
               "DATA_TYPE MOVIE\r\n");
@@ -38,7 +38,7 @@ TEST(FileKind, IsToldByTheContent) {
   EXPECT_EQ(kind_of(directory / "f"), FileKind::other);
 }
 
-TEST(FileKind, SaysWhatIsWrong) {
+TEST(FileKind, NamesTheMistake) {
   const TemporaryDirectory directory;
   write_bytes(directory / "empty", "");
   const auto error = [](const std::filesystem::path& path) {
@@ -49,12 +49,12 @@ TEST(FileKind, SaysWhatIsWrong) {
   EXPECT_TRUE(has_all(error(directory / "."), {"is a directory"}));
 }
 
-TEST(FileKind, AFileThatIsRenamedMeanwhileGivesNoOtherErrorThanOurs) {
+TEST(FileKind, ARenamedFileGivesOnlyOurErrors) {
   const TemporaryDirectory directory;
   const auto here = directory / "here";
   const auto there = directory / "there";
   write_bytes(here, kSignature);
-  const std::jthread renaming([&](const std::stop_token& stop) {  // stops when it goes
+  const std::jthread renaming([&](const std::stop_token& stop) {  // stops on destruction
     while (!stop.stop_requested()) {
       std::filesystem::rename(here, there);
       std::filesystem::rename(there, here);

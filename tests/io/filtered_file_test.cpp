@@ -1,5 +1,4 @@
-// Recordings whose readings pass through filters of HDF5: as good files have them, and as damaged
-// ones do.
+// Recordings with HDF5 filters, valid and damaged.
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -37,8 +36,8 @@ hid_t made(hid_t id) {
   return id;
 }
 
-/// A recording of kFrames frames; `filters` sets the filters of its readings' creation list, and
-/// `write` writes them.
+/// A recording of kFrames frames; `filters` sets the filters of the readings, and `write` writes
+/// them.
 void write_recording(const std::filesystem::path& path, const std::vector<hsize_t>& chunk,
                      hid_t stored_type, const std::function<void(hid_t)>& filters,
                      const std::function<void(hid_t)>& write) {
@@ -88,7 +87,7 @@ void write_all(hid_t raw) {
   H5Dwrite(raw, H5T_NATIVE_UINT16, H5S_ALL, H5S_ALL, H5P_DEFAULT, sample_readings().data());
 }
 
-/// Frames in the order of `indices` are those that were written.
+/// Checks that frames, read in the order of `indices`, are those that were written.
 void expect_frames(const std::filesystem::path& path, const std::vector<std::uint64_t>& indices) {
   const auto source = open_frames(path);
   ASSERT_EQ(source->frames(), kFrames);
@@ -141,7 +140,7 @@ TEST(FilteredReadings, AreThoseThatWereWritten) {
   }
 }
 
-/// One chunk is larger than what is kept inflated, so that its frames are kept in parts.
+/// The chunk exceeds the cache of inflated frames, which therefore holds a part of it.
 TEST(FilteredReadings, OfAChunkOfManyFramesAreReadInAnyOrder) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
@@ -149,7 +148,7 @@ TEST(FilteredReadings, OfAChunkOfManyFramesAreReadInAnyOrder) {
   expect_frames(path, {10, 0, 5});
 }
 
-/// A chunk of its own bytes, put into the file as if it had passed the filters but `skipped`.
+/// Writes a stored chunk directly, as if all filters but `skipped` had been applied.
 void put_chunk(hid_t raw, const std::vector<Bytef>& bytes, std::uint32_t skipped = 0) {
   const hsize_t start[] = {0, 0, 0};
   EXPECT_GE(H5Dwrite_chunk(raw, H5P_DEFAULT, skipped, start, bytes.size(), bytes.data()), 0);
@@ -181,14 +180,14 @@ TEST(FilteredReadings, OfAnotherLengthAreRefused) {
   std::vector<Bytef> cut = deflated(kChunkBytes);
   cut.resize(cut.size() - 5);
   const DamagedChunk chunks[] = {
-      {"short", deflated(16), 0, {"inflates to 16 bytes", "1540"}},
+      {"short", deflated(16), 0, {"inflates to 16 bytes instead of 1540"}},
       {"one byte short", deflated(kChunkBytes - 1), 0, {"inflates to 1539 bytes", "1540"}},
       {"long", deflated(kChunkBytes + 1), 0, {"inflates to more bytes", "1540"}},
       {"broken", broken, 0, {"chunk of /frames/raw", "damaged"}},
       {"cut", cut, 0, {"chunk of /frames/raw", "damaged"}},
       {"no zlib", std::vector<Bytef>(100, 0xff), 0, {"cannot be inflated"}},
       {"skipped and short", std::vector<Bytef>(100, 1), 3, {"holds 100 bytes", "1540"}},
-      {"absurdly long", std::vector<Bytef>(9000, 1), 0, {"takes 9000 bytes", "1540"}},
+      {"absurdly long", std::vector<Bytef>(9000, 1), 0, {"has 9000 bytes instead of 1540"}},
   };
   for (const DamagedChunk& chunk : chunks) {
     SCOPED_TRACE(chunk.name);
@@ -198,7 +197,7 @@ TEST(FilteredReadings, OfAnotherLengthAreRefused) {
     EXPECT_TRUE(has_all(error, {path.string()}));
     EXPECT_TRUE(has_all(error, chunk.message));
   }
-  // What no filter has touched is of the right length by itself.
+  // An unfiltered chunk has the right length.
   write_recording(path, {kFrames, kRows, kCols}, H5T_STD_U16LE, kFilters[2], [](hid_t raw) {
     const std::vector<std::uint16_t> readings = sample_readings();
     std::vector<Bytef> bytes(kChunkBytes);
@@ -224,7 +223,7 @@ TEST(FilteredReadings, ThatWereNeverWrittenAreRefused) {
   for (const FilterSetter filters : {kFilters[0], FilterSetter([](hid_t) {})}) {
     write_recording(path, {2, kRows, kCols}, H5T_STD_U16LE, filters, [](hid_t) {});
     EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(path); }),
-                        {"/frames/raw", "6 chunks", "0 of them"}));
+                        {"/frames/raw", "6 chunks, but only 0"}));
   }
 }
 

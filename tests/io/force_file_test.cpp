@@ -22,7 +22,7 @@ using io_test::write_bytes;
 
 using Names = std::vector<std::string>;
 
-/// Forces with angles of their own, so that no plane is like another.
+/// Forces with unrelated angles, so that all planes differ.
 struct Field {
   ForceField forces;
   std::vector<float> magnitude, theta, phi;
@@ -90,7 +90,8 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
   }
 }
 
-/// The cells of a line; each number must be the shortest text that reads back as the same value.
+/// The cells of a line; checks that each number is the shortest text that reads back as the same
+/// value.
 std::vector<std::string> cells_of(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream stream(line);
@@ -166,7 +167,7 @@ TEST(ForceSink, RefusesWhatItCannotWrite) {
   ForceFileInfo no_pitch = info_of(2, 3);
   no_pitch.pillar_pitch_mm = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(has_all(refused(directory / "f.txt", info_of(2, 3)), {"f.txt", ".h5", ".csv"}));
-  EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"ending"}));
+  EXPECT_TRUE(has_all(refused(directory / "f", info_of(2, 3)), {"extension"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(0, 3)), {"0 x 3"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", info_of(2, 32768)), {"2 x 32768"}));
   EXPECT_TRUE(has_all(refused(directory / "f.h5", no_pitch), {"pillar_pitch_mm is nan"}));
@@ -221,7 +222,7 @@ TEST(ForceSink, LeavesAnHdf5PartWithFlushedFrames) {
   EXPECT_GE(ForceFileReader(directory / "f.h5.part").frames(), 16u);
 }
 
-TEST(ForceFileReader, RefusesWhatIsNoForceFile) {
+TEST(ForceFileReader, RefusesOtherFiles) {
   const TemporaryDirectory directory;
   Skin skin;
   skin.rows = skin.cols = 2;
@@ -235,7 +236,7 @@ TEST(ForceFileReader, RefusesWhatIsNoForceFile) {
   EXPECT_TRUE(has_all(refused("text.h5"), {"text.h5", "not an HDF5 file"}));
   EXPECT_TRUE(has_all(refused("none.h5"), {"none.h5", "No such file"}));
   EXPECT_TRUE(has_all(error_of([&] { (void)open_frames(directory / "f.h5"); }),
-                      {"f.h5", "pillarfield-forces", "recording they were solved from"}));
+                      {"f.h5", "pillarfield-forces", "recording that they were solved from"}));
   const std::string whole = bytes_of(directory / "f.h5");
   for (std::size_t part = 0; part < 100; ++part) {
     write_bytes(directory / "cut.h5", whole.substr(0, whole.size() * part / 100));

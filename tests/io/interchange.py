@@ -1,4 +1,4 @@
-"""Files that Pillarfield writes, read by h5py and NumPy, and files of h5py read by Pillarfield.
+"""Reads Pillarfield's files with h5py and NumPy, and h5py's files with Pillarfield.
 
     interchange.py WRITER_PROCESS READER_PROCESS FORMATS_MD
 """
@@ -17,7 +17,7 @@ WRITER, READER, FORMATS = (pathlib.Path(name).resolve() for name in sys.argv[1:4
 
 
 def number_at(frame, place):
-    """The numbers of sample_files.h."""
+    """number_at() of sample_files.h."""
     with numpy.errstate(over="ignore"):
         mixed = (numpy.uint64(frame) * numpy.uint64(0x100000001B3) + place.astype("u8")
                  + numpy.uint64(0x9E3779B97F4A7C15))
@@ -44,7 +44,7 @@ def write(kind, path, rows, cols, frames):
 
 
 def read(path):
-    """What READER_PROCESS prints of a file: a list of lines, each a list of words."""
+    """The output of READER_PROCESS for a file: a list of lines, each a list of words."""
     done = subprocess.run([READER, path], capture_output=True, text=True)
     if done.returncode != 0 or done.stderr:
         raise AssertionError(done.stdout + done.stderr)
@@ -52,7 +52,7 @@ def read(path):
 
 
 def values(lines, name):
-    """The numbers of all lines of this name."""
+    """The numbers of all lines with this name."""
     return [numpy.array(line[1:], "f8") for line in lines if line[0] == name]
 
 
@@ -114,7 +114,7 @@ class Interchange(unittest.TestCase):
         self.assertEqual(line, len(table))
 
     def new_recording(self, raw, **options):
-        """A recording of h5py's own; gives what READER_PROCESS makes of it."""
+        """Writes a recording with h5py and returns the output of READER_PROCESS."""
         path = self.folder / "h5py.h5"
         with h5py.File(path, "w", **options.pop("file", {})) as file:
             file.attrs["format"] = options.pop("format", "pillarfield-recording")
@@ -150,7 +150,7 @@ class Interchange(unittest.TestCase):
                         self.assertEqual(lines[0][3], typed.dtype.newbyteorder("=").name)
 
     def test_we_name_a_compression_that_we_lack(self):
-        with self.assertRaisesRegex(AssertionError, "'lzf'.* which is not read; store it with"):
+        with self.assertRaisesRegex(AssertionError, "'lzf'.* which is not supported; store it with"):
             self.new_recording(numpy.zeros((1, 20, 20), "u1"), layout={"compression": "lzf"})
 
     def test_we_read_every_kind_of_string(self):

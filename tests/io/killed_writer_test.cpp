@@ -1,4 +1,4 @@
-// Writers that die: by SIGKILL at any moment, or of a full disk.
+// Writers that die: by SIGKILL at any time, or of a full disk.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ using io_test::write_bytes;
 
 using Names = std::vector<std::string>;
 
-/// A writer_process in the course of writing.
+/// A running writer_process.
 class Writer {
  public:
   explicit Writer(std::vector<std::string> arguments) {
@@ -42,7 +42,7 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// The next line that it prints; false at the end.
+  /// Reads the next line that it prints; false at the end.
   bool hear(std::string& line) {
     char text[1024];
     if (std::fgets(text, sizeof text, said_) == nullptr) return false;
@@ -52,7 +52,7 @@ class Writer {
 
   void kill_it() const { kill(child_, SIGKILL); }
 
-  /// Waits for its death; the exit status, or minus the signal.
+  /// Waits for its end. Returns the exit status, or minus the signal.
   [[nodiscard]] int status() const {
     int status = 0;
     waitpid(child_, &status, 0);
@@ -73,8 +73,8 @@ class Writer {
   std::FILE* said_ = nullptr;
 };
 
-/// Runs a writer, kills it some time after it has flushed `after` frames, and returns how many
-/// frames it had flushed for certain.
+/// Runs a writer, kills it some time after it has flushed `after` frames, and returns the number of
+/// frames that it has certainly flushed.
 std::uint64_t flushed_by_killed(const std::string& kind, const std::filesystem::path& path,
                                 const std::string& size, std::uint64_t after,
                                 std::uint64_t pause_us) {
@@ -89,7 +89,7 @@ std::uint64_t flushed_by_killed(const std::string& kind, const std::filesystem::
   return flushed;
 }
 
-/// Every frame that the file gives must be what the writer process wrote, raw and truth.
+/// Checks that every frame in the file is the one that the writer process wrote, raw and truth.
 void expect_written_frames(FrameSource& source, std::uint64_t first = 0) {
   const Skin& skin = source.skin();
   FrameBuffer expected(SenselType::u16, skin.rows, skin.cols);
@@ -117,7 +117,7 @@ void expect_written_frames(const ForceFileReader& reader) {
   }
 }
 
-/// Small frames share a chunk, large ones have one each; kills come at scattered moments.
+/// Small frames share a chunk, large ones have one each; kills come at various times.
 TEST(KilledRecording, GivesEveryFlushedFrame) {
   for (std::uint64_t trial = 0; trial < 9; ++trial) {
     const TemporaryDirectory directory;
@@ -142,7 +142,7 @@ TEST(KilledRecording, IsNotChangedByReading) {
   EXPECT_EQ(bytes_of(directory / "r.h5.part"), before);
 }
 
-/// Cut short by a copy, say: what is given is what was written, and the rest is an Error.
+/// A truncated copy gives frames that were written or an Error.
 TEST(KilledRecording, TruncatedNeverGivesWrongReadings) {
   const TemporaryDirectory directory;
   flushed_by_killed("recording", directory / "r.h5", "20", 200, 0);
@@ -177,7 +177,7 @@ TEST(KilledRecording, WithABrokenByteNeitherCrashesNorHangs) {
   }
 }
 
-TEST(GrowingRecording, IsReadWhileItIsWritten) {
+TEST(UnfinishedRecording, IsReadWhileItIsWritten) {
   const TemporaryDirectory directory;
   Writer writer({"recording", (directory / "r.h5").string(), "20", "20", "1000000000"});
   std::string line;
@@ -220,7 +220,7 @@ TEST(KilledForces, GiveTheContactsOfEveryFlushedFrame) {
   }
 }
 
-/// The last line a writer prints whose file may grow to `limit` bytes only.
+/// The last line of a writer whose file may grow to at most `limit` bytes.
 std::string last_words(const std::string& kind, const std::filesystem::path& path,
                        std::size_t limit) {
   Writer writer({kind, path.string(), "20", "20", "5000", std::to_string(limit)});

@@ -1,5 +1,5 @@
-// Files with a few broken bytes: those that checksums guard, and older formats, compressed values
-// and strings of variable length, which none guard.
+// Files with a few changed bytes, with and without checksums: older formats, compressed values and
+// strings of variable length have none.
 
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -97,7 +97,7 @@ void read_whole(const std::filesystem::path& path) {
   for (std::uint64_t index = 0; index < frames; ++index) source->read(index, frame);
 }
 
-/// Whatever is broken, the answer is an Error or frames, and nothing worse.
+/// A damaged file gives an Error or frames, never a crash.
 TEST(Mutants, NeverCrash) {
   constexpr Seed kSeeds[] = {{"old", false, false, false},
                              {"old, gzip", false, false, true},

@@ -1,4 +1,4 @@
-// Outputs: locked parts, what they replace, and when they are on the disk.
+// Outputs: locked parts, replacement of files, and writes to the disk.
 
 #include "pillarfield/output_file.h"
 
@@ -21,7 +21,7 @@
 
 namespace {
 
-/// What the library asks of the system, in order: "file", "folder" (written to the disk), "rename".
+/// System calls of the library in order: "file", "folder" (fsync), "rename".
 std::vector<std::string>& disk_calls() {
   static std::vector<std::string> calls;
   return calls;
@@ -34,7 +34,7 @@ int note_sync(int descriptor, long number) {
   return static_cast<int>(syscall(number, descriptor));
 }
 
-/// What happens between the opening of a part and its lock, once.
+/// Called once, between the opening of a part and its lock.
 std::function<void()>& before_lock() {
   static std::function<void()> action;
   return action;
@@ -42,7 +42,7 @@ std::function<void()>& before_lock() {
 
 }  // namespace
 
-// They stand before those of the C library.
+// These replace functions of the C library.
 extern "C" int fcntl(int descriptor, int command, ...) {
   va_list arguments;
   va_start(arguments, command);
@@ -200,8 +200,8 @@ TEST(OutputFile, APartThatTakesItsNameBeforeTheLockIsLeftAlone) {
   EXPECT_EQ(bytes_of(directory / "a.csv"), "next");
 }
 
-/// Eight processes begin at once, over and over; the lines of a file are always of one of them.
-TEST(OutputFile, OfManyWritersAtOnceEachFileIsOfOne) {
+/// Eight processes start at once, repeatedly; all lines of a file come from one of them.
+TEST(OutputFile, HasOneOfManyConcurrentWriters) {
   const TemporaryDirectory directory;
   for (int round = 0; round < 10; ++round) {
     int start[2];
@@ -261,7 +261,7 @@ TEST(OutputFile, APartThatIsALinkIsRefused) {
   fs::create_hard_link(directory / "victim", directory / "a.csv.part");
   EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "several names"}));
   ASSERT_EQ(mkfifo((directory / "a.csv.part").c_str(), 0600), 0);
-  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "no regular file"}));
+  EXPECT_TRUE(has_all(refusal(), {"a.csv.part", "not a regular file"}));
 }
 
 TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
@@ -287,7 +287,7 @@ TEST(OutputFile, LeftoversThatCannotBeMadeAgainAreKept) {
   EXPECT_EQ(directory.names(), Names{"a.csv"});
 }
 
-TEST(OutputFile, WithoutLeaveOnlyEarlierResultsOfItsKindAreReplaced) {
+TEST(OutputFile, ByDefaultReplacesOnlyResultsOfItsKind) {
   const TemporaryDirectory directory;
   const fs::path path = directory / "a.csv";
   const auto refused = [&](const char* words) {
@@ -304,7 +304,7 @@ TEST(OutputFile, WithoutLeaveOnlyEarlierResultsOfItsKindAreReplaced) {
   write_bytes(path, "");
   write_text(path, kTableHead, Replace::results);
   write_bytes(path, "my,own,notes\n");
-  refused("no earlier output");
+  refused("not an earlier output");
   write_bytes(path, "\x89PNG\r\n\x1a\n and more");
   refused("is a picture");
   write_recording(path, 1);
@@ -333,7 +333,7 @@ TEST(OutputFile, EveryFormatReplacesItsOwnKind) {
   }
 }
 
-TEST(OutputFile, RecordingsAndCalibrationsAreReplacedOnlyWithLeave) {
+TEST(OutputFile, RecordingsAndCalibrationsAreReplacedOnlyWithOverwrite) {
   const TemporaryDirectory directory;
   write_recording(directory / "r.h5", 2);
   EXPECT_TRUE(has_all(error_of([&] { begin_recording(directory / "r.h5"); }),
@@ -347,7 +347,7 @@ TEST(OutputFile, RecordingsAndCalibrationsAreReplacedOnlyWithLeave) {
   write_calibration_file(directory / "c.h5", calibration, Replace::anything);
 }
 
-TEST(OutputFile, WhatComesWhileItIsWrittenIsNotReplaced) {
+TEST(OutputFile, AFileCreatedMeanwhileIsNotReplaced) {
   const TemporaryDirectory directory;
   RecordingWriter writer = begin_recording(directory / "r.h5");
   writer.append(FrameBuffer(SenselType::u8, 4, 4).view(), 0);
@@ -358,7 +358,7 @@ TEST(OutputFile, WhatComesWhileItIsWrittenIsNotReplaced) {
   EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
 }
 
-TEST(OutputFile, APartThatWasRemovedIsNotSaidToBeThere) {
+TEST(OutputFile, ARemovedPartIsReported) {
   const TemporaryDirectory directory;
   OutputFile file(directory / "a.csv", OutputKind::forces);
   fs::remove(directory / "a.csv.part");
@@ -409,7 +409,7 @@ TEST(OutputFile, APartThatGrowsIsWrittenToTheDiskAtIntervals) {
   file.sync_at_intervals(std::chrono::hours(1));
   EXPECT_EQ(disk_calls(), Names{}) << "too soon";
   file.sync_at_intervals(std::chrono::seconds(0));
-  file.commit();  // Waits for it.
+  file.commit();  // waits for it
   EXPECT_EQ(disk_calls(), (Names{"file", "file", "rename", "folder"}));
 }
 
@@ -460,20 +460,20 @@ TEST(CheckOutputs, TwoOutputsNeverShareAFile) {
   EXPECT_FALSE(name_same_file(directory / "a.csv", directory / "b.csv"));
 }
 
-TEST(CheckOutputs, PlacesThatCannotBeWrittenAreFoundBeforeTheWork) {
+TEST(CheckOutputs, UnwritablePathsAreRefused) {
   const TemporaryDirectory directory;
   const auto refused = [&](const fs::path& path) {
     return error_of([&] { check_outputs({}, {{path, OutputKind::svg}}, Replace::anything); });
   };
   EXPECT_TRUE(has_all(refused(directory / "none" / "a.svg"), {"none/a.svg", "No such file"}));
-  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "no regular file"}));
+  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "not a regular file"}));
   EXPECT_TRUE(has_all(refused("-"), {"standard output"}));
   EXPECT_TRUE(has_all(refused(""), {"empty"}));
   EXPECT_EQ(directory.names(), Names{});
 }
 
-/// A reader of HDF5 comes and goes while a part is written, and the writer notices nothing.
-TEST(OutputFile, ItsLockIsNoneToReaders) {
+/// An HDF5 reader opens and closes a part that is being written, without effect on the writer.
+TEST(OutputFile, ItsLockDoesNotStopReaders) {
   const TemporaryDirectory directory;
   RecordingWriter writer = begin_recording(directory / "r.h5");
   const FrameBuffer frame(SenselType::u8, 4, 4);

@@ -1,4 +1,4 @@
-// Prints what the library reads from a file of frames, one item a line, numbers in full.
+// Prints the content of a file of frames as the library reads it, one item per line.
 //
 //     io_reader_process PATH
 //

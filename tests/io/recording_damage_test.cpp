@@ -22,10 +22,10 @@ using io_test::write_bytes;
 constexpr std::uint32_t kSize = 6;  // sensel rows and columns
 constexpr std::uint64_t kDamagedFrames = 5;
 
-/// Checksums guard our own files: nothing in them crashes HDF5 here, in the process of the test.
+/// The checksums of our own files keep HDF5 from crashing in the test process.
 constexpr ReadOptions kTrusted = {.trust = true};
 
-/// A recording that has all a recording can have.
+/// A recording with every optional object.
 void write_full_recording(const std::filesystem::path& path) {
   Skin skin;
   skin.rows = kSize;
@@ -44,7 +44,7 @@ void write_full_recording(const std::filesystem::path& path) {
   writer.finish();
 }
 
-// What the cases below do to the file, in the words of the HDF5 library.
+// Edits of the cases below, by calls of HDF5.
 
 void set_number_in(hid_t file, const char* object, const char* name, double value) {
   H5Adelete_by_name(file, object, name, H5P_DEFAULT);
@@ -69,8 +69,7 @@ void set_text(hid_t file, const char* object, const char* name, const std::strin
   H5Sclose(space);
 }
 
-/// Replaces a dataset by one of other size and type without values; in chunks where these are
-/// given.
+/// Replaces a dataset by an empty one of another size and type; chunked if `chunk` is given.
 void replace(hid_t file, const char* name, hid_t type, const std::vector<hsize_t>& extent,
              const std::vector<hsize_t>& chunk = {}) {
   H5Ldelete(file, name, H5P_DEFAULT);
@@ -116,7 +115,7 @@ const float kFloatNan = std::numeric_limits<float>::quiet_NaN();
 const float kInfinity = std::numeric_limits<float>::infinity();
 
 const RecordingDamage kRecordingDamages[] = {
-    {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no 'format'"}},
+    {"no format", [](hid_t f) { remove_attribute(f, "/", "format"); }, {"no attribute 'format'"}},
     {"other format", [](hid_t f) { set_text(f, "/", "format", "cheese"); }, {"'cheese'"}},
     {"a force file by its format alone",
      [](hid_t f) { set_text(f, "/", "format", "pillarfield-forces"); },
@@ -171,10 +170,10 @@ const RecordingDamage kRecordingDamages[] = {
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_C_S1, {1, 6, 6});
      },
-     {"/frames/raw is no number but a string"}},
+     {"/frames/raw must be a number, not a string"}},
     {"time integer",
      [](hid_t f) { replace(f, "/frames/time", H5T_STD_I64LE, {5}); },
-     {"/frames/time holds no floats"}},
+     {"/frames/time must hold floats"}},
     {"one row",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {1, 1, 6});
@@ -215,7 +214,7 @@ const RecordingDamage kRecordingDamages[] = {
      {"full_scale_counts is 250"}},
     {"pitch a text",
      [](hid_t f) { set_text(f, "/skin", "sensel_pitch_mm", "wide"); },
-     {"'sensel_pitch_mm' is no number"}},
+     {"'sensel_pitch_mm' must be a number"}},
     {"tare of other size",
      [](hid_t f) {
        replace(f, "/calibration/tare", H5T_IEEE_F32LE, {6, 5});
@@ -228,7 +227,7 @@ const RecordingDamage kRecordingDamages[] = {
      [](hid_t f) {
        replace(f, "/calibration/gain", H5T_C_S1, {6, 6});
      },
-     {"/calibration/gain is no number but a string"}},
+     {"/calibration/gain must be a number, not a string"}},
     {"tare NaN",
      [](hid_t f) { set_first(f, "/calibration/tare", kFloatNan); },
      {"tare", "row 1, column 1", "nan"}},
@@ -262,7 +261,7 @@ const RecordingDamage kRecordingDamages[] = {
        replace(f, "/frames/raw", type, {1, 6, 6});
        H5Tclose(type);
      },
-     {"/frames/raw is no number but", "another layout"}},
+     {"/frames/raw must be a number, not", "non-standard layout"}},
     {"noise negative", [](hid_t f) { set_first(f, "/calibration/noise", -1); }, {"noise", "is -1"}},
     {"half a power law",
      [](hid_t f) { set_number_in(f, "/skin", "power_law_exponent", 1.2); },
@@ -285,15 +284,15 @@ const RecordingDamage kRecordingDamages[] = {
      [](hid_t f) {
        replace(f, "/truth/normal", H5T_STD_I32LE, {5, 3, 3});
      },
-     {"/truth/normal holds no floats"}},
+     {"/truth/normal must hold floats"}},
 };
 
-TEST(RecordingDamage, IsToldInOneClearError) {
+TEST(RecordingDamage, EndsInOneError) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   for (const RecordingDamage& damage : kRecordingDamages) {
     SCOPED_TRACE(damage.name);
-    std::filesystem::remove(path);  // What is no recording any more is not replaced unasked.
+    std::filesystem::remove(path);  // A file that is no longer a recording is not replaced.
     write_full_recording(path);
     change(path, damage.action);
     const std::string error = error_of([&] { (void)open_frames(path); });
@@ -302,7 +301,7 @@ TEST(RecordingDamage, IsToldInOneClearError) {
   }
 }
 
-TEST(RecordingDamage, OfATimeIsToldWhenItsFrameIsRead) {
+TEST(RecordingDamage, OfATimeIsReportedWithItsFrame) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_full_recording(path);
@@ -318,7 +317,7 @@ TEST(RecordingDamage, OfATimeIsToldWhenItsFrameIsRead) {
   EXPECT_TRUE(has_all(error_of([&] { source->read(2, frame); }), {"frame 2", "nan"}));
 }
 
-TEST(RecordingDefaults, StandInForWhatIsMissingAndAreRemarked) {
+TEST(RecordingDefaults, ReplaceMissingConstantsWithAWarning) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_full_recording(path);
@@ -366,7 +365,7 @@ TEST(RecordingDamage, ATruncatedFileIsAnErrorAtEveryLength) {
   }
 }
 
-/// Whatever is broken, the answer is an Error or frames, and nothing worse.
+/// A damaged file gives an Error or frames, never a crash.
 TEST(RecordingDamage, ABrokenByteNeverCrashes) {
   const TemporaryDirectory directory;
   write_full_recording(directory / "whole.h5");
@@ -387,7 +386,7 @@ TEST(RecordingDamage, ABrokenByteNeverCrashes) {
   }
 }
 
-TEST(FileKinds, ThatAreNoneOfOursAreToldApart) {
+TEST(FileKinds, OfOthersAreRefused) {
   const TemporaryDirectory directory;
   const auto error_for = [&](const std::string& name) {
     return error_of([&] { (void)open_frames(directory / name); });
@@ -404,8 +403,8 @@ TEST(FileKinds, ThatAreNoneOfOursAreToldApart) {
   EXPECT_TRUE(has_all(error_for("binary"), {"neither an HDF5 recording nor a Tekscan"}));
   EXPECT_TRUE(has_all(error_for("signature.h5"), {"cannot be opened as HDF5"}));
   EXPECT_TRUE(has_all(error_for("folder"), {"is a directory"}));
-  EXPECT_TRUE(has_all(error_for("pipe"), {"no regular file"}));
-  EXPECT_TRUE(has_all(error_of([] { (void)open_frames("/dev/null"); }), {"no regular file"}));
+  EXPECT_TRUE(has_all(error_for("pipe"), {"not a regular file"}));
+  EXPECT_TRUE(has_all(error_of([] { (void)open_frames("/dev/null"); }), {"not a regular file"}));
 }
 
 }  // namespace

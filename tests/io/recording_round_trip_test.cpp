@@ -27,7 +27,7 @@ Skin skin_of(std::uint32_t rows, std::uint32_t cols) {
   return skin;
 }
 
-/// Each plane there or not, at random; values anywhere in their ranges.
+/// A calibration with a random set of planes and values anywhere in their ranges.
 Calibration random_calibration(const Skin& skin, SenselType type, std::mt19937& random) {
   const auto coin = [&] { return std::bernoulli_distribution(0.5)(random); };
   const auto plane = [&](float low, float high) {
@@ -67,7 +67,7 @@ void expect_equal(const Calibration& read, const Calibration& written) {
   EXPECT_EQ(read.noise, written.noise);
 }
 
-/// What goes into a recording comes out of it, bit for bit.
+/// Checks that a recording returns its content bit for bit.
 void expect_round_trip(const Skin& skin, SenselType type, const Calibration& calibration,
                        bool truth, std::uint64_t frames) {
   const TemporaryDirectory directory;
@@ -166,7 +166,7 @@ TEST(RecordingRoundTrip, TakesRowsOfALargerFrame) {
   }
 }
 
-TEST(RecordingRoundTrip, RemarksOnRowsAndColumnsWithoutPillars) {
+TEST(RecordingRoundTrip, WarnsOfRowsAndColumnsWithoutPillars) {
   const TemporaryDirectory directory;
   RecordingWriter writer(directory / "r.h5", skin_of(5, 7), SenselType::u8, {}, {});
   writer.append(FrameBuffer(SenselType::u8, 5, 7).view(), 0);
@@ -189,7 +189,7 @@ TEST(RecordingWriter, LeavesTheOldFileUntilItIsFinished) {
   EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 1u);
 }
 
-TEST(RecordingWriter, LeavesAReadablePartWhereFramesAreInIt) {
+TEST(RecordingWriter, LeavesAReadablePartWithFrames) {
   const TemporaryDirectory directory;
   {
     RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
@@ -199,7 +199,7 @@ TEST(RecordingWriter, LeavesAReadablePartWhereFramesAreInIt) {
   EXPECT_EQ(open_frames(directory / "r.h5.part")->frames(), 1u);
 }
 
-TEST(RecordingWriter, LeavesNothingWhereNoFrameIsInIt) {
+TEST(RecordingWriter, LeavesNothingWithoutFrames) {
   const TemporaryDirectory directory;
   { const RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {}); }
   EXPECT_EQ(directory.names(), Names{});
@@ -236,7 +236,7 @@ TEST(RecordingWriter, WritesOnAfterItWasMoved) {
   EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 2u);
 }
 
-TEST(RecordingWriter, RefusesWhatDoesNotFitAndGoesOn) {
+TEST(RecordingWriter, RefusesUnfitFramesAndContinues) {
   const TemporaryDirectory directory;
   RecordingWriter writer(directory / "r.h5", skin_of(4, 4), SenselType::u8, {}, {.truth = true});
   const FrameBuffer frame(SenselType::u8, 4, 4);
@@ -250,7 +250,7 @@ TEST(RecordingWriter, RefusesWhatDoesNotFitAndGoesOn) {
   EXPECT_TRUE(has_all(refused(FrameBuffer(SenselType::u16, 4, 4).view(), 0, &truth), {"uint16"}));
   EXPECT_TRUE(has_all(refused({}, 0, &truth), {"0 x 0"}));
   EXPECT_TRUE(has_all(refused(frame.view(), nan, &truth), {"frame 0", "nan"}));
-  EXPECT_TRUE(has_all(refused(frame.view(), 0, nullptr), {"without its truth"}));
+  EXPECT_TRUE(has_all(refused(frame.view(), 0, nullptr), {"has no truth"}));
   EXPECT_TRUE(has_all(refused(frame.view(), 0, &small_truth), {"1 x 2"}));
   writer.append(frame.view(), 0, &truth);
   writer.finish();
@@ -258,7 +258,7 @@ TEST(RecordingWriter, RefusesWhatDoesNotFitAndGoesOn) {
   EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 1u);
 }
 
-TEST(RecordingWriter, RefusesWhatIsOutOfRange) {
+TEST(RecordingWriter, RefusesValuesOutOfRange) {
   const TemporaryDirectory directory;
   const auto refused = [&](const Skin& skin, const Calibration& calibration,
                            const RecordingWriter::Options& options) {
@@ -281,12 +281,12 @@ TEST(RecordingWriter, RefusesPlacesThatCannotBeWritten) {
   };
   std::filesystem::create_directory(directory / "folder");
   EXPECT_TRUE(has_all(refused(directory / "none" / "r.h5"), {"none/r.h5", "No such file"}));
-  EXPECT_TRUE(has_all(refused(directory / "folder"), {"folder", "no regular file"}));
-  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "no regular file"}));
+  EXPECT_TRUE(has_all(refused(directory / "folder"), {"folder", "not a regular file"}));
+  EXPECT_TRUE(has_all(refused("/dev/null"), {"/dev/null", "not a regular file"}));
   EXPECT_EQ(directory.names(), Names{"folder"});
 }
 
-TEST(Recording, RefusesFramesThatAreNotThereAndBuffersThatDoNotFit) {
+TEST(Recording, RefusesAbsentFramesAndUnfitBuffers) {
   const TemporaryDirectory directory;
   RecordingWriter writer(directory / "r.h5", skin_of(2, 2), SenselType::u8, {}, {});
   writer.append(FrameBuffer(SenselType::u8, 2, 2).view(), 0);

@@ -9,7 +9,7 @@
 
 namespace pillarfield::io_test {
 
-/// Quantities that depend on `place` alone, in every second of which something is not known.
+/// Quantities that depend on `place` alone; every second one has unset members.
 inline ContactQuantities sample_quantities(std::uint64_t place) {
   ContactQuantities quantities;
   std::uint64_t next = 0;
@@ -37,7 +37,7 @@ inline ContactQuantities sample_quantities(std::uint64_t place) {
   return quantities;
 }
 
-/// Up to three contacts and two that ended, as the frame's index says.
+/// Up to three contacts and two ended ones, depending on the frame's index.
 inline FrameContacts sample_contacts(std::uint64_t index) {
   FrameContacts frame;
   frame.time_s = 0.25 * static_cast<double>(index);
@@ -59,7 +59,7 @@ inline FrameContacts sample_contacts(std::uint64_t index) {
   return frame;
 }
 
-/// All that is in it, in the order of its columns, `unset` where something is not known.
+/// All values in the order of the columns; `unset` for unset ones.
 template <class Row>
 std::string cells_of(std::span<const ContactColumn<Row>> columns, const Row& row,
                      const char* unset = "unset") {

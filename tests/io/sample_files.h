@@ -18,7 +18,7 @@
 
 namespace pillarfield::io_test {
 
-/// A directory of the test's own, removed with all that is in it.
+/// A temporary directory, removed with its content.
 class TemporaryDirectory {
  public:
   TemporaryDirectory() {
@@ -54,7 +54,7 @@ inline void write_bytes(const std::filesystem::path& path, const std::string& by
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// A number that depends on where it stands and on nothing else (splitmix64).
+/// A pseudo-random number of `frame` and `place` (splitmix64).
 inline std::uint64_t number_at(std::uint64_t frame, std::uint64_t place) {
   std::uint64_t mixed = frame * 0x100000001b3u + place + 0x9e3779b97f4a7c15u;
   mixed = (mixed ^ (mixed >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -62,7 +62,7 @@ inline std::uint64_t number_at(std::uint64_t frame, std::uint64_t place) {
   return mixed ^ (mixed >> 31);
 }
 
-/// Arbitrary bits of every reading type; floats stay finite.
+/// Fills a frame of any type with arbitrary bits; floats are finite.
 inline void fill_frame(std::uint64_t index, FrameBuffer& frame) {
   const FrameView view = frame.view();
   if (view.type == SenselType::f32) {
@@ -90,8 +90,8 @@ inline ForceField sample_forces(std::uint64_t index, std::uint32_t rows, std::ui
   return forces;
 }
 
-/// What `action` throws as Error; fails the test where it throws nothing or the text is not one
-/// line.
+/// The text of the Error that `action` throws; fails the test if it throws none or the text is not
+/// one line.
 template <class Action>
 std::string error_of(Action action) {
   try {
@@ -105,7 +105,7 @@ std::string error_of(Action action) {
   return {};
 }
 
-/// Whether `text` holds each of `parts`.
+/// Whether `text` contains all of `parts`.
 inline ::testing::AssertionResult has_all(const std::string& text,
                                           const std::vector<std::string>& parts) {
   for (const auto& part : parts) {

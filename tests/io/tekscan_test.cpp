@@ -18,7 +18,7 @@ using io_test::number_at;
 using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
-/// An export to be written, with all that varies from one to the next. A reading of -1 is a B.
+/// An export and all its variants of layout. A reading of -1 is written as B.
 struct Export {
   std::vector<std::string> header = {"DATA_TYPE MOVIE",
                                      "VERSION Some Measurement System 1.0",
@@ -37,7 +37,7 @@ struct Export {
                                           {0, 0, 0, 0, 0, 60, 70, 0, 0, 0, 255, 0}};
   std::size_t cols = 4;
   std::string line_end = "\n";
-  std::string row_end;         // behind the last cell of each row
+  std::string row_end;         // after the last cell of each row
   std::string between = "\n";  // before each frame
   std::string end = "@@\n";
 
@@ -80,7 +80,7 @@ class Tekscan : public testing::Test {
     return error_of([&] { (void)open(text); });
   }
 
-  /// The readings of all frames as the source gives them.
+  /// The readings of all frames of a source.
   static std::vector<std::vector<int>> readings(FrameSource& source) {
     std::vector<std::vector<int>> all;
     const bool bytes = source.sensel_type() == SenselType::u8;
@@ -127,13 +127,13 @@ TEST_F(Tekscan, GivesReadingsSkinAndTimes) {
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->skin().full_scale_counts, 255);
   EXPECT_EQ(source->skin().counts_per_newton, Skin().counts_per_newton);
-  EXPECT_TRUE(warnings(*source, "counts a newton"));
+  EXPECT_TRUE(warnings(*source, "counts per newton"));
   EXPECT_TRUE(warnings(*source, "last of the 3 sensel rows"));
   EXPECT_FALSE(source->has_truth());
   EXPECT_TRUE(source->calibration().empty());
 }
 
-/// However lines end and frames are set apart, the frames are the same.
+/// All line ends and separators of frames give the same frames.
 TEST_F(Tekscan, ReadsEveryLayoutAlike) {
   for (const std::string line_end : {"\n", "\r\n"}) {
     for (const std::string row_end : {"", ",", ",, ", " "}) {
@@ -170,7 +170,7 @@ TEST_F(Tekscan, MasksSenselsThatAnyFrameLacks) {
   EXPECT_EQ(source->calibration().mask, mask);
   written.frames[0][0] = written.frames[1][0] = written.frames[1][5] = 0;
   EXPECT_EQ(readings(*source), written.frames);
-  EXPECT_TRUE(warnings(*source, "2 of 12 places hold no sensel"));
+  EXPECT_TRUE(warnings(*source, "2 of 12 cells have no sensel"));
 }
 
 TEST_F(Tekscan, WidensToSixteenBitsAnywhere) {
@@ -215,7 +215,7 @@ TEST_F(Tekscan, KnowsTheUnitsOfSpacing) {
   }
 }
 
-TEST_F(Tekscan, RemarksOnUnequalSpacingAndKeepsTheArea) {
+TEST_F(Tekscan, WarnsOfUnequalSpacingAndKeepsTheArea) {
   Export written;
   written.set("ROW_SPACING", "ROW_SPACING 2 mm");
   const auto source = open(written.text());
@@ -223,7 +223,7 @@ TEST_F(Tekscan, RemarksOnUnequalSpacingAndKeepsTheArea) {
   EXPECT_TRUE(warnings(*source, "Rows are 2 mm apart and columns 0.5 mm"));
 }
 
-TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
+TEST_F(Tekscan, WarnsOfAssumptions) {
   Export written;
   for (const char* key :
        {"ROW_SPACING", "COL_SPACING", "SECONDS_PER_FRAME", "UNITS", "NOISE_THRESHOLD"}) {
@@ -237,10 +237,10 @@ TEST_F(Tekscan, RemarksOnWhatItHadToAssume) {
   EXPECT_EQ(times(*source), (std::vector<double>{0, 1}));
 }
 
-TEST_F(Tekscan, RemarksOnFramesThatAreAnnouncedAndNotThere) {
+TEST_F(Tekscan, WarnsOfAnnouncedFramesThatAreMissing) {
   Export written;
   written.set("END_FRAME", "END_FRAME 9");
-  EXPECT_TRUE(warnings(*open(written.text()), "announces 9 frames, and the file holds 2"));
+  EXPECT_TRUE(warnings(*open(written.text()), "announces 9 frames, but the file holds 2"));
 }
 
 TEST_F(Tekscan, PrefersTheTimesOfTheFrames) {
@@ -261,7 +261,7 @@ TEST_F(Tekscan, HoldsFramesToTheirRawSum) {
   written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,74", "Frame 2, 1,, now,,,Raw Sum=,,385"};
   EXPECT_EQ(open(written.text())->frames(), 2u);
   written.frames[1][5] = 61;
-  EXPECT_TRUE(has_all(refused(written.text()), {"export.asf:19", "frame 2", "386", "raw sum 385"}));
+  EXPECT_TRUE(has_all(refused(written.text()), {"export.asf:19", "frame 2", "386", "raw sum is 385"}));
 }
 
 struct Mistake {
@@ -283,13 +283,13 @@ const Mistake kMistakes[] = {
     {"COLS huge", [](Export& e) { e.set("COLS", "COLS 65534"); }, {":15:", "4 of 65534 columns"}},
     {"ROWS too many",
      [](Export& e) { e.set("ROWS", "ROWS 4"); },
-     {":19:", "frame 1 ends after 3 of 4 rows"}},
+     {":19:", "frame 1 has only 3 of 4 rows"}},
     {"ROWS too few", [](Export& e) { e.set("ROWS", "ROWS 2"); }, {":17:", "more than 2 rows"}},
     {"COLS too many", [](Export& e) { e.set("COLS", "COLS 5"); }, {":15:", "4 of 5 columns"}},
     {"COLS too few", [](Export& e) { e.set("COLS", "COLS 3"); }, {":15:", "more than 3 columns"}},
     {"spacing in feet",
      [](Export& e) { e.set("ROW_SPACING", "ROW_SPACING 0.1 feet"); },
-     {":5:", "ROW_SPACING is '0.1 feet'", "mm, cm, inches"}},
+     {":5:", "ROW_SPACING is '0.1 feet'", "mm, cm or inches"}},
     {"spacing without unit",
      [](Export& e) { e.set("ROW_SPACING", "ROW_SPACING 0.1"); },
      {":5:", "unit"}},
@@ -315,7 +315,7 @@ const Mistake kMistakes[] = {
      {":16, column 2:", "'65536'", "[0, 65535]"}},
     {"last frame cut",
      [](Export& e) { e.frames[1].resize(8); },
-     {":22:", "frame 2 ends after 2 of 3 rows"}},
+     {":22:", "frame 2 has only 2 of 3 rows"}},
     {"last row cut",
      [](Export& e) {
        e.frames[1].resize(10);
@@ -327,7 +327,7 @@ const Mistake kMistakes[] = {
        e.frames.clear();
        e.end = "";
      },
-     {"ends before its first frame"}},
+     {"the export has no frame"}},
 };
 
 TEST_F(Tekscan, NamesTheLineOfEveryMistake) {
@@ -351,13 +351,13 @@ TEST_F(Tekscan, NamesTheColumnOfEveryBadCell) {
   }
 }
 
-TEST_F(Tekscan, RefusesALineWithoutEnd) {
+TEST_F(Tekscan, RefusesAnEndlessLine) {
   std::string text = Export().text();
   text.insert(text.find("Frame 1"), std::string(3 << 20, 'x'));
   EXPECT_TRUE(has_all(refused(text), {"export.asf:14", "longer"}));
 }
 
-/// Cut anywhere, an export is an Error or gives whole frames of what was written.
+/// An export truncated anywhere gives an Error or whole frames that were written.
 TEST_F(Tekscan, TruncatedAnywhereIsAnErrorOrWholeFrames) {
   Export written;
   written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,78", "Frame 2, 1,, now,,,Raw Sum=,,385"};
@@ -387,7 +387,7 @@ TEST(RealTekscan, AgreesWithTheRawSumsOfItsSoftware) {
   EXPECT_EQ(source->skin().threshold_counts, 3);
   EXPECT_EQ(source->sensel_type(), SenselType::u8);
 
-  // An oracle of its own: the sums in the text, and where the text says B.
+  // An independent oracle: the sums in the text, and the positions of B.
   std::ifstream text(path);
   FrameBuffer frame(SenselType::u8, 28, 28);
   std::uint64_t index = 0;

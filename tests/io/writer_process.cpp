@@ -1,5 +1,5 @@
-// Writes frames whose content follows from their index until it is done, or dies of what the test
-// does to it. Prints the number of frames known to be flushed, one line each time.
+// Writes frames whose content follows from their index until it is done or the test ends it. Prints
+// the number of flushed frames, one line per flush.
 //
 //     io_writer_process recording|forces|contacts PATH ROWS COLS FRAMES [FILE_SIZE_LIMIT]
 //

@@ -10,7 +10,7 @@ std::atomic<std::uint64_t> count = 0;
 
 }  // namespace
 
-// The other forms of new and delete end in these. NOLINTBEGIN(cppcoreguidelines-no-malloc)
+// The other forms of new and delete call these. NOLINTBEGIN(cppcoreguidelines-no-malloc)
 void* operator new(std::size_t bytes) {
   ++count;
   void* const memory = std::malloc(bytes != 0 ? bytes : 1);

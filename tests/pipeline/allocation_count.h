@@ -4,7 +4,7 @@
 
 namespace pillarfield::pipeline_test {
 
-/// How often the program has asked operator new for memory. Linking this file replaces it.
+/// Number of calls of operator new, which linking this file replaces.
 [[nodiscard]] std::uint64_t allocations();
 
 }  // namespace pillarfield::pipeline_test

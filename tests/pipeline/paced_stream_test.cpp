@@ -1,4 +1,4 @@
-// Frames at a pace through a ring, with a clock and a solver of which every moment is known.
+// Paced frames through a ring, with a simulated clock and solver.
 
 #include "pipeline/paced_stream.h"
 
@@ -26,7 +26,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Nanoseconds = std::chrono::nanoseconds;
 
-/// A clock that moves when it is told to.
+/// A simulated clock.
 class FakeClock final : public Clock {
  public:
   Nanoseconds now() override {
@@ -39,10 +39,10 @@ class FakeClock final : public Clock {
   }
   void advance_to(Nanoseconds time) { time_ = std::max(time_, time); }
 
-  /// When a sleep from `now` until `time` ends.
+  /// The end of a sleep from `now` until `time`.
   std::function<Nanoseconds(Nanoseconds now, Nanoseconds time)> wake =
       [](Nanoseconds, Nanoseconds time) { return time; };
-  Nanoseconds tick{0};  ///< that passes with every look at the clock
+  Nanoseconds tick{0};  ///< time that passes with every call of now()
   int sleeps = 0;
 
  private:
@@ -56,7 +56,7 @@ constexpr Skin kSkin = [] {
   return skin;
 }();
 
-/// So many frames of nothing, with the times that are given.
+/// A stream of empty frames with given times.
 class Numbers final : public FrameStream {
  public:
   explicit Numbers(std::uint64_t frames, std::vector<double> times = {})
@@ -78,8 +78,8 @@ class Numbers final : public FrameStream {
   std::uint64_t next_ = 0;
 };
 
-/// Solves one frame after the other, each in the time it is given, and notes what it is asked.
-/// Memory is taken beforehand.
+/// Solves frames one after another, each in a given time, and records the calls. Allocates its
+/// memory beforehand.
 class FakeRing {
  public:
   FakeRing(FakeClock& clock, std::uint64_t frames, Nanoseconds each)
@@ -131,7 +131,7 @@ class FakeRing {
 
 constexpr auto kNever = [] { return false; };
 
-/// A run of 1 kHz, each frame taking 400 microseconds unless a test says otherwise.
+/// A run at 1 kHz in which each frame takes 400 microseconds by default.
 class PacedStreamTest : public testing::Test {
  protected:
   static constexpr Nanoseconds kSolve = microseconds(400);

@@ -1,4 +1,4 @@
-// Streams through a pipeline against the same frames solved, tracked and written one by one.
+// Compares a pipeline with the same frames solved, tracked and written one by one.
 
 #include "pillarfield/pipeline.h"
 
@@ -46,7 +46,7 @@ SolverPlan plan_of(Estimator estimator = Estimator::direct) {
 
 double time_of(std::uint64_t frame) { return 0.125 * static_cast<double>(frame); }
 
-/// Two pressed rectangles that move towards each other, of uneven readings.
+/// Two pressed rectangles with uneven readings that move towards each other.
 void press(std::uint64_t index, FrameBuffer& frame) {
   const std::uint64_t step = index % 14;
   for (std::uint32_t row = 0; row < kSkin.rows; ++row) {
@@ -60,16 +60,16 @@ void press(std::uint64_t index, FrameBuffer& frame) {
   }
 }
 
-/// Frames of press(), and what may happen to them on the way.
+/// Options of a stream of press() frames.
 class Presses final : public FrameStream {
  public:
   struct Options {
     std::uint64_t frames = 20;
-    bool own_memory = false;                     ///< frames stay in memory of the stream
-    std::vector<std::uint64_t> sequence = {};    ///< of each frame and of the end; empty: 0, 1, ...
-    std::optional<std::uint64_t> fails_at = {};  ///< with the frame of this index
-    std::uint64_t waits_before = ~0ULL;          ///< times out once before this frame
-    std::uint32_t rows = kSkin.rows;             ///< of the frames that it gives
+    bool own_memory = false;                     ///< frames lie in memory of the stream
+    std::vector<std::uint64_t> sequence = {};    ///< of the frames and of the end; empty: 0, 1, ...
+    std::optional<std::uint64_t> fails_at = {};  ///< index of the failing frame
+    std::uint64_t waits_before = ~0ULL;          ///< a timeout comes before this frame
+    std::uint32_t rows = kSkin.rows;             ///< sensel rows of its frames
   };
   explicit Presses(const Options& options) : options_(options) {}
 
@@ -105,7 +105,7 @@ class Presses final : public FrameStream {
   std::vector<std::unique_ptr<FrameBuffer>> memory_;
 };
 
-/// Keeps what it is given.
+/// Stores the frames that it receives.
 class Notebook final : public ForceSink {
  public:
   struct Frame {
@@ -131,10 +131,10 @@ class Notebook final : public ForceSink {
   }
 
   std::vector<Frame> frames;
-  std::function<void(std::size_t frames)> before;  ///< each is kept
+  std::function<void(std::size_t frames)> before;  ///< called before each frame is stored
 };
 
-/// The frames of press(), one after the other.
+/// Streams the frames of press().
 void expect_presses(const Notebook& sink, std::size_t frames) {
   Processor processor(test_device(), plan_of());
   ASSERT_EQ(sink.frames.size(), frames);
@@ -151,7 +151,7 @@ void expect_presses(const Notebook& sink, std::size_t frames) {
   }
 }
 
-TEST(Pipeline, GivesEveryFrameInOrderToEverySink) {
+TEST(Pipeline, PassesEveryFrameInOrderToEverySink) {
   for (const auto memory : {Memory::shared, Memory::staged}) {
     for (const int in_flight : {1, 2, 5}) {
       for (const bool own_memory : {false, true}) {
@@ -179,8 +179,9 @@ TEST(Pipeline, GivesEveryFrameInOrderToEverySink) {
   }
 }
 
-TEST(Pipeline, CountsTheFramesThatTheSequenceLacks) {
-  // Three are lost in the middle, one before the end, none where the sensor counts anew.
+TEST(Pipeline, CountsMissingSequenceNumbers) {
+  // Three frames are lost in the middle, one before the end, none where the sensor restarts its
+  // count.
   Presses stream({.frames = 6, .sequence = {90, 91, 95, 96, 3, 4, 6}});
   Processor processor(test_device(), plan_of());
   Notebook sink;
@@ -192,7 +193,7 @@ TEST(Pipeline, CountsTheFramesThatTheSequenceLacks) {
   EXPECT_EQ(numbers, (std::vector<std::uint64_t>{90, 91, 95, 96, 3, 4}));
 }
 
-TEST(Pipeline, DeliversWhatIsInFlightBeforeItWaits) {
+TEST(Pipeline, DeliversFramesInFlightBeforeItWaits) {
   Presses stream({.frames = 9, .waits_before = 7});
   Processor processor(test_device(), plan_of(), {.frames_in_flight = 5});
   Notebook sink;
@@ -208,7 +209,7 @@ TEST(Pipeline, DeliversWhatIsInFlightBeforeItWaits) {
   expect_presses(sink, 9);
 }
 
-TEST(Pipeline, EndsWhatIsInFlightWhereItIsStopped) {
+TEST(Pipeline, DeliversFramesInFlightWhenStopped) {
   Presses stream({.frames = 1000});
   Processor processor(test_device(), plan_of(), {.frames_in_flight = 3});
   Notebook sink;
@@ -240,7 +241,7 @@ TEST(Pipeline, EndsWithTheErrorOfASink) {
   Notebook healthy;
   Notebook full;
   full.before = [](std::size_t frames) {
-    if (frames == 4) throw Error("forces.csv", "No space left on device", "make room");
+    if (frames == 4) throw Error("forces.csv", "No space left on device", "free some space");
   };
   Pipeline pipeline(stream, processor, {&healthy, &full});
   EXPECT_TRUE(has_all(error_of([&] { pipeline.run(); }), {"forces.csv", "No space left"}));
@@ -275,8 +276,8 @@ TEST(Pipeline, ASlowSinkLetsALiveStreamDropFrames) {
   EXPECT_TRUE(std::ranges::is_sorted(sink.frames, std::ranges::less_equal(), sequence));
 }
 
-/// Forces and contacts by a pipeline and by hand end in the same bytes.
-TEST(Pipeline, WritesWhatIsWrittenByHand) {
+/// A pipeline and explicit calls write the same bytes.
+TEST(Pipeline, WritesTheBytesOfExplicitCalls) {
   for (const Estimator estimator : {Estimator::direct, Estimator::contact}) {
     const TemporaryDirectory directory;
     RecordingWriter writer(directory / "r.h5", kSkin, SenselType::u8, {}, {});
@@ -288,7 +289,7 @@ TEST(Pipeline, WritesWhatIsWrittenByHand) {
     writer.finish();
     const auto source = open_frames(directory / "r.h5");
     SolverPlan plan = plan_of(estimator);
-    plan.friction.given = 1.5;  // The tracker learns it from the processor alone.
+    plan.friction.given = 1.5;  // The tracker gets it only from the processor.
     const ContactOptions options = {.minimum_pillars = 2};
     ForceFileInfo info;
     info.rows = kSkin.rows / 2;
@@ -338,7 +339,7 @@ TEST(Pipeline, WritesWhatIsWrittenByHand) {
     EXPECT_EQ(done.most_contacts, most);
     EXPECT_EQ(done.contacts, last_id);
     EXPECT_EQ(most, 2);
-    EXPECT_GT(last_id, 2);  // they merge and part
+    EXPECT_GT(last_id, 2);  // they merge and split
     for (const std::string ending : {"_forces.csv", ".npy", ".csv", ".json"}) {
       const std::string bytes = bytes_of(directory / ("pipeline" + ending));
       EXPECT_FALSE(bytes.empty());

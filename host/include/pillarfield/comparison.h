@@ -17,7 +17,7 @@ struct RegionErrors {
   double rms_n = 0;          ///< RMS of |solved − true|, N
   double p95_n = 0;          ///< 95th percentile of |solved − true|, N
   double rms_relative = 0;   ///< RMS of |solved − true| / |true|; 0 in Region::none
-  double p95_relative = 0;   ///< 95th percentile of the same
+  double p95_relative = 0;   ///< 95th percentile of |solved − true| / |true|
   double theta_rms_rad = 0;  ///< 0 in Region::none
   double phi_rms_rad = 0;    ///< weighted with sin(theta): phi is undefined at the normal
 };

@@ -17,15 +17,15 @@ struct ContactFileInfo {
   ContactOptions options;
 };
 
-/// Makes a sink of contacts alone in the format that the ending of `path` names (docs/formats.md;
-/// endings_of() lists them). Each frame must have contacts. `replace` says what of the same name it
-/// may replace. Throws Error for another ending or a place that cannot be written.
+/// Creates a sink of contacts alone in the format of the extension of `path` (docs/formats.md;
+/// endings_of() lists them). Each frame must have contacts. `replace` limits which existing file
+/// it may replace. Throws Error for another extension or a path that cannot be written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_contact_sink(const std::filesystem::path& path,
                                                              const ContactFileInfo& info,
                                                              Replace replace = Replace::results);
 
-/// What create_contact_sink() makes of this path, for check_outputs(). Throws Error for another
-/// ending.
+/// The output of create_contact_sink() for this path, for check_outputs(). Throws Error for another
+/// extension.
 [[nodiscard]] PlannedOutput planned_contact_file(const std::filesystem::path& path);
 
 }  // namespace pillarfield

@@ -32,10 +32,9 @@ class ContactLabels {
   /// Throws Error if `status` has another size.
   void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols);
 
-  /// @cond internal
-  /// The same, without reading the status of blocks known to be idle.
+  /// @cond internal Labels the contacts without reading the status of idle blocks.
   void find(std::span<const std::uint8_t> status, std::uint32_t rows, std::uint32_t cols,
-            const IdleBlocks& silent);
+            const IdleBlocks& idle);
   /// @endcond
 
   /// The number of contacts.
@@ -57,15 +56,15 @@ class ContactLabels {
   void number_contacts();
   void sort_runs();
 
-  std::vector<ContactRun> active_;  ///< where there may be loaded pillars, row by row
+  std::vector<ContactRun> active_;  ///< runs that may hold loaded pillars, row by row
   std::vector<ContactRun> runs_;
   std::vector<std::size_t> starts_;     ///< first run of each contact, and one past the last
   std::vector<ContactRun> found_;       ///< row by row
-  std::vector<std::uint32_t> parents_;  ///< a run before each in its contact, or itself
-  std::vector<std::size_t> next_;       ///< of each contact, where its next run goes
+  std::vector<std::uint32_t> parents_;  ///< an earlier run of the same contact, or the run itself
+  std::vector<std::size_t> next_;       ///< index of the next run of each contact
 };
 
-/// The contacts of a frame as a Processor found them, a view.
+/// A view of the contacts of a frame as a Processor found them.
 struct FoundContacts {
   const ContactLabels* map = nullptr;         ///< null: none were looked for
   std::span<const ContactFriction> friction;  ///< by label; empty if it was not estimated

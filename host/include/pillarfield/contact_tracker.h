@@ -40,7 +40,7 @@ struct FrameContacts {
   ContactQuantities patch;
 };
 
-/// How contacts are found and tracked.
+/// Options of finding and tracking contacts.
 struct ContactOptions {
   std::uint64_t minimum_pillars = 1;  ///< smaller contacts are neither listed nor tracked
   FrictionKnowledge friction = {};    ///< prior of their friction

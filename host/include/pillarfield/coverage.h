@@ -8,7 +8,7 @@
 
 namespace pillarfield {
 
-/// How often intervals of the stated uncertainty contain the truth, over the pillars of one region.
+/// Fractions of the pillars of one region whose true values lie in the stated intervals.
 struct RegionCoverage {
   std::uint64_t pillars = 0;
   double shear_x = 0;  ///< fraction within 1.96 standard deviations; ideal: 0.95

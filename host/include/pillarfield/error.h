@@ -7,7 +7,7 @@
 namespace pillarfield {
 
 /// The only exception type that the library throws, apart from std::bad_alloc. Its text is one
-/// printable() line: where it happened, what failed, how to mend it.
+/// printable() line: place, failure, remedy.
 ///
 ///     scenes/press.toml:12: key 'radius' is unknown; allowed: radius_mm, load_n
 class Error : public std::runtime_error {

@@ -15,9 +15,9 @@ namespace pillarfield {
 
 /// Options of FaultFinder.
 struct FaultOptions {
-  std::uint32_t least_frames = 30;  ///< frames in which parity must predict a sensel
+  std::uint32_t least_frames = 30;  ///< least number of frames in which parity predicts a sensel
   double still_factor = 10;         ///< a still reading's range is below this multiple of its noise
-  double moving_factor = 5;         ///< a moving prediction's deviation is above this one
+  double moving_factor = 5;         ///< a moving prediction's deviation is above this multiple
 };
 
 /// The result of FaultFinder.

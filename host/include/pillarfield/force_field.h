@@ -10,8 +10,8 @@ namespace pillarfield {
 
 /// Planes that state the uncertainty of a force (docs/derivations/uncertainty.md). The first three
 /// are standard deviations: from sensel noise and, in ambiguous pillars, from the segment that the
-/// readings leave open. The others bound direction and magnitude over that segment, without noise;
-/// in other pillars both bounds equal the estimate. All are valid for pillars without missing and
+/// readings allow. The others bound direction and magnitude over that segment, without noise; in
+/// other pillars both bounds equal the estimate. All are valid for pillars without missing and
 /// saturated sensels.
 enum class Uncertainty : std::uint8_t {
   shear_x,         ///< N
@@ -50,7 +50,7 @@ class UncertaintyPlanes {
 /// from the top left.
 ///
 /// shear_x (+ right) and shear_y (+ up) are the tangential force on the skin; normal is positive
-/// under pressure. The status byte is described in status.h. Planes that the plan does not ask for
+/// under pressure. The status byte is described in status.h. Planes that the plan does not enable
 /// are empty.
 struct ForceFieldView {
   std::uint32_t rows = 0;          ///< pillar rows
@@ -59,10 +59,10 @@ struct ForceFieldView {
   std::span<const float> shear_y;  ///< N
   std::span<const float> normal;   ///< N
   std::span<const std::uint8_t> status;
-  std::span<const float> magnitude;  ///< N; of SolverPlan::angles, as the two that follow
+  std::span<const float> magnitude;  ///< N; with SolverPlan::angles
   std::span<const float> theta;      ///< rad from the outward normal, [0, pi]
   std::span<const float> phi;        ///< rad in the plane of the skin, (-pi, pi]
-  UncertaintyPlanes<std::span<const float>> uncertainty;  ///< of SolverPlan::uncertainty
+  UncertaintyPlanes<std::span<const float>> uncertainty;  ///< with SolverPlan::uncertainty
 };
 
 /// A field of force that owns its memory, without magnitude and angles: the result of

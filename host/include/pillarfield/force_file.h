@@ -31,33 +31,33 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
 };
 
-/// Makes the sink that the ending of `path` names (docs/formats.md; endings_of() lists them).
-/// `replace` says what of the same name it may replace. Throws Error for another ending or a place
-/// that cannot be written.
+/// Creates a sink in the format of the extension of `path` (docs/formats.md; endings_of() lists
+/// them). `replace` limits which existing file it may replace. Throws Error for another extension
+/// or a path that cannot be written.
 ///
-/// Like recordings, files are written under `path` + ".part" and get their name in finish(); one
-/// destroyed before that is removed, except for an HDF5 file that already holds flushed frames.
-/// Contacts are written where ForceFileInfo::contacts is set; each frame must then have them.
+/// Files are written to `path` + ".part", which finish() renames to `path`. The destructor without
+/// finish() removes the part, except for an HDF5 file with flushed frames. If
+/// ForceFileInfo::contacts is set, each frame must have contacts, which are also written.
 [[nodiscard]] std::unique_ptr<ForceSink> create_force_sink(const std::filesystem::path& path,
                                                            const ForceFileInfo& info,
                                                            Replace replace = Replace::results);
 
-/// Writes one frame as the .csv that create_force_sink() makes; `frame` and `time_s` are its index
-/// and time in its source.
+/// Writes one frame as the .csv of create_force_sink(); `frame` and `time_s` are its index and time
+/// in its source.
 void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& info,
                      const ForceFieldView& forces, std::uint64_t frame, double time_s,
                      Replace replace = Replace::results);
 
-/// What create_force_sink() makes of this path, for check_outputs(). Throws Error for another
-/// ending.
+/// The output of create_force_sink() for this path, for check_outputs(). Throws Error for another
+/// extension.
 [[nodiscard]] PlannedOutput planned_force_file(const std::filesystem::path& path);
 
 /// Whether this is an HDF5 file of force fields; false if it cannot be read.
 [[nodiscard]] bool is_force_file(const std::filesystem::path& path,
                                  const ReadOptions& options = {});
 
-/// Reads files of the format "pillarfield-forces" (docs/formats.md), also if their writer was
-/// killed.
+/// Reads files of the format "pillarfield-forces" (docs/formats.md), including those of a killed
+/// writer.
 class ForceFileReader {
  public:
   /// Throws Error if the file is of another format or damaged.

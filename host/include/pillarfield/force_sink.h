@@ -8,18 +8,18 @@
 
 namespace pillarfield {
 
-/// A frame after it was solved. It refers to memory of the solver and of the tracker, which is
-/// valid during the call that gets it.
+/// A solved frame. It refers to memory of the solver and the tracker, which is valid only during
+/// the call that receives it.
 struct SolvedFrame {
   ForceFieldView forces = {};
-  const FrameContacts* contacts = nullptr;  ///< null where contacts are not tracked
-  double time_s = 0;                        ///< by the clock of the sensor
-  std::uint64_t sequence = 0;               ///< its number in the stream that it came from
-  std::chrono::nanoseconds arrived{0};      ///< as StreamedFrame::arrived
+  const FrameContacts* contacts = nullptr;  ///< null: contacts are not tracked
+  double time_s = 0;                        ///< sensor time
+  std::uint64_t sequence = 0;               ///< StreamedFrame::sequence
+  std::chrono::nanoseconds arrived{0};      ///< StreamedFrame::arrived
 };
 
-/// Takes solved frames one by one: a file, a socket, a count. See create_force_sink() and
-/// create_contact_sink() for files, Pipeline for what calls it.
+/// Receives solved frames one by one, for instance a file or a socket. create_force_sink() and
+/// create_contact_sink() create sinks of files; Pipeline calls a sink.
 class ForceSink {
  public:
   ForceSink() = default;
@@ -27,11 +27,11 @@ class ForceSink {
   ForceSink(const ForceSink&) = delete;
   ForceSink& operator=(const ForceSink&) = delete;
 
-  /// Takes the next frame, forces and contacts at once. Throws Error, and takes nothing of the
-  /// frame, where it lacks what the sink writes or has another size.
+  /// Appends the next frame, with its contacts. Throws Error, and appends nothing, if the frame has
+  /// another size or lacks a plane or contacts that the sink writes.
   virtual void append(const SolvedFrame& frame) = 0;
 
-  /// Completes the output after the last frame. A sink of files that is destroyed before leaves no
+  /// Completes the output after the last frame. A file sink destroyed without finish() leaves no
   /// file under the final name.
   virtual void finish() {}
 };

@@ -12,27 +12,27 @@
 
 namespace pillarfield {
 
-/// A place for one frame of a stream, and the frame in it.
+/// A buffer for one frame of a stream, and that frame.
 struct StreamedFrame {
   StreamedFrame(SenselType type, const Skin& skin) : buffer(type, skin.rows, skin.cols) {}
 
-  FrameBuffer buffer;  ///< for streams that write or copy their readings
-  FrameView readings;  ///< the frame: in `buffer`, or in memory of the stream
-  double time_s = 0;   ///< when the sensor took it, by the sensor's clock
-  /// Which frame it is, as the sensor counts them; a gap means that frames were lost.
+  FrameBuffer buffer;  ///< for streams that copy their readings
+  FrameView readings;  ///< view of `buffer` or of the stream's memory
+  double time_s = 0;   ///< sensor time
+  /// Frame number of the sensor; a gap means lost frames.
   std::uint64_t sequence = 0;
-  std::chrono::nanoseconds arrived{0};  ///< when it reached this computer, by std::steady_clock
+  std::chrono::nanoseconds arrived{0};  ///< time of arrival, std::steady_clock
 };
 
-/// What next() found.
+/// Result of FrameStream::next().
 enum class Arrival : std::uint8_t {
-  arrived,    ///< a frame
-  timed_out,  ///< none yet
-  ended,      ///< none, and none will come
+  arrived,    ///< a frame has arrived
+  timed_out,  ///< no frame yet
+  ended,      ///< no frame, and none will follow
 };
 
-/// Frames that arrive one after another. Their number is not known beforehand. For frames of a file
-/// in any order see FrameSource. For one thread.
+/// A sequence of frames of unknown length, used by one thread. FrameSource gives random access to
+/// the frames of a file.
 class FrameStream {
  public:
   FrameStream() = default;
@@ -43,33 +43,33 @@ class FrameStream {
   [[nodiscard]] virtual const Skin& skin() const = 0;
   [[nodiscard]] virtual SenselType sensel_type() const = 0;
 
-  /// What the stream knows of its sensels; empty unless overridden.
+  /// The calibration of the stream's sensels; empty unless overridden.
   [[nodiscard]] virtual const Calibration& calibration() const;
 
-  /// Waits for the next frame, for `timeout` at most; it may give up earlier. Zero only looks.
+  /// Waits for the next frame, at most for `timeout`; may return earlier. A `timeout` of zero
+  /// polls.
   ///
-  /// Sets all members of `frame`. Where `readings` is not in `frame.buffer`, the memory must stay
-  /// as it is until `frame` is given to next() again: the device reads it meanwhile. Without a
-  /// frame, `sequence` may be set to the number of the frame that comes next, which tells of lost
-  /// ones. Throws Error, its place being the stream, where the stream fails.
+  /// Sets all members of `frame`. If `readings` is not in `frame.buffer`, the device reads the
+  /// stream's memory, which must not change until next() receives `frame` again. Without a frame,
+  /// next() may set `sequence` to the number of the following frame, which shows losses. Throws
+  /// Error, naming the stream, if the stream fails.
   [[nodiscard]] virtual Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) = 0;
 };
 
-/// The frames of a file, each as soon as it is asked for. `source` must outlive the stream.
+/// Streams the frames of a file, each on request. `source` must outlive the stream.
 [[nodiscard]] std::unique_ptr<FrameStream> file_stream(FrameSource& source);
 
-/// When the frames of a paced stream come.
+/// Timing of a paced stream.
 struct Pace {
-  std::optional<double> rate_hz = {};  ///< above 0; unset: as StreamedFrame::time_s says
-  /// A frame that is not taken within this time is dropped; unset: none is.
+  std::optional<double> rate_hz = {};  ///< above 0; unset: follow StreamedFrame::time_s
+  /// A frame that is not read within this time is dropped; unset: none is.
   std::optional<std::chrono::nanoseconds> drop_after = {};
-  std::chrono::nanoseconds spin{0};  ///< of each wait, how much at its end is spent spinning
+  std::chrono::nanoseconds spin{0};  ///< part of each wait spent spinning, at its end
 };
 
-/// Lets the frames of a stream come at a pace, as from a sensor: the first at once, the others when
-/// they are due, or as soon as they are asked for where that is later. `arrived` is when a frame
-/// was due. At a rate, the stream ends one period after its last frame. Throws Error on a rate that
-/// is not above 0.
+/// Delivers the frames of a stream at the pace of a sensor: the first at once, each other one when
+/// it is due or, if later, on request. `arrived` is the time at which the frame was due. With a
+/// rate, the stream ends one period after its last frame. Throws Error if the rate is not above 0.
 [[nodiscard]] std::unique_ptr<FrameStream> paced_stream(std::unique_ptr<FrameStream> stream,
                                                         const Pace& pace);
 

@@ -6,8 +6,8 @@
 
 namespace pillarfield {
 
-/// What is known of the friction coefficient of every contact before any reading: a log-normal
-/// prior (docs/derivations/contact.md, C1).
+/// Prior of the friction coefficient of every contact, log-normal (docs/derivations/contact.md,
+/// C1).
 struct FrictionKnowledge {
   double median = 1;    ///< [0.1, 9.9]
   double spread = 0.5;  ///< standard deviation of the logarithm, [0.01, 3]
@@ -23,9 +23,9 @@ struct FrictionKnowledge {
 /// Throws Error, naming `where`, if a member is out of range.
 void check(const FrictionKnowledge& friction, std::string_view where);
 
-/// Where the friction coefficient of a contact comes from.
+/// Source of the friction coefficient of a contact.
 enum class FrictionSource : std::uint8_t {
-  prior,         ///< FrictionKnowledge alone: no reading has added to it
+  prior,         ///< FrictionKnowledge alone, without readings
   given,         ///< FrictionKnowledge::given
   observed,      ///< the pillars of this frame
   carried_over,  ///< the pillars of earlier frames

@@ -12,15 +12,15 @@ namespace pillarfield {
 ///
 ///     ForceField forces = solve_on_host(plan, frame.view());
 ///
-/// It computes what Processor computes, from the same source in single precision. The results are
-/// the same bits, save for the power law and the estimator `paper`, which call library functions.
-/// It is the reference that devices are tested against, and the simplest choice for small skins and
-/// single frames: it compiles no kernel, but solves one pillar at a time.
+/// It computes what Processor computes, from the same source in single precision. Results agree bit
+/// for bit, except for the power law and the estimator `paper`, which call library functions. It is
+/// the reference for tests of devices, and the simplest choice for small skins and single frames:
+/// it compiles no kernel but solves one pillar at a time.
 ///
 /// `frame` has the plan's size and type, with any row stride; the result is [pillar rows, pillar
-/// cols] and owns its memory. The function keeps no state: with the estimator `contact` each frame
-/// stands alone (as with FrictionKnowledge::memory off), and the tare follows the readings only if
-/// the caller calls follow_baseline_on_host(). `plan.angles` has no effect.
+/// cols] and owns its memory. The function has no state: the estimator `contact` treats each frame
+/// separately (as with FrictionKnowledge::memory off), and the tare follows the readings only
+/// through follow_baseline_on_host(). `plan.angles` has no effect.
 ///
 /// Throws Error if the plan is out of range or the frame does not fit it. Threads: any number at
 /// once.

@@ -3,7 +3,7 @@
 namespace pillarfield {
 
 /// Makes SIGINT (Ctrl+C), SIGTERM and SIGHUP set is_interrupted() instead of ending the process; a
-/// second signal of the same kind ends it. SIGHUP stays ignored if it is (nohup). A write beyond
+/// second signal of the same kind ends it. An ignored SIGHUP stays ignored (nohup). A write beyond
 /// the limit on file sizes becomes an Error instead of SIGXFSZ. A program calls this once at its
 /// start; the library never does.
 void catch_interrupts();

@@ -17,15 +17,15 @@ namespace pillarfield {
 enum class OutputKind : std::uint8_t {
   recording,
   calibration,
-  forces,    ///< the ending of the path says in which format
-  contacts,  ///< as forces
+  forces,    ///< the format follows from the path's extension
+  contacts,  ///< likewise
   png,
   svg,
   video,
   text,
 };
 
-/// The endings of files of forces or of contacts: ".csv or .json".
+/// The file name extensions of forces or of contacts: ".csv or .json".
 [[nodiscard]] std::string endings_of(OutputKind kind);
 
 /// Which existing file an output may replace. All but `nothing` replace an empty file.
@@ -92,8 +92,8 @@ class OutputFile {
   /// Lets the part outlive this object.
   void keep() { kept_ = true; }
 
-  /// Writes the part to the disk and renames it to its final name. Throws Error if that fails; the
-  /// text says where the data are.
+  /// Writes the part to the disk and renames it to its final name. Throws Error if that fails; its
+  /// text names the file that holds the data.
   void commit();
 
  private:
@@ -102,12 +102,12 @@ class OutputFile {
   void take_name();
 
   std::filesystem::path path_;
-  std::filesystem::path final_path_;  // no symbolic link
+  std::filesystem::path final_path_;  // after following symbolic links
   std::filesystem::path part_path_;
   OutputKind kind_;
   Replace replace_;
   std::unique_ptr<LockedPart> part_;
-  std::uint64_t size_ = 0;  // of what write() has written
+  std::uint64_t size_ = 0;  // bytes written by write()
   std::chrono::steady_clock::time_point synced_;
   std::future<int> sync_;  // errno, or 0
   bool kept_ = false;

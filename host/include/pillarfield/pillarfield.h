@@ -15,7 +15,7 @@
 ///     processor.submit({readings, plan.sensel_type, 40, 60, 60});
 ///     pillarfield::ForceFieldView forces = processor.receive();  // 20 x 30 pillars
 ///
-/// In the order in which you meet them:
+/// The types, in the order of use:
 ///
 /// - Skin: the size of the skin and the constants of its sensels. Four sensels carry a pillar.
 /// - Calibration: one plane for each property that differs from sensel to sensel: tare, gain, dead
@@ -42,9 +42,9 @@
 /// counter-clockwise from +x) give the direction that the force comes from. Torques are
 /// counter-clockwise, seen from outside.
 ///
-/// **Ownership.** Types ending in View refer to memory of somebody else: a FrameView to the
-/// caller's, a ForceFieldView to its Processor's, until that reuses the slot. All other types own
-/// what they hold.
+/// **Ownership.** Types ending in View do not own their memory: a FrameView to the caller's, a
+/// ForceFieldView to its Processor's, until that reuses the slot. All other types own what they
+/// hold.
 ///
 /// **Errors.** All functions report failure by throwing Error, whose text is one line: where, what
 /// failed, how to mend it. The library never prints and never exits.
@@ -57,7 +57,7 @@
 /// `pillarfield::core` alone, which needs neither OpenCL nor HDF5, with `pillarfield::io` (HDF5)
 /// for files.
 
-// What a frame is and how it is solved.
+// Frames and solvers.
 #include "pillarfield/calibration.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_field.h"

@@ -12,16 +12,16 @@
 
 namespace pillarfield {
 
-/// What a pipeline has done.
+/// Statistics of a run of a Pipeline.
 struct PipelineStatistics {
-  std::uint64_t frames = 0;       ///< solved and taken by every sink
-  std::uint64_t lost = 0;         ///< gaps in the sequence numbers, the first frame being none
-  std::uint64_t contacts = 0;     ///< different ones; 0 without a tracker
-  std::size_t most_contacts = 0;  ///< in one frame
+  std::uint64_t frames = 0;       ///< solved and passed to every sink
+  std::uint64_t lost = 0;         ///< missing sequence numbers after the first frame
+  std::uint64_t contacts = 0;     ///< number of different contacts; 0 without a tracker
+  std::size_t most_contacts = 0;  ///< largest number in one frame
   bool stopped = false;           ///< ended by Options::stop, not by the stream
 };
 
-/// Takes frames from a stream, solves them, tracks their contacts and gives them to sinks.
+/// Solves the frames of a stream, tracks their contacts and passes them to sinks.
 ///
 ///     auto source = open_frames("press.h5");
 ///     auto stream = file_stream(*source);
@@ -31,19 +31,19 @@ struct PipelineStatistics {
 ///     sink->finish();
 ///
 /// Frames keep their order. Several are in flight, so reading and writing overlap with solving; a
-/// frame waits for others only while these are there. All sinks run in the thread of run(): a slow
-/// one holds up the stream, which then drops frames or lets them wait.
+/// frame never waits for one that has not arrived. Sinks run in the thread of run(): a slow sink
+/// delays the stream, which then drops or queues frames.
 class Pipeline {
  public:
   struct Options {
-    int frames_in_flight = 2;            ///< at most those of the processor
+    int frames_in_flight = 2;            ///< at most that of the processor
     ContactTracker* contacts = nullptr;  ///< null: contacts are not tracked
-    /// Asked before each frame, and ten times a second while none comes; true ends the run.
+    /// Called before each frame, and ten times a second while none arrives; true ends the run.
     std::function<bool()> stop = {};
   };
 
-  /// Makes a place for each frame in flight. All arguments must outlive the pipeline; `processor`
-  /// is that of a plan for the stream's frames, and nobody else uses it during run().
+  /// Allocates a buffer for each frame in flight. All arguments must outlive the pipeline. The plan
+  /// of `processor` must fit the stream's frames, and no other code may use it during run().
   Pipeline(FrameStream& stream, Processor& processor, std::vector<ForceSink*> sinks,
            const Options& options);
   Pipeline(FrameStream& stream, Processor& processor, std::vector<ForceSink*> sinks);
@@ -51,10 +51,10 @@ class Pipeline {
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
-  /// Runs until the stream ends or `stop` says so; frames in flight are then delivered. May be
-  /// called again to go on. Takes no memory of its own. Throws what stream, processor, tracker or
-  /// sink throws, after the frames in flight were solved; no sink gets them. Sinks are not
-  /// finished: what stopped or failed may be worth less than a file under its final name.
+  /// Runs until the stream ends or `stop` returns true, then delivers the frames in flight. May be
+  /// called again to continue. Allocates no memory. Rethrows errors of stream, processor, tracker
+  /// and sinks after the frames in flight are solved, which no sink receives. Does not call
+  /// ForceSink::finish(): an aborted run should not replace a file.
   PipelineStatistics run();
 
  private:

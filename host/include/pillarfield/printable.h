@@ -5,9 +5,9 @@
 
 namespace pillarfield {
 
-/// Text from outside as one line that is safe to print on a terminal: control characters and those
-/// that change the direction of writing are escaped ("\n", "\u001b"), as are bytes that are
-/// not UTF-8 ("\xff"). The text of an Error already is.
+/// Escapes untrusted text to one line that is safe on a terminal: control characters, characters
+/// that change the writing direction ("\n", "\u001b"), and bytes that are not UTF-8 ("\xff"). The
+/// text of an Error is already escaped.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace pillarfield

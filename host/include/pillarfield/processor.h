@@ -23,7 +23,7 @@ enum class Memory : std::uint8_t {
   staged,     ///< copies to and from buffers of the device
 };
 
-/// An OpenCL device, as `pillarfield info --devices` prints it.
+/// Properties of an OpenCL device, printed by `pillarfield info --devices`.
 struct DeviceInfo {
   int index = 0;  ///< for open_device()
   std::string name;
@@ -48,7 +48,7 @@ struct DeviceInfo {
 /// written.
 [[nodiscard]] std::vector<DeviceInfo> list_devices();
 
-/// An open device and the programs compiled for it so far. Copies share both.
+/// A device and the programs compiled for it so far. Copies share both.
 class Device {
  public:
   [[nodiscard]] const DeviceInfo& info() const;
@@ -70,7 +70,7 @@ class Device {
 
 struct ProcessorTuning;  // tuning.h
 
-/// Solves frames on an OpenCL device, as a SolverPlan says.
+/// Solves frames on an OpenCL device according to a SolverPlan.
 ///
 ///     Processor processor(open_device(), plan);
 ///     processor.submit(frame.view());
@@ -80,8 +80,8 @@ struct ProcessorTuning;  // tuning.h
 /// receive() waits for the oldest frame in flight and returns a view of the slot's memory. Call
 /// pin() to hold a result beyond the ring's lifetime, as a display does that draws it in place.
 ///
-/// Results are bit for bit those of solve_on_host(), save the power law and the estimator `paper`,
-/// which call library functions.
+/// Results agree bit for bit with solve_on_host(), except for the power law and the estimator
+/// `paper`, which call library functions.
 ///
 /// Threads: one at a time. A PinnedResult may be destroyed in any thread.
 class Processor {
@@ -153,7 +153,7 @@ class Processor {
 
   [[nodiscard]] int in_flight() const;       ///< frames submitted and not yet received
   [[nodiscard]] int pinned() const;          ///< results held now
-  [[nodiscard]] bool shares_memory() const;  ///< whether frames and results are not copied
+  [[nodiscard]] bool shares_memory() const;  ///< whether frames and results stay in place
   [[nodiscard]] const Device& device() const;
 
  private:

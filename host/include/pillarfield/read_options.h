@@ -5,7 +5,7 @@
 
 namespace pillarfield {
 
-/// How a file is opened for reading.
+/// Options of opening a file for reading.
 struct ReadOptions {
   /// The file comes from a trusted source, such as your own programs. Other HDF5 files pass
   /// probe_file() first.

@@ -45,7 +45,7 @@ struct Scene {
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
-  std::optional<double> parity_tolerance_counts;  ///< see SolverPlan; so are the next five
+  std::optional<double> parity_tolerance_counts;  ///< as in SolverPlan, like the next five members
   Estimator estimator = Estimator::direct;
   double segment_point = kSegmentPoint;
   FrictionKnowledge friction;

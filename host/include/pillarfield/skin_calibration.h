@@ -12,11 +12,11 @@
 
 namespace pillarfield {
 
-/// One step of a calibration's history, as its file keeps it.
+/// One step of a calibration's history.
 struct CalibrationStep {
   std::string step;                  ///< "tare", "equilibrate", "load" or "faults"
   std::vector<std::string> sources;  ///< names of the files of frames
-  std::uint64_t frames = 0;          ///< in all of them
+  std::uint64_t frames = 0;          ///< total of all sources
   std::string parameters;            ///< "threshold_factor = 4, ..."
   std::string date_utc;              ///< "2026-01-31T12:34:56Z"
   std::string program_version;
@@ -44,7 +44,7 @@ inline constexpr double kMaxThresholdFactor = 1000;
 [[nodiscard]] CalibrationStep step_done(std::string step, std::vector<std::string> sources,
                                         std::uint64_t frames, std::string parameters);
 
-/// An empty calibration of the skin's size: where a new skin starts.
+/// An empty calibration of the skin's size, for a new skin.
 [[nodiscard]] SkinCalibration blank_calibration(const Skin& skin);
 
 /// Masks the sensels where `mask` is 0, [rows, cols] of the calibration. Masked sensels stay
@@ -65,7 +65,7 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes);
 /// through the power law if there is one. The calibration must have a noise plane.
 void set_threshold(SkinCalibration& calibration, double factor);
 
-/// Replaces the power law, and moves the threshold so that the same readings stay above it.
+/// Replaces the power law, and adjusts the threshold so that no reading crosses it.
 void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law);
 
 }  // namespace pillarfield

@@ -30,7 +30,7 @@ inline constexpr double kSegmentPoint = 0.875;
 struct SolverPlan {
   Skin skin;  ///< set at least `rows`, `cols` and `counts_per_newton`
   SenselType sensel_type = SenselType::u8;
-  Calibration calibration;  ///< empty planes: raw readings are taken as they are
+  Calibration calibration;  ///< empty planes: no correction
   /// Tolerance of the parity test V1 + V3 = V2 + V4, counts, >= 0: a pillar whose residual, or the
   /// surplus of whose inactive sensel, is larger gets status::kInconsistent. Unset: no test.
   std::optional<double> parity_tolerance_counts;
@@ -38,10 +38,10 @@ struct SolverPlan {
   /// the converter. Used for sensels without a noise plane. Unset: unknown.
   std::optional<double> noise_counts;
   Estimator estimator = Estimator::direct;
-  /// Where Estimator::direct puts the force of a pillar with two adjacent usable sensels, whose
-  /// readings leave a segment open: a fraction, (0, 1], of the largest normal force on it. In
-  /// simulated contacts of friction 1.6 and 2.2 the true force lies at 0.94 and 0.85, and the RMS
-  /// error is 6 and 4 counts with 0.875, 25 and 19 counts with 0.5, the minimax choice
+  /// Position of the force that Estimator::direct reports on the segment of a pillar with two
+  /// adjacent usable sensels: a fraction, (0, 1], of the largest normal force on it. In simulated
+  /// contacts of friction 1.6 and 2.2 the true force lies at 0.94 and 0.85, and the RMS error is 6
+  /// and 4 counts with 0.875, 25 and 19 counts with 0.5, the minimax choice
   /// (docs/derivations/direct_solve.md, section 5).
   double segment_point = kSegmentPoint;
   FrictionKnowledge friction;  ///< prior for Estimator::contact
@@ -49,8 +49,9 @@ struct SolverPlan {
   /// each frame, (0, 1]; see baseline_rate(). Unset: the tare is fixed. A sensel is untouched if
   /// neither its pillar nor the eight around it have a usable or saturated sensel.
   std::optional<double> baseline_rate;
-  /// The tare moves in one of so many pillar rows after each frame, by turns, 1 to 1024. It follows
-  /// as fast as with 1, and the cost divides by this number.
+  /// Number of frames over which the update of the tare is spread, 1 to 1024: each frame updates
+  /// every baseline_interval-th pillar row. The tare follows as fast as with 1 at a fraction of the
+  /// cost.
   int baseline_interval = 1;
   bool angles = false;       ///< also compute magnitude, theta and phi
   bool uncertainty = false;  ///< also compute the planes of Uncertainty; needs the noise of the

@@ -2,8 +2,7 @@
 
 #include <cstdint>
 
-/// The bits of a pillar's status byte: which of its readings are usable, and how far its force can
-/// be relied on.
+/// The bits of a pillar's status byte: its usable readings and the reliability of its force.
 namespace pillarfield::status {
 
 inline constexpr std::uint8_t kSensel1 = 1;        ///< upper right sensel is usable
@@ -11,8 +10,8 @@ inline constexpr std::uint8_t kSensel2 = 2;        ///< upper left
 inline constexpr std::uint8_t kSensel3 = 4;        ///< lower left
 inline constexpr std::uint8_t kSensel4 = 8;        ///< lower right
 inline constexpr std::uint8_t kUsable = 15;        ///< mask of the four
-inline constexpr std::uint8_t kAmbiguous = 16;     ///< the readings leave a segment of forces open,
-                                                   ///< or whether the region is 1 or 2
+inline constexpr std::uint8_t kAmbiguous = 16;     ///< the readings allow a segment of forces,
+                                                   ///< or both regions 1 and 2
 inline constexpr std::uint8_t kSaturated = 32;     ///< a sensel is at full scale
 inline constexpr std::uint8_t kInconsistent = 64;  ///< a sensel is missing, or readings contradict
 inline constexpr std::uint8_t kFromNeighbours = 128;  ///< resolved by the friction of its contact
@@ -26,7 +25,7 @@ enum class Region : std::uint8_t {
   none,      ///< nothing usable: no contact
   one,       ///< four usable
   two,       ///< three usable
-  three,     ///< two adjacent usable: a segment is left open
+  three,     ///< two adjacent usable: the force lies on a segment
   four,      ///< one usable: nearly pure shear, or a reading near the threshold
   opposite,  ///< only two opposite usable: impossible in the model, a fault
 };
@@ -42,8 +41,9 @@ inline constexpr int kRegions = 6;
   return ((unusable & (unusable - 1)) | (status & status::kSaturated)) == 0;
 }
 
-/// Whether they leave its force on a segment (docs/derivations/segment.md), resolved or not: two
-/// adjacent sensels usable, the others inactive. `status::kAmbiguous` is set in other pillars too.
+/// Whether the readings of a pillar restrict its force to a segment (docs/derivations/segment.md),
+/// resolved or not: two adjacent sensels usable, the others inactive. Other pillars may also have
+/// `status::kAmbiguous`.
 [[nodiscard]] inline bool is_ambiguous(std::uint8_t status) {
   return (status & status::kAmbiguous) != 0 && region_of(status) == Region::three &&
          (status & (status::kSaturated | status::kInconsistent)) == 0;

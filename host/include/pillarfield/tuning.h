@@ -6,9 +6,9 @@
 
 #include "pillarfield/solver_plan.h"
 
-/// @file
-/// What tests and benchmarks turn and the layers of the library share. Programs need none of it,
-/// pillarfield.h does not include it, and it may change with every version.
+/// @file Settings for tests and benchmarks, and functions that layers of the library share.
+/// Programs do not need them, pillarfield.h does not include them, and they may change with every
+/// version.
 namespace pillarfield {
 
 /// How a kernel writes its results to memory.
@@ -27,7 +27,7 @@ struct SpeedPaths {
 
 /// How a Processor uses its device.
 struct ProcessorTuning {
-  /// Pillars that a work-item solves at once: 1, 2, 4, 8 or 16, fewer where a row of the skin is
+  /// Pillars that a work-item solves at once: 1, 2, 4, 8 or 16, fewer if a row of the skin is
   /// shorter. 0: DeviceInfo::lanes.
   int lanes = 0;
   SpeedPaths paths = {};
@@ -41,8 +41,8 @@ struct ProcessorTuning {
 /// The names of a plan's stages, in order. They are the same on a device and on the host.
 [[nodiscard]] std::vector<std::string> kernel_stages(const SolverPlan& plan);
 
-/// The fraction that the tare takes over when its pillar row has its turn,
-/// 1 − (1 − baseline_rate)^baseline_interval; 0 if the tare is fixed.
+/// Rate of the tare in the frame that updates its pillar row, 1 − (1 −
+/// baseline_rate)^baseline_interval; 0 if the tare is fixed.
 [[nodiscard]] double baseline_turn_rate(const SolverPlan& plan);
 
 /// Standard deviation of a raw reading of sensels without a noise plane, counts: the plan's noise
@@ -50,12 +50,13 @@ struct ProcessorTuning {
 [[nodiscard]] double reading_noise(const SolverPlan& plan);
 
 /// Five standard deviations, in counts, of the fourth reading of a pillar as parity predicts it
-/// from the other three: a prediction below this margin leaves open whether that sensel is loaded.
-/// 0 if the noise is unknown. All pillars share one margin, from the root mean square of the noise
-/// of all sensels and gains of 1; in a pillar whose gains are g it amounts to 5 / g deviations.
+/// from the other three: a prediction below this margin does not determine whether that sensel is
+/// loaded. 0 if the noise is unknown. All pillars share one margin, from the root mean square of
+/// the noise of all sensels and gains of 1; in a pillar whose gains are g it amounts to 5 / g
+/// deviations.
 [[nodiscard]] double region_margin(const SolverPlan& plan);
 
-/// The same margin for sensels that all have this standard deviation, counts.
+/// The region margin of sensels that all have this standard deviation, counts.
 [[nodiscard]] double region_margin(double noise_counts);
 
 }  // namespace pillarfield

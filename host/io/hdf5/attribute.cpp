@@ -29,7 +29,7 @@ Handle text_type(const File& file, std::size_t size) {
   return type;
 }
 
-/// An attribute that was found, its type, and the words for its failures.
+/// An open attribute, its type, and the message for failures.
 struct Attribute {
   Handle id;
   Handle type;
@@ -46,14 +46,14 @@ std::optional<Attribute> open_single(const File& file, hid_t object, const char*
   attribute.type = own(H5Aget_type(attribute.id.get()), file.path, attribute.failure);
   const Handle space = own(H5Aget_space(attribute.id.get()), file.path, attribute.failure);
   if (H5Sget_simple_extent_npoints(space.get()) != 1) {
-    throw Error(file.path.string(), fmt::format("attribute '{}' is no single value", name),
+    throw Error(file.path.string(), fmt::format("attribute '{}' is not a single value", name),
                 "store one value");
   }
   return attribute;
 }
 
 std::string read_variable_text(const File& file, const Attribute& attribute) {
-  // The stored character set has to be asked for: HDF5 does not convert between them.
+  // HDF5 does not convert character sets, so the memory type has the stored one.
   const Handle type = text_type(file, H5T_VARIABLE);
   H5Tset_cset(type.get(), H5Tget_cset(attribute.type.get()));
   char* text = nullptr;
@@ -106,7 +106,7 @@ std::optional<std::string> read_text(const File& file, hid_t object, const char*
   if (!attribute) return std::nullopt;
   if (H5Tget_class(attribute->type.get()) != H5T_STRING) {
     throw Error(file.path.string(),
-                fmt::format("attribute '{}' is no string but {}", name,
+                fmt::format("attribute '{}' must be a string, not {}", name,
                             name_of_type(attribute->type.get())),
                 "store a string");
   }

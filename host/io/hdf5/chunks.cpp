@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kInflatedBytes = std::size_t{32} << 20;
 
-/// Deflate makes what it cannot shrink longer by 5 bytes in 16 KiB, and a few.
+/// Largest deflated size: incompressible data grow by 5 bytes per 16 KiB, plus a header.
 constexpr std::size_t longest_stored(std::size_t bytes) { return bytes + bytes / 1000 + 1024; }
 
 }  // namespace
@@ -26,15 +26,15 @@ FilteredChunks::FilteredChunks(const std::filesystem::path& file, std::string na
       rank_(storage.extent.size()),
       filters_(storage.filters),
       value_bytes_(storage.value_bytes) {
-  if (storage.chunk_bytes() > static_cast<double>(kMostChunkBytes)) {
+  if (storage.chunk_bytes() > static_cast<double>(kMaxChunkBytes)) {
     throw Error(file_.string(),
                 fmt::format("{} is compressed in chunks of {} values, more than {} MiB each", name_,
-                            fmt::join(storage.chunk, " x "), kMostChunkBytes >> 20),
+                            fmt::join(storage.chunk, " x "), kMaxChunkBytes >> 20),
                 "store it in smaller chunks");
   }
   if (rank_ > extent_.size()) {
     throw Error(file_.string(), fmt::format("{} has {} dimensions", name_, rank_),
-                "docs/formats.md tells its shape");
+                "docs/formats.md gives its shape");
   }
   std::ranges::copy(storage.extent, extent_.begin());
   std::ranges::copy(storage.chunk, chunk_.begin());
@@ -62,12 +62,13 @@ void FilteredChunks::touch(const Handle& dataset) const {
   (void)stored_chunk(dataset, last, skipped);
 }
 
-/// All frames of the chunks with the frame `wanted`, or those from it on that memory is given to.
+/// Inflates all frames of the chunks that hold frame `wanted`, or those from `wanted` on that fit
+/// into the cache.
 void FilteredChunks::inflate_frames(const Handle& dataset, std::uint64_t wanted) {
   const hsize_t chunk_first = wanted / chunk_[0] * chunk_[0];
   const hsize_t chunk_end = chunk_first + std::min(chunk_[0], extent_[0] - chunk_first);
   const std::uint64_t most = std::max<std::uint64_t>(1, kInflatedBytes / frame_bytes_);
-  end_ = 0;  // none, where this throws
+  end_ = 0;  // empty if this throws
   first_ = chunk_end - chunk_first <= most ? chunk_first : wanted;
   const std::uint64_t end = std::min<hsize_t>(chunk_end, first_ + most);
   frames_.resize((end - first_) * frame_bytes_);
@@ -87,7 +88,7 @@ void FilteredChunks::inflate_frames(const Handle& dataset, std::uint64_t wanted)
   }
 }
 
-/// Copies what a chunk has of the frames in memory; chunks at the edges go beyond the dataset.
+/// Copies the part of a chunk that lies in the dataset and in the cached frames.
 void FilteredChunks::copy_chunk(const std::vector<std::byte>& chunk, const Place& start) {
   const hsize_t end_frame = std::min<hsize_t>(end_, start[0] + chunk_[0]);
   const hsize_t rows = std::min(chunk_[1], extent_[1] - start[1]);
@@ -114,12 +115,11 @@ std::vector<std::byte> FilteredChunks::stored_chunk(const Handle& dataset, const
   }
   const std::size_t most = longest_stored(chunk_bytes_);
   if (bytes > most) {
-    throw Error(
-        file_.string(),
-        fmt::format("a chunk of {} takes {} bytes where {} belong", name_, bytes, chunk_bytes_),
-        kDamaged);
+    throw Error(file_.string(),
+                fmt::format("a chunk of {} has {} bytes instead of {}", name_, bytes, chunk_bytes_),
+                kDamaged);
   }
-  // HDF5 looks the size up again: a writer may have put a longer chunk in its place meanwhile.
+  // HDF5 reads the size again: a writer may have replaced the chunk by a longer one meanwhile.
   std::vector<std::byte> stored(most);
   require(H5Dread_chunk(dataset.get(), H5P_DEFAULT, start.data(), &skipped, stored.data()), file_,
           failure, kDamaged);

@@ -10,26 +10,26 @@
 
 namespace pillarfield::hdf5 {
 
-/// Largest chunk, as it is before its filters, that is read.
-inline constexpr std::size_t kMostChunkBytes = std::size_t{128} << 20;
+/// Largest unfiltered chunk that is read, bytes.
+inline constexpr std::size_t kMaxChunkBytes = std::size_t{128} << 20;
 
 /// Reads frames of a dataset [frames, rows, cols], [frames, values] or [frames] that is stored in
-/// chunks through filters. Frames inflated once stay in memory, up to 32 MiB of them or one frame,
-/// so that one chunk of many frames is not inflated for each.
+/// filtered chunks. Caches up to 32 MiB of inflated frames, at least one, so that a chunk of many
+/// frames is not inflated for each of them.
 class FilteredChunks {
  public:
-  /// Throws Error where a chunk is larger than kMostChunkBytes or the dataset has more dimensions.
+  /// Throws Error if a chunk exceeds kMaxChunkBytes or the dataset has more than three dimensions.
   FilteredChunks(const std::filesystem::path& file, std::string name, const Storage& storage);
 
-  /// Copies `count` frames from `first` on, as they are stored. Throws Error where a chunk of them
-  /// is missing or damaged.
+  /// Copies `count` frames from `first` on, in their stored type. Throws Error if a chunk is
+  /// missing or damaged.
   void copy(const Handle& dataset, std::uint64_t first, std::uint64_t count, std::byte* frames);
 
-  /// Reads the stored bytes of the first and of the last chunk.
+  /// Reads the stored bytes of the first and the last chunk.
   void touch(const Handle& dataset) const;
 
  private:
-  using Place = std::array<hsize_t, 3>;  // frame, row, column; missing dimensions have the size 1
+  using Place = std::array<hsize_t, 3>;  // frame, row, column; absent dimensions have size 1
 
   void inflate_frames(const Handle& dataset, std::uint64_t wanted);
   void copy_chunk(const std::vector<std::byte>& chunk, const Place& start);
@@ -45,8 +45,8 @@ class FilteredChunks {
   std::size_t value_bytes_;
   std::size_t frame_bytes_;
   std::size_t chunk_bytes_;
-  std::uint64_t first_ = 0;  // frame of those inflated
-  std::uint64_t end_ = 0;    // beyond the last of them
+  std::uint64_t first_ = 0;  // first inflated frame
+  std::uint64_t end_ = 0;    // one past the last inflated frame
   std::vector<std::byte> frames_;
 };
 

@@ -15,13 +15,13 @@
 namespace pillarfield {
 namespace {
 
-/// Of a frame, so that a damaged file makes nobody ask for more than some hundred megabytes.
-constexpr std::uint64_t kMostContacts = 1'000'000;
+/// Limit per frame, so that a damaged file causes an allocation of at most a few hundred megabytes.
+constexpr std::uint64_t kMaxContacts = 1'000'000;
 
-/// Places in kPatchRows.
+/// Indices into kPatchRows.
 enum PatchRow : std::uint8_t { kFirstContact, kContactCount, kFirstEnded, kEndedCount };
 
-/// Sets a column of each of `rows`; `part` gives what of a row the column is of.
+/// Sets all columns of `rows`; `part` returns the member of a row that holds the columns.
 template <class Row, class Item, class Part>
 void read_columns(std::span<const ContactColumn<Row>> columns,
                   const std::optional<hdf5::StoredFrames>* datasets, std::uint64_t first,
@@ -38,10 +38,10 @@ void read_columns(std::span<const ContactColumn<Row>> columns,
 }  // namespace
 
 void ContactTablesReader::Table::open(const hdf5::File& file, const std::string& group,
-                                      const char* name, bool may_lack) {
+                                      const char* name, bool optional) {
   const std::string path = group + "/" + name;
   columns.emplace_back();
-  if (may_lack && !hdf5::exists(file, path)) return;
+  if (optional && !hdf5::exists(file, path)) return;
   columns.back().emplace(file, path, 0);
   const std::uint64_t frames = columns.back()->frames();
   rows = columns.size() == 1 ? frames : std::min(rows, frames);
@@ -57,16 +57,16 @@ void ContactTablesReader::open_tables(const hdf5::File& file) {
   for (const auto& column : identity_columns())
     contacts_.open(file, force_format::kContacts, column.name);
   for (const auto& column : quantity_columns())
-    contacts_.open(file, force_format::kContacts, column.name, column.later);
+    contacts_.open(file, force_format::kContacts, column.name, column.optional);
   for (const char* name : force_format::kPatchRows) patch_.open(file, force_format::kPatch, name);
   for (const auto& column : quantity_columns())
-    patch_.open(file, force_format::kPatch, column.name, column.later);
+    patch_.open(file, force_format::kPatch, column.name, column.optional);
   for (const auto& column : ended_columns()) ended_.open(file, force_format::kEnded, column.name);
   frames_ = patch_.rows;
 }
 
-/// Of a writer that was killed, the last frames may name rows that are not there. The rows
-/// of one frame lie behind those of the frame before.
+/// Drops the last frames if they refer to absent rows, which a killed writer leaves. Rows are in
+/// the order of frames.
 void ContactTablesReader::drop_frames_without_rows() {
   std::uint64_t good = 0;
   for (std::uint64_t beyond = frames_ + 1; beyond - good > 1;) {
@@ -84,8 +84,8 @@ bool ContactTablesReader::has_rows_of(std::uint64_t index) const {
 void ContactTablesReader::read_options(const hdf5::File& file) {
   const hdf5::Handle group = hdf5::open_object(file, force_format::kContacts);
   const auto minimum = hdf5::read_number(file, group.get(), force_format::kMinimumPillars);
-  constexpr double kMost = 0x1p53;
-  if (minimum && *minimum >= 0 && *minimum <= kMost) {
+  constexpr double kMaxExact = 0x1p53;
+  if (minimum && *minimum >= 0 && *minimum <= kMaxExact) {
     options_.minimum_pillars = static_cast<std::uint64_t>(*minimum);
   }
   options_.friction.given = hdf5::read_number(file, group.get(), force_format::kGivenFriction);
@@ -97,7 +97,7 @@ void ContactTablesReader::read_options(const hdf5::File& file) {
 std::uint64_t ContactTablesReader::count_at(std::size_t column, std::uint64_t index) const {
   std::uint64_t count = 0;
   patch_.columns[column]->get(index, H5T_NATIVE_UINT64, &count);
-  // Sums of two of them must not wrap.
+  // Clamped, so that the sum of two does not wrap.
   return std::min<std::uint64_t>(count, INT64_MAX);
 }
 
@@ -105,7 +105,7 @@ void ContactTablesReader::require_rows(const Table& table, std::uint64_t first,
                                        std::uint64_t count) const {
   if (first + count <= table.rows) return;
   throw Error(path_.string(),
-              fmt::format("has {} rows in {}, and a frame wants row {}", table.rows,
+              fmt::format("has {} rows in {}, but a frame refers to row {}", table.rows,
                           table.columns.front()->name(), first + count - 1),
               hdf5::kDamaged);
 }
@@ -117,7 +117,7 @@ FrameContacts ContactTablesReader::read(std::uint64_t index) const {
   const std::uint64_t ended = count_at(kEndedCount, index);
   require_rows(contacts_, first_contact, contacts);
   require_rows(ended_, first_ended, ended);
-  if (std::max(contacts, ended) > kMostContacts) {
+  if (std::max(contacts, ended) > kMaxContacts) {
     throw Error(
         path_.string(),
         fmt::format("frame {} claims to have {} contacts", index, std::max(contacts, ended)),

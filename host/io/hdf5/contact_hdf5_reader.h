@@ -9,27 +9,27 @@
 
 namespace pillarfield {
 
-/// Reads the group /contacts of a force file that has one.
+/// Reads the group /contacts of a force file.
 class ContactTablesReader {
  public:
-  /// Throws Error where a table lacks a column or options are out of range.
+  /// Throws Error if a table lacks a column or options are out of range.
   explicit ContactTablesReader(const hdf5::File& file);
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   [[nodiscard]] const ContactOptions& options() const { return options_; }
 
-  /// All of frame `index` < frames() but its time. Throws Error where the tables contradict each
-  /// other, or the frame claims to have more than a million contacts.
+  /// Reads frame `index` < frames(), without its time. Throws Error if the tables contradict each
+  /// other or the frame claims more than a million contacts.
   [[nodiscard]] FrameContacts read(std::uint64_t index) const;
 
  private:
-  /// The datasets of a group, in the order of its columns, and how many rows all of them have.
+  /// The datasets of a group in the order of its columns, and their common number of rows.
   struct Table {
-    std::vector<std::optional<hdf5::StoredFrames>> columns;  ///< unset where it is absent
+    std::vector<std::optional<hdf5::StoredFrames>> columns;  ///< unset: absent
     std::uint64_t rows = 0;
 
     void open(const hdf5::File& file, const std::string& group, const char* name,
-              bool may_lack = false);
+              bool optional = false);
   };
 
   void read_options(const hdf5::File& file);

@@ -115,7 +115,7 @@ void ContactTables::append(const FrameContacts& frame) {
 void ContactTables::write() {
   contacts_.write();
   ended_.write();
-  // The patch tells how many rows a frame has of these, so it comes last.
+  // The patch table refers to rows of the other tables, so it is written last.
   patch_.write();
 }
 

@@ -11,29 +11,29 @@
 
 namespace pillarfield {
 
-/// Datasets [rows] of a group, one for each column, that grow together. Rows are gathered in memory
-/// until they are written.
+/// A table: datasets [rows] of a group, one per column, extended together. Buffers rows until they
+/// are written.
 class Hdf5Table {
  public:
   Hdf5Table() = default;
 
-  /// Makes the group; its parents exist.
+  /// Creates the group; its parents must exist.
   Hdf5Table(const hdf5::File& file, std::string group);
 
-  /// Makes a dataset; `words`, where not empty, lists what its numbers stand for.
+  /// Creates a dataset; `words`, unless empty, lists the meanings of its values.
   void add_column(const hdf5::File& file, const std::string& name, hid_t stored_type,
                   const std::string& unit, const std::string& words = {});
 
-  /// One value of the row, in the order of the columns.
+  /// Appends one value of the current row, in the order of the columns.
   void put(double value);
 
-  [[nodiscard]] std::uint64_t rows() const { return rows_; }  ///< that were begun
+  [[nodiscard]] std::uint64_t rows() const { return rows_; }  ///< rows begun so far
   void write();
   void close();
 
  private:
   struct Column {
-    hdf5::GrowingDataset dataset;
+    hdf5::ExtendibleDataset dataset;
     std::vector<double> waiting;
   };
   std::string group_;

@@ -18,17 +18,17 @@
 namespace pillarfield::hdf5 {
 namespace {
 
-/// What the file access list carries to the driver.
+/// Options that the file access list passes to the driver.
 struct DriverOptions {
-  int descriptor = -1;  ///< of an empty file; the driver works on a duplicate
-  std::shared_ptr<WriteHealth> health;
+  int descriptor = -1;  ///< of an empty file; the driver uses a duplicate
+  std::shared_ptr<WriteStatus> write_status;
 };
 
 struct DriverFile : H5FD_t {
   int descriptor = -1;
   haddr_t allocated_end = 0;
   haddr_t file_end = 0;
-  std::shared_ptr<WriteHealth> health;
+  std::shared_ptr<WriteStatus> write_status;
 };
 
 DriverFile& ours(H5FD_t* file) { return *static_cast<DriverFile*>(file); }
@@ -48,19 +48,19 @@ H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
   if (options == nullptr) return nullptr;
   const int descriptor = fcntl(options->descriptor, F_DUPFD_CLOEXEC, 0);
   if (descriptor < 0) {
-    options->health->error_number = errno;
+    options->write_status->error_number = errno;
     return nullptr;
   }
   auto file = std::make_unique<DriverFile>();
   file->descriptor = descriptor;
-  file->health = options->health;
+  file->write_status = options->write_status;
   return file.release();
 }
 
 herr_t close_file(H5FD_t* file) {
   const std::unique_ptr<DriverFile> owned(&ours(file));
-  if (::close(owned->descriptor) != 0 && owned->health->error_number == 0) {
-    owned->health->error_number = errno;
+  if (::close(owned->descriptor) != 0 && owned->write_status->error_number == 0) {
+    owned->write_status->error_number = errno;
   }
   return 0;
 }
@@ -103,9 +103,9 @@ herr_t write_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size
   DriverFile& target = ours(file);
   target.file_end = std::max<haddr_t>(target.file_end, address + size);
   const auto* next = static_cast<const char*>(block);
-  while (size > 0 && target.health->error_number == 0) {
+  while (size > 0 && target.write_status->error_number == 0) {
     const ssize_t put = pwrite(target.descriptor, next, size, static_cast<off_t>(address));
-    if (put < 0 && errno != EINTR) target.health->error_number = errno;
+    if (put < 0 && errno != EINTR) target.write_status->error_number = errno;
     if (put < 0) continue;
     next += put;
     address += static_cast<haddr_t>(put);
@@ -116,15 +116,15 @@ herr_t write_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size
 
 herr_t truncate_file(H5FD_t* file, hid_t, hbool_t) {
   DriverFile& target = ours(file);
-  if (target.file_end == target.allocated_end || target.health->error_number != 0) return 0;
+  if (target.file_end == target.allocated_end || target.write_status->error_number != 0) return 0;
   if (ftruncate(target.descriptor, static_cast<off_t>(target.allocated_end)) != 0) {
-    target.health->error_number = errno;
+    target.write_status->error_number = errno;
   }
   target.file_end = target.allocated_end;
   return 0;
 }
 
-/// HDF5 holds the lock while it creates the file, and marks only a locked file as being written.
+/// HDF5 marks a file as being written only if the driver can lock it.
 herr_t lock_file(H5FD_t* file, hbool_t exclusive) {
   const int kind = exclusive ? LOCK_EX : LOCK_SH;
   const bool locked = flock(ours(file).descriptor, kind | LOCK_NB) == 0;
@@ -140,7 +140,7 @@ H5FD_class_t driver_class() {
   H5FD_class_t driver = {};
 #ifdef H5FD_CLASS_VERSION  // HDF5 1.14 and later
   driver.version = H5FD_CLASS_VERSION;
-  driver.value = 512;  // the first that is not reserved
+  driver.value = 512;  // first unreserved value
 #endif
   driver.name = "pillarfield";
   driver.maxaddr = (haddr_t{1} << 62) - 1;
@@ -166,20 +166,21 @@ H5FD_class_t driver_class() {
 
 }  // namespace
 
-void require_written(const WriteHealth& health, const std::filesystem::path& file) {
-  if (health.error_number == 0) return;
+void require_written(const WriteStatus& write_status, const std::filesystem::path& file) {
+  if (write_status.error_number == 0) return;
   throw Error(file.string(),
-              std::string("cannot be written: ") + std::strerror(health.error_number),
+              std::string("cannot be written: ") + std::strerror(write_status.error_number),
               "check its directory and the space left on its disk");
 }
 
-Handle surviving_access(const std::shared_ptr<WriteHealth>& health, const OutputFile& output) {
+Handle fault_tolerant_access(const std::shared_ptr<WriteStatus>& write_status,
+                             const OutputFile& output) {
   const std::filesystem::path& file = output.part_path();
-  constexpr const char* kFailure = "HDF5 does not take a file driver";
+  constexpr const char* kFailure = "HDF5 does not accept a file driver";
   Handle access = own(H5Pcreate(H5P_FILE_ACCESS), file, kFailure);
   const H5FD_class_t driver = driver_class();
   const Handle registered = own(H5FDregister(&driver), file, kFailure);
-  const DriverOptions options = {output.descriptor(), health};
+  const DriverOptions options = {output.descriptor(), write_status};
   require(H5Pset_driver(access.get(), registered.get(), &options), file, kFailure);
   return access;
 }

@@ -11,23 +11,23 @@
 namespace pillarfield::hdf5 {
 namespace {
 
-constexpr const char* kLayout = "docs/formats.md describes the file that is expected";
+constexpr const char* kLayout = "docs/formats.md describes the expected file";
 constexpr const char* kCannotWrite = "cannot be written";
 
 std::string advice_for(std::string_view found, std::string_view wanted) {
   if (found == "pillarfield-forces") {
-    return "it holds solved forces; give the recording they were solved from";
+    return "it holds solved forces; pass the recording that they were solved from";
   }
   if (found == "pillarfield-calibration") {
-    return "it holds a calibration; give the recording it is for";
+    return "it holds a calibration; pass the recording that it is for";
   }
   if (found != "pillarfield-recording") return kLayout;
   return wanted == "pillarfield-calibration" ? "it holds readings; calibrate with them first"
                                              : "it holds readings; solve it first";
 }
 
-/// HDF5 reads what a live writer may just be changing up to 100 times, twice as long after each
-/// failure; in a damaged file that would last for ever. Twenty-five times take 33 ms.
+/// Limits retries to 25, which take 33 ms. By default HDF5 retries metadata that a writer may be
+/// changing 100 times and doubles each wait, which never ends in a damaged file.
 Handle reading_access(const std::filesystem::path& path, bool unclosed) {
   constexpr unsigned kReadAttempts = 25;
   Handle access = own(H5Pcreate(H5P_FILE_ACCESS), path, "cannot be opened as HDF5");
@@ -41,7 +41,7 @@ File open_to_read(const std::filesystem::path& path, bool probing) {
   if (kind_of(path) != FileKind::hdf5) throw Error(path.string(), "is not an HDF5 file", kLayout);
   const WriterState state = writer_state(path);
   if (state == WriterState::abandoned) {
-    throw Error(path.string(), "was never closed by its writer, and holds nothing that was flushed",
+    throw Error(path.string(), "was not closed by its writer and holds no flushed data",
                 "wait for the writer, or write it again");
   }
   File file;
@@ -59,7 +59,8 @@ void require_format(const File& file, std::string_view format, int version) {
   const auto found = read_text(file, file.id.get(), "format");
   if (!found) {
     throw Error(file.path.string(),
-                fmt::format("is an HDF5 file but no {}: it has no 'format'", format), kLayout);
+                fmt::format("is an HDF5 file but not a {}: it has no attribute 'format'", format),
+                kLayout);
   }
   if (*found != format) {
     throw Error(file.path.string(), fmt::format("its format is '{:.60}', not '{}'", *found, format),
@@ -68,10 +69,10 @@ void require_format(const File& file, std::string_view format, int version) {
   const auto found_version = read_number(file, file.id.get(), "version");
   if (!found_version) throw Error(file.path.string(), "has no attribute 'version'", kLayout);
   if (*found_version != version) {
-    throw Error(file.path.string(),
-                fmt::format("its version is {}, and this program reads version {}", *found_version,
-                            version),
-                "use a program of its age or newer");
+    throw Error(
+        file.path.string(),
+        fmt::format("its version is {}; this program reads version {}", *found_version, version),
+        "use a newer program");
   }
 }
 
@@ -79,29 +80,29 @@ File create(const OutputFile& output) {
   const std::filesystem::path& path = output.part_path();
   File file;
   file.path = path;
-  file.health = std::make_shared<WriteHealth>();
-  const Handle access = surviving_access(file.health, output);
+  file.write_status = std::make_shared<WriteStatus>();
+  const Handle access = fault_tolerant_access(file.write_status, output);
   require(H5Pset_libver_bounds(access.get(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path,
           kCannotWrite);
   file.id = own(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), path,
-                kCannotWrite, "see that no other program has it open");
+                kCannotWrite, "close it in other programs");
   return file;
 }
 
 void start_appending(const File& file) {
-  flush(file);  // HDF5 reads back what it wrote so far, and must find it
+  flush(file);  // HDF5 reads back what it has written
   require(H5Fstart_swmr_write(file.id.get()), file.path, kCannotWrite);
-  require_written(*file.health, file.path);
+  require_written(*file.write_status, file.path);
 }
 
 void flush(const File& file) {
   require(H5Fflush(file.id.get(), H5F_SCOPE_GLOBAL), file.path, kCannotWrite);
-  require_written(*file.health, file.path);
+  require_written(*file.write_status, file.path);
 }
 
 void close(File& file) {
   if (!file.id.close()) fail(file.path, kCannotWrite);
-  require_written(*file.health, file.path);
+  require_written(*file.write_status, file.path);
 }
 
 Handle create_group(const File& file, const char* name) {

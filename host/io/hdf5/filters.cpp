@@ -18,14 +18,15 @@ bool is_known(H5Z_filter_t filter) {
          filter == H5Z_FILTER_FLETCHER32;
 }
 
-/// Reduces a sum to 16 bits as adding its halves does: a multiple of 65535 but 0 becomes 65535.
+/// Reduces a sum modulo 65535 as repeated addition of its halves does: a nonzero multiple of 65535
+/// becomes 65535.
 std::uint32_t folded(std::uint64_t sum) {
   return sum == 0 ? 0 : static_cast<std::uint32_t>((sum - 1) % 65535 + 1);
 }
 
-/// Fletcher's checksum of big-endian words of 16 bits, the last one padded with a zero byte.
+/// Fletcher's checksum of big-endian 16-bit words, the last one padded with a zero byte.
 std::uint32_t fletcher32(const std::byte* bytes, std::size_t count) {
-  constexpr std::size_t kWordsBeforeOverflow = 1 << 20;  // of the 64 bits of `second`
+  constexpr std::size_t kWordsBeforeOverflow = 1 << 20;  // `second` has 64 bits
   std::uint64_t first = 0;
   std::uint64_t second = 0;
   std::size_t words = 0;
@@ -57,9 +58,9 @@ Filters::Filters(const std::filesystem::path& file, const std::string& name,
                        sizeof filter_name, filter_name, nullptr);
     if (!is_known(filter) || std::ranges::find(ids_, filter) != ids_.end()) {
       throw Error(file.string(),
-                  fmt::format("{} is stored through '{:.60}', filter {} of HDF5, which is not read",
+                  fmt::format("{} is stored with '{:.60}', HDF5 filter {}, which is not supported",
                               name, filter_name, filter),
-                  "store it with gzip, shuffle and fletcher32, each once at most, or uncompressed");
+                  "store it with gzip, shuffle and fletcher32, each at most once, or uncompressed");
     }
     ids_.push_back(filter);
   }
@@ -88,7 +89,7 @@ std::vector<std::byte> Filters::undo(std::vector<std::byte> stored, std::uint32_
     }
   }
   if (bytes.size() == chunk_bytes) return bytes;
-  fail_on_chunk(fmt::format("holds {} bytes where {} belong", bytes.size(), chunk_bytes));
+  fail_on_chunk(fmt::format("holds {} bytes instead of {}", bytes.size(), chunk_bytes));
 }
 
 std::vector<std::byte> Filters::inflated(const std::vector<std::byte>& stored,
@@ -97,7 +98,7 @@ std::vector<std::byte> Filters::inflated(const std::vector<std::byte>& stored,
   z_stream stream = {};
   if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
   const std::unique_ptr<z_stream, int (*)(z_stream*)> ended(&stream, inflateEnd);
-  // zlib takes no pointers to constant bytes unless it is compiled with ZLIB_CONST.
+  // zlib accepts pointers to constant bytes only with ZLIB_CONST.
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(stored.data()));
   stream.avail_in = static_cast<uInt>(stored.size());
   stream.next_out = reinterpret_cast<Bytef*>(out.data());
@@ -106,14 +107,14 @@ std::vector<std::byte> Filters::inflated(const std::vector<std::byte>& stored,
   if (result == Z_STREAM_END && stream.avail_out == 0) return out;
   if (result == Z_STREAM_END || result == Z_OK || result == Z_BUF_ERROR) {
     const bool longer = stream.avail_out == 0;
-    fail_on_chunk(fmt::format("inflates to {} bytes where {} belong",
+    fail_on_chunk(fmt::format("inflates to {} bytes instead of {}",
                               longer ? "more" : std::to_string(stream.total_out), bytes));
   }
   fail_on_chunk("cannot be inflated");
 }
 
-/// Stored are the first bytes of all values, then the second of all, and so on; bytes that make no
-/// whole value stay behind.
+/// Undoes shuffle, which stores the first bytes of all values, then the second bytes, and so on;
+/// bytes beyond the last whole value stay at the end.
 std::vector<std::byte> Filters::unshuffled(const std::vector<std::byte>& stored) const {
   std::vector<std::byte> out(stored);
   const std::size_t values = stored.size() / value_bytes_;
@@ -133,7 +134,7 @@ void Filters::take_checksum(std::vector<std::byte>& stored) const {
   for (std::size_t i = kChecksumBytes; i-- > 0;) {
     kept = kept << 8 | std::to_integer<std::uint32_t>(stored[bytes + i]);
   }
-  if (fletcher32(stored.data(), bytes) != kept) fail_on_chunk("does not fit its checksum");
+  if (fletcher32(stored.data(), bytes) != kept) fail_on_chunk("does not match its checksum");
   stored.resize(bytes);
 }
 

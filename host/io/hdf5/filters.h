@@ -10,22 +10,22 @@
 
 namespace pillarfield::hdf5 {
 
-/// How the chunks of a dataset are stored: gzip, shuffle and fletcher32, in the order in which the
-/// writer applied them. We undo them ourselves: HDF5 1.10 does not compare what a chunk inflates to
-/// with the size of a chunk, and gives memory of the process for what is missing.
+/// The filters of a dataset, gzip, shuffle and fletcher32, in the order of the writer. They are
+/// undone here because HDF5 1.10 does not check the inflated size of a chunk and returns
+/// uninitialised memory for missing bytes.
 class Filters {
  public:
   Filters() = default;
 
-  /// Of a dataset's creation list. Throws Error where there is another filter. `name` and `file`
-  /// are for messages.
+  /// Reads the filters from a dataset's creation list. Throws Error if there is any other filter.
+  /// `name` and `file` are for messages.
   Filters(const std::filesystem::path& file, const std::string& name, const Handle& creation_list,
           std::size_t value_bytes);
 
   [[nodiscard]] bool empty() const { return ids_.empty(); }
 
-  /// A stored chunk as it was before all filters but those of the bits of `skipped`. Throws Error
-  /// unless it comes to `chunk_bytes` exactly and fits its checksum.
+  /// Undoes all filters of a stored chunk except those whose bits are set in `skipped`. Throws
+  /// Error unless the result has exactly `chunk_bytes` and matches its checksum.
   [[nodiscard]] std::vector<std::byte> undo(std::vector<std::byte> stored, std::uint32_t skipped,
                                             std::size_t chunk_bytes) const;
 

@@ -43,9 +43,9 @@ class Hdf5Sink final : public ForceSink {
   std::filesystem::path path_;
   OutputFile part_;
   hdf5::File file_;
-  std::vector<hdf5::GrowingDataset> planes_;  // those of planes_of(), in that order
-  hdf5::GrowingDataset status_;
-  hdf5::GrowingDataset time_;
+  std::vector<hdf5::ExtendibleDataset> planes_;  // in the order of planes_of()
+  hdf5::ExtendibleDataset status_;
+  hdf5::ExtendibleDataset time_;
   ContactTables contacts_;
   std::uint64_t frames_ = 0;
   std::uint64_t flushed_ = 0;
@@ -109,7 +109,7 @@ void Hdf5Sink::require_open() const {
 
 void Hdf5Sink::put(const SolvedFrame& frame) {
   std::size_t index = 0;
-  frame_planes_.take(frame.forces);
+  frame_planes_.set_frame(frame.forces);
   for (const ResultPlane& plane : planes_of(info_)) {
     planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
   }
@@ -150,7 +150,7 @@ void Hdf5Sink::finish() {
 
 SinkFormat force_hdf5_format() {
   return {.kind = OutputKind::forces,
-          .endings = {".h5", ".hdf5"},
+          .extensions = {".h5", ".hdf5"},
           .content = "holds force fields",
           .create = [](const std::filesystem::path& path, const ForceFileInfo& info,
                        Replace replace) -> std::unique_ptr<ForceSink> {

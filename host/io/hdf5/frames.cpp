@@ -10,7 +10,7 @@ namespace pillarfield::hdf5 {
 namespace {
 
 constexpr hsize_t kChunkBytes = 256 << 10;
-constexpr hsize_t kMostFramesOfChunk = 1024;
+constexpr hsize_t kMaxFramesOfChunk = 1024;
 constexpr hsize_t kLargestChunkBytes = 1 << 30;  // HDF5 allows less than 4 GiB
 
 std::vector<hsize_t> with_frames(hsize_t frames, const FrameShape& shape) {
@@ -19,12 +19,12 @@ std::vector<hsize_t> with_frames(hsize_t frames, const FrameShape& shape) {
   return extent;
 }
 
-/// Several small frames to a chunk; a frame that no chunk can hold is cut across its rows.
+/// Chunk shape: several small frames per chunk; a frame above the largest chunk is split by rows.
 std::vector<hsize_t> chunk_of(const FrameShape& shape, hsize_t value_bytes) {
   hsize_t frame_bytes = value_bytes;
   for (const hsize_t size : shape) frame_bytes *= size;
   std::vector<hsize_t> chunk =
-      with_frames(std::clamp<hsize_t>(kChunkBytes / frame_bytes, 1, kMostFramesOfChunk), shape);
+      with_frames(std::clamp<hsize_t>(kChunkBytes / frame_bytes, 1, kMaxFramesOfChunk), shape);
   if (frame_bytes > kLargestChunkBytes) {
     chunk[1] = std::max<hsize_t>(1, shape[0] * kLargestChunkBytes / frame_bytes);
   }
@@ -47,7 +47,7 @@ Handle frame_selection(const std::filesystem::path& path, const std::string& fai
   return space;
 }
 
-/// One frame in memory whose rows are `row_stride` values apart.
+/// Memory space of one frame whose rows are `row_stride` values apart.
 Handle memory_selection(const std::filesystem::path& path, const std::string& failure,
                         const std::vector<hsize_t>& extent, hsize_t row_stride) {
   std::vector<hsize_t> count = extent;
@@ -63,7 +63,7 @@ Handle memory_selection(const std::filesystem::path& path, const std::string& fa
   return space;
 }
 
-/// Frames in memory that lie close together.
+/// Memory space of dense frames.
 Handle dense_frames(const std::filesystem::path& path, const std::string& failure,
                     std::vector<hsize_t> extent, std::uint64_t frames) {
   extent[0] = frames;
@@ -73,11 +73,11 @@ Handle dense_frames(const std::filesystem::path& path, const std::string& failur
 
 }  // namespace
 
-GrowingDataset::GrowingDataset(const File& file, const char* name, hid_t stored_type,
-                               const FrameShape& shape)
+ExtendibleDataset::ExtendibleDataset(const File& file, const char* name, hid_t stored_type,
+                                     const FrameShape& shape)
     : path_(file.path),
       failure_(fmt::format("{} cannot be written", name)),
-      health_(file.health),
+      write_status_(file.write_status),
       extent_(with_frames(0, shape)) {
   const auto chunk = chunk_of(shape, H5Tget_size(stored_type));
   auto longest = extent_;
@@ -86,7 +86,7 @@ GrowingDataset::GrowingDataset(const File& file, const char* name, hid_t stored_
   const Handle space = own(H5Screate_simple(rank, extent_.data(), longest.data()), path_, failure_);
   const Handle layout = own(H5Pcreate(H5P_DATASET_CREATE), path_, failure_);
   require(H5Pset_chunk(layout.get(), rank, chunk.data()), path_, failure_);
-  // Each frame then goes straight into the file, and no chunk is filled with zeros before.
+  // No chunk is filled with zeros before its frames are written.
   require(H5Pset_fill_time(layout.get(), H5D_FILL_TIME_NEVER), path_, failure_);
   const Handle access = own(H5Pcreate(H5P_DATASET_ACCESS), path_, failure_);
   require(H5Pset_chunk_cache(access.get(), 0, 0, 1), path_, failure_);
@@ -95,8 +95,8 @@ GrowingDataset::GrowingDataset(const File& file, const char* name, hid_t stored_
                  path_, failure_);
 }
 
-void GrowingDataset::put(std::uint64_t index, hid_t memory_type, const void* frame,
-                         std::size_t row_stride) {
+void ExtendibleDataset::put(std::uint64_t index, hid_t memory_type, const void* frame,
+                            std::size_t row_stride) {
   if (index >= extent_[0]) {
     auto longer = extent_;
     longer[0] = index + 1;
@@ -107,10 +107,10 @@ void GrowingDataset::put(std::uint64_t index, hid_t memory_type, const void* fra
   const Handle source = memory_selection(path_, failure_, extent_, row_stride);
   require(H5Dwrite(dataset_.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, frame),
           path_, failure_);
-  require_written(*health_, path_);
+  require_written(*write_status_, path_);
 }
 
-void GrowingDataset::append(hid_t memory_type, const void* frames, std::size_t count) {
+void ExtendibleDataset::append(hid_t memory_type, const void* frames, std::size_t count) {
   if (count == 0) return;
   const hsize_t first = extent_[0];
   extent_[0] += count;
@@ -119,7 +119,7 @@ void GrowingDataset::append(hid_t memory_type, const void* frames, std::size_t c
   const Handle source = dense_frames(path_, failure_, extent_, count);
   require(H5Dwrite(dataset_.get(), memory_type, source.get(), target.get(), H5P_DEFAULT, frames),
           path_, failure_);
-  require_written(*health_, path_);
+  require_written(*write_status_, path_);
 }
 
 }  // namespace pillarfield::hdf5

@@ -13,21 +13,21 @@ namespace pillarfield::hdf5 {
 /// Shape of one frame of a dataset [frames, ...]: {rows, cols} for a plane, {} for one number.
 using FrameShape = std::vector<hsize_t>;
 
-/// A dataset that grows frame by frame, of uncompressed chunks of about 256 KiB or one frame.
-class GrowingDataset {
+/// A dataset that is extended frame by frame, in uncompressed chunks of one frame or about 256 KiB.
+class ExtendibleDataset {
  public:
-  GrowingDataset() = default;
-  GrowingDataset(const File& file, const char* name, hid_t stored_type, const FrameShape& shape);
+  ExtendibleDataset() = default;
+  ExtendibleDataset(const File& file, const char* name, hid_t stored_type, const FrameShape& shape);
 
-  /// Writes frame `index`, at most one beyond the last. `row_stride` counts values from one row to
-  /// the next. The data are in the operating system's hands when it returns; that the dataset is
-  /// longer reaches the file with the next flush.
+  /// Writes frame `index`, at most one past the last. `row_stride` is the number of values from one
+  /// row to the next. The data reach the operating system at once, the new length of the dataset
+  /// with the next flush.
   void put(std::uint64_t index, hid_t memory_type, const void* frame, std::size_t row_stride = 1);
 
-  /// Writes `count` dense frames after the last, as put() does one.
+  /// Writes `count` dense frames after the last one.
   void append(hid_t memory_type, const void* frames, std::size_t count);
 
-  /// To write attributes on it.
+  /// For writing attributes.
   [[nodiscard]] hid_t id() const { return dataset_.get(); }
 
   void close() { (void)dataset_.close(); }
@@ -35,7 +35,7 @@ class GrowingDataset {
  private:
   std::filesystem::path path_;
   std::string failure_;
-  std::shared_ptr<WriteHealth> health_;
+  std::shared_ptr<WriteStatus> write_status_;
   Handle dataset_;
   std::vector<hsize_t> extent_;  // of the whole dataset
 };

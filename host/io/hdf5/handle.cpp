@@ -13,7 +13,7 @@ herr_t take_innermost(unsigned depth, const H5E_error2_t* error, void* text) {
   return 0;
 }
 
-/// What the system said, where HDF5 quotes it, else the description nearest to the failure.
+/// The system's error message if HDF5 quotes it, else HDF5's innermost description.
 std::string last_reason() {
   std::string text;
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_innermost, &text);

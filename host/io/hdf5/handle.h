@@ -24,19 +24,18 @@ class Handle {
   [[nodiscard]] hid_t get() const { return id_; }
   [[nodiscard]] bool valid() const { return id_ >= 0; }
 
-  /// Releases the identifier; false where HDF5 could not write what was left to write.
+  /// Releases the identifier; false if HDF5 could not write the remaining data.
   [[nodiscard]] bool close();
 
  private:
   hid_t id_ = H5I_INVALID_HID;
 };
 
-/// Keeps HDF5 from printing its error stack, in this thread, while it lives. Every public function
-/// that reaches HDF5 begins with one.
+/// While it exists, HDF5 does not print its error stack in this thread. Every public function that
+/// calls HDF5 begins with one.
 ///
-/// It also keeps HDF5 from tidying up when the process exits, unless something else has used HDF5
-/// before: after a damaged file HDF5 1.10 would print that it cannot. Handles close all that they
-/// opened themselves.
+/// It also disables HDF5's cleanup at exit, unless HDF5 was used before: after a damaged file the
+/// cleanup of HDF5 1.10 prints errors. Handles close everything they opened.
 class QuietErrors {
  public:
   QuietErrors();
@@ -49,18 +48,18 @@ class QuietErrors {
   void* data_ = nullptr;
 };
 
-/// How to mend a file in which HDF5 finds no sense.
-inline constexpr const char* kDamaged = "the file is damaged or truncated; take another copy";
+/// Advice for a file that HDF5 cannot parse.
+inline constexpr const char* kDamaged = "the file is damaged or truncated; use another copy";
 
-/// Throws Error about `file`, with the reason that HDF5 gave for the call that failed last.
+/// Throws Error about `file` with HDF5's reason for the last failed call.
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view what_failed,
                        std::string_view mend = {});
 
-/// Takes the identifier that an HDF5 call returned, or fails with `what_failed`.
+/// Owns the identifier that an HDF5 call returned; fails with `what_failed` if it is negative.
 [[nodiscard]] Handle own(hid_t id, const std::filesystem::path& file, std::string_view what_failed,
                          std::string_view mend = {});
 
-/// Fails with `what_failed` where an HDF5 call returned a negative `result`.
+/// Fails with `what_failed` if an HDF5 call returned a negative `result`.
 void require(herr_t result, const std::filesystem::path& file, std::string_view what_failed,
              std::string_view mend = {});
 

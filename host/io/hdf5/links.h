@@ -6,12 +6,12 @@
 
 namespace pillarfield::hdf5 {
 
-/// Whether there is an object of this absolute path; its groups may be absent too. Throws Error
-/// where a link on the way leads out of the file, as external links do, or nowhere.
+/// Whether an object with this absolute path exists; its groups may be absent too. Throws Error if
+/// a link on the path leads to another file or to nothing.
 [[nodiscard]] bool exists(const File& file, std::string_view path);
 
-/// Opens the group or dataset of this absolute path; throws Error as exists() does, and where there
-/// is none.
+/// Opens the group or dataset with this absolute path. Throws Error as exists() does, and if it is
+/// absent.
 [[nodiscard]] Handle open_object(const File& file, const char* path);
 
 }  // namespace pillarfield::hdf5

@@ -20,7 +20,7 @@ bool is_standard(hid_t type) {
   return std::ranges::any_of(standard, [&](hid_t each) { return H5Tequal(type, each) > 0; });
 }
 
-/// A float of 2 bytes is no type of HDF5 1's own, but NumPy stores it.
+/// HDF5 1 has no predefined float of 2 bytes, but NumPy stores it.
 bool is_half(hid_t type) {
   if (H5Tget_class(type) != H5T_FLOAT || H5Tget_size(type) != 2) return false;
   const Handle half(H5Tcopy(H5T_IEEE_F32LE));
@@ -34,7 +34,7 @@ bool is_half(hid_t type) {
 std::string name_of_number(const char* kind, hid_t type) {
   const std::size_t bytes = H5Tget_size(type);
   if (is_standard(type) || is_half(type)) return fmt::format("{}{}", kind, 8 * bytes);
-  return fmt::format("{} of {} bytes in another layout than the standard ones", kind, bytes);
+  return fmt::format("{} of {} bytes in a non-standard layout", kind, bytes);
 }
 
 }  // namespace
@@ -55,13 +55,13 @@ std::string name_of_type(hid_t type) {
     case H5T_VLEN:
       return "an array";
     default:
-      return "no number";
+      return "not a number";
   }
 }
 
 void require_number(const std::filesystem::path& file, std::string_view what, hid_t type) {
   if (is_standard(type) || is_half(type)) return;
-  throw Error(file.string(), fmt::format("{} is no number but {}", what, name_of_type(type)),
+  throw Error(file.string(), fmt::format("{} must be a number, not {}", what, name_of_type(type)),
               "store a standard integer or float");
 }
 

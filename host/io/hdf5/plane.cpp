@@ -15,9 +15,9 @@ std::vector<float> read_plane(const File& file, const char* name, std::size_t ro
   if (stored.frames() != rows || stored.shape()[0] != cols) {
     throw Error(file.path.string(),
                 fmt::format("{} is {} x {} values", name, stored.frames(), stored.shape()[0]),
-                fmt::format("it needs one for each sensel, {} x {}", rows, cols));
+                fmt::format("it needs one per sensel, {} x {}", rows, cols));
   }
-  require_modest(file, name, static_cast<double>(rows) * static_cast<double>(cols));
+  require_probe_limit(file, name, static_cast<double>(rows) * static_cast<double>(cols));
   std::vector<float> values(rows * cols);
   stored.get_all(0, rows, H5T_NATIVE_FLOAT, values.data());
   return values;

@@ -10,18 +10,18 @@
 
 namespace pillarfield {
 
-// What probe_file() runs in its child, and the public functions after it.
+// Readers that probe_file() runs in its child process and the public functions run after it.
 
-/// Opens a file to read it, after probe_file() has passed it unless it is trusted.
+/// Opens a file for reading, after probe_file() unless it is trusted.
 [[nodiscard]] hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options);
 
-/// A recording, format "pillarfield-recording" version 1.
+/// Reads a recording, format "pillarfield-recording" version 1.
 [[nodiscard]] std::unique_ptr<FrameSource> read_recording(hdf5::File file);
 
-/// Opens all that a ForceFileReader reads.
+/// Opens everything that a ForceFileReader reads.
 void try_forces(hdf5::File file);
 
-/// A calibration, format "pillarfield-calibration" version 1.
+/// Reads a calibration, format "pillarfield-calibration" version 1.
 [[nodiscard]] SkinCalibration read_calibration(const hdf5::File& file);
 
 }  // namespace pillarfield

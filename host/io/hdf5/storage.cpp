@@ -20,10 +20,10 @@ double product(const std::vector<hsize_t>& sizes) {
 }
 
 std::vector<hsize_t> extent_of(const File& file, const Handle& dataset, const std::string& name) {
-  const std::string failure = fmt::format("{} is no array of numbers", name);
+  const std::string failure = fmt::format("{} is not an array of numbers", name);
   const Handle space = own(H5Dget_space(dataset.get()), file.path, failure, kDamaged);
   const int rank = H5Sget_simple_extent_ndims(space.get());
-  if (rank < 1) throw Error(file.path.string(), failure, "docs/formats.md tells its shape");
+  if (rank < 1) throw Error(file.path.string(), failure, "docs/formats.md gives its shape");
   std::vector<hsize_t> extent(static_cast<std::size_t>(rank));
   require(H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr), file.path, failure);
   return extent;
@@ -39,7 +39,7 @@ std::vector<hsize_t> chunk_of(const File& file, const Handle& layout, const std:
   throw Error(file.path.string(), fmt::format("the chunks of {} have no size", name), kDamaged);
 }
 
-/// How many chunks the values fill.
+/// Number of chunks that the values fill.
 double chunks_of(const Storage& storage) {
   double chunks = 1;
   for (std::size_t d = 0; d < storage.extent.size(); ++d) {
@@ -48,13 +48,13 @@ double chunks_of(const Storage& storage) {
   return chunks;
 }
 
-/// Bytes that the file must have at least. Deflate shrinks by at most 1032.
+/// Least size of the file, bytes. Deflate compresses by a factor of at most 1032.
 double least_bytes(const Storage& storage) {
   const double bytes = product(storage.extent) * static_cast<double>(storage.value_bytes);
   return storage.filters.empty() ? bytes : std::max(bytes / 1032, chunks_of(storage));
 }
 
-/// How many chunks the file has; HDF5 walks over the whole index of them.
+/// Number of stored chunks; HDF5 walks the whole chunk index.
 double stored_chunks(const File& file, const Handle& dataset, const std::string& name) {
   const std::string failure = fmt::format("the chunks of {} cannot be counted", name);
   const Handle space = own(H5Dget_space(dataset.get()), file.path, failure, kDamaged);
@@ -63,7 +63,7 @@ double stored_chunks(const File& file, const Handle& dataset, const std::string&
   return static_cast<double>(chunks);
 }
 
-/// Where the last value of a dataset in chunks ends in its file.
+/// File offset of the end of the last value of a chunked dataset.
 std::uint64_t end_of_last_value(const File& file, const Handle& dataset, const std::string& name,
                                 const Storage& storage) {
   std::vector<hsize_t> chunk_start(storage.extent.size());
@@ -88,7 +88,7 @@ std::uint64_t bytes_of(const File& file) {
   std::error_code failed;
   const auto bytes = std::filesystem::file_size(file.path, failed);
   if (!failed) return bytes;
-  throw Error(file.path.string(), failed.message(), "leave it in its place while it is read");
+  throw Error(file.path.string(), failed.message(), "do not move it while it is read");
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ Storage storage_of(const File& file, const Handle& dataset, const std::string& n
   if (!storage.filters.empty()) H5Pget_chunk_opts(layout.get(), &options);
   if (options == 0) return storage;
   throw Error(file.path.string(), fmt::format("the last chunks of {} are stored unfiltered", name),
-              "store all of them through the same filters");
+              "store all chunks with the same filters");
 }
 
 void require_stored(const File& file, const Handle& dataset, const std::string& name,
@@ -124,23 +124,23 @@ void require_stored(const File& file, const Handle& dataset, const std::string& 
   const std::uint64_t file_bytes = bytes_of(file);
   if (least_bytes(storage) > static_cast<double>(file_bytes)) {
     throw Error(file.path.string(),
-                fmt::format("{} claims to be {} values, more than the file's {} bytes can hold",
-                            name, fmt::join(storage.extent, " x "), file_bytes),
+                fmt::format("{} claims {} values, more than the file's {} bytes can hold", name,
+                            fmt::join(storage.extent, " x "), file_bytes),
                 kDamaged);
   }
   if (storage.chunk.empty()) return;
   const double stored = stored_chunks(file, dataset, name);
   if (file.unclosed) {
-    // HDF5 compares the lengths itself where the writer closed the file.
+    // HDF5 itself checks the length of a closed file.
     if (end_of_last_value(file, dataset, name, storage) <= file_bytes) return;
     throw Error(file.path.string(), fmt::format("ends before the last frame of {}", name),
                 kDamaged);
   }
   if (stored >= chunks_of(storage)) return;
   throw Error(file.path.string(),
-              fmt::format("{} claims to be {} values in {} chunks, and {} of them are stored", name,
+              fmt::format("{} claims {} values in {} chunks, but only {} are stored", name,
                           fmt::join(storage.extent, " x "), chunks_of(storage), stored),
-              "the file is damaged, or was made longer than what was written; shorten the dataset");
+              "the file is damaged, or the dataset is longer than its data; shorten it");
 }
 
 }  // namespace pillarfield::hdf5

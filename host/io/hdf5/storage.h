@@ -8,24 +8,24 @@
 
 namespace pillarfield::hdf5 {
 
-/// How the values of a dataset lie in its file.
+/// Storage layout of a dataset.
 struct Storage {
   std::vector<hsize_t> extent;
-  std::vector<hsize_t> chunk;  ///< empty: not in chunks
-  Filters filters;             ///< none: a chunk has the size of its values
+  std::vector<hsize_t> chunk;  ///< empty: not chunked
+  Filters filters;             ///< empty: unfiltered
   std::size_t value_bytes = 0;
 
   [[nodiscard]] bool holds_values() const;
   [[nodiscard]] double chunk_bytes() const;
 };
 
-/// Reads it. Throws Error where the dataset is no array, lies in other files, or passes through
-/// filters that are not read.
+/// Reads the layout. Throws Error if the dataset is not an array, lies in other files, or has
+/// unsupported filters.
 [[nodiscard]] Storage storage_of(const File& file, const Handle& dataset, const std::string& name);
 
-/// Throws Error where the file is shorter than what the dataset claims to hold, or does not have
-/// all its chunks: damaged headers must not make anyone ask for memory or write without end, nor
-/// lost readings be taken for zeros. The chunks of a file that is still written are not counted.
+/// Throws Error if the file is shorter than the dataset claims or lacks chunks of it, so that a
+/// damaged header causes no endless allocation and lost readings do not become zeros. Chunks of an
+/// unclosed file are not counted.
 void require_stored(const File& file, const Handle& dataset, const std::string& name,
                     const Storage& storage);
 

@@ -12,7 +12,7 @@
 namespace pillarfield::hdf5 {
 namespace {
 
-/// NumPy stores truth values as an enumeration of int8.
+/// The number type of a dataset; NumPy stores booleans as an enumeration of int8.
 Handle number_type(const std::filesystem::path& path, const std::string& name,
                    const Handle& dataset) {
   const std::string failure = fmt::format("{} has no type", name);
@@ -26,25 +26,25 @@ Handle number_type(const std::filesystem::path& path, const std::string& name,
 
 }  // namespace
 
-void require_modest(const File& file, const std::string& name, double values) {
-  if (!file.probing || values <= static_cast<double>(kMostProbedValues)) return;
+void require_probe_limit(const File& file, const std::string& name, double values) {
+  if (!file.probing || values <= static_cast<double>(kMaxProbedValues)) return;
   throw Error(file.path.string(),
               fmt::format("{} has {} values in a frame or plane, more than {}", name, values,
-                          kMostProbedValues),
-              "so many are read only from a file that you trust (--trust-input)");
+                          kMaxProbedValues),
+              "read larger ones from a trusted file, with --trust-input");
 }
 
 StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_t frame_rank)
     : path_(file.path), name_(name), dataset_(open_object(file, name.c_str())) {
   if (H5Iget_type(dataset_.get()) != H5I_DATASET) {
-    throw Error(path_.string(), fmt::format("{} is no dataset", name),
-                "docs/formats.md tells what the file must hold");
+    throw Error(path_.string(), fmt::format("{} is not a dataset", name),
+                "docs/formats.md lists the required objects");
   }
   type_ = number_type(path_, name_, dataset_);
   storage_ = storage_of(file, dataset_, name_);
   if (storage_.extent.size() != frame_rank + 1) {
     throw Error(path_.string(), fmt::format("{} has {} dimensions", name, storage_.extent.size()),
-                fmt::format("it needs {}; docs/formats.md names them", frame_rank + 1));
+                fmt::format("it needs {}; see docs/formats.md", frame_rank + 1));
   }
   require_stored(file, dataset_, name_, storage_);
   if (!storage_.filters.empty()) {
@@ -53,11 +53,11 @@ StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_
   if (!file.probing) return;
   double values = 1;
   for (const hsize_t size : shape()) values *= static_cast<double>(size);
-  require_modest(file, name_, values);
+  require_probe_limit(file, name_, values);
   touch();
 }
 
-/// Leads HDF5 over all that reading frames will lead it over.
+/// Reads everything in HDF5 that reading frames will need.
 void StoredFrames::touch() const {
   if (!storage_.holds_values()) return;
   if (chunks_) return chunks_->touch(dataset_);

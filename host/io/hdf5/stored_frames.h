@@ -11,27 +11,27 @@
 
 namespace pillarfield::hdf5 {
 
-/// Values of a frame or plane that a file may have unless it is trusted: all planes of such a skin,
-/// and its results, stay below a gigabyte together.
-inline constexpr std::size_t kMostProbedValues = std::size_t{1} << 23;
+/// Largest number of values of a frame or plane in an untrusted file. All planes and results of
+/// such a skin stay below 1 GB together.
+inline constexpr std::size_t kMaxProbedValues = std::size_t{1} << 23;
 
-/// Throws Error where a file that is probed has more `values` in a frame or plane.
-void require_modest(const File& file, const std::string& name, double values);
+/// Throws Error if a probed file has more `values` in a frame or plane.
+void require_probe_limit(const File& file, const std::string& name, double values);
 
-/// A dataset [frames, ...] of numbers to read, with the length it had when it was opened.
+/// A dataset [frames, ...] of numbers for reading, with its length at the time of opening.
 class StoredFrames {
  public:
   StoredFrames() = default;
 
-  /// Throws Error where the dataset has not `frame_rank` dimensions beside the frames, holds no
-  /// plain numbers, or claims more than its file stores. In a file that is probed its frames must
-  /// have at most kMostProbedValues, and its first and last value are read.
+  /// Throws Error if the dataset does not have `frame_rank` dimensions beside the frames, does not
+  /// hold plain numbers, or claims more than its file stores. For a probed file it checks
+  /// kMaxProbedValues and reads the first and last value.
   StoredFrames(const File& file, const std::string& name, std::size_t frame_rank);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t frames() const { return storage_.extent[0]; }
 
-  /// Size of a frame in each of its dimensions.
+  /// Size of a frame in each dimension.
   [[nodiscard]] std::vector<hsize_t> shape() const {
     return {storage_.extent.begin() + 1, storage_.extent.end()};
   }
@@ -55,9 +55,9 @@ class StoredFrames {
   std::filesystem::path path_;
   std::string name_;
   Handle dataset_;
-  Handle type_;  ///< of the values; of an enumeration its integers'
+  Handle type_;  ///< of the values; for an enumeration, of its integers
   Storage storage_;
-  std::unique_ptr<FilteredChunks> chunks_;  ///< where the values pass through filters
+  std::unique_ptr<FilteredChunks> chunks_;  ///< set for filtered datasets
 };
 
 }  // namespace pillarfield::hdf5

@@ -15,7 +15,7 @@ namespace pillarfield {
 namespace {
 
 constexpr const char* kOtherPart = "remove it, or choose another name";
-/// Never of a symbolic link, nor waiting for the other end of a pipe.
+/// Follows no symbolic link and does not wait for the other end of a pipe.
 constexpr int kPartFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY;
 
 [[noreturn]] void fail_as_locked(const OutputPlace& place) {
@@ -28,14 +28,14 @@ constexpr int kPartFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC | O_NOCTTY;
     throw Error(place.part_path.string(), "is a symbolic link", kOtherPart);
   }
   throw Error(place.part_path.string(), std::strerror(error_number),
-              "write to a directory that is there and can be written");
+              "choose a directory that exists and is writable");
 }
 
 void require_plain(const struct stat& found, const OutputPlace& place) {
   const std::string part = place.part_path.string();
   if (S_ISLNK(found.st_mode)) throw Error(part, "is a symbolic link", kOtherPart);
-  if (!S_ISREG(found.st_mode)) throw Error(part, "exists and is no regular file", kOtherPart);
-  if (found.st_nlink > 1) throw Error(part, "is a file of several names (hard links)", kOtherPart);
+  if (!S_ISREG(found.st_mode)) throw Error(part, "exists and is not a regular file", kOtherPart);
+  if (found.st_nlink > 1) throw Error(part, "has several names (hard links)", kOtherPart);
 }
 
 struct flock whole_file() {
@@ -52,14 +52,14 @@ bool is_same_file(const struct stat& a, const struct stat& b) {
 }  // namespace
 
 LockedPart::LockedPart(OutputPlace place) : place_(std::move(place)) {
-  // A part that takes its final name between open() and the lock is a finished file, to be left
-  // alone; whoever finds one begins anew.
-  constexpr int kMostTries = 100;
+  // A part that is renamed to its final name between open() and the lock is a finished file: leave
+  // it and try again.
+  constexpr int kMaxTries = 100;
   try {
     for (int tries = 0; !open_and_lock(); ++tries) {
       close(descriptor_);
       descriptor_ = -1;
-      if (tries == kMostTries) fail_as_locked(place_);
+      if (tries == kMaxTries) fail_as_locked(place_);
     }
     require_unused();
   } catch (...) {
@@ -88,8 +88,8 @@ bool LockedPart::open_and_lock() {
   return true;
 }
 
-/// False where another process holds it. A file system without locks will do for a part that this
-/// process has created.
+/// Returns false if another process holds the lock. A file system without locks is accepted for a
+/// part that this process has created.
 bool LockedPart::lock() const {
   struct flock lock = whole_file();
   if (fcntl(descriptor_, F_OFD_SETLK, &lock) == 0) return true;
@@ -101,7 +101,7 @@ bool LockedPart::lock() const {
               kOtherPart);
 }
 
-/// By a program of HDF5, whose locks are of another sort.
+/// Checks for HDF5 programs, which lock with flock().
 void LockedPart::require_unused() const {
   if (!was_there_) return;
   if (flock(descriptor_, LOCK_EX | LOCK_NB) == 0) {

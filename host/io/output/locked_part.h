@@ -6,15 +6,14 @@
 
 namespace pillarfield {
 
-/// The part of an output, open and locked against other writers; nothing is written to it yet.
+/// The part of an output, open and locked against other writers, before anything is written to it.
 ///
-/// The lock is one of fcntl()'s open file description locks: it ends with the last duplicate of the
-/// descriptor, that is with the process at the latest, and HDF5's own locks (flock) know nothing
-/// of it.
+/// The lock is an open file description lock (fcntl). It ends with the last duplicate of the
+/// descriptor, at the latest with the process, and is independent of HDF5's own locks (flock).
 class LockedPart {
  public:
-  /// Creates the part, or opens one that an earlier writer left. Throws Error where another process
-  /// writes it, or where it is a symbolic link, has further names, or is no regular file.
+  /// Creates the part, or opens one that an earlier writer left. Throws Error if another process
+  /// writes it, or if it is a symbolic link, has other names, or is not a regular file.
   explicit LockedPart(OutputPlace place);
   ~LockedPart();
   LockedPart(const LockedPart&) = delete;
@@ -23,7 +22,7 @@ class LockedPart {
   [[nodiscard]] int descriptor() const { return descriptor_; }
   [[nodiscard]] bool was_there() const { return was_there_; }
 
-  /// Whether its name still stands for this file.
+  /// Whether the part's name still refers to this file.
   [[nodiscard]] bool has_its_name() const;
 
  private:
@@ -36,7 +35,7 @@ class LockedPart {
   bool was_there_ = false;
 };
 
-/// Throws Error where LockedPart would; whether there is a part that it would take over.
+/// Whether a part exists that LockedPart would open. Throws Error in the cases of LockedPart.
 [[nodiscard]] bool is_part_left_over(const OutputPlace& place);
 
 }  // namespace pillarfield

@@ -17,7 +17,7 @@
 namespace pillarfield {
 namespace {
 
-/// Of what a path leads to.
+/// Device and inode of a file.
 using FileIdentity = std::pair<dev_t, ino_t>;
 
 std::optional<FileIdentity> identity_of(const std::filesystem::path& path) {
@@ -26,7 +26,7 @@ std::optional<FileIdentity> identity_of(const std::filesystem::path& path) {
   return FileIdentity{found.st_dev, found.st_ino};
 }
 
-/// Files that are there, and names at which there may be one.
+/// A set of existing files, and of names at which files may be created.
 class FileSet {
  public:
   void add(const std::filesystem::path& path) {
@@ -41,7 +41,7 @@ class FileSet {
   }
 
  private:
-  using Name = std::pair<FileIdentity, std::string>;  // the folder, and the name in it
+  using Name = std::pair<FileIdentity, std::string>;  // folder, and name in it
   struct Keys {
     std::optional<FileIdentity> file;
     std::optional<Name> name;
@@ -73,7 +73,8 @@ void require_no_input(const OutputPlace& place, const std::filesystem::path& pat
                   "write to another file");
     }
     if (parts.has(input)) {
-      throw Error(path.string(), "is written as a part first, which is read: " + input.string(),
+      throw Error(path.string(),
+                  "is first written as a part, which is a file that is read: " + input.string(),
                   "write to another file");
     }
   }
@@ -83,7 +84,7 @@ void require_writable_folder(const OutputPlace& place) {
   const std::filesystem::path folder = place.final_path.parent_path();
   if (access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0) return;
   throw Error(place.part_path.string(), std::strerror(errno),
-              "write to a directory that is there and can be written");
+              "choose a directory that exists and is writable");
 }
 
 }  // namespace
@@ -102,10 +103,10 @@ void check_outputs(const std::vector<std::filesystem::path>& inputs,
     require_no_input(place, output.path, inputs);
     if (taken.has(place.final_path) || taken.has(place.part_path)) {
       throw Error(output.path.string(), "two outputs cannot share this file",
-                  "give each a name of its own");
+                  "give each its own name");
     }
     require_replaceable(place.final_path, output.kind, replace);
-    if (is_part_left_over(place)) require_worthless(place.part_path);
+    if (is_part_left_over(place)) require_disposable(place.part_path);
     require_writable_folder(place);
     taken.add(place.final_path);
     taken.add(place.part_path);

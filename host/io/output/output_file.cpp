@@ -26,13 +26,13 @@ namespace {
               "check its directory and the space left on its disk");
 }
 
-/// 0, or the reason. Some file systems have no way to write a file to the disk at once.
+/// Returns 0 or errno of fsync(), which some file systems do not support.
 int reason_of_sync(int result) {
   return result == 0 || errno == EINVAL || errno == ENOTSUP ? 0 : errno;
 }
 
-/// What was renamed in a directory is safe once the directory is on the disk. One that may not be
-/// read cannot be opened for that; then the system writes it in its own time.
+/// Writes a directory to the disk, which makes a rename in it durable. A directory without read
+/// permission cannot be opened for that; the system writes it later.
 void sync_folder_of(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -46,11 +46,11 @@ void sync_folder_of(const std::filesystem::path& path) {
               "check the disk");
 }
 
-/// Renames; where nothing may be replaced, nothing is. 0, or errno.
+/// Renames a file; replaces an existing one only if `replaces`. Returns 0 or errno.
 int rename_to(const std::filesystem::path& from, const std::filesystem::path& to, bool replaces) {
   if (!replaces) {
     if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
-    if (errno != EINVAL && errno != ENOSYS) return errno;  // All file systems of today can do it.
+    if (errno != EINVAL && errno != ENOSYS) return errno;  // Current file systems support it.
   }
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
@@ -72,7 +72,7 @@ OutputFile::OutputFile(std::filesystem::path path, OutputKind kind, Replace repl
   part_path_ = place.part_path;
   require_replaceable(final_path_, kind, replace);
   auto part = std::make_unique<LockedPart>(place);
-  if (part->was_there()) require_worthless(part_path_);
+  if (part->was_there()) require_disposable(part_path_);
   if (ftruncate(part->descriptor(), 0) != 0) fail_to_write(part_path_, errno);
   part_ = std::move(part);
 }
@@ -125,12 +125,12 @@ void OutputFile::sync_at_intervals(std::chrono::steady_clock::duration interval)
   const auto sync = [descriptor = descriptor()] { return reason_of_sync(fdatasync(descriptor)); };
   try {
     sync_ = std::async(std::launch::async, sync);
-  } catch (const std::system_error&) {  // There may be no more threads.
+  } catch (const std::system_error&) {  // The limit of threads is reached.
     if (const int reason = sync(); reason != 0) fail_to_write(part_path_, reason);
   }
 }
 
-/// Looks once more at what bears the name, for it may have come while the part was written.
+/// Renames the part. Checks the final name again, since a file may have appeared there meanwhile.
 void OutputFile::take_name() {
   const std::string where_data_are = "the data are complete in " + part_path_.string();
   try {
@@ -153,9 +153,9 @@ void OutputFile::commit() {
   if (reason != 0) fail_to_write(part_path_, reason);
   if (!part_->has_its_name()) {
     throw Error(part_path_.string(), "was renamed or removed while it was written",
-                "look for it under another name, or write it again");
+                "find it under its new name, or write it again");
   }
-  flock(descriptor(), LOCK_UN);  // HDF5 may have left one, and readers come as soon as it is there.
+  flock(descriptor(), LOCK_UN);  // HDF5 may have left a lock, and readers may open the file now.
   take_name();
   part_.reset();
   sync_folder_of(final_path_);

@@ -10,14 +10,14 @@
 namespace pillarfield {
 namespace {
 
-/// As many as Linux follows.
-constexpr int kMostLinks = 40;
+/// Limit of Linux.
+constexpr int kMaxLinks = 40;
 
 std::filesystem::path output_folder_of(const std::filesystem::path& path) {
   return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
 }
 
-/// The rule by which Linux itself follows links where fs.protected_symlinks is set.
+/// Applies the rule of Linux's fs.protected_symlinks.
 void require_own_link(const std::filesystem::path& link) {
   struct stat folder = {};
   struct stat found = {};
@@ -26,7 +26,7 @@ void require_own_link(const std::filesystem::path& link) {
   constexpr mode_t kForAll = S_ISVTX | S_IWOTH;
   if ((folder.st_mode & kForAll) != kForAll) return;
   if (found.st_uid == geteuid() || found.st_uid == folder.st_uid) return;
-  throw Error(link.string(), "is a symbolic link of another user in a directory for all",
+  throw Error(link.string(), "is another user's symbolic link in a directory that all may write",
               "choose another name");
 }
 
@@ -35,7 +35,7 @@ std::filesystem::path end_of_links(const std::filesystem::path& path) {
   std::error_code error;
   for (int links = 0; std::filesystem::is_symlink(std::filesystem::symlink_status(end, error));
        ++links) {
-    if (links == kMostLinks) {
+    if (links == kMaxLinks) {
       throw Error(path.string(), "is a symbolic link that leads nowhere", "choose another name");
     }
     require_own_link(end);
@@ -50,13 +50,13 @@ std::filesystem::path end_of_links(const std::filesystem::path& path) {
 
 OutputPlace place_of_output(const std::filesystem::path& path) {
   if (path == "-") {
-    throw Error("-", "standard output takes no file of this kind",
-                "name a file; ./- is one of this name");
+    throw Error("-", "this output cannot be written to standard output",
+                "name a file; for a file named '-' write ./-");
   }
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    throw Error(path.string(), "exists and is no regular file", "choose another name");
+    throw Error(path.string(), "exists and is not a regular file", "choose another name");
   }
   OutputPlace place;
   place.final_path = end_of_links(path);

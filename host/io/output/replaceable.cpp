@@ -23,11 +23,11 @@
 namespace pillarfield {
 namespace {
 
-/// What a file is, by its content.
+/// Kind of a file by its content.
 struct FoundContent {
-  std::optional<OutputKind> kind;      ///< unset: nothing that this project writes
+  std::optional<OutputKind> kind;      ///< unset: not written by this project
   std::string words;                   ///< "holds a recording"
-  const SinkFormat* format = nullptr;  ///< of forces and contacts
+  const SinkFormat* format = nullptr;  ///< for forces and contacts
 };
 
 FoundContent hdf5_content(const std::filesystem::path& path) {
@@ -37,13 +37,13 @@ FoundContent hdf5_content(const std::filesystem::path& path) {
   if (format == recording_format::kName) return {OutputKind::recording, "holds a recording"};
   if (format == calibration_format::kName) return {OutputKind::calibration, "holds a calibration"};
   if (format == force_format::kName) {
-    const SinkFormat* const written = format_by_ending("forces.h5", OutputKind::forces);
+    const SinkFormat* const written = format_by_extension("forces.h5", OutputKind::forces);
     return {OutputKind::forces, written->content, written};
   }
   return {std::nullopt, "is an HDF5 file of another kind"};
 }
 
-/// How a file of pixels or lines begins.
+/// Signature of a picture, video or drawing.
 struct Beginning {
   OutputKind kind;
   const char* words;
@@ -75,14 +75,15 @@ FoundContent content_by_beginning(const std::filesystem::path& path) {
   if (head.starts_with("<?xml") && head.find("<svg") != std::string::npos) {
     return {OutputKind::svg, "is a drawing"};
   }
-  return {std::nullopt, path.extension() == ".toml" ? "is a scene, or another TOML file"
-                                                    : "is no earlier output of this kind"};
+  return {std::nullopt, path.extension() == ".toml" ? "is a scene or another TOML file"
+                                                    : "is not an earlier output of this kind"};
 }
 
 FoundContent content_of(const std::filesystem::path& path) {
-  const FileLook look = look_at(path);
-  if (look.kind == FileKind::hdf5) return hdf5_content(path);
-  if (look.frames != nullptr) return {std::nullopt, fmt::format("is a {}", look.frames->name)};
+  const DetectedFormat detected = detect_format(path);
+  if (detected.kind == FileKind::hdf5) return hdf5_content(path);
+  if (detected.frames != nullptr)
+    return {std::nullopt, fmt::format("is a {}", detected.frames->name)};
   return content_by_beginning(path);
 }
 
@@ -96,7 +97,7 @@ bool is_result(OutputKind kind) {
          kind != OutputKind::text;
 }
 
-/// Frames that an unfinished recording holds.
+/// Number of frames in an unfinished recording.
 std::uint64_t frames_in(const std::filesystem::path& part) {
   try {
     return open_frames(part)->frames();
@@ -114,7 +115,7 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
   const auto status = std::filesystem::symlink_status(path, ignored);
   if (!std::filesystem::exists(status)) return;
   if (!std::filesystem::is_regular_file(status)) {
-    throw Error(path.string(), "exists and is no regular file", "choose another name");
+    throw Error(path.string(), "exists and is not a regular file", "choose another name");
   }
   if (replace == Replace::nothing) throw Error(path.string(), "exists", "choose another name");
   if (replace == Replace::anything || is_empty_file(path)) return;
@@ -124,26 +125,25 @@ void require_replaceable(const std::filesystem::path& path, OutputKind kind, Rep
   } catch (const Error&) {
     found.words = "cannot be read";
   }
-  const SinkFormat* const asked = format_by_ending(path, kind);
+  const SinkFormat* const asked = format_by_extension(path, kind);
   const bool is_of_its_format = asked == nullptr || asked == found.format;
   if (found.kind == kind && is_result(kind) && is_of_its_format) return;
   throw Error(path.string(), "exists and " + found.words,
               "choose another name, or replace it with --overwrite");
 }
 
-void require_worthless(const std::filesystem::path& path) {
+void require_disposable(const std::filesystem::path& path) {
   if (is_empty_file(path)) return;
   FoundContent found;
   try {
     found = content_of(path);
   } catch (const Error&) {
-    return;  // A writer died before it had flushed anything.
+    return;  // A writer died before its first flush.
   }
   if (found.kind == OutputKind::recording) {
     const std::uint64_t frames = frames_in(path);
     if (frames == 0) return;
-    throw Error(path.string(),
-                fmt::format("holds {} frames of a recording that was cut short", frames),
+    throw Error(path.string(), fmt::format("holds {} frames of an unfinished recording", frames),
                 "rename or remove it");
   }
   const bool is_worth_keeping =

@@ -10,17 +10,17 @@
 
 namespace pillarfield {
 
-/// A text file that is written in large blocks under its name and ".part".
+/// A text file that is written in large blocks to its part.
 class TextPart {
  public:
   TextPart(const std::filesystem::path& path, OutputKind kind, Replace replace);
 
   void write(std::string_view text);
 
-  /// Writes the rest and gives the file its name.
+  /// Writes the buffered rest and renames the part.
   void finish();
 
-  /// Throws Error where it is finished.
+  /// Throws Error after finish().
   void require_open() const;
 
  private:

@@ -55,7 +55,7 @@ double spacing_mm(const std::string& place, std::string_view key, std::string_vi
   const auto* const known = std::find_if(kMillimetres.begin(), kMillimetres.end(),
                                          [&](const auto& entry) { return entry.first == unit; });
   if (known == kMillimetres.end()) {
-    refuse(place, key, value, "its unit must be mm, cm, inches or the same spelled out");
+    refuse(place, key, value, "its unit must be mm, cm or inches, abbreviated or in full");
   }
   const double spacing = require_number(place, key, value.substr(0, split), 0.0) * known->second;
   if (!(spacing > 0) || !std::isfinite(spacing)) refuse(place, key, value, "it must be above zero");
@@ -88,7 +88,7 @@ template std::optional<double> number_in<double>(std::string_view);
 template std::optional<std::uint32_t> number_in<std::uint32_t>(std::string_view);
 template std::optional<std::uint64_t> number_in<std::uint64_t>(std::string_view);
 
-void TekscanHeader::take(std::string_view line, const std::string& place) {
+void TekscanHeader::parse_line(std::string_view line, const std::string& place) {
   const std::size_t split = std::min(line.find_first_of(" \t"), line.size());
   const std::string_view key = line.substr(0, split);
   const std::string_view value = trimmed(line.substr(split));

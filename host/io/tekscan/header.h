@@ -7,7 +7,7 @@
 
 namespace pillarfield {
 
-/// What the lines before the first frame of a Tekscan ASCII export say.
+/// Header of a Tekscan ASCII export: the lines before its first frame.
 struct TekscanHeader {
   std::optional<std::uint32_t> rows;
   std::optional<std::uint32_t> cols;
@@ -19,15 +19,15 @@ struct TekscanHeader {
   std::optional<std::uint64_t> end_frame;
   bool units_given = false;
 
-  /// Takes one line "KEY value"; keys without meaning here are passed over. Throws Error, its
-  /// place being `place`, on a value that cannot be, and on units other than raw.
-  void take(std::string_view line, const std::string& place);
+  /// Parses a line "KEY value"; ignores unknown keys. Throws Error, naming `place`, if the value is
+  /// invalid or the unit is not raw.
+  void parse_line(std::string_view line, const std::string& place);
 };
 
-/// `text` without blanks at either end.
+/// Removes blanks at both ends of `text`.
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 
-/// The whole of `text` as a number, blanks aside; unset where it is none.
+/// Parses all of `text`, apart from blanks, as a number; unset if it is not one.
 template <class Number>
 [[nodiscard]] std::optional<Number> number_in(std::string_view text);
 

@@ -30,7 +30,8 @@ bool LineReader::next() {
   if (rest.empty()) return false;
   ++number_;
   line_ = rest.substr(0, rest.find('\n'));
-  if (line_.size() > kLongestLine) throw Error(place(), "the line is longer than any of an export");
+  if (line_.size() > kLongestLine)
+    throw Error(place(), "the line is longer than any line of an export");
   begin_ = std::min(begin_ + line_.size() + 1, end_);
   if (line_.ends_with('\r')) line_.remove_suffix(1);
   return true;
@@ -38,14 +39,14 @@ bool LineReader::next() {
 
 std::string LineReader::place() const { return fmt::format("{}:{}", path_.string(), number_); }
 
-/// Moves what is left to the front and reads behind it.
+/// Moves the unread bytes to the front and fills the rest of the buffer.
 void LineReader::fill() {
   std::move(&buffer_[begin_], &buffer_[end_], buffer_.data());
   end_ -= begin_;
   begin_ = 0;
   end_ += std::fread(&buffer_[end_], 1, buffer_.size() - 1 - end_, file_.get());
   if (std::ferror(file_.get()) == 0) return;
-  throw Error(path_.string(), "cannot be read to its end", "take another copy");
+  throw Error(path_.string(), "cannot be read to its end", "use another copy");
 }
 
 }  // namespace pillarfield

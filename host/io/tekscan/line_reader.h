@@ -10,13 +10,13 @@
 
 namespace pillarfield {
 
-/// Walks a text file line by line with a small, fixed amount of memory. Lines end with LF or CRLF.
+/// Reads a text file line by line in constant memory. Lines end with LF or CRLF.
 class LineReader {
  public:
-  /// Throws Error where the file cannot be opened.
+  /// Throws Error if the file cannot be opened.
   explicit LineReader(std::filesystem::path path);
 
-  /// Moves to the next line; false at the end. Throws Error on a line beyond 1 MiB.
+  /// Moves to the next line; false at the end. Throws Error if a line exceeds 1 MiB.
   bool next();
 
   /// The line without its end, valid until next().
@@ -34,7 +34,7 @@ class LineReader {
   std::filesystem::path path_;
   std::unique_ptr<std::FILE, Close> file_;
   std::vector<char> buffer_;
-  std::size_t begin_ = 0;  // of what is not yet given out
+  std::size_t begin_ = 0;  // of the unread bytes
   std::size_t end_ = 0;
   std::string_view line_;
   std::uint64_t number_ = 0;

@@ -19,7 +19,7 @@ constexpr std::uint32_t kLargestReading = 65535;
 bool begins_frame(std::string_view line) { return line.starts_with("Frame"); }
 bool ends_data(std::string_view line) { return line.starts_with("@@"); }
 
-/// The cell that begins `rest`, which is moved behind it.
+/// Removes the first cell from `rest` and returns it.
 std::string_view take_cell(std::string_view& rest) {
   const std::size_t comma = rest.find(',');
   const std::string_view cell = trimmed(rest.substr(0, comma));
@@ -27,7 +27,7 @@ std::string_view take_cell(std::string_view& rest) {
   return cell;
 }
 
-/// What a line like "Frame 7, 0.6,, 12/2/2019 6:21:52PM,,,Raw Sum=,,310" tells.
+/// Fields of a line like "Frame 7, 0.6,, 12/2/2019 6:21:52PM,,,Raw Sum=,,310".
 struct FrameLine {
   std::uint64_t number = 0;
   std::optional<double> time_s;
@@ -79,21 +79,20 @@ bool Parser::next_line() {
   return !at_end_;
 }
 
-/// Leaves the parser at the first frame's line.
+/// Reads up to the line of the first frame.
 void Parser::read_header() {
   while (next_line() && !begins_frame(lines_.line())) {
-    data_.header.take(lines_.line(), lines_.place());
+    data_.header.parse_line(lines_.line(), lines_.place());
   }
   if (at_end_) {
-    throw Error(lines_.place(), "the export ends before its first frame",
-                "export it again, with the frames");
+    throw Error(lines_.place(), "the export has no frame", "export it again, with the frames");
   }
 }
 
 void Parser::require_header() {
   const auto require = [&](const std::optional<std::uint32_t>& size, const char* key) {
     if (!size) {
-      throw Error(lines_.place(), fmt::format("no line before this frame gives {}", key),
+      throw Error(lines_.place(), fmt::format("the header has no {}", key),
                   "export it again, with its header");
     }
     if (*size > kMaxSensels) {
@@ -113,7 +112,7 @@ FrameLine Parser::frame_line() const {
   const std::string_view title = take_cell(rest);
   const auto number = number_in<std::uint64_t>(title.substr(std::strlen("Frame")));
   if (!number) {
-    throw Error(lines_.place(), fmt::format("'{:.60}' numbers no frame", title),
+    throw Error(lines_.place(), fmt::format("'{:.60}' has no frame number", title),
                 "it must be like 'Frame 1'");
   }
   frame.number = *number;
@@ -129,7 +128,7 @@ void Parser::check_order(const FrameLine& frame) const {
                 "one file must hold one export");
   }
   if (!data_.numbers.empty() && frame.time_s.has_value() == data_.times_s.empty()) {
-    throw Error(lines_.place(), "some frames give their time and others do not",
+    throw Error(lines_.place(), "some frames have a time and others do not",
                 "export the whole movie at once");
   }
 }
@@ -145,7 +144,7 @@ void Parser::read_frame() {
   }
   if (frame.raw_sum && *frame.raw_sum != static_cast<double>(sum)) {
     throw Error(place,
-                fmt::format("the readings of frame {} add up to {}, not to its raw sum {}",
+                fmt::format("the readings of frame {} add up to {}, but its raw sum is {}",
                             frame.number, sum, *frame.raw_sum),
                 "the file was altered; export it again");
   }
@@ -156,18 +155,18 @@ void Parser::read_frame() {
 void Parser::next_row(const FrameLine& frame, std::uint32_t row) {
   if (next_line() && !begins_frame(lines_.line()) && !ends_data(lines_.line())) return;
   throw Error(lines_.place(),
-              fmt::format("frame {} ends after {} of {} rows", frame.number, row, rows_),
-              "the export was cut short or its ROWS is wrong; export it again");
+              fmt::format("frame {} has only {} of {} rows", frame.number, row, rows_),
+              "the export is truncated or its ROWS is wrong; export it again");
 }
 
-/// Takes one row of cells and returns the sum of its readings. Commas may trail behind them.
+/// Parses a row of cells and returns the sum of its readings. Trailing commas are allowed.
 std::uint64_t Parser::read_row(std::uint32_t row) {
   std::string_view rest = lines_.line();
   std::uint64_t sum = 0;
   for (std::uint32_t col = 0; col < cols_; ++col) {
     if (rest.empty()) {
-      throw Error(lines_.place(), fmt::format("the row has {} of {} columns", col, cols_),
-                  "the line was cut short or COLS is wrong; export it again");
+      throw Error(lines_.place(), fmt::format("the row has only {} of {} columns", col, cols_),
+                  "the line is truncated or COLS is wrong; export it again");
     }
     sum += read_cell(take_cell(rest), row, col);
   }
@@ -187,14 +186,15 @@ std::uint32_t Parser::read_cell(std::string_view cell, std::uint32_t row, std::u
   if (!reading || *reading > kLargestReading) {
     throw Error(
         fmt::format("{}, column {}", lines_.place(), col + 1),
-        cell.empty() ? "the cell is empty" : fmt::format("'{:.60}' is no raw reading", cell),
+        cell.empty() ? "the cell is empty" : fmt::format("'{:.60}' is not a raw reading", cell),
         fmt::format("it must be a whole number in [0, {}], or B", kLargestReading));
   }
   put(row, col, *reading, true);
   return *reading;
 }
 
-/// The mask grows with the cells of the first frame, so that a header cannot ask for memory.
+/// The mask grows with the cells of the first frame, so that a header cannot cause a large
+/// allocation.
 void Parser::put(std::uint32_t row, std::uint32_t col, std::uint32_t reading, bool sensel) {
   data_.readings.append(static_cast<std::uint16_t>(reading));
   if (data_.numbers.empty()) {

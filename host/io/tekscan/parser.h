@@ -9,32 +9,32 @@
 
 namespace pillarfield {
 
-/// Readings one after the other, each in one byte until one needs two.
+/// A sequence of readings, stored in one byte each until one needs two.
 class CompactReadings {
  public:
   void append(std::uint16_t reading);
 
   [[nodiscard]] SenselType type() const { return wide_.empty() ? SenselType::u8 : SenselType::u16; }
 
-  /// Copies `count` readings of type() from the `first` on.
+  /// Copies `count` readings of type() from `first` on.
   void copy(std::size_t first, std::size_t count, void* out) const;
 
  private:
   std::vector<std::uint8_t> narrow_;
-  std::vector<std::uint16_t> wide_;  // replaces narrow_ once it is not empty
+  std::vector<std::uint16_t> wide_;  // used instead of narrow_ unless empty
 };
 
-/// All that a Tekscan ASCII export holds.
+/// Content of a Tekscan ASCII export.
 struct TekscanExport {
   TekscanHeader header;
-  CompactReadings readings;            ///< frame by frame, row by row; 0 where there is no sensel
-  std::vector<std::uint64_t> numbers;  ///< of the frames, as in their lines, rising
-  std::vector<double> times_s;         ///< of the frames that give one: all or none
+  CompactReadings readings;            ///< frame by frame, row by row; 0: no sensel
+  std::vector<std::uint64_t> numbers;  ///< of the frames, increasing
+  std::vector<double> times_s;         ///< of the frames; empty if they have none
   std::vector<std::uint8_t> mask;      ///< [rows, cols]; 0 where any frame has no sensel
 };
 
-/// Reads an export from its beginning to its end. Throws Error with the line, and the column where
-/// it is one cell, of the first thing that is wrong. Memory: one or two bytes for each reading.
+/// Reads an export. Throws Error with the line, and for a cell the column, of the first mistake.
+/// Memory: one or two bytes per reading.
 [[nodiscard]] TekscanExport parse_tekscan(const std::filesystem::path& path);
 
 }  // namespace pillarfield

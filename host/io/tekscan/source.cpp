@@ -12,7 +12,7 @@
 namespace pillarfield {
 namespace {
 
-/// An export in raw units (docs/formats.md), read whole into memory.
+/// An export in raw units (docs/formats.md), read into memory as a whole.
 class Tekscan final : public FileSource {
  public:
   explicit Tekscan(const std::filesystem::path& path);
@@ -48,11 +48,11 @@ Tekscan::Tekscan(const std::filesystem::path& path) : FileSource(path, "Tekscan 
   check(skin_, path.c_str());
 }
 
-/// A skin has one pitch; of two, the one that keeps the area of a sensel.
+/// Sets the pitch: the geometric mean of both spacings, which keeps the area of a sensel.
 void Tekscan::take_spacing(const TekscanHeader& header) {
   if (!header.row_spacing_mm && !header.col_spacing_mm) {
     warnings_.push_back(fmt::format(
-        "The export gives no spacing; a sensel pitch of {} mm is assumed.", skin_.sensel_pitch_mm));
+        "The export has no spacing; a sensel pitch of {} mm is assumed.", skin_.sensel_pitch_mm));
     return;
   }
   const double row_mm = header.row_spacing_mm.value_or(header.col_spacing_mm.value_or(0));
@@ -63,7 +63,7 @@ void Tekscan::take_spacing(const TekscanHeader& header) {
   }
   skin_.sensel_pitch_mm = std::sqrt(row_mm * col_mm);
   warnings_.push_back(fmt::format(
-      "Rows are {:.6g} mm apart and columns {:.6g} mm; a pitch of {:.6g} mm is taken for both.",
+      "Rows are {:.6g} mm apart and columns {:.6g} mm; a pitch of {:.6g} mm is used for both.",
       row_mm, col_mm, skin_.sensel_pitch_mm));
 }
 
@@ -72,11 +72,11 @@ void Tekscan::take_full_scale() {
     skin_.full_scale_counts = 255;
   } else {
     warnings_.push_back(
-        "Readings exceed 8 bits, so no full scale is known and saturation is not seen.");
+        "Readings exceed 8 bits, so the full scale is unknown and saturation is not detected.");
   }
   warnings_.push_back(fmt::format(
-      "The export does not say how many counts a newton gives; {} are assumed, so forces are in "
-      "proportion only.",
+      "The export has no counts per newton; {} is assumed, so forces are known only up to "
+      "a common factor.",
       skin_.counts_per_newton));
 }
 
@@ -84,7 +84,7 @@ void Tekscan::take_times(TekscanExport& data) {
   times_s_ = std::move(data.times_s);
   if (!times_s_.empty()) return;
   if (!data.header.seconds_per_frame) {
-    warnings_.push_back("The export gives no times; frames are taken to be 1 s apart.");
+    warnings_.push_back("The export has no times; frames are assumed to be 1 s apart.");
   }
   const double period_s = data.header.seconds_per_frame.value_or(1);
   for (const std::uint64_t number : data.numbers) {
@@ -95,19 +95,18 @@ void Tekscan::take_times(TekscanExport& data) {
 void Tekscan::take_mask(TekscanExport& data) {
   const auto absent = std::count(data.mask.begin(), data.mask.end(), std::uint8_t{0});
   if (absent == 0) return;
-  warnings_.push_back(fmt::format("{} of {} places hold no sensel (B); they count as missing.",
+  warnings_.push_back(fmt::format("{} of {} cells have no sensel (B); they count as missing.",
                                   absent, data.mask.size()));
   calibration_.mask = std::move(data.mask);
 }
 
 void Tekscan::warn_of_header(const TekscanHeader& header) {
-  if (!header.units_given)
-    warnings_.push_back("The export gives no UNITS; raw counts are assumed.");
+  if (!header.units_given) warnings_.push_back("The export has no UNITS; raw counts are assumed.");
   if (!header.start_frame || !header.end_frame || *header.end_frame < *header.start_frame) return;
   const std::uint64_t announced = *header.end_frame - *header.start_frame + 1;
   if (announced == frames_) return;
   warnings_.push_back(
-      fmt::format("The header announces {} frames, and the file holds {}.", announced, frames_));
+      fmt::format("The header announces {} frames, but the file holds {}.", announced, frames_));
 }
 
 double Tekscan::time(std::uint64_t index) {

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kContactCsvHead =
     "row,frame,time_s,id,parent,merged_into,first_time_s,age_s";
 
-/// A line for the patch, for each contact and for each that ended.
+/// Writes one line per frame for the patch, each contact and each ended contact.
 class ContactCsvSink final : public ForceSink {
  public:
   ContactCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
@@ -25,7 +25,7 @@ class ContactCsvSink final : public ForceSink {
 
   std::filesystem::path path_;
   TextPart file_;
-  std::string frame_cells_;  // "frame,time,", the same on each line of a frame
+  std::string frame_cells_;  // "frame,time,", shared by all lines of a frame
   std::uint64_t frames_ = 0;
 };
 
@@ -73,7 +73,7 @@ void ContactCsvSink::append(const SolvedFrame& frame) {
 
 SinkFormat contact_csv_format() {
   return {.kind = OutputKind::contacts,
-          .endings = {".csv"},
+          .extensions = {".csv"},
           .content = "is a table of contacts",
           .recognises = [](std::string_view head) { return head.starts_with(kContactCsvHead); },
           .create = create_sink<ContactCsvSink>};

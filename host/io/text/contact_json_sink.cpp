@@ -11,7 +11,7 @@
 namespace pillarfield {
 namespace {
 
-/// A string of JSON, quotes and all; a byte that is not UTF-8 becomes the replacement character.
+/// A JSON string with its quotes; a byte that is not UTF-8 becomes the replacement character.
 std::string json_string(std::string_view text) {
   std::string json = "\"";
   while (!text.empty()) {
@@ -32,7 +32,7 @@ std::string json_string(std::string_view text) {
   return json + '"';
 }
 
-/// `"name":value` for each column, set apart by commas.
+/// `"name":value` for each column, separated by commas.
 template <class Row>
 std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& row) {
   std::string members;
@@ -47,7 +47,7 @@ std::string members_of(std::span<const ContactColumn<Row>> columns, const Row& r
 
 constexpr std::string_view kContactJsonHead = R"({"format":"pillarfield-contacts")";
 
-/// One object; each frame is a line of it.
+/// Writes one object with a line per frame.
 class JsonSink final : public ForceSink {
  public:
   JsonSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace);
@@ -105,7 +105,7 @@ void JsonSink::finish() {
 
 SinkFormat contact_json_format() {
   return {.kind = OutputKind::contacts,
-          .endings = {".json"},
+          .extensions = {".json"},
           .content = "is a list of contacts",
           .recognises = [](std::string_view head) { return head.starts_with(kContactJsonHead); },
           .create = create_sink<JsonSink>};

@@ -12,8 +12,8 @@ namespace {
 constexpr std::string_view kForceCsvHead =
     "frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status";
 
-/// One line per pillar with a status other than 0; numbers in the fewest digits that read back
-/// as the same value.
+/// Writes one line per pillar with nonzero status, numbers in the fewest digits that read back as
+/// the same value.
 class ForceCsvSink final : public ForceSink {
  public:
   ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace,
@@ -31,8 +31,8 @@ class ForceCsvSink final : public ForceSink {
   std::filesystem::path path_;
   TextPart file_;
   fmt::memory_buffer line_;
-  std::string frame_cells_;  // "frame,time,", the same on each line of a frame
-  std::uint64_t frame_;      // the next
+  std::string frame_cells_;  // "frame,time,", shared by all lines of a frame
+  std::uint64_t frame_;      // next frame
 };
 
 ForceCsvSink::ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info,
@@ -68,7 +68,7 @@ void ForceCsvSink::append(const SolvedFrame& frame) {
   file_.require_open();
   check(frame, info_, path_.string());
   const ForceFieldView& forces = frame.forces;
-  frame_planes_.take(forces);
+  frame_planes_.set_frame(forces);
   frame_cells_ = fmt::format("{},{},", frame_, frame.time_s);
   for (std::size_t pillar = 0; pillar < forces.status.size(); ++pillar) {
     if (forces.status[pillar] != 0) add_line(forces, pillar);
@@ -80,7 +80,7 @@ void ForceCsvSink::append(const SolvedFrame& frame) {
 
 SinkFormat force_csv_format() {
   return {.kind = OutputKind::forces,
-          .endings = {".csv"},
+          .extensions = {".csv"},
           .content = "is a table of forces",
           .recognises = [](std::string_view head) { return head.starts_with(kForceCsvHead); },
           .create = create_sink<ForceCsvSink>};

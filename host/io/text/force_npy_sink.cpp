@@ -14,15 +14,15 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the file is little-endian");
 
-constexpr std::size_t kHeaderBytes =
-    1024;  // a multiple of 64, with room for all planes and any number of frames
+// A multiple of 64 that holds all planes and any number of frames.
+constexpr std::size_t kHeaderBytes = 1024;
 
 constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::string_view kNpyFields =
     "('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1')";
 
-/// NumPy's format 1.0: the magic, the length of what follows, and a Python dictionary padded with
-/// blanks, of the same size for every number of frames.
+/// Header of NumPy's format 1.0: magic, length of the rest, and a Python dictionary padded with
+/// blanks to a fixed size.
 std::string npy_header(const ForceFileInfo& info, std::uint64_t frames) {
   constexpr std::size_t kPreludeBytes = 10;
   constexpr std::size_t kDictionaryBytes = kHeaderBytes - kPreludeBytes;
@@ -92,7 +92,7 @@ void NpySink::append(const SolvedFrame& frame) {
   require_open();
   check(frame, info_, path_.string());
   const ForceFieldView& forces = frame.forces;
-  frame_planes_.take(forces);
+  frame_planes_.set_frame(forces);
   std::size_t offset = 0;
   for (const ResultPlane& plane : planes_) {
     interleave(frame_planes_.of(plane), offset);
@@ -113,7 +113,7 @@ void NpySink::finish() {
 
 SinkFormat force_npy_format() {
   return {.kind = OutputKind::forces,
-          .endings = {".npy"},
+          .extensions = {".npy"},
           .content = "is an array of forces",
           .recognises =
               [](std::string_view head) {

@@ -118,7 +118,7 @@ TEST_F(Export, AFailureKeepsThePictureThatWasThere) {
 TEST_F(Export, ADirectoryIsNotReplaced) {
   fs::create_directory(folder_ / "a.png");
   const std::string message = message_of([&] { write_png(folder_ / "a.png", noise(2, 2)); });
-  EXPECT_NE(message.find("no regular file"), std::string::npos) << message;
+  EXPECT_NE(message.find("not a regular file"), std::string::npos) << message;
   EXPECT_TRUE(fs::is_directory(folder_ / "a.png"));
 }
 
