@@ -12,7 +12,7 @@
 #include "bench/variants.h"
 #include "pillarfield/error.h"
 #include "viewer/options.h"
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 #include "viewer/source/solved_producer.h"
 
 namespace pillarfield::bench {
@@ -22,9 +22,9 @@ constexpr double kContact = 0.1;
 constexpr std::uint64_t kFields = 4;  ///< of a square metre: larger than the caches
 
 /// Copies of the benchmark's frames.
-class Supply final : public viewer::FrameSupply {
+class FrameCopies final : public viewer::FrameProvider {
  public:
-  Supply(const SolverPlan& plan, std::uint64_t count) {
+  FrameCopies(const SolverPlan& plan, std::uint64_t count) {
     const Frames frames(plan.skin, plan.sensel_type, {Touch::mixed, kContact});
     for (std::uint64_t i = 0; i < count; ++i) {
       auto copy = std::make_shared<FrameBuffer>(plan.sensel_type, plan.skin.rows, plan.skin.cols);
@@ -33,12 +33,12 @@ class Supply final : public viewer::FrameSupply {
     }
   }
   [[nodiscard]] std::uint64_t frames() const override { return frames_.size(); }
-  [[nodiscard]] viewer::SuppliedFrame frame(std::uint64_t index) override {
+  [[nodiscard]] viewer::FrameHandle frame(std::uint64_t index) override {
     return frames_.at(index);
   }
 
  private:
-  std::vector<viewer::SuppliedFrame> frames_;
+  std::vector<viewer::FrameHandle> frames_;
 };
 
 std::unique_ptr<viewer::FieldProducer> make_producer(const Device& solver, std::uint32_t side) {
@@ -50,19 +50,19 @@ std::unique_ptr<viewer::FieldProducer> make_producer(const Device& solver, std::
   info.has_readings = true;
   info.has_angles = true;
   return std::make_unique<viewer::SolvedProducer>(
-      info, std::make_unique<Supply>(plan, kFields), plan,
+      info, std::make_unique<FrameCopies>(plan, kFields), plan,
       Processor(solver, plan, {.frames_in_flight = viewer::FieldProducer::kMostShown}));
 }
 
-viewer::Look look_at(viewer::FieldProducer& producer, const Pictures::Kind& kind) {
+viewer::RenderSettings settings_of(viewer::FieldProducer& producer, const Pictures::Kind& kind) {
   viewer::Options options;
   options.orbit = kind.orbit;
   options.arrows = kind.arrows;
   options.legend = kind.overlay;
-  viewer::Look look = viewer::first_look(options, producer, 1);
-  const viewer::Layout layout = viewer::layout_of(Pictures::kWidth, Pictures::kHeight, look);
-  look.view = viewer::first_view(options, producer.info(), layout.plot);
-  return look;
+  viewer::RenderSettings settings = viewer::default_settings(options, producer, 1);
+  const viewer::Layout layout = viewer::layout_of(Pictures::kWidth, Pictures::kHeight, settings);
+  settings.view = viewer::first_view(options, producer.info(), layout.plot);
+  return settings;
 }
 
 /// An error of `create` skips the case instead of failing it.
@@ -91,8 +91,8 @@ Pictures::Pictures(const Device& solver, const Kind& kind)
     : instance_(or_skip([] { return viewer::gpu::Instance({}, false); })),
       device_(or_skip([&] { return open_graphics(instance_, kind.in_place); })),
       producer_(make_producer(solver, kind.pillars_a_side)),
-      look_(look_at(*producer_, kind)),
-      painter_(instance_, device_, kSize, 1),
+      settings_(settings_of(*producer_, kind)),
+      renderer_(instance_, device_, kSize, 1),
       nothing_(viewer::Target::make_render_pass(device_)),
       target_(device_, *nothing_, kSize) {
   for (std::uint64_t i = 0; i < kFields; ++i) fields_.push_back(producer_->produce(i));
@@ -102,7 +102,7 @@ void Pictures::draw(int pictures) {
   for (int i = 0; i < pictures; ++i) {
     const viewer::ShownField& field = fields_.at(drawn_++ % fields_.size());
     device_.run([&](const vk::raii::CommandBuffer& commands) {
-      painter_.record(commands, field, producer_->info(), look_);
+      renderer_.record(commands, field, producer_->info(), settings_);
     });
   }
 }
@@ -123,7 +123,7 @@ void Pictures::clear_and_read(int pictures) {
 void Pictures::read(int pictures) {
   if (drawn_ == 0) draw(1);
   for (int i = 0; i < pictures; ++i) {
-    static_cast<void>(viewer::read_pixels(device_, painter_.image()));
+    static_cast<void>(viewer::read_pixels(device_, renderer_.image()));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bench/session.h"
-#include "viewer/render/painter.h"
+#include "viewer/render/renderer.h"
 
 namespace pillarfield::bench {
 
@@ -43,8 +43,8 @@ class Pictures {
   viewer::gpu::Device device_;
   std::unique_ptr<viewer::FieldProducer> producer_;
   std::vector<viewer::ShownField> fields_;
-  viewer::Look look_;
-  viewer::Painter painter_;
+  viewer::RenderSettings settings_;
+  viewer::Renderer renderer_;
   vk::raii::RenderPass nothing_;
   viewer::Target target_;
   std::size_t drawn_ = 0;

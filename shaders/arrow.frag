@@ -1,13 +1,13 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The shape of an arrow by its distance function: a shaft and a head, with an outline.
+// Draws an outlined arrow, shaft and head, by its distance function.
 #include "bindings.glsl"
 
 layout(location = 0) noperspective in vec2 local;
 layout(location = 1) noperspective in float arrow_length;
 layout(location = 0) out vec4 colour;
 
-// Signed distance to a triangle with its tip at (tip, 0), so wide at (base, 0): half its width.
+// Signed distance to a triangle with its tip at (tip, 0) and `half_width` at (base, 0).
 float head_distance(vec2 point, float base, float tip, float half_width) {
   const vec2 side = normalize(vec2(half_width, tip - base));  // Outward normal of the slanted side.
   return max(dot(point - vec2(tip, 0.0), side), base - point.x);
@@ -28,7 +28,7 @@ void main() {
   const float inside = clamp(0.5 - distance, 0.0, 1.0);
   const float outlined = clamp(1.6 - distance, 0.0, 1.0);
   if (outlined <= 0.0) discard;
-  const vec4 fill = colour_of_word(scene.ink.x);
-  const vec4 outline = colour_of_word(scene.ink.y);
+  const vec4 fill = colour_of_word(scene.layer_colours.x);
+  const vec4 outline = colour_of_word(scene.layer_colours.y);
   colour = vec4(mix(outline.rgb, fill.rgb, inside), outlined * mix(outline.a, fill.a, inside));
 }

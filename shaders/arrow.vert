@@ -1,7 +1,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// An arrow for each cell: the force that acts on the skin there, as a vector in space. Its quad
-// faces the eye; lengths in it are pixels.
+// One arrow per cell: the force on the skin as a vector in space, on a quad that faces the eye.
+// Lengths in the quad are pixels.
 #include "bindings.glsl"
 #include "surface.glsl"
 
@@ -9,7 +9,7 @@ layout(std430, binding = kCellsBinding) readonly buffer CellsBlock { Cell cells[
 layout(location = 0) noperspective out vec2 local;        // along and across, from the tail
 layout(location = 1) noperspective out float arrow_length;  // pixels
 
-const float kAir = 2.0;  // pixels around the arrow for its outline
+const float kMargin = 2.0;  // pixels around the arrow for its outline
 
 vec2 pixels_of(vec4 clip) { return (clip.xy / clip.w * 0.5 + 0.5) * scene.viewport.zw; }
 
@@ -19,7 +19,7 @@ void main() {
   if (cell.force.w == 0.0) return;
   const vec3 place = surface_position(cell.place.xy, scene.readings.w, scene.sheet.w);
   const mat3 basis = surface_basis(cell.place.xy, scene.readings.w, scene.sheet.w);
-  // From above only shear can be seen; a normal force would dip half of the arrow into the skin.
+  // A top view shows only shear; a normal force would put half of the arrow under the skin.
   const float pressing = scene.block.y != 0u ? 0.0 : cell.force.z;
   const vec3 way = basis * vec3(cell.force.xy, -pressing) * scene.arrow.x;
   const vec4 tail_clip = scene.clip_from_world * vec4(place - scene.arrow.w * way, 1.0);
@@ -29,7 +29,7 @@ void main() {
 
   if (length(way) < scene.arrow.x * scene.range.z * cell.force.w) return;  // Too faint.
 
-  // Shorter ones are lengthened about their place, so that every direction can be read.
+  // Lengthen short arrows about their position, so that their direction is visible.
   const float drawn = distance(tail, tip);
   if (drawn < 0.25) return;  // It points at the eye.
   const vec2 along = (tip - tail) / drawn;
@@ -38,12 +38,12 @@ void main() {
   tail = anchor - along * arrow_length * scene.arrow.w;
   tip = tail + along * arrow_length;
 
-  const float reach = 2.2 * scene.arrow.z + kAir;
+  const float reach = 2.2 * scene.arrow.z + kMargin;
   const vec2 corners[6] = vec2[6](vec2(0, -1), vec2(1, -1), vec2(0, 1), vec2(0, 1), vec2(1, -1), vec2(1, 1));
   const vec2 corner = corners[gl_VertexIndex];
-  local = vec2(mix(-kAir, arrow_length + kAir, corner.x), corner.y * reach);
+  local = vec2(mix(-kMargin, arrow_length + kMargin, corner.x), corner.y * reach);
   const vec2 pixel = tail + along * local.x + vec2(-along.y, along.x) * local.y;
   const vec4 end = mix(tail_clip, tip_clip, corner.x);
-  // A little nearer than the skin that its tip touches.
+  // Slightly in front of the skin.
   gl_Position = vec4((pixel / scene.viewport.zw * 2.0 - 1.0) * end.w, end.z - 2e-4 * end.w, end.w);
 }

@@ -1,4 +1,4 @@
-// The descriptor set, and how planes of the field are read.
+// The descriptor set and access to the planes of a field.
 #ifndef PILLARFIELD_SHADERS_BINDINGS
 #define PILLARFIELD_SHADERS_BINDINGS
 
@@ -28,6 +28,6 @@ bool is_usable(uint status) { return (status & 15u) != 0u; }
 bool is_ambiguous(uint status) { return (status & 16u) != 0u; }
 bool is_saturated(uint status) { return (status & 32u) != 0u; }
 bool is_inconsistent(uint status) { return (status & 64u) != 0u; }
-bool is_from_neighbours(uint status) { return (status & 128u) != 0u; }
+bool is_from_contact(uint status) { return (status & 128u) != 0u; }
 
 #endif

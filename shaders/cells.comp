@@ -1,13 +1,13 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// Level of detail: the forces of block x block pillars, added, for each cell in sight.
+// Sums the forces of block x block pillars for each visible cell.
 #include "bindings.glsl"
 
 layout(local_size_x = 64) in;
 layout(std430, binding = kCellsBinding) writeonly buffer CellsBlock { Cell cells[]; };
 
-// Which sensels are usable of the pillars from `four`, a multiple of 4, on: a byte each, zero of
-// those that lie before `begin` or not before `end`.
+// Usable sensels of the four pillars from `four`, a multiple of 4, on: a byte each, zero for pillars
+// outside [begin, end).
 uint usable_of_four(uint four, uint begin, uint end) {
   uint usable = field[scene.force.w + (four >> 2u)] & 0x0f0f0f0fu;
   if (four < begin) usable &= ~0u << (8u * (begin - four));
@@ -40,7 +40,7 @@ void main() {
       }
     }
   }
-  // The middle of those in contact: at the edge of a contact the arrow stays upon it.
+  // The mean position of pillars in contact, so that an arrow at an edge lies on the contact.
   const vec2 place =
       vec2(first) + vec2(places) / max(sum.w, 1.0) + 0.5 - 0.5 * vec2(scene.grid.yx);
   cells[index].force = sum;

@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The heat map: from a pixel to its pillar, the pillar's value, and the value's colour.
+// The heat map: colours each pixel by the value of its pillar.
 #include "value.glsl"
 
 layout(location = 0) in vec2 sheet_mm;
@@ -8,9 +8,9 @@ layout(location = 0) out vec4 colour;
 
 const float kMostSamples = 6.0;
 
-// The value shown by a pixel that covers `pillars` (columns, rows) around `centre`: the mean over
-// those in contact, so that a touch smaller than a pixel keeps its colour. A pixel that stays
-// within a pillar shows that one alone. `flags`: what the statuses of all of them have.
+// Value of a pixel that covers `pillars` (columns, rows) around `centre`: the mean over pillars in
+// contact, so that a contact smaller than a pixel keeps its colour, or the value of a single pillar.
+// Adds the status bits of all of them to `flags`.
 float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
   const bool one_pillar = max(pillars.x, pillars.y) < 1.5;
   const vec2 samples = one_pillar ? vec2(1.0) : min(ceil(pillars), vec2(kMostSamples));
@@ -26,10 +26,10 @@ float mean_value(vec2 centre, vec2 pillars, inout uint flags) {
       count += 1.0;
     }
   }
-  return sum / count;  // 0/0, not a number, where nothing is in contact.
+  return sum / count;  // NaN without contact.
 }
 
-// The entry of a value in the table of colours.
+// Entry of a value in the colour table.
 uint entry_of(float value) {
   if (isnan(value)) return kFirstSpecial + kIdle;
   const int entry = int(floor((value - scene.range.x) / scene.range.y * 256.0));
@@ -37,7 +37,7 @@ uint entry_of(float value) {
 }
 
 bool on_hatch() {
-  // Without a remainder of integers, which processors take for one pixel at a time.
+  // In floats: CPU drivers do not vectorise an integer remainder.
   const float period = float(scene.shown.y);
   const float along = floor(gl_FragCoord.x) + floor(gl_FragCoord.y);
   return along - period * floor((along + 0.5) / period) < floor((period + 3.0) / 4.0);

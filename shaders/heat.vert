@@ -1,6 +1,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
-// The skin as a mesh over its sheet, without vertex buffers: six vertices a tile.
+// The mesh of the skin, without vertex buffers: six vertices per tile.
 #include "bindings.glsl"
 #include "surface.glsl"
 

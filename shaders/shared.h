@@ -1,5 +1,5 @@
-// What C++ and GLSL both know: the structs that one writes and the other reads. Members are of 16
-// bytes, so that the rules of GLSL's std140 and std430 and those of C++ give the same layout.
+// Structs and constants shared by C++ and GLSL. All members have 16 bytes, so that std140, std430 and
+// C++ give the same layout.
 #ifndef PILLARFIELD_SHADERS_SHARED_H
 #define PILLARFIELD_SHADERS_SHARED_H
 
@@ -24,21 +24,21 @@ using mat4 = std::array<float, 16>;  ///< column by column
 #define PF_ARRAY(type, name, size) type name[size]
 #endif
 
-// Bindings of the one descriptor set that all pipelines share.
+// Bindings of the common descriptor set.
 PF_CONSTANT uint kSceneBinding = 0u;
 PF_CONSTANT uint kColoursBinding = 1u;
 PF_CONSTANT uint kFieldBinding = 2u;
 PF_CONSTANT uint kReadingsBinding = 3u;
 PF_CONSTANT uint kCellsBinding = 4u;
 
-// What the heat map's shader is specialised by: a processor that draws works off every branch for
-// every pixel, taken or not.
+// Specialisation constants of the heat map's shader: CPU drivers execute every branch for every
+// pixel.
 PF_CONSTANT uint kQuantityConstant = 0u;  // kNormal, ...
 PF_CONSTANT uint kScaleConstant = 1u;     // kSequential, ...
 PF_CONSTANT uint kReadingsConstant = 2u;  // kReadings8, ...
-PF_CONSTANT uint kMeansConstant = 3u;     // whether a pixel may show the mean of several pillars
+PF_CONSTANT uint kMeansConstant = 3u;     // true: a pixel may show the mean of several pillars
 
-// What the heat map shows; the order of Quantity in viewer/style/quantity.h.
+// Quantities, in the order of Quantity in viewer/style/quantity.h.
 PF_CONSTANT uint kNormal = 0u;
 PF_CONSTANT uint kShear = 1u;
 PF_CONSTANT uint kShearX = 2u;
@@ -51,35 +51,34 @@ PF_CONSTANT uint kStatus = 8u;
 PF_CONSTANT uint kUncertainty = 9u;
 PF_CONSTANT uint kParity = 10u;
 
-// How a value becomes a colour; the order of Scale in viewer/style/quantity.h.
+// Scales, in the order of Scale in viewer/style/quantity.h.
 PF_CONSTANT uint kSequential = 0u;
 PF_CONSTANT uint kDiverging = 1u;
 PF_CONSTANT uint kCyclic = 2u;
 PF_CONSTANT uint kClasses = 3u;
 
-// Colours outside the maps; the order of Special in viewer/style/colour_map.h.
+// Colours outside the maps, in the order of Special in viewer/style/colour_map.h.
 PF_CONSTANT uint kIdle = 0u;
 PF_CONSTANT uint kSaturated = 1u;
 PF_CONSTANT uint kInconsistent = 2u;
 PF_CONSTANT uint kAmbiguous = 3u;
-PF_CONSTANT uint kFromNeighbours = 4u;
+PF_CONSTANT uint kFromContact = 4u;
 PF_CONSTANT uint kRegion1 = 5u;
 PF_CONSTANT uint kRegion2 = 6u;
 PF_CONSTANT uint kRegion3 = 7u;
 PF_CONSTANT uint kRegion4 = 8u;
 PF_CONSTANT uint kOpposite = 9u;
-PF_CONSTANT uint kSound = 10u;
+PF_CONSTANT uint kDetermined = 10u;
 
-// A plane that a field does not have.
+// Offset of a missing plane.
 PF_CONSTANT uint kNoPlane = 0xffffffffu;
 
-// Types of readings; the order of SenselType.
+// Types of readings, in the order of SenselType.
 PF_CONSTANT uint kReadings8 = 0u;
 PF_CONSTANT uint kReadings16 = 1u;
 PF_CONSTANT uint kReadingsFloat = 2u;
 
-// One picture: where from it is seen, of what, and how. Planes are counted in 4-byte words from the
-// beginning of the field's memory.
+// Uniform data of one picture. Planes are offsets in the field's memory, in 4-byte words.
 struct Scene {
   mat4 clip_from_world;
   vec4 sheet;       // width, height, pillar pitch, radius of the surface: mm
@@ -89,29 +88,28 @@ struct Scene {
   uvec4 deviation;  // planes: standard deviations of shear_x, shear_y, normal; none
   uvec4 span;       // planes: magnitude_low, magnitude_high, phi_low, phi_high
   uvec4 incline;    // planes: theta_low, theta_high; none, none
-  uvec4 readings;   // none, readings from one row to the next, 1 where there are any, surface kind
-  uvec4 shown;      // 1 where ambiguous pillars are hatched, hatch period: pixels; none, none
-  vec4 range;       // low end, its width; smallest force worth an arrow: N per pillar; none
+  uvec4 readings;   // none, readings per row, 1 with readings, surface kind
+  uvec4 shown;      // 1: hatch ambiguous pillars; hatch period: pixels; none, none
+  vec4 range;       // low end, width; smallest force with an arrow: N per pillar; none
   vec4 viewport;    // left, top, width, height: pixels
   uvec4 cells;      // first row and column of pillars, rows and columns of cells
-  uvec4 block;      // pillars along a cell; 1 where the skin is seen from above; none
-  vec4 arrow;       // mm per newton, shortest and half a width: pixels; share of its length that
-                    // lies before its place
-  uvec4 ink;        // colours of an arrow's fill, its outline, a fan; none
+  uvec4 block;      // pillars along a cell; 1: top view; none
+  vec4 arrow;       // mm per newton; least length, half width: pixels; fraction of the length
+                    // before the anchor
+  uvec4 layer_colours;  // colours of an arrow's fill, its outline, a sector; none
 };
 
-// A table of 256 colours, and from kFirstSpecial on those of Special, so that a pixel looks up
-// once; each is red + green·2^8 + blue·2^16 + alpha·2^24 in the first member, which is found faster
-// than one of four.
+// 256 colours of the map and, from kFirstSpecial on, those of Special, for a single look-up. Each is
+// red + green·2^8 + blue·2^16 + alpha·2^24 in the first member; indexing members is slower.
 PF_CONSTANT uint kFirstSpecial = 256u;
 struct Colours {
   PF_ARRAY(uvec4, entries, 272);
 };
 
-// What an arrow stands for: the forces under its cell, added.
+// Sum of the forces under an arrow's cell.
 struct Cell {
   vec4 force;  // shear_x, shear_y, normal: N; pillars in contact
-  vec4 place;  // x, y on the sheet of the middle of those in contact: mm; none
+  vec4 place;  // x, y on the sheet, mean of pillars in contact: mm; none
 };
 
 #ifdef __cplusplus

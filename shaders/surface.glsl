@@ -1,18 +1,18 @@
-// The surface that the skin lies on: frame_at() of viewer/style/view.h in single precision, of
-// which the tests make sure. `kind` is SurfaceKind; millimetres. Lengths of a sheet are kept.
+// The surface under the skin: frame_at() of viewer/style/view.h in single precision, an isometric
+// map. `kind` is SurfaceKind; lengths in millimetres.
 #ifndef PF_SURFACE_GLSL
 #define PF_SURFACE_GLSL
 
 const uint PF_SURFACE_CYLINDER = 1u;
 
-// A smaller cylinder is a plane, and none needs a division by zero.
+// Smaller cylinders count as planes, which avoids a division by zero.
 const float PF_LEAST_RADIUS_MM = 1.0e-3f;
 
 bool surface_is_curved(uint kind, float radius) {
   return kind == PF_SURFACE_CYLINDER && radius >= PF_LEAST_RADIUS_MM;
 }
 
-// Where a point of the flat sheet (x right, y up, from its middle) is in space.
+// Position in space of a point of the sheet (x right, y up, from its middle).
 vec3 surface_position(vec2 sheet, uint kind, float radius) {
   if (!surface_is_curved(kind, radius)) return vec3(sheet.x, sheet.y, 0.0f);
   float angle = sheet.x / radius;
@@ -20,7 +20,7 @@ vec3 surface_position(vec2 sheet, uint kind, float radius) {
   return vec3(radius * sin(angle), sheet.y, -2.0f * radius * half_sine * half_sine);
 }
 
-// Columns: unit tangents along the sheet's x and y, and the outward normal.
+// Columns: unit tangents along x and y of the sheet, and the outward normal.
 mat3 surface_basis(vec2 sheet, uint kind, float radius) {
   float angle = surface_is_curved(kind, radius) ? sheet.x / radius : 0.0f;
   float sine = sin(angle);

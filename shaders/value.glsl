@@ -1,5 +1,4 @@
-// What the heat map shows of a pillar. The same operations as value_of() in
-// viewer/style/quantity.cpp.
+// The value of a pillar, by the operations of value_of() in viewer/style/quantity.cpp.
 #ifndef PILLARFIELD_SHADERS_VALUE
 #define PILLARFIELD_SHADERS_VALUE
 
@@ -10,7 +9,7 @@ layout(constant_id = kScaleConstant) const uint kScale = kSequential;
 layout(constant_id = kReadingsConstant) const uint kReadings = kReadings8;
 layout(constant_id = kMeansConstant) const bool kMeans = true;
 
-// Where a point of the sheet lies in the grid: columns from the left, rows from the top.
+// Grid coordinates of a point of the sheet: columns from the left, rows from the top.
 vec2 pillar_place(vec2 sheet) {
   return vec2(sheet.x, -sheet.y) / scene.sheet.z + 0.5 * vec2(scene.grid.yx);
 }
@@ -73,7 +72,7 @@ float value_of(uint pillar, uint status) {
   return 0.0;
 }
 
-// The colour of its own that a pillar has, or kMapped: special_of() of viewer/style/colour_map.h.
+// The special colour of a pillar, or kMapped: special_of() of viewer/style/colour_map.h.
 const uint kMapped = 0xffffffffu;
 
 uint region_colour(uint usable) {
@@ -88,8 +87,8 @@ uint special_of(uint status) {
   if (is_saturated(status)) return kSaturated;
   if (usable == 0u) return kIdle;
   if (kQuantity != kStatus) return kQuantity == kRegion ? kIdle : kMapped;
-  if (is_from_neighbours(status)) return kFromNeighbours;
-  return is_ambiguous(status) ? kAmbiguous : kSound;
+  if (is_from_contact(status)) return kFromContact;
+  return is_ambiguous(status) ? kAmbiguous : kDetermined;
 }
 
 #endif

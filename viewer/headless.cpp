@@ -10,30 +10,31 @@
 #include "pillarfield/printable.h"
 #include "viewer/app/export/export.h"
 #include "viewer/app/field_place.h"
-#include "viewer/app/opening.h"
-#include "viewer/render/painter.h"
+#include "viewer/app/loaded_source.h"
+#include "viewer/render/renderer.h"
 #include "viewer/render/scene.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-/// Draws pictures one after the other and reads each back.
-class Renderer {
+/// Draws pictures and reads their pixels back.
+class HeadlessRenderer {
  public:
-  explicit Renderer(const Options& options)
+  explicit HeadlessRenderer(const Options& options)
       : instance_({}, options.validate),
         device_(instance_, {options.gpu, {}, !options.copy_fields}),
-        painter_(instance_, device_, {options.width, options.height}, scale_of(options)) {}
+        renderer_(instance_, device_, {options.width, options.height}, scale_of(options)) {}
 
   [[nodiscard]] static double scale_of(const Options& options) {
     return options.scale > 0 ? options.scale : 1;
   }
 
-  [[nodiscard]] Pixels render(const ShownField& field, const SourceInfo& source, const Look& look) {
+  [[nodiscard]] Pixels render(const ShownField& field, const SourceInfo& source,
+                              const RenderSettings& settings) {
     device_.run([&](const vk::raii::CommandBuffer& commands) {
-      painter_.record(commands, field, source, look);
+      renderer_.record(commands, field, source, settings);
     });
-    return read_pixels(device_, painter_.image());
+    return read_pixels(device_, renderer_.image());
   }
 
   [[nodiscard]] int validation_messages() const { return instance_.validation_messages(); }
@@ -41,7 +42,7 @@ class Renderer {
  private:
   gpu::Instance instance_;
   gpu::Device device_;
-  Painter painter_;
+  Renderer renderer_;
 };
 
 struct FrameRange {
@@ -61,7 +62,7 @@ bool asks_for_sequence(const Options& options) {
   return options.end_frame > options.first_frame + 1;
 }
 
-/// Pictures that are asked for: one, or one of each frame.
+/// File names of the pictures: one, or one for each frame.
 std::vector<std::filesystem::path> png_names(const Options& options, const FrameRange& span,
                                              std::uint64_t frames) {
   if (options.png.empty()) return {};
@@ -81,10 +82,10 @@ void check_exports(const Options& options, const std::vector<std::filesystem::pa
   if (!options.video.empty()) outputs.push_back({options.video, OutputKind::video});
   check_outputs({options.source}, outputs, replace);
   if (options.csv.empty() || options.csv.extension() == ".csv") return;
-  throw Error(options.csv.string(), "its ending names no table", "end it in .csv");
+  throw Error(options.csv.string(), "a table must end in .csv", "rename it");
 }
 
-/// Pictures that are complete stay; a video is there whole or not at all.
+/// Complete pictures stay; an incomplete video is removed.
 void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
   if (!is_interrupted()) return;
   throw Error(options.source.string(), fmt::format("interrupted after {} pictures", pictures),
@@ -95,7 +96,7 @@ void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
 
 void run_headless(const Options& options) {
   const Replace replace = options.overwrite ? Replace::anything : Replace::results;
-  // What needs no look into the source is checked before it is opened.
+  // Check the options before opening the source, which may take long.
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
@@ -108,18 +109,19 @@ void run_headless(const Options& options) {
   const FrameRange span = frames_of(options, source);
   const Paths pictures = png_names(options, span, source.frames);
   check_exports(options, pictures, replace);
-  Look look = first_look(options, *producer, Renderer::scale_of(options));
-  const Viewport plot = layout_of(options.width, options.height, look).plot;
-  look.view = first_view(options, source, plot);
+  RenderSettings settings =
+      default_settings(options, *producer, HeadlessRenderer::scale_of(options));
+  const Viewport plot = layout_of(options.width, options.height, settings).plot;
+  settings.view = first_view(options, source, plot);
 
   if (!options.csv.empty()) {
     const Viewport picture{0, 0, static_cast<double>(options.width),
                            static_cast<double>(options.height)};
-    write_csv(options.csv, producer->produce(span.begin), visible_pillars({picture, &source}, look),
-              replace);
+    write_csv(options.csv, producer->produce(span.begin),
+              visible_pillars({picture, &source}, settings), replace);
   }
   if (options.png.empty() && options.video.empty()) return;
-  Renderer renderer(options);
+  HeadlessRenderer headless(options);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
     video = std::make_unique<VideoWriter>(options.video, options.width, options.height,
@@ -128,16 +130,16 @@ void run_headless(const Options& options) {
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     stop_if_interrupted(options, frame - span.begin);
     ShownField field = producer->produce(frame);
-    if (look.contacts) {
+    if (settings.contacts) {
       field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
     }
-    const Pixels pixels = renderer.render(field, source, look);
+    const Pixels pixels = headless.render(field, source, settings);
     if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace);
     if (video != nullptr) video->add(pixels);
   }
   if (video != nullptr) video->finish();
-  if (renderer.validation_messages() != 0) {
-    throw Error("Vulkan", fmt::format("validation had {} messages", renderer.validation_messages()),
+  if (headless.validation_messages() != 0) {
+    throw Error("Vulkan", fmt::format("validation had {} messages", headless.validation_messages()),
                 "please report them");
   }
 }

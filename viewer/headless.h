@@ -4,7 +4,7 @@
 
 namespace pillarfield::viewer {
 
-/// Renders without a window and writes what the options name. Throws Error.
+/// Renders without a window and writes the files of the options. Throws Error.
 void run_headless(const Options& options);
 
 }  // namespace pillarfield::viewer

@@ -20,7 +20,7 @@ int complain(const char* message) noexcept {
   return kFailed;
 }
 
-/// The same for a text that may hold anything, as that of a system's error with a file's name.
+/// Prints an error, its text made printable: a file name in it may hold any bytes.
 int complain_of(const std::exception& error) noexcept {
   try {
     return complain(pillarfield::printable(error.what()).c_str());

@@ -24,7 +24,7 @@ Try:  pillarfield-viewer scenes/demo.toml
       pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png
       pillarfield-viewer forces.h5 --headless --frames 1:60 --size 1920x1080 --video touch.mp4)";
 
-/// Parses the numbers of "1280x720", "-0.5:0.5" or "10,20"; throws a complaint that shows the form.
+/// Parses the numbers of "1280x720", "-0.5:0.5" or "10,20"; the error shows the expected form.
 std::vector<double> numbers(const std::string& text, const std::string& separators,
                             std::size_t count, const char* form) {
   std::vector<double> values;
@@ -42,7 +42,7 @@ std::vector<double> numbers(const std::string& text, const std::string& separato
     begin = end + 1;
   }
   if (begin <= text.size() || values.size() != count) {
-    throw CLI::ValidationError(fmt::format("'{}' is not of the form {}", text, form));
+    throw CLI::ValidationError(fmt::format("'{}' does not have the form {}", text, form));
   }
   return values;
 }
@@ -65,7 +65,7 @@ void take_size(Options& options, const std::string& text) {
   const auto size = numbers(text, "x", 2, "WIDTHxHEIGHT, in pixels");
   require(is_whole(size[0]) && is_whole(size[1]) && size[0] >= 320 && size[0] <= 8192 &&
               size[1] >= 240 && size[1] <= 8192,
-          "a picture has 320x240 to 8192x8192 pixels");
+          "the size must lie between 320x240 and 8192x8192 pixels");
   options.width = static_cast<std::uint32_t>(size[0]);
   options.height = static_cast<std::uint32_t>(size[1]);
 }
@@ -73,7 +73,7 @@ void take_size(Options& options, const std::string& text) {
 void take_layer(Options& options, const std::string& text) {
   const auto quantity = quantity_named(text);
   require(quantity.has_value(),
-          fmt::format("'{}' is no layer; there are {}", text, quantity_names()));
+          fmt::format("'{}' is not a layer; choose {}", text, quantity_names()));
   options.quantity = *quantity;
 }
 
@@ -83,18 +83,18 @@ void take_map(Options& options, const std::string& text) {
   }
   require(
       options.map.has_value(),
-      fmt::format("'{}' is no colour map; there are cividis, viridis, diverging, cyclic", text));
+      fmt::format("'{}' is not a colour map; choose cividis, viridis, diverging or cyclic", text));
 }
 
 void take_view(Options& options, const std::string& text) {
   const std::string name = text.substr(0, text.find(':'));
   require(name == "top" || name == "orbit",
-          fmt::format("'{}' is no view; there are top, orbit and orbit:AZIMUTH,ELEVATION", text));
+          fmt::format("'{}' is not a view; choose top, orbit or orbit:AZIMUTH,ELEVATION", text));
   options.orbit = name == "orbit";
   if (text == name) return;
-  require(options.orbit, "a view from the top has no angles");
+  require(options.orbit, "a top view has no angles");
   const auto angles = numbers(text.substr(name.size() + 1), ",", 2, "orbit:AZIMUTH,ELEVATION");
-  require(angles[1] > 0 && angles[1] <= 90, "the elevation lies in (0, 90] degrees");
+  require(angles[1] > 0 && angles[1] <= 90, "the elevation must lie in (0, 90] degrees");
   options.azimuth = angles[0] * kDegree;
   options.elevation = angles[1] * kDegree;
 }
@@ -102,46 +102,46 @@ void take_view(Options& options, const std::string& text) {
 void take_surface(Options& options, const std::string& text) {
   if (text == "plane") return;
   require(text.rfind("cylinder:", 0) == 0,
-          fmt::format("'{}' is no surface; there are plane and cylinder:RADIUS, in mm", text));
+          fmt::format("'{}' is not a surface; choose plane or cylinder:RADIUS, in mm", text));
   const auto radius = numbers(text.substr(9), ",", 1, "cylinder:RADIUS, in mm");
-  require(radius[0] >= 1 && radius[0] <= 1e5, "the radius lies in [1, 100000] mm");
+  require(radius[0] >= 1 && radius[0] <= 1e5, "the radius must lie in [1, 100000] mm");
   options.surface = {SurfaceKind::cylinder, radius[0]};
 }
 
-/// Frames are counted from 1 for people.
+/// The command line counts frames from 1.
 void take_frames(Options& options, const std::string& text) {
   const auto frames = numbers(text, ":", 2, "FIRST:LAST, counted from 1");
   require(is_whole(frames[0]) && is_whole(frames[1]) && frames[0] >= 1 && frames[1] >= frames[0] &&
               frames[1] < 1e15,
-          "frames are counted from 1, and the last does not come before the first");
+          "frames count from 1, and LAST must not be below FIRST");
   options.first_frame = static_cast<std::uint64_t>(frames[0]) - 1;
   options.end_frame = static_cast<std::uint64_t>(frames[1]);
 }
 
 void take_range(Options& options, const std::string& text) {
   const auto ends = numbers(text, ":", 2, "LOW:HIGH");
-  constexpr double kMost = 1e30;  // Far from where single precision ends.
+  constexpr double kMost = 1e30;  // Well within single precision.
   require(ends[0] < ends[1] && ends[0] >= -kMost && ends[1] <= kMost,
-          "the low end of a range lies below the high one, both in [-1e30, 1e30]");
+          "LOW must be below HIGH, both in [-1e30, 1e30]");
   options.range = Range{static_cast<float>(ends[0]), static_cast<float>(ends[1])};
 }
 
 void take_centre(Options& options, const std::string& text) {
-  constexpr double kMostMm = 1e6;  // Beyond, there is no skin, and axes run out of digits.
+  constexpr double kMostMm = 1e6;  // Axes lack digits beyond.
   const auto point = numbers(text, ",", 2, "X,Y, in mm");
   require(std::abs(point[0]) <= kMostMm && std::abs(point[1]) <= kMostMm,
-          "the centre lies within 1e6 mm of the middle of the skin");
+          "the centre must lie within 1e6 mm of the middle of the skin");
   options.centre_mm = Vec2{point[0], point[1]};
 }
 
 void take_zoom(Options& options, const std::string& text) {
   options.zoom = numbers(text, "", 1, "NUMBER")[0];
-  require(options.zoom >= 0.05 && options.zoom <= 1000, "the zoom lies in [0.05, 1000]");
+  require(options.zoom >= 0.05 && options.zoom <= 1000, "the zoom must lie in [0.05, 1000]");
 }
 
 void take_scale(Options& options, const std::string& text) {
   options.scale = numbers(text, "", 1, "NUMBER")[0];
-  require(options.scale >= 0.5 && options.scale <= 4, "the scale lies in [0.5, 4]");
+  require(options.scale >= 0.5 && options.scale <= 4, "the scale must lie in [0.5, 4]");
 }
 
 void add_texts(CLI::App& app, Options& options) {
@@ -151,16 +151,16 @@ void add_texts(CLI::App& app, Options& options) {
         name, [&options, take](const std::string& text) { take(options, text); }, help);
   };
   add("--size", "Size of the picture or the window, pixels [1280x720]", take_size);
-  static const std::string layers = fmt::format("What the heat map shows: {}", quantity_names());
+  static const std::string layers = fmt::format("Quantity of the heat map: {}", quantity_names());
   add("--layer", layers.c_str(), take_layer);
-  add("--range", "Ends of the colour bar, LOW:HIGH in the unit shown [what fits the source]",
+  add("--range", "Ends of the colour bar, LOW:HIGH in the displayed unit [fitted to the source]",
       take_range);
-  add("--map", "Colours: cividis, viridis, diverging or cyclic [what suits the layer]", take_map);
+  add("--map", "Colours: cividis, viridis, diverging or cyclic [by layer]", take_map);
   add("--view", "top, orbit or orbit:AZIMUTH,ELEVATION in degrees [top]", take_view);
   add("--surface", "In 3-D: plane or cylinder:RADIUS in mm [plane]", take_surface);
   add("--frames", "Render frames FIRST:LAST, counted from 1", take_frames);
-  add("--centre", "Point in the middle of a view from the top, X,Y in mm [0,0]", take_centre);
-  add("--zoom", "Enlarges the view [1]", take_zoom);
+  add("--centre", "Centre of the top view, X,Y in mm [0,0]", take_centre);
+  add("--zoom", "Zoom factor [1]", take_zoom);
   add("--scale", "Size of letters and lines [the display's, or 1]", take_scale);
 }
 
@@ -169,7 +169,7 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
   require(!(has_frame && has_frames), "--frame and --frames exclude each other");
   require(options.headless || !has_frames, "--frames needs --headless");
   require(options.headless || !writes,
-          "--png, --video and --csv need --headless; in the window there are keys for them");
+          "--png, --video and --csv need --headless; the window has keys for them");
   require(!options.headless || writes,
           "--headless needs something to write: --png, --video or --csv");
 }
@@ -184,7 +184,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option("source", options.source, "Scene, recording, Tekscan export or force fields")
       ->required();
   app.add_flag("--trust-input", options.trust_input,
-               "Do not try HDF5 files in a process of their own before they are read");
+               "Read HDF5 files without probing them in a separate process first");
   add_texts(app, options);
   std::uint64_t frame = 1;
   auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1]")
@@ -193,39 +193,39 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       "--light", [&] { options.theme = Theme::light; }, "Dark on white");
   app.add_flag_callback(
       "--no-arrows", [&] { options.arrows = false; }, "No arrows");
-  app.add_flag("--fans", options.fans, "Show what ambiguous shear may be, where pillars are large");
+  app.add_flag("--sectors,--fans", options.sectors,
+               "Uncertainty sectors of ambiguous shear, at large zoom");
   app.add_flag_callback(
-      "--no-hatch", [&] { options.hatch = false; }, "Ambiguous pillars are not hatched");
+      "--no-hatch", [&] { options.hatch = false; }, "No hatching of ambiguous pillars");
   app.add_flag("--contacts", options.contacts,
                "Mark contacts: extent, id, force, centre of pressure, shear");
   app.add_flag_callback(
       "--no-legend", [&] { options.legend = false; },
-      "Neither axes nor colour bar: the field alone");
+      "Only the field, without axes and colour bar");
 
-  app.add_flag("--headless", options.headless, "No window: write files and end")->group("Files");
-  app.add_option("--png", options.png, "Picture to write; of several frames NAME_001.png and so on")
+  app.add_flag("--headless", options.headless, "Write files without a window")->group("Files");
+  app.add_option("--png", options.png,
+                 "Picture to write; NAME_001.png and so on for several frames")
       ->group("Files");
   app.add_option("--video", options.video, "Video to write with ffmpeg, .mp4 or .webm")
       ->group("Files");
-  app.add_option("--csv", options.csv, "Forces in sight of the first frame, as a table")
+  app.add_option("--csv", options.csv, "Table to write: visible forces of the first frame")
       ->group("Files");
 
   app.add_flag("--overwrite", options.overwrite,
-               "Replace a file to write that exists, whatever it holds; never the source")
+               "Replace existing files of any kind, but never the source")
       ->group("Files");
 
   app.add_option("--device", options.device, "OpenCL device that solves [the best]")
       ->group("Devices");
-  app.add_option("--gpu", options.gpu, "Vulkan device that draws, a part of its name [the best]")
+  app.add_option("--gpu", options.gpu, "Vulkan device that draws, by a part of its name [the best]")
       ->group("Devices");
-  app.add_flag("--copy", options.copy_fields,
-               "Copy fields to the Vulkan device even where it could read them in place")
+  app.add_flag("--copy", options.copy_fields, "Always copy fields to the Vulkan device")
       ->group("Devices");
-  app.add_flag("--validate", options.validate, "Let Vulkan's validation layer watch every call")
+  app.add_flag("--validate", options.validate, "Enable the Vulkan validation layer")
       ->group("Devices");
-  app.add_flag("--paused", options.paused, "Do not play at first")->group("Window");
-  app.add_flag("--statistics", options.statistics,
-               "Print rates and times as JSON when the window is closed")
+  app.add_flag("--paused", options.paused, "Start paused")->group("Window");
+  app.add_flag("--statistics", options.statistics, "Print rates and times as JSON at the end")
       ->group("Window");
   try {
     app.parse(argc, argv);

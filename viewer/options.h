@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
@@ -13,20 +13,19 @@ namespace pillarfield::viewer {
 struct Options {
   std::filesystem::path source;
   bool trust_input = false;
-  std::string device;  ///< of OpenCL, for solving
-  std::string gpu;     ///< of Vulkan, for drawing
+  std::string device;  ///< OpenCL device that solves
+  std::string gpu;     ///< Vulkan device that draws
   std::uint32_t width = 1280;
   std::uint32_t height = 720;
-  double scale = 0;          ///< 0: that of the display; 1 without one
-  bool copy_fields = false;  ///< fields are copied to the graphics device even where it could read
-                             ///< them in place
+  double scale = 0;          ///< 0: the display's scale, 1 without a display
+  bool copy_fields = false;  ///< copy fields even where the graphics device could import them
   bool validate = false;
   bool headless = false;
   bool paused = false;
-  bool statistics = false;  ///< printed when the window is closed
+  bool statistics = false;  ///< printed when the window closes
 
   Quantity quantity = Quantity::normal;
-  std::optional<Range> range;  ///< unset: what fits the source
+  std::optional<Range> range;  ///< unset: fitted to the source
   std::optional<ColourMap> map;
   Theme theme = Theme::dark;
   bool orbit = false;
@@ -36,7 +35,7 @@ struct Options {
   std::optional<Vec2> centre_mm;
   Surface surface;
   bool arrows = true;
-  bool fans = false;
+  bool sectors = false;
   bool hatch = true;
   bool contacts = false;
   bool legend = true;
@@ -45,23 +44,23 @@ struct Options {
   std::filesystem::path video;
   std::filesystem::path csv;
   bool overwrite = false;
-  std::uint64_t first_frame = 0;  ///< first shown; of --frame and --frames
-  std::uint64_t end_frame = 0;    ///< after the last one rendered; 0: first_frame + 1
+  std::uint64_t first_frame = 0;  ///< first frame shown (--frame, --frames)
+  std::uint64_t end_frame = 0;    ///< one past the last rendered frame; 0: first_frame + 1
 };
 
-/// Parses; on --help and --version prints them. Returns the exit status where the program is to
-/// end, else nothing.
+/// Parses the command line; prints --help and --version. Returns the exit status if the program
+/// must end.
 [[nodiscard]] std::optional<int> parse_options(int argc, char** argv, Options& options);
 
-/// How the first picture looks: what the options say, and what fits the source for the rest; its
-/// view is not set. A few frames, evenly spread, are produced for that. Throws Error where the
-/// source has not what is to be shown.
-[[nodiscard]] Look first_look(const Options& options, FieldProducer& producer, double scale);
+/// Settings of the first picture from the options, with defaults fitted to up to 16 evenly spaced
+/// frames; the view is not set. Throws Error where the source lacks the quantity.
+[[nodiscard]] RenderSettings default_settings(const Options& options, FieldProducer& producer,
+                                              double scale);
 
-/// Ends of the colour bar that fit what a few frames, evenly spread, hold of a quantity.
+/// Range of the colour bar fitted to up to 16 evenly spaced frames.
 [[nodiscard]] Range range_that_fits(FieldProducer& producer, Quantity quantity);
 
-/// From where it is seen first, in the plot of a picture's layout.
+/// Initial view in the plot of a picture's layout.
 [[nodiscard]] View first_view(const Options& options, const SourceInfo& source,
                               const Viewport& plot);
 

@@ -13,7 +13,7 @@
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
 #include "cli/warnings.h"
-#include "io/ending.h"
+#include "io/extension.h"
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -27,7 +27,7 @@ namespace pillarfield::cli {
 namespace {
 
 bool is_hdf5(const std::string& file) {
-  const std::string ending = ending_of(file);
+  const std::string ending = extension_of(file);
   return ending == ".h5" || ending == ".hdf5";
 }
 

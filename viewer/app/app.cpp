@@ -12,12 +12,12 @@
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "viewer/app/export/frame_writer.h"
-#include "viewer/app/input/changes.h"
+#include "viewer/app/input/actions.h"
 #include "viewer/app/input/controls.h"
-#include "viewer/app/input/interface_input.h"
-#include "viewer/app/opening.h"
+#include "viewer/app/input/gui_input.h"
+#include "viewer/app/loaded_source.h"
 #include "viewer/app/window/draw_clock.h"
-#include "viewer/app/window/front.h"
+#include "viewer/app/window/gui.h"
 #include "viewer/app/window/presenter.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/app/window/style.h"
@@ -30,7 +30,7 @@ vk::Extent2D extent_of(const Viewport& box) {
   return {static_cast<std::uint32_t>(box.width), static_cast<std::uint32_t>(box.height)};
 }
 
-/// Whether nobody asked for another view than that of the whole skin.
+/// True if the options set no view other than the whole skin.
 bool asks_for_whole_skin(const Options& options) {
   return options.zoom == 1 && !options.centre_mm && !options.azimuth && !options.elevation;
 }
@@ -39,7 +39,7 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// The window and everything behind it. Members go in the reverse of the order in which they came.
+/// The window and all that it needs; the order of members is the order of construction.
 class Application {
  public:
   explicit Application(const Options& options);
@@ -49,7 +49,7 @@ class Application {
   [[nodiscard]] double scale() const {
     return options_.scale > 0 ? options_.scale : window_.scale();
   }
-  [[nodiscard]] Command command() { return {session_, place_, requests_}; }
+  [[nodiscard]] Command command() { return {state_, place_, pending_}; }
   void listen_to_player();
 
   void wait();
@@ -68,57 +68,57 @@ class Application {
   void write_table();
   void begin_frames(FrameWriter::Kind kind);
   void continue_frames();
-  [[nodiscard]] Pixels pixels() { return read_pixels(device_, presenter_.painter().image()); }
+  [[nodiscard]] Pixels pixels() { return read_pixels(device_, presenter_.renderer().image()); }
   void finish();
   void print_statistics() const;
 
   const Options& options_;
   Window window_;
-  std::atomic<double> produced_s_ = 0;  ///< when the newest field came, told by the player's thread
-  Opened opened_;
+  std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
+  LoadedSource loaded_;
   gpu::Instance instance_;
   vk::raii::SurfaceKHR surface_;
   gpu::Device device_;
   Presenter presenter_;
 
-  Session session_;
+  AppState state_;
   FieldPlace place_;
   Screen screen_;
   vk::Extent2D sized_for_;
   Controls controls_;
-  InterfaceInput interface_input_;
-  Requests requests_;
+  GuiInput gui_input_;
+  PendingActions pending_;
   std::unique_ptr<FrameWriter> writer_;
 
   Redraws redraws_;
   DrawClock clock_;
   std::string last_notice_;
-  std::optional<Look> painted_look_;
+  std::optional<RenderSettings> drawn_settings_;
   bool field_is_new_ = false;
-  double taken_s_ = 0;  ///< when the one on display had come
+  double taken_s_ = 0;  ///< produced_s_ of the field on display
   double last_frame_s_ = 0;
 };
 
 Application::Application(const Options& options)
     : options_(options),
       window_(options.source.filename().string() + " – Pillarfield", options.width, options.height),
-      opened_(open_source(options, scale())),
+      loaded_(load_source(options, scale())),
       instance_(Window::extensions(), options.validate),
       surface_(window_.make_surface(instance_)),
       device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
       presenter_(instance_, device_, *surface_, scale()) {
-  session_.player = opened_.player.get();
-  session_.look = opened_.look;
-  session_.view_is_fitted = asks_for_whole_skin(options);
-  place_.source = &session_.player->info();
+  state_.player = loaded_.player.get();
+  state_.settings = loaded_.settings;
+  state_.view_is_fitted = asks_for_whole_skin(options);
+  place_.source = &state_.player->info();
   arrange();
-  const Viewport plot = layout_of(place_.area.width, place_.area.height, session_.look).plot;
-  session_.look.view = first_view(options, *place_.source, plot);
+  const Viewport plot = layout_of(place_.area.width, place_.area.height, state_.settings).plot;
+  state_.settings.view = first_view(options, *place_.source, plot);
   listen_to_player();
 }
 
 void Application::listen_to_player() {
-  session_.player->on_new_field([this] {
+  state_.player->on_new_field([this] {
     produced_s_ = steady_s();
     Window::wake();
   });
@@ -126,11 +126,11 @@ void Application::listen_to_player() {
 
 void Application::run() {
   window_.show();
-  if (options_.first_frame != 0) session_.player->seek(options_.first_frame);
-  // Not before: contacts are followed from the frame that is seen first.
-  session_.player->set_contacts(session_.look.contacts);
-  if (!options_.paused) session_.player->play();
-  while (!window_.closes() && !requests_.quit && !is_interrupted()) {
+  if (options_.first_frame != 0) state_.player->seek(options_.first_frame);
+  // After seek(): contacts are tracked from the first shown frame on.
+  state_.player->set_contacts(state_.settings.contacts);
+  if (!options_.paused) state_.player->play();
+  while (!window_.closes() && !pending_.quit && !is_interrupted()) {
     wait();
     take_input();
     take_newest_field();
@@ -141,7 +141,7 @@ void Application::run() {
   if (options_.statistics) print_statistics();
 }
 
-/// A signal wakes no wait for events, so none is long.
+/// Waits for events; briefly, since a signal does not end a wait.
 void Application::wait() {
   constexpr double kLongestWaitS = 0.25;
   const bool minimised = window_.size().width == 0;
@@ -159,61 +159,61 @@ void Application::take_input() {
   const bool damaged = window_.take_damage();
   const auto events = window_.take_events();
   if (damaged || !events.empty()) redraws_.input(Window::now_s());
-  presenter_.front().use();
+  presenter_.gui().use();
   arrange();
   for (const InputEvent& event : events) route(event);
 }
 
-/// What is typed into a field of the panels is no shortcut; what lies over the field takes the
-/// mouse.
+/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups over the
+/// field take the mouse.
 void Application::route(const InputEvent& event) {
   const bool types = ImGui::GetIO().WantTextInput;
-  const bool covered = InterfaceInput::has_open_list();
+  const bool covered = GuiInput::has_open_list();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
-    if (types || !key->pressed) interface_input_.take(event);
+    if (types || !key->pressed) gui_input_.take(event);
     if (covered && key->pressed) {
-      InterfaceInput::close_lists();
+      GuiInput::close_lists();
     } else if (!types) {
       controls_.take(event, command());
     }
     return;
   }
   if (std::holds_alternative<TextEvent>(event)) {
-    if (types) interface_input_.take(event);
+    if (types) gui_input_.take(event);
     return;
   }
   const auto* const button = std::get_if<ButtonEvent>(&event);
   const bool presses = button != nullptr && button->pressed;
-  if (presses && session_.show_help) {
-    session_.show_help = false;
+  if (presses && state_.show_help) {
+    state_.show_help = false;
     return;
   }
   const auto* const wheel = std::get_if<WheelEvent>(&event);
   const bool in_field = wheel != nullptr && contains(place_.area, wheel->pixel) && !covered;
-  if (!in_field) interface_input_.take(event);
+  if (!in_field) gui_input_.take(event);
   if (!covered || (button != nullptr && !presses)) controls_.take(event, command());
 }
 
 void Application::take_newest_field() {
   const double came_s = produced_s_;
-  auto field = session_.player->take();
+  auto field = state_.player->take();
   if (!field) return;
-  take_field(session_, std::move(*field));
+  take_field(state_, std::move(*field));
   taken_s_ = came_s;
   field_is_new_ = true;
   redraws_.field();
 }
 
-/// Divides the window as it is now.
+/// Computes the layout for the current window.
 void Application::arrange() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return;
-  session_.look.scale = scale();
+  state_.settings.scale = scale();
   const Viewport before = place_.area;
-  screen_ = divide(size.width, size.height, scale(), session_.show_panels);
+  screen_ = divide(size.width, size.height, scale(), state_.show_panels);
   place_.area = screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
-  if (moved && session_.view_is_fitted) reset_view(session_, place_);
+  if (moved && state_.view_is_fitted) reset_view(state_, place_);
 }
 
 bool Application::fit_to_window() {
@@ -222,83 +222,83 @@ bool Application::fit_to_window() {
   arrange();
   const vk::Extent2D picture = extent_of(screen_.field);
   const bool fits = !presenter_.stale() && size == sized_for_ &&
-                    picture == presenter_.painter().image().size() &&
-                    scale() == presenter_.front().scale();
+                    picture == presenter_.renderer().image().size() &&
+                    scale() == presenter_.gui().scale();
   if (fits) return true;
   sized_for_ = size;
-  painted_look_.reset();
+  drawn_settings_.reset();
   return presenter_.resize(size, picture, scale());
 }
 
 void Application::draw() {
   const double begin_s = Window::now_s();
-  if (session_.hovered && !controls_.is_dragging()) controls_.hover(command());
+  if (state_.hovered && !controls_.is_dragging()) controls_.hover(command());
   draw_front_frame();
-  const bool new_picture = session_.field && (field_is_new_ || painted_look_ != session_.look);
+  const bool new_picture = state_.field && (field_is_new_ || drawn_settings_ != state_.settings);
   std::optional<Presenter::Picture> picture;
   if (new_picture) {
-    picture.emplace(Presenter::Picture{*session_.field, *place_.source, session_.look});
+    picture.emplace(Presenter::Picture{*state_.field, *place_.source, state_.settings});
   }
   if (!presenter_.draw(picture ? &*picture : nullptr)) return;
   measure(begin_s, new_picture);
-  if (new_picture) painted_look_ = session_.look;
+  if (new_picture) drawn_settings_ = state_.settings;
   field_is_new_ = false;
   watch_notice();
   if (writer_ != nullptr && writer_->wants_picture()) continue_frames();
 }
 
 void Application::draw_front_frame() {
-  presenter_.front().use();
-  set_style(session_.look.theme, scale());
+  presenter_.gui().use();
+  set_style(state_.settings.theme, scale());
   const double now_s = Window::now_s();
-  interface_input_.begin_frame(now_s - last_frame_s_);
+  gui_input_.begin_frame(now_s - last_frame_s_);
   last_frame_s_ = now_s;
   const vk::Extent2D size = presenter_.size();
   ImGui::GetIO().DisplaySize =
       ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
   ImGui::NewFrame();
-  draw_front(command(), screen_, device_.name());
+  draw_gui(command(), screen_, device_.name());
   ImGui::Render();
 }
 
 void Application::measure(double begin_s, bool new_picture) {
   const double now_s = Window::now_s();
   std::optional<double> latency_ms;
-  // When the very first field came nobody listened yet.
+  // The first field may precede on_new_field().
   if (new_picture && field_is_new_ && taken_s_ > 0) latency_ms = 1e3 * (steady_s() - taken_s_);
   clock_.add(now_s, 1e3 * (now_s - begin_s), latency_ms);
-  session_.draw = clock_.lately(now_s);
-  const FieldMemory& memory = presenter_.painter().memory();
-  session_.draw.in_place = memory.fields_in_place() > 0 && memory.bytes_copied() == 0;
+  state_.draw = clock_.lately(now_s);
+  const FieldMemory& memory = presenter_.renderer().memory();
+  state_.draw.in_place = memory.fields_in_place() > 0 && memory.bytes_copied() == 0;
   redraws_.drawn(now_s);
 }
 
 void Application::watch_notice() {
   const double now_s = Window::now_s();
-  if (session_.notice != last_notice_) redraws_.notice(now_s);
+  if (state_.notice != last_notice_) redraws_.notice(now_s);
   if (redraws_.notice_is_old(now_s)) {
-    session_.notice.clear();
+    state_.notice.clear();
     redraws_.forget_notice();
     redraws_.field();
   }
-  last_notice_ = session_.notice;
+  last_notice_ = state_.notice;
 }
 
-/// What cannot be written is told, and the window goes on.
+/// Performs the pending actions; an Error becomes a notice.
 void Application::serve() {
-  const Requests asked = std::exchange(requests_, Requests{.quit = requests_.quit});
-  if (!session_.field) return;
+  const PendingActions asked = std::exchange(pending_, PendingActions{.quit = pending_.quit});
+  if (!state_.field) return;
   try {
     if (asked.picture) write_picture();
     if (asked.table) write_table();
     if (asked.sequence) begin_frames(FrameWriter::Kind::pictures);
     if (asked.video) begin_frames(FrameWriter::Kind::video);
   } catch (const Error& error) {
-    session_.notice = error.what();
+    state_.notice = error.what();
   }
   if (asked.stop && writer_ != nullptr) {
     writer_.reset();
-    session_.notice = "stopped writing";
+    state_.notice = "stopped writing";
   }
   if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop) {
     redraws_.input(Window::now_s());
@@ -306,24 +306,24 @@ void Application::serve() {
 }
 
 void Application::write_picture() {
-  if (!painted_look_) return;
-  const auto path = free_path(*place_.source, info_of(session_.look.quantity).name, ".png");
+  if (!drawn_settings_) return;
+  const auto path = free_path(*place_.source, info_of(state_.settings.quantity).name, ".png");
   check_outputs({options_.source}, {{path, OutputKind::png}}, Replace::nothing);
   write_png(path, pixels(), Replace::nothing);
-  session_.notice = "wrote " + path.string();
+  state_.notice = "wrote " + path.string();
 }
 
 void Application::write_table() {
-  const std::string frame = fmt::format("frame_{}", session_.field->index + 1);
+  const std::string frame = fmt::format("frame_{}", state_.field->index + 1);
   const auto path = free_path(*place_.source, frame, ".csv");
   check_outputs({options_.source}, {{path, OutputKind::forces}}, Replace::nothing);
-  write_csv(path, *session_.field, visible_pillars(place_, session_.look), Replace::nothing);
-  session_.notice = "wrote " + path.string();
+  write_csv(path, *state_.field, visible_pillars(place_, state_.settings), Replace::nothing);
+  state_.notice = "wrote " + path.string();
 }
 
 void Application::begin_frames(FrameWriter::Kind kind) {
   if (writer_ != nullptr) return;
-  const std::string quantity = info_of(session_.look.quantity).name;
+  const std::string quantity = info_of(state_.settings.quantity).name;
   const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
                                                      : free_sequence_path(*place_.source, quantity);
   const PlannedOutput first =
@@ -331,39 +331,38 @@ void Application::begin_frames(FrameWriter::Kind kind) {
           ? PlannedOutput{path, OutputKind::video}
           : PlannedOutput{numbered(path, 1, place_.source->frames), OutputKind::png};
   check_outputs({options_.source}, {first}, Replace::nothing);
-  const vk::Extent2D size = presenter_.painter().image().size();
-  writer_ = std::make_unique<FrameWriter>(session_, kind, path, size.width, size.height);
+  const vk::Extent2D size = presenter_.renderer().image().size();
+  writer_ = std::make_unique<FrameWriter>(state_, kind, path, size.width, size.height);
 }
 
 void Application::continue_frames() {
   try {
     if (writer_->add(pixels())) writer_.reset();
   } catch (const Error& error) {
-    session_.notice = error.what();
+    state_.notice = error.what();
     writer_.reset();
   }
   redraws_.field();
 }
 
-/// The picture reads the player's memory in place: it goes before the player does.
+/// Releases imported memory of the player before the player is destroyed.
 void Application::finish() {
-  session_.player->on_new_field({});
+  state_.player->on_new_field({});
   presenter_.finish();
   writer_.reset();
-  presenter_.painter().memory().forget();
-  session_.field.reset();
+  presenter_.renderer().memory().forget();
+  state_.field.reset();
 }
 
 void Application::print_statistics() const {
-  const PlayerStatistics played = session_.player->statistics();
+  const PlayerStatistics played = state_.player->statistics();
   fmt::print(R"({{"frames":{},"draw_ms_median":{:.3f},"latency_ms_median":{:.3f},"produced":{},)"
              R"("taken":{},"not_shown":{},"in_place":{},"field":[{},{},{},{}],)"
              R"("validation_messages":{}}})"
              "\n",
              clock_.frames(), clock_.draw_ms_median(), clock_.latency_ms_median(), played.produced,
-             played.taken, played.not_shown, session_.draw.in_place, screen_.field.x,
-             screen_.field.y, screen_.field.width, screen_.field.height,
-             instance_.validation_messages());
+             played.taken, played.not_shown, state_.draw.in_place, screen_.field.x, screen_.field.y,
+             screen_.field.width, screen_.field.height, instance_.validation_messages());
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 
 namespace pillarfield::viewer {
 
-/// Opens a window on the source and stays until it is closed. Returns the exit status. Throws Error
-/// where there is no display, no device, or the source cannot be opened or read.
+/// Shows the source in a window until that is closed. Returns the exit status. Throws Error without
+/// display or device, and where the source cannot be opened or read.
 [[nodiscard]] int run_window(const Options& options);
 
 }  // namespace pillarfield::viewer

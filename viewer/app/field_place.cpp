@@ -9,8 +9,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Pillars [first, second) of `count` that [low, high] touches, in pillars from the first one's
-/// edge.
+/// Pillars [first, second) of `count` that overlap [low, high], in pillar pitches.
 std::pair<std::uint32_t, std::uint32_t> touched(double low, double high, std::uint32_t count) {
   const double most = count;
   return {static_cast<std::uint32_t>(std::clamp(std::floor(low), 0.0, most)),
@@ -21,17 +20,17 @@ PillarRect everything(const SourceInfo& source) {
   return {0, source.skin.pillar_rows(), 0, source.skin.pillar_cols()};
 }
 
-/// Around the pillars under a grid of pixels: what a view in perspective shows has no simpler form.
-PillarRect sampled(const FieldPlace& place, const Look& look) {
+/// Bounding rectangle of the pillars under a grid of pixels, for perspective views.
+PillarRect sampled(const FieldPlace& place, const RenderSettings& settings) {
   constexpr int kSteps = 48;
-  const Viewport plot = place.plot(look);
+  const Viewport plot = place.plot(settings);
   std::optional<PillarRect> found;
   for (int i = 0; i < kSteps * kSteps; ++i) {
     const int col = i % kSteps;
     const int row = i / kSteps;
     const Vec2 pixel{plot.x + plot.width * (col + 0.5) / kSteps,
                      plot.y + plot.height * (row + 0.5) / kSteps};
-    const auto pillar = pillar_at(place, look, pixel);
+    const auto pillar = pillar_at(place, settings, pixel);
     if (!pillar) continue;
     if (!found) found = {pillar->row, pillar->row + 1, pillar->col, pillar->col + 1};
     found->row_begin = std::min(found->row_begin, pillar->row);
@@ -46,28 +45,30 @@ PillarRect sampled(const FieldPlace& place, const Look& look) {
 
 SkinSize FieldPlace::skin() const { return skin_size(*source); }
 
-Viewport FieldPlace::plot(const Look& look) const {
-  Viewport plot = layout_of(area.width, area.height, look).plot;
+Viewport FieldPlace::plot(const RenderSettings& settings) const {
+  Viewport plot = layout_of(area.width, area.height, settings).plot;
   plot.x += area.x;
   plot.y += area.y;
   return plot;
 }
 
-std::optional<Vec2> sheet_point(const FieldPlace& place, const Look& look, Vec2 pixel) {
-  const Viewport plot = place.plot(look);
+std::optional<Vec2> sheet_point(const FieldPlace& place, const RenderSettings& settings,
+                                Vec2 pixel) {
+  const Viewport plot = place.plot(settings);
   if (!contains(plot, pixel)) return std::nullopt;
-  return pick(look.view, look.surface, place.skin(), plot, pixel);
+  return pick(settings.view, settings.surface, place.skin(), plot, pixel);
 }
 
-Vec2 sheet_point_beyond(const FieldPlace& place, const Look& look, const TopView& view,
-                        Vec2 pixel) {
-  const Viewport plot = place.plot(look);
+Vec2 sheet_point_beyond(const FieldPlace& place, const RenderSettings& settings,
+                        const TopView& view, Vec2 pixel) {
+  const Viewport plot = place.plot(settings);
   return {view.centre_mm.x + (pixel.x - plot.x - 0.5 * plot.width) / view.pixels_per_mm,
           view.centre_mm.y - (pixel.y - plot.y - 0.5 * plot.height) / view.pixels_per_mm};
 }
 
-std::optional<PillarIndex> pillar_at(const FieldPlace& place, const Look& look, Vec2 pixel) {
-  const auto point = sheet_point(place, look, pixel);
+std::optional<PillarIndex> pillar_at(const FieldPlace& place, const RenderSettings& settings,
+                                     Vec2 pixel) {
+  const auto point = sheet_point(place, settings, pixel);
   if (!point) return std::nullopt;
   const Skin& skin = place.source->skin;
   const double col = point->x / skin.pillar_pitch_mm() + 0.5 * skin.pillar_cols();
@@ -99,20 +100,21 @@ Vec2 corner_of(const FieldPlace& place, std::uint32_t row, std::uint32_t col) {
           (0.5 * skin.pillar_rows() - row) * skin.pillar_pitch_mm()};
 }
 
-std::optional<Vec2> pixel_of(const FieldPlace& place, const Look& look, Vec2 point_mm) {
-  return project(look.view, look.surface, place.skin(), place.plot(look),
-                 std::holds_alternative<TopView>(look.view)
+std::optional<Vec2> pixel_of(const FieldPlace& place, const RenderSettings& settings,
+                             Vec2 point_mm) {
+  return project(settings.view, settings.surface, place.skin(), place.plot(settings),
+                 std::holds_alternative<TopView>(settings.view)
                      ? Vec3{point_mm.x, point_mm.y, 0}
-                     : frame_at(look.surface, point_mm).position);
+                     : frame_at(settings.surface, point_mm).position);
 }
 
-PillarRect visible_pillars(const FieldPlace& place, const Look& look) {
-  const auto* const view = std::get_if<TopView>(&look.view);
-  if (view == nullptr) return sampled(place, look);
-  const Viewport plot = place.plot(look);
-  const Vec2 corner = sheet_point_beyond(place, look, *view, {plot.x, plot.y});
+PillarRect visible_pillars(const FieldPlace& place, const RenderSettings& settings) {
+  const auto* const view = std::get_if<TopView>(&settings.view);
+  if (view == nullptr) return sampled(place, settings);
+  const Viewport plot = place.plot(settings);
+  const Vec2 corner = sheet_point_beyond(place, settings, *view, {plot.x, plot.y});
   const Vec2 other =
-      sheet_point_beyond(place, look, *view, {plot.x + plot.width, plot.y + plot.height});
+      sheet_point_beyond(place, settings, *view, {plot.x + plot.width, plot.y + plot.height});
   return pillars_between(place, corner, other).value_or(everything(*place.source));
 }
 

@@ -28,7 +28,7 @@ Buffer::Buffer(const Device& device, std::span<const std::byte> pages, vk::Buffe
   const vk::ExternalMemoryBufferCreateInfo external(kHostPointer);
   buffer_ = vk::raii::Buffer(device.handle(),
                              vk::BufferCreateInfo({}, size_, usage, {}, {}, {}, &external));
-  // Vulkan takes host memory as non-const even where it is only read.
+  // Vulkan takes host memory as non-const even if it is only read.
   void* const address = const_cast<std::byte*>(pages.data());
   const auto possible = device.handle().getMemoryHostPointerPropertiesEXT(kHostPointer, address);
   const auto needs = buffer_.getMemoryRequirements();

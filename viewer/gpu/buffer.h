@@ -7,7 +7,7 @@
 
 namespace pillarfield::viewer::gpu {
 
-/// A buffer that both sides see at one address, or one of the device alone.
+/// A host-visible, mapped buffer or a device-local one.
 class Buffer {
  public:
   enum class Place { host, device };
@@ -15,20 +15,20 @@ class Buffer {
   Buffer() = default;
   Buffer(const Device& device, std::size_t bytes, vk::BufferUsageFlags usage, Place place);
 
-  /// Memory of somebody else, read in place. `pages`: address and size are multiples of
-  /// Device::import_alignment(); it must outlive the buffer. Throws Error where the device refuses.
+  /// Imports host memory, which must outlive the buffer. Address and size of `pages` are multiples
+  /// of Device::import_alignment(). Throws Error where the device refuses.
   Buffer(const Device& device, std::span<const std::byte> pages, vk::BufferUsageFlags usage);
 
   [[nodiscard]] vk::Buffer handle() const { return *buffer_; }
   [[nodiscard]] std::size_t size() const { return size_; }
 
-  /// Where the host sees a buffer of Place::host; coherent.
+  /// Host address of a Place::host buffer; coherent.
   [[nodiscard]] std::byte* data() const { return data_; }
 
  private:
   std::size_t size_ = 0;
   std::byte* data_ = nullptr;
-  // The buffer goes before the memory that it is bound to.
+  // Declared before the buffer, which is destroyed first.
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Buffer buffer_ = nullptr;
 };

@@ -4,7 +4,7 @@
 
 namespace pillarfield::viewer::gpu {
 
-/// A barrier over all memory: what `from` did in its stages is seen by `to` in theirs.
+/// A global memory barrier between the accesses `from` and `to`.
 struct Access {
   vk::PipelineStageFlags stages;
   vk::AccessFlags accesses;

@@ -21,7 +21,7 @@ bool has_extension(const vk::raii::PhysicalDevice& device, std::string_view name
   });
 }
 
-/// A queue family that draws, computes and, where there is a surface, presents to it.
+/// A queue family with graphics, compute and, given a surface, presentation.
 std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& device,
                                                VkSurfaceKHR surface) {
   const auto families = device.getQueueFamilyProperties();
@@ -33,7 +33,7 @@ std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& d
   return std::nullopt;
 }
 
-/// Why a device will not do; empty where it will.
+/// Reason for rejecting a device; empty for none.
 std::string unsuitable(const vk::raii::PhysicalDevice& device, VkSurfaceKHR surface) {
   if (device.getProperties().apiVersion < VK_API_VERSION_1_2) return "older than Vulkan 1.2";
   if (surface != nullptr && !has_extension(device, VK_KHR_SWAPCHAIN_EXTENSION_NAME)) {
@@ -74,24 +74,24 @@ vk::raii::PhysicalDevice choose(const Instance& instance, const DeviceOptions& o
   try {
     devices = vk::raii::PhysicalDevices(instance.handle());
   } catch (const vk::SystemError&) {
-    // No device is no error of Vulkan's: it is told of below.
+    // Reported below as an empty list.
   }
   const vk::raii::PhysicalDevice* best = nullptr;
-  std::string passed_over;
+  std::string rejected;
   for (const auto& device : devices) {
     std::string reason = unsuitable(device, options.surface);
     if (reason.empty() && lower(name_of(device)).find(lower(options.name)) == std::string::npos) {
       reason = "has another name";
     }
     if (!reason.empty()) {
-      passed_over += fmt::format("; {}: {}", name_of(device), reason);
+      rejected += fmt::format("; {}: {}", name_of(device), reason);
     } else if (best == nullptr ||
                rank(device.getProperties().deviceType) > rank(best->getProperties().deviceType)) {
       best = &device;
     }
   }
   if (best == nullptr) {
-    throw Error("Vulkan", fmt::format("no suitable device was found{}", passed_over),
+    throw Error("Vulkan", fmt::format("no suitable device was found{}", rejected),
                 "install a driver, for instance mesa-vulkan-drivers");
   }
   return *best;
@@ -126,9 +126,9 @@ Device::Device(const Instance& instance, const DeviceOptions& options)
 }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags needed,
-                                  vk::MemoryPropertyFlags wished) const {
+                                  vk::MemoryPropertyFlags preferred) const {
   const auto properties = physical_.getMemoryProperties();
-  for (const auto flags : {needed | wished, needed}) {
+  for (const auto flags : {needed | preferred, needed}) {
     for (std::uint32_t index = 0; index < properties.memoryTypeCount; ++index) {
       const bool is_allowed = (allowed >> index & 1u) != 0;
       if (is_allowed && (properties.memoryTypes.at(index).propertyFlags & flags) == flags) {
@@ -136,7 +136,7 @@ std::uint32_t Device::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags
       }
     }
   }
-  throw Error(name_, "it has no memory of the kind that is needed", "choose another: --gpu NAME");
+  throw Error(name_, "it lacks a required memory type", "choose another device: --gpu NAME");
 }
 
 void Device::run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const {

@@ -9,15 +9,15 @@
 namespace pillarfield::viewer::gpu {
 
 struct DeviceOptions {
-  std::string name;           ///< a part of the device's name, any case; empty: the best one
-  VkSurfaceKHR surface = {};  ///< it must be able to present to; null without a window
-  bool import_memory = true;  ///< false: pretends that the host's memory cannot be imported
+  std::string name;           ///< part of the device's name, any case; empty: the best device
+  VkSurfaceKHR surface = {};  ///< surface to present to; null without a window
+  bool import_memory = true;  ///< false: never import host memory
 };
 
-/// A graphics device with the one queue that everything goes through.
+/// A graphics device with one queue.
 class Device {
  public:
-  /// Throws Error that lists the devices and why each was passed over.
+  /// Throws Error with the devices and the reason for rejecting each.
   Device(const Instance& instance, const DeviceOptions& options);
 
   [[nodiscard]] const vk::raii::Device& handle() const { return device_; }
@@ -26,17 +26,16 @@ class Device {
   [[nodiscard]] std::uint32_t queue_family() const { return queue_family_; }
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Whether memory of the host can be read in place (VK_EXT_external_memory_host), and at which
-  /// alignment of address and size.
+  /// Host memory can be imported (VK_EXT_external_memory_host), at import_alignment().
   [[nodiscard]] bool imports_memory() const { return import_alignment_ != 0; }
   [[nodiscard]] std::size_t import_alignment() const { return import_alignment_; }
 
-  /// Index of a memory type among `allowed` (bits) with all of `needed`, if possible with `wished`
-  /// too. Throws Error where there is none.
+  /// Index of a memory type among `allowed` (bits) with all `needed` properties and, if possible,
+  /// the `preferred` ones. Throws Error for none.
   [[nodiscard]] std::uint32_t memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags needed,
-                                          vk::MemoryPropertyFlags wished = {}) const;
+                                          vk::MemoryPropertyFlags preferred = {}) const;
 
-  /// Records commands, submits them and waits until they are done.
+  /// Records commands, submits them and waits for completion.
   void run(const std::function<void(const vk::raii::CommandBuffer&)>& record) const;
 
  private:

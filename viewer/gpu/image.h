@@ -4,7 +4,7 @@
 
 namespace pillarfield::viewer::gpu {
 
-/// An image of the device with its view.
+/// A device image with its view.
 class Image {
  public:
   Image() = default;
@@ -17,7 +17,7 @@ class Image {
 
  private:
   vk::Extent2D size_;
-  // The image goes before its memory, and the view before the image.
+  // Destroyed in the order view, image, memory.
   vk::raii::DeviceMemory memory_ = nullptr;
   vk::raii::Image image_ = nullptr;
   vk::raii::ImageView view_ = nullptr;

@@ -37,7 +37,7 @@ void require_layer(const vk::raii::Context& context) {
   });
   if (!found) {
     throw Error("Vulkan", "the validation layer was not found",
-                "install vulkan-validationlayers, or leave --validate out");
+                "install vulkan-validationlayers, or omit --validate");
   }
 }
 

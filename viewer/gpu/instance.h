@@ -8,18 +8,17 @@
 
 namespace pillarfield::viewer::gpu {
 
-/// The door to Vulkan: loader, instance, and the messages of the validation layer.
+/// Vulkan loader, instance, and messages of the validation layer.
 class Instance {
  public:
-  /// `extensions`: those that a window needs; none without a window. With `validation` the
-  /// validation layer and its checks of synchronisation watch every call; their messages go to
-  /// standard error and are counted. Throws Error where Vulkan, the layer or an extension is
-  /// missing.
+  /// `extensions` are those of the window, if any. `validation` enables the validation layer with
+  /// synchronisation checks; its messages go to standard error and are counted. Throws Error where
+  /// Vulkan, the layer or an extension is missing.
   Instance(std::span<const char* const> extensions, bool validation);
 
   [[nodiscard]] const vk::raii::Instance& handle() const { return instance_; }
 
-  /// Warnings and errors of the validation layer so far.
+  /// Number of warnings and errors of the validation layer.
   [[nodiscard]] int validation_messages() const { return *messages_; }
 
  private:

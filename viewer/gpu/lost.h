@@ -4,7 +4,7 @@
 
 namespace pillarfield::viewer::gpu {
 
-/// Whether `error` says that the graphics device was lost. Needs no header of Vulkan.
+/// True if `error` reports a lost graphics device. Needs no Vulkan header.
 [[nodiscard]] bool is_device_lost(const std::exception& error);
 
 }  // namespace pillarfield::viewer::gpu

@@ -12,7 +12,7 @@ constexpr std::uint64_t kPatienceNanoseconds = 1'000'000'000;
 
 vk::SurfaceFormatKHR choose_format(const Device& device, vk::SurfaceKHR surface) {
   const auto formats = device.physical().getSurfaceFormatsKHR(surface);
-  // The picture's own format comes first: it is copied, not converted.
+  // Prefer the picture's format, which needs no conversion.
   for (const auto wanted : {vk::Format::eR8G8B8A8Unorm, vk::Format::eB8G8R8A8Unorm}) {
     const auto found =
         std::find_if(formats.begin(), formats.end(), [&](const vk::SurfaceFormatKHR& candidate) {
@@ -21,11 +21,10 @@ vk::SurfaceFormatKHR choose_format(const Device& device, vk::SurfaceKHR surface)
         });
     if (found != formats.end()) return *found;
   }
-  throw Error(device.name(), "its windows have no 8-bit UNORM format", kMend);
+  throw Error(device.name(), "its window surfaces lack an 8-bit UNORM format", kMend);
 }
 
-/// One that shows whole pictures only; mailbox, where there is one, does not wait to hand them
-/// over.
+/// A mode without tearing; mailbox, where available, does not block.
 vk::PresentModeKHR choose_mode(const Device& device, vk::SurfaceKHR surface) {
   const auto modes = device.physical().getSurfacePresentModesKHR(surface);
   const bool has_mailbox =
@@ -36,22 +35,22 @@ vk::PresentModeKHR choose_mode(const Device& device, vk::SurfaceKHR surface) {
 void require_copies(const Device& device, vk::SurfaceKHR surface) {
   const auto usages = device.physical().getSurfaceCapabilitiesKHR(surface).supportedUsageFlags;
   if (usages & vk::ImageUsageFlagBits::eTransferDst) return;
-  throw Error(device.name(), "the images of its windows cannot be copied into", kMend);
+  throw Error(device.name(), "its window images are not copy destinations", kMend);
 }
 
-/// What a surface says where its size is that of its images.
-constexpr std::uint32_t kOpen = 0xffffffff;
+/// Extent of a surface that takes the size of its images.
+constexpr std::uint32_t kUndefinedExtent = 0xffffffff;
 
-vk::Extent2D size_of(const vk::SurfaceCapabilitiesKHR& can, vk::Extent2D wished) {
-  if (can.currentExtent.width != kOpen) return can.currentExtent;
-  if (wished.width == 0 || wished.height == 0) return {0, 0};
-  return {std::clamp(wished.width, can.minImageExtent.width, can.maxImageExtent.width),
-          std::clamp(wished.height, can.minImageExtent.height, can.maxImageExtent.height)};
+vk::Extent2D size_of(const vk::SurfaceCapabilitiesKHR& can, vk::Extent2D preferred) {
+  if (can.currentExtent.width != kUndefinedExtent) return can.currentExtent;
+  if (preferred.width == 0 || preferred.height == 0) return {0, 0};
+  return {std::clamp(preferred.width, can.minImageExtent.width, can.maxImageExtent.width),
+          std::clamp(preferred.height, can.minImageExtent.height, can.maxImageExtent.height)};
 }
 
 std::uint32_t count_of(const vk::SurfaceCapabilitiesKHR& can) {
-  const std::uint32_t wished = std::max(can.minImageCount + 1, 3u);
-  return can.maxImageCount == 0 ? wished : std::min(wished, can.maxImageCount);
+  const std::uint32_t preferred = std::max(can.minImageCount + 1, 3u);
+  return can.maxImageCount == 0 ? preferred : std::min(preferred, can.maxImageCount);
 }
 
 vk::CompositeAlphaFlagBitsKHR alpha_of(const vk::SurfaceCapabilitiesKHR& can) {
@@ -72,9 +71,9 @@ SwapChain::SwapChain(const Device& device, vk::SurfaceKHR surface)
   require_copies(device, surface);
 }
 
-bool SwapChain::resize(vk::Extent2D wished) {
+bool SwapChain::resize(vk::Extent2D preferred) {
   const auto can = device_->physical().getSurfaceCapabilitiesKHR(surface_);
-  size_ = size_of(can, wished);
+  size_ = size_of(can, preferred);
   views_.clear();
   images_.clear();
   drawn_.clear();
@@ -100,7 +99,7 @@ void SwapChain::make_images() {
     views_.emplace_back(device_->handle(),
                         vk::ImageViewCreateInfo({}, image, vk::ImageViewType::e2D, format_, {},
                                                 {vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1}));
-    // One for each image: an image that comes back has been shown, and its semaphore waited for.
+    // One for each image: acquiring it again implies that its semaphore was waited for.
     drawn_.emplace_back(device_->handle(), vk::SemaphoreCreateInfo());
   }
 }

@@ -7,34 +7,33 @@
 
 namespace pillarfield::viewer::gpu {
 
-/// The images that a window shows in turn: 8-bit red, green and blue without a curve of its own,
-/// which can be copied into.
+/// The images of a window: 8-bit UNORM, valid as copy destinations.
 class SwapChain {
  public:
-  /// Throws Error where the surface has no such images. There are none before resize().
+  /// Creates no images before resize(). Throws Error where the surface lacks the format.
   SwapChain(const Device& device, vk::SurfaceKHR surface);
 
   [[nodiscard]] vk::Format format() const { return format_; }
 
-  /// Makes the images anew; nothing that uses the old ones may be running. `wished` counts where
-  /// the surface leaves its size open. False where the window has no pixels now (minimised): there
-  /// are no images then.
-  bool resize(vk::Extent2D wished);
+  /// Recreates the images; commands that use the old ones must be complete. `preferred` applies
+  /// where the surface does not fix the size. Returns false, without images, for a minimised
+  /// window.
+  bool resize(vk::Extent2D preferred);
 
   [[nodiscard]] vk::Extent2D size() const { return size_; }
   [[nodiscard]] std::uint32_t count() const { return static_cast<std::uint32_t>(images_.size()); }
   [[nodiscard]] vk::Image image(std::uint32_t index) const { return images_.at(index); }
   [[nodiscard]] vk::ImageView view(std::uint32_t index) const { return *views_.at(index); }
 
-  /// The image to draw next; `ready` is signalled when it may be drawn into. None where there is
-  /// none now: look at stale().
+  /// Index of the next image; `ready` is signalled when it may be drawn into. None where no image
+  /// is available: check stale().
   [[nodiscard]] std::optional<std::uint32_t> acquire(vk::Semaphore ready);
 
   /// Signalled by the commands that drew image `index`; present() waits for it.
   [[nodiscard]] vk::Semaphore drawn(std::uint32_t index) const { return *drawn_.at(index); }
   void present(std::uint32_t index);
 
-  /// The window changed: resize() is due.
+  /// The window has changed; call resize().
   [[nodiscard]] bool stale() const { return stale_; }
 
  private:

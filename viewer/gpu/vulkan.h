@@ -1,4 +1,4 @@
 #pragma once
 
-// The one place that includes Vulkan, so that all files see it with the same settings.
+// The only include of Vulkan, with common settings.
 #include <vulkan/vulkan_raii.hpp>

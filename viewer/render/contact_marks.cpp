@@ -14,15 +14,15 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kLeastRatio = 0.03;  ///< of shear to normal force that has an arrow
+constexpr double kLeastRatio = 0.03;  ///< least shear / normal force with an arrow
 constexpr double kMostRatio = 3;
 
-constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< lets the lines be seen on any colour
+constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< keeps lines visible on any colour
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
-constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< unlike the arrows of cells
-constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< of texts
+constexpr ImU32 kForce = IM_COL32(120, 240, 200, 255);  ///< distinct from the arrows of cells
+constexpr ImU32 kGround = IM_COL32(8, 10, 14, 190);     ///< behind labels
 
-/// A box about points, pixels.
+/// Bounding box of points, pixels.
 Viewport box_about(const std::vector<Vec2>& points) {
   const auto [left, right] = std::ranges::minmax(points, {}, &Vec2::x);
   const auto [top, bottom] = std::ranges::minmax(points, {}, &Vec2::y);
@@ -33,32 +33,32 @@ bool overlap(const Viewport& a, const Viewport& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-/// A point `right` and `up` of another on the skin along its tangents there, mm.
-std::optional<Vec2> seen(const SourceInfo& source, const Look& look, const Viewport& plot,
-                         const PatchPlace& place, double right, double up) {
-  const bool from_above = std::holds_alternative<TopView>(look.view);
+/// Pixel of the point `right` and `up`, in mm, along the tangents from another.
+std::optional<Vec2> seen(const SourceInfo& source, const RenderSettings& settings,
+                         const Viewport& plot, const PatchPlace& place, double right, double up) {
+  const bool from_above = std::holds_alternative<TopView>(settings.view);
   const SurfaceFrame frame =
-      frame_at(from_above ? Surface{} : look.surface, {place.x_mm, place.y_mm});
+      frame_at(from_above ? Surface{} : settings.surface, {place.x_mm, place.y_mm});
   const Vec3& x = frame.tangent_x;
   const Vec3& y = frame.tangent_y;
   return project(
-      look.view, look.surface, skin_size(source), plot,
+      settings.view, settings.surface, skin_size(source), plot,
       {frame.position.x + right * x.x + up * y.x, frame.position.y + right * x.y + up * y.y,
        frame.position.z + right * x.z + up * y.z});
 }
 
 std::optional<Vec2> tip_of(const ContactQuantities& contact, const SourceInfo& source,
-                           const Look& look, const Viewport& plot) {
+                           const RenderSettings& settings, const Viewport& plot) {
   const double shear = std::hypot(contact.shear_x_n, contact.shear_y_n);
   if (!(contact.normal_n > 0) || shear < kLeastRatio * contact.normal_n) return std::nullopt;
   const double pixels =
-      kContactArrowPixels * look.scale * std::min(shear / contact.normal_n, kMostRatio);
-  const double mm_per_newton = pixels / pixels_per_mm(look.view, plot) / shear;
-  return seen(source, look, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
+      kContactArrowPixels * settings.scale * std::min(shear / contact.normal_n, kMostRatio);
+  const double mm_per_newton = pixels / pixels_per_mm(settings.view, plot) / shear;
+  return seen(source, settings, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
               mm_per_newton * contact.shear_y_n);
 }
 
-/// Draws with lines of one picture.
+/// Draws the lines and labels of one picture.
 class Brush {
  public:
   Brush(ImDrawList& list, double scale) : list_(list), unit_(static_cast<float>(scale)) {}
@@ -88,9 +88,8 @@ class Brush {
     list_.AddText(to_imgui({box.x + margin(), box.y}), kLine, words.c_str());
   }
 
-  /// Of words whose lower left corner is at a place, brought into the plot.
-  [[nodiscard]] Viewport room_of(const std::string& words, Vec2 corner,
-                                 const Viewport& plot) const {
+  /// Box of a label with a given lower left corner, moved into the plot.
+  [[nodiscard]] Viewport box_of(const std::string& words, Vec2 corner, const Viewport& plot) const {
     const ImVec2 size = ImGui::CalcTextSize(words.c_str());
     const double width = std::ceil(static_cast<double>(size.x) + 2 * margin());
     const double height = std::ceil(static_cast<double>(size.y));
@@ -103,7 +102,7 @@ class Brush {
  private:
   [[nodiscard]] double margin() const { return std::round(4.0 * static_cast<double>(unit_)); }
 
-  /// `more` pixels larger all around.
+  /// Enlarged by `more` pixels on all sides.
   void arrow(Vec2 from, Vec2 to, double more, ImU32 colour) const {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
     if (length < 1) return;
@@ -122,36 +121,36 @@ class Brush {
   float unit_;
 };
 
-/// Beside the heaviest contacts first, where no other text stands.
+/// Places labels, heaviest contacts first, where they cover no other.
 void write_words(const Brush& brush, const std::vector<ContactMark>& marks, const Viewport& plot,
                  double scale) {
   std::vector<Viewport> taken;
   for (const ContactMark& mark : marks) {
     const Viewport box = box_about(mark.outline);
-    const Viewport room = brush.room_of(mark.words, {box.x, box.y - 3 * scale}, plot);
-    if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(room, other); })) {
+    const Viewport label = brush.box_of(mark.words, {box.x, box.y - 3 * scale}, plot);
+    if (std::ranges::any_of(taken, [&](const Viewport& other) { return overlap(label, other); })) {
       continue;
     }
-    brush.words(room, mark.words);
-    taken.push_back(room);
+    brush.words(label, mark.words);
+    taken.push_back(label);
   }
 }
 
 }  // namespace
 
 std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const SourceInfo& source,
-                                       const Look& look, const Viewport& plot) {
+                                       const RenderSettings& settings, const Viewport& plot) {
   std::vector<ContactMark> marks;
   const std::size_t count = std::min(contacts.heaviest.size(), kMostContactsDrawn);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = contacts.heaviest[i];
     const TrackedContact& contact = contacts.found.contacts[place];
     const ContactQuantities& quantities = contact.quantities;
-    auto outline = outline_of(contacts.extents[place], source, look, plot);
+    auto outline = outline_of(contacts.extents[place], source, settings, plot);
     if (outline.empty() || !overlap(box_about(outline), plot)) continue;
-    const auto centre = seen(source, look, plot, quantities.centre_of_pressure, 0, 0);
+    const auto centre = seen(source, settings, plot, quantities.centre_of_pressure, 0, 0);
     if (!centre) continue;
-    marks.push_back({std::move(outline), *centre, tip_of(quantities, source, look, plot),
+    marks.push_back({std::move(outline), *centre, tip_of(quantities, source, settings, plot),
                      fmt::format("{}  {} N", contact.track_id, three_digits(quantities.normal_n))});
   }
   return marks;
@@ -164,18 +163,18 @@ std::string contacts_left_out(const ShownContacts& contacts) {
 }
 
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,
-                        const Look& look, const Viewport& plot) {
-  const auto marks = contact_marks(contacts, source, look, plot);
-  const Brush brush(list, look.scale);
+                        const RenderSettings& settings, const Viewport& plot) {
+  const auto marks = contact_marks(contacts, source, settings, plot);
+  const Brush brush(list, settings.scale);
   list.PushClipRect(to_imgui({plot.x, plot.y}),
                     to_imgui({plot.x + plot.width, plot.y + plot.height}));
   for (const ContactMark& mark : marks) brush.outline(mark);
   for (const ContactMark& mark : marks) brush.force(mark);
-  write_words(brush, marks, plot, look.scale);
+  write_words(brush, marks, plot, settings.scale);
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
-    const double gap = 4 * look.scale;
+    const double gap = 4 * settings.scale;
     const Vec2 corner{plot.x + gap, plot.y + plot.height - gap};
-    brush.words(brush.room_of(warning, corner, plot), warning);
+    brush.words(brush.box_of(warning, corner, plot), warning);
   }
   list.PopClipRect();
 }

@@ -8,20 +8,20 @@
 
 namespace pillarfield::viewer {
 
-/// Fields where the graphics device reads them: in place, where it can import the host's memory,
-/// and copied to a buffer of the device elsewhere.
+/// Gives the graphics device access to fields: imports host memory where it can, else copies to a
+/// device buffer.
 class FieldMemory {
  public:
   explicit FieldMemory(const gpu::Device& device) : device_(&device) {}
 
-  /// Makes `field` readable; where it must be copied, the copy and its barrier are recorded. The
-  /// commands that were recorded the last time must be done.
+  /// Returns a buffer with `field`; records the copy and its barrier where one is needed. Commands
+  /// recorded earlier must be complete.
   [[nodiscard]] vk::Buffer take(const ShownField& field, const vk::raii::CommandBuffer& commands);
 
-  /// The same for readings, always by a copy: they are few, and rarely looked at.
+  /// Returns a buffer with the readings, always copied: they are few and rarely shown.
   [[nodiscard]] vk::Buffer take_readings(const FrameView& raw);
 
-  /// What is read in place belongs to a source: forget it before its memory goes.
+  /// Drops imported memory; call it before the source frees that memory.
   void forget() { imports_.clear(); }
 
   [[nodiscard]] std::uint64_t bytes_copied() const { return bytes_copied_; }

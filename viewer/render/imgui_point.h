@@ -6,7 +6,7 @@
 
 namespace pillarfield::viewer {
 
-/// A point as Dear ImGui takes it, in pixels.
+/// Converts pixels to Dear ImGui's type.
 inline ImVec2 to_imgui(Vec2 point) {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "viewer/render/contact_marks.h"
+#include "viewer/render/imgui_point.h"
 #include "viewer/render/scene.h"
 #include "viewer/style/ticks.h"
 
@@ -19,25 +20,25 @@ ImU32 packed_colour(const Colour& colour, int alpha = 255) {
   return IM_COL32(colour.red, colour.green, colour.blue, alpha);
 }
 
-/// One picture's writing: where to, and in which colours and sizes.
-struct Pen {
+/// Draw list, colours and sizes of one picture's overlay.
+struct Canvas {
   ImDrawList& list;
-  const Look& look;
-  ImU32 ink;
-  ImU32 faint;
+  const RenderSettings& settings;
+  ImU32 text_colour;
+  ImU32 faint_colour;
 
-  [[nodiscard]] float unit() const { return static_cast<float>(look.scale); }
+  [[nodiscard]] float unit() const { return static_cast<float>(settings.scale); }
 
   void text(double x, double y, const std::string& text, ImU32 colour) const {
     list.AddText(ImVec2(std::round(static_cast<float>(x)), std::round(static_cast<float>(y))),
                  colour, text.c_str());
   }
-  void text(double x, double y, const std::string& words) const { text(x, y, words, ink); }
+  void text(double x, double y, const std::string& words) const { text(x, y, words, text_colour); }
   [[nodiscard]] static ImVec2 size_of(const std::string& text) {
     return ImGui::CalcTextSize(text.c_str());
   }
   void line(double x0, double y0, double x1, double y1, ImU32 colour) const {
-    // Filled, not stroked: whole pixels.
+    // A filled rectangle covers whole pixels.
     const float width = std::max(std::round(unit()), 1.0f);
     const float left = std::round(static_cast<float>(std::min(x0, x1)));
     const float top = std::round(static_cast<float>(std::min(y0, y1)));
@@ -53,65 +54,65 @@ struct Pen {
     line(box.x - 1, box.y - 1, box.x - 1, box.y + box.height, colour);
     line(box.x + box.width, box.y - 1, box.x + box.width, box.y + box.height, colour);
   }
-  [[nodiscard]] Colour special(Special kind) const { return colour_of(kind, look.theme); }
+  [[nodiscard]] Colour special(Special kind) const { return colour_of(kind, settings.theme); }
 };
 
-void write_title(const Pen& pen, const ShownField& field, const SourceInfo& source,
+void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo& source,
                  const Layout& layout) {
-  const double y = layout.plot.y - 25 * pen.unit();
-  const std::string name = pen.look.title.empty() ? source.name : pen.look.title;
-  pen.text(layout.plot.x, y, name);
+  const double y = layout.plot.y - 25 * canvas.unit();
+  const std::string name = canvas.settings.title.empty() ? source.name : canvas.settings.title;
+  canvas.text(layout.plot.x, y, name);
   const std::string frame =
       fmt::format("frame {} of {}   {:.3f} s", field.index + 1, source.frames, field.time_s);
-  const double right = layout.plot.x + layout.plot.width - Pen::size_of(frame).x;
-  if (right > layout.plot.x + Pen::size_of(name).x + 10 * pen.unit()) {
-    pen.text(right, y, frame, pen.faint);
+  const double right = layout.plot.x + layout.plot.width - Canvas::size_of(frame).x;
+  if (right > layout.plot.x + Canvas::size_of(name).x + 10 * canvas.unit()) {
+    canvas.text(right, y, frame, canvas.faint_colour);
   }
 }
 
-void write_axes(const Pen& pen, const TopView& view, const Layout& layout) {
+void write_axes(const Canvas& canvas, const TopView& view, const Layout& layout) {
   const Viewport& plot = layout.plot;
   const double half_width = 0.5 * plot.width / view.pixels_per_mm;
   const double half_height = 0.5 * plot.height / view.pixels_per_mm;
-  const double mark = 5 * pen.unit();
-  const int most_x = std::max(static_cast<int>(plot.width / (70 * pen.unit())), 2);
-  const int most_y = std::max(static_cast<int>(plot.height / (50 * pen.unit())), 2);
+  const double mark = 5 * canvas.unit();
+  const int most_x = std::max(static_cast<int>(plot.width / (70 * canvas.unit())), 2);
+  const int most_y = std::max(static_cast<int>(plot.height / (50 * canvas.unit())), 2);
   for (const Tick& tick :
        ticks(view.centre_mm.x - half_width, view.centre_mm.x + half_width, most_x)) {
     const double x =
         plot.x + 0.5 * plot.width + (tick.value - view.centre_mm.x) * view.pixels_per_mm;
     const double y = plot.y + plot.height;
-    pen.line(x, y, x, y + mark, pen.faint);
-    pen.text(x - 0.5 * Pen::size_of(tick.label).x, y + mark + 1, tick.label);
+    canvas.line(x, y, x, y + mark, canvas.faint_colour);
+    canvas.text(x - 0.5 * Canvas::size_of(tick.label).x, y + mark + 1, tick.label);
   }
   for (const Tick& tick :
        ticks(view.centre_mm.y - half_height, view.centre_mm.y + half_height, most_y)) {
     const double y =
         plot.y + 0.5 * plot.height - (tick.value - view.centre_mm.y) * view.pixels_per_mm;
-    const ImVec2 size = Pen::size_of(tick.label);
-    pen.line(plot.x - mark, y, plot.x, y, pen.faint);
-    pen.text(plot.x - mark - 3 * pen.unit() - size.x, y - 0.5 * size.y, tick.label);
+    const ImVec2 size = Canvas::size_of(tick.label);
+    canvas.line(plot.x - mark, y, plot.x, y, canvas.faint_colour);
+    canvas.text(plot.x - mark - 3 * canvas.unit() - size.x, y - 0.5 * size.y, tick.label);
   }
   const std::string words = "x, y in mm";
-  pen.text(plot.x + plot.width - Pen::size_of(words).x, plot.y + plot.height + 22 * pen.unit(),
-           words, pen.faint);
+  canvas.text(plot.x + plot.width - Canvas::size_of(words).x,
+              plot.y + plot.height + 22 * canvas.unit(), words, canvas.faint_colour);
 }
 
-/// The directions of the sheet's axes, seen from where the picture is seen.
-void write_triad(const Pen& pen, const SourceInfo& source, const Layout& layout) {
-  const Surface& surface = pen.look.surface;
+/// The sheet's axes as seen in the picture.
+void write_triad(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
+  const Surface& surface = canvas.settings.surface;
   const SkinSize size = skin_size(source);
   const SurfaceFrame frame = frame_at(surface, {0, 0});
   const auto seen = [&](const Vec3& way) {
     const double length = 0.1 * std::max(size.width_mm, size.height_mm);
     const Vec3 end{frame.position.x + way.x * length, frame.position.y + way.y * length,
                    frame.position.z + way.z * length};
-    return project(pen.look.view, surface, size, layout.plot, end);
+    return project(canvas.settings.view, surface, size, layout.plot, end);
   };
-  const auto origin = project(pen.look.view, surface, size, layout.plot, frame.position);
+  const auto origin = project(canvas.settings.view, surface, size, layout.plot, frame.position);
   if (!origin) return;
-  const double x0 = layout.plot.x + 46 * pen.unit();
-  const double y0 = layout.plot.y + layout.plot.height - 46 * pen.unit();
+  const double x0 = layout.plot.x + 46 * canvas.unit();
+  const double y0 = layout.plot.y + layout.plot.height - 46 * canvas.unit();
   const std::array<std::pair<const char*, Vec3>, 3> axes{
       {{"x", frame.tangent_x}, {"y", frame.tangent_y}, {"n", frame.normal}}};
   double longest = 1e-9;
@@ -123,20 +124,19 @@ void write_triad(const Pen& pen, const SourceInfo& source, const Layout& layout)
   for (const auto& [name, way] : axes) {
     const auto end = seen(way);
     if (!end) continue;
-    const double factor = 30 * pen.unit() / longest;
+    const double factor = 30 * canvas.unit() / longest;
     const double x = x0 + factor * (end->x - origin->x);
     const double y = y0 + factor * (end->y - origin->y);
-    pen.list.AddLine(ImVec2(static_cast<float>(x0), static_cast<float>(y0)),
-                     ImVec2(static_cast<float>(x), static_cast<float>(y)), pen.ink,
-                     1.5f * pen.unit());
-    pen.text(x + 3 * pen.unit(), y - 9 * pen.unit(), name);
+    canvas.list.AddLine(to_imgui({x0, y0}), to_imgui({x, y}), canvas.text_colour,
+                        1.5f * canvas.unit());
+    canvas.text(x + 3 * canvas.unit(), y - 9 * canvas.unit(), name);
   }
 }
 
-void write_bar(const Pen& pen, const Layout& layout) {
-  const Look& look = pen.look;
+void write_bar(const Canvas& canvas, const Layout& layout) {
+  const RenderSettings& settings = canvas.settings;
   const Viewport& bar = layout.bar;
-  const auto table = table_of(look.map);
+  const auto table = table_of(settings.map);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const auto edge = [&](std::size_t entry) {
       const double share = static_cast<double>(entry) / static_cast<double>(table.size());
@@ -145,31 +145,31 @@ void write_bar(const Pen& pen, const Layout& layout) {
     const auto left = static_cast<float>(bar.x);
     const auto right = static_cast<float>(bar.x + bar.width);
     if (edge(i) > edge(i + 1)) {
-      pen.list.AddRectFilled(ImVec2(left, edge(i + 1)), ImVec2(right, edge(i)),
-                             packed_colour(table[i]));
+      canvas.list.AddRectFilled(ImVec2(left, edge(i + 1)), ImVec2(right, edge(i)),
+                                packed_colour(table[i]));
     }
   }
-  pen.rectangle(bar, pen.faint);
-  const double factor = info_of(look.quantity).factor;
-  const double low = look.range.low * factor;
-  const double high = look.range.high * factor;
-  const int most = std::max(static_cast<int>(bar.height / (25 * pen.unit())), 3);
+  canvas.rectangle(bar, canvas.faint_colour);
+  const double factor = info_of(settings.quantity).factor;
+  const double low = settings.range.low * factor;
+  const double high = settings.range.high * factor;
+  const int most = std::max(static_cast<int>(bar.height / (25 * canvas.unit())), 3);
   for (const Tick& tick : ticks(low, high, most)) {
     const double y = bar.y + bar.height * (1 - (tick.value - low) / (high - low));
     const double x = bar.x + bar.width;
-    pen.line(x, y, x + 4 * pen.unit(), y, pen.faint);
-    pen.text(x + 8 * pen.unit(), y - 0.5 * Pen::size_of(tick.label).y, tick.label);
+    canvas.line(x, y, x + 4 * canvas.unit(), y, canvas.faint_colour);
+    canvas.text(x + 8 * canvas.unit(), y - 0.5 * Canvas::size_of(tick.label).y, tick.label);
   }
 }
 
-/// The legend of a direction: a wheel.
-void write_wheel(const Pen& pen, const Layout& layout) {
+/// The colour wheel of phi.
+void write_wheel(const Canvas& canvas, const Layout& layout) {
   constexpr int kSectors = 128;
   constexpr double kTurn = 2 * std::numbers::pi;
-  const auto table = table_of(pen.look.map);
-  const double radius = std::min(0.5 * layout.bar.height, 46.0 * pen.unit());
-  const double x = layout.bar.x + radius + 14 * pen.unit();
-  const double y = layout.bar.y + radius + 18 * pen.unit();
+  const auto table = table_of(canvas.settings.map);
+  const double radius = std::min(0.5 * layout.bar.height, 46.0 * canvas.unit());
+  const double x = layout.bar.x + radius + 14 * canvas.unit();
+  const double y = layout.bar.y + radius + 18 * canvas.unit();
   const auto at = [&](double angle, double r) {
     return ImVec2(static_cast<float>(x + r * std::cos(angle)),
                   static_cast<float>(y - r * std::sin(angle)));
@@ -178,14 +178,14 @@ void write_wheel(const Pen& pen, const Layout& layout) {
     const double first = kTurn * i / kSectors - std::numbers::pi;
     const double last = kTurn * (i + 1) / kSectors - std::numbers::pi;
     const auto value = static_cast<float>(0.5 * (first + last));
-    const Colour& colour = table[entry_of(value, pen.look.range, Scale::cyclic)];
-    pen.list.AddQuadFilled(at(first, radius), at(last, radius), at(last, 0.55 * radius),
-                           at(first, 0.55 * radius), packed_colour(colour));
+    const Colour& colour = table[entry_of(value, canvas.settings.range, Scale::cyclic)];
+    canvas.list.AddQuadFilled(at(first, radius), at(last, radius), at(last, 0.55 * radius),
+                              at(first, 0.55 * radius), packed_colour(colour));
   }
   const auto label = [&](double angle, const char* words) {
-    const ImVec2 size = Pen::size_of(words);
-    const ImVec2 place = at(angle, radius + 0.5 * size.x + 4 * pen.unit());
-    pen.text(place.x - 0.5 * size.x, place.y - 0.5 * size.y, words);
+    const ImVec2 size = Canvas::size_of(words);
+    const ImVec2 place = at(angle, radius + 0.5 * size.x + 4 * canvas.unit());
+    canvas.text(place.x - 0.5 * size.x, place.y - 0.5 * size.y, words);
   };
   label(0, "0°");
   label(std::numbers::pi / 2, "90°");
@@ -195,127 +195,130 @@ void write_wheel(const Pen& pen, const Layout& layout) {
 
 class LegendList {
  public:
-  LegendList(const Pen& pen, double x, double y) : pen_(pen), x_(x), y_(y) {}
+  LegendList(const Canvas& canvas, double x, double y) : canvas_(canvas), x_(x), y_(y) {}
 
   void add(Special kind, const char* words, bool hatched = false) {
-    const auto side = static_cast<float>(12 * pen_.unit());
+    const auto side = static_cast<float>(12 * canvas_.unit());
     const auto left = static_cast<float>(x_);
-    const auto top = std::round(static_cast<float>(y_ + 3 * pen_.unit()));
+    const auto top = std::round(static_cast<float>(y_ + 3 * canvas_.unit()));
     const ImVec2 corner(left + side, top + side);
-    const ImU32 colour = packed_colour(pen_.special(kind));
+    const ImU32 colour = packed_colour(canvas_.special(kind));
     if (hatched) {
-      pen_.list.PushClipRect(ImVec2(left, top), corner, true);
+      canvas_.list.PushClipRect(ImVec2(left, top), corner, true);
       for (int line = 0; line < 5; ++line) {
-        const float offset = static_cast<float>(5 * line) * pen_.unit();
-        pen_.list.AddLine(ImVec2(left + offset, top), ImVec2(left + offset - side, top + side),
-                          colour, 1.5f * pen_.unit());
+        const float offset = static_cast<float>(5 * line) * canvas_.unit();
+        canvas_.list.AddLine(ImVec2(left + offset, top), ImVec2(left + offset - side, top + side),
+                             colour, 1.5f * canvas_.unit());
       }
-      pen_.list.PopClipRect();
+      canvas_.list.PopClipRect();
     } else {
-      pen_.list.AddRectFilled(ImVec2(left, top), corner, colour);
+      canvas_.list.AddRectFilled(ImVec2(left, top), corner, colour);
     }
-    pen_.list.AddRect(ImVec2(left, top), corner, pen_.faint);
-    pen_.text(x_ + 20 * pen_.unit(), y_, words);
-    y_ += 20 * pen_.unit();
+    canvas_.list.AddRect(ImVec2(left, top), corner, canvas_.faint_colour);
+    canvas_.text(x_ + 20 * canvas_.unit(), y_, words);
+    y_ += 20 * canvas_.unit();
   }
-  void skip(double pixels) { y_ += pixels * pen_.unit(); }
+  void skip(double pixels) { y_ += pixels * canvas_.unit(); }
   [[nodiscard]] double y() const { return y_; }
 
  private:
-  const Pen& pen_;
+  const Canvas& canvas_;
   double x_;
   double y_;
 };
 
-void write_arrow_scale(const Pen& pen, const SourceInfo& source, const Layout& layout, double y) {
-  const Look& look = pen.look;
+void write_arrow_scale(const Canvas& canvas, const SourceInfo& source, const Layout& layout,
+                       double y) {
+  const RenderSettings& settings = canvas.settings;
   const double pitch = source.skin.pillar_pitch_mm();
-  const std::uint32_t block = arrow_block_of(look, layout.plot, pitch);
-  const double cell_pixels = block * pitch * pixels_per_mm(look.view, layout.plot);
+  const std::uint32_t block = arrow_block_of(settings, layout.plot, pitch);
+  const double cell_pixels = block * pitch * pixels_per_mm(settings.view, layout.plot);
   const double length = 1.5 * cell_pixels;
   const double x = layout.legend.x;
-  const double middle = y + 9 * pen.unit();
-  const auto point = [](double px, double py) {
-    return ImVec2(static_cast<float>(px), static_cast<float>(py));
-  };
-  const double head = 5 * pen.unit();
-  pen.list.AddLine(point(x, middle), point(x + length - head, middle), pen.ink, 2 * pen.unit());
-  pen.list.AddTriangleFilled(point(x + length, middle),
-                             point(x + length - head, middle - 3 * pen.unit()),
-                             point(x + length - head, middle + 3 * pen.unit()), pen.ink);
-  const bool from_above = std::holds_alternative<TopView>(look.view);
-  const char* what = from_above ? "shear" : "force";
-  const double sum = full_arrow_n(look) * block * block;
-  pen.text(x, y + 20 * pen.unit(), fmt::format("{} {} N", what, three_digits(sum)));
-  pen.text(x, y + 38 * pen.unit(),
-           block == 1 ? "on a pillar" : fmt::format("on {} × {} pillars", block, block), pen.faint);
+  const double middle = y + 9 * canvas.unit();
+  const double head = 5 * canvas.unit();
+  canvas.list.AddLine(to_imgui({x, middle}), to_imgui({x + length - head, middle}),
+                      canvas.text_colour, 2 * canvas.unit());
+  canvas.list.AddTriangleFilled(
+      to_imgui({x + length, middle}), to_imgui({x + length - head, middle - 3 * canvas.unit()}),
+      to_imgui({x + length - head, middle + 3 * canvas.unit()}), canvas.text_colour);
+  const bool from_above = std::holds_alternative<TopView>(settings.view);
+  const char* name = from_above ? "shear" : "force";
+  const double sum = full_arrow_n(settings) * block * block;
+  canvas.text(x, y + 20 * canvas.unit(), fmt::format("{} {} N", name, three_digits(sum)));
+  canvas.text(x, y + 38 * canvas.unit(),
+              block == 1 ? "on a pillar" : fmt::format("on {} × {} pillars", block, block),
+              canvas.faint_colour);
 }
 
-void write_legend(const Pen& pen, const SourceInfo& source, const Layout& layout) {
-  LegendList list(pen, layout.legend.x, layout.legend.y);
-  const Look& look = pen.look;
-  if (look.quantity == Quantity::region) {
+void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& layout) {
+  LegendList list(canvas, layout.legend.x, layout.legend.y);
+  const RenderSettings& settings = canvas.settings;
+  if (settings.quantity == Quantity::region) {
     list.add(Special::region_1, "1: four usable");
     list.add(Special::region_2, "2: three usable");
     list.add(Special::region_3, "3: two adjacent");
     list.add(Special::region_4, "4: one usable");
     list.add(Special::opposite, "two opposite");
   } else {
-    if (look.quantity == Quantity::status) list.add(Special::sound, "sound");
-    list.add(Special::ambiguous, "ambiguous", look.quantity != Quantity::status && look.hatch);
-    if (look.quantity == Quantity::status) {
-      list.add(Special::from_neighbours, "from neighbours");
+    if (settings.quantity == Quantity::status) list.add(Special::determined, "determined");
+    list.add(Special::ambiguous, "ambiguous",
+             settings.quantity != Quantity::status && settings.hatch);
+    if (settings.quantity == Quantity::status) {
+      list.add(Special::from_contact, "from contact");
     }
     list.add(Special::saturated, "saturated");
     list.add(Special::inconsistent, "inconsistent");
   }
   list.add(Special::idle, "no contact");
   list.skip(12);
-  if (look.arrows) write_arrow_scale(pen, source, layout, list.y());
+  if (settings.arrows) write_arrow_scale(canvas, source, layout, list.y());
 }
 
-void write_bar_title(const Pen& pen, const Layout& layout) {
-  const QuantityInfo& info = info_of(pen.look.quantity);
+void write_bar_title(const Canvas& canvas, const Layout& layout) {
+  const QuantityInfo& info = info_of(canvas.settings.quantity);
   const std::string unit = *info.unit == '\0' ? "" : fmt::format(", {}", info.unit);
-  pen.text(layout.bar.x, layout.bar.y - 26 * pen.unit(), fmt::format("{}{}", info.title, unit));
+  canvas.text(layout.bar.x, layout.bar.y - 26 * canvas.unit(),
+              fmt::format("{}{}", info.title, unit));
 }
 
 }  // namespace
 
-void write_overlay(const Interface& interface, const ShownField& field, const SourceInfo& source,
-                   const Look& look, const Layout& layout, vk::Extent2D size) {
-  interface.use();
+void write_overlay(const GuiContext& gui, const ShownField& field, const SourceInfo& source,
+                   const RenderSettings& settings, const Layout& layout, vk::Extent2D size) {
+  gui.use();
   ImGuiIO& io = ImGui::GetIO();
   io.DisplaySize = ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
   io.DeltaTime = 1;
   ImGui::NewFrame();
-  if (look.contacts && field.contacts != nullptr) {
-    draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts, source, look, layout.plot);
+  if (settings.contacts && field.contacts != nullptr) {
+    draw_contact_marks(*ImGui::GetBackgroundDrawList(), *field.contacts, source, settings,
+                       layout.plot);
   }
-  if (look.legend) {
-    const bool dark = look.theme == Theme::dark;
-    const Pen pen{*ImGui::GetBackgroundDrawList(), look,
-                  dark ? IM_COL32(232, 236, 241, 255) : IM_COL32(22, 26, 32, 255),
-                  dark ? IM_COL32(150, 158, 170, 255) : IM_COL32(96, 104, 116, 255)};
-    pen.rectangle(layout.plot, pen.faint);
-    write_title(pen, field, source, layout);
-    if (const auto* top = std::get_if<TopView>(&look.view)) {
-      write_axes(pen, *top, layout);
+  if (settings.legend) {
+    const bool dark = settings.theme == Theme::dark;
+    const Canvas canvas{*ImGui::GetBackgroundDrawList(), settings,
+                        dark ? IM_COL32(232, 236, 241, 255) : IM_COL32(22, 26, 32, 255),
+                        dark ? IM_COL32(150, 158, 170, 255) : IM_COL32(96, 104, 116, 255)};
+    canvas.rectangle(layout.plot, canvas.faint_colour);
+    write_title(canvas, field, source, layout);
+    if (const auto* top = std::get_if<TopView>(&settings.view)) {
+      write_axes(canvas, *top, layout);
     } else {
-      write_triad(pen, source, layout);
+      write_triad(canvas, source, layout);
     }
-    write_bar_title(pen, layout);
-    const Scale scale = info_of(look.quantity).scale;
+    write_bar_title(canvas, layout);
+    const Scale scale = info_of(settings.quantity).scale;
     if (scale == Scale::cyclic) {
-      write_wheel(pen, layout);
+      write_wheel(canvas, layout);
     } else if (scale != Scale::classes) {
-      write_bar(pen, layout);
+      write_bar(canvas, layout);
     }
     Layout shifted = layout;
     if (scale == Scale::classes) {
-      shifted.legend.y = layout.bar.y;  // No bar: the legend takes its place.
+      shifted.legend.y = layout.bar.y;  // The legend replaces the bar.
     }
-    write_legend(pen, source, shifted);
+    write_legend(canvas, source, shifted);
   }
   ImGui::Render();
 }

@@ -1,16 +1,15 @@
 #pragma once
 
 #include "viewer/gpu/vulkan.h"
-#include "viewer/render/interface.h"
+#include "viewer/render/gui_context.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
-/// Writes what stands around and upon the field: title, axes in millimetres, the colour bar with
-/// its numbers and unit, the meaning of colours and arrows, and contacts. `interface.draw()` then
-/// draws it.
-void write_overlay(const Interface& interface, const ShownField& field, const SourceInfo& source,
-                   const Look& look, const Layout& layout, vk::Extent2D size);
+/// Composes the overlay: title, axes in millimetres, colour bar, legends and contacts. `gui.draw()`
+/// then draws it.
+void write_overlay(const GuiContext& gui, const ShownField& field, const SourceInfo& source,
+                   const RenderSettings& settings, const Layout& layout, vk::Extent2D size);
 
 }  // namespace pillarfield::viewer

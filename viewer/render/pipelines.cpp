@@ -6,11 +6,11 @@
 #include "shaders/arrow_frag.h"
 #include "shaders/arrow_vert.h"
 #include "shaders/cells_comp.h"
-#include "shaders/fan_frag.h"
-#include "shaders/fan_vert.h"
 #include "shaders/heat_frag.h"
 #include "shaders/heat_vert.h"
 #include "shaders/shared.h"
+#include "shaders/uncertainty_sector_frag.h"
+#include "shaders/uncertainty_sector_vert.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -24,7 +24,7 @@ struct Binding {
   vk::ShaderStageFlags stages;
 };
 
-/// The one table of what shaders see.
+/// Descriptor bindings of all shaders.
 constexpr std::array<Binding, 5> kBindings{{
     {shader::kSceneBinding, Type::eUniformBuffer,
      ShaderStage::eVertex | ShaderStage::eFragment | ShaderStage::eCompute},
@@ -57,7 +57,7 @@ vk::raii::ShaderModule make_module(const gpu::Device& device, const std::uint32_
   return {device.handle(), vk::ShaderModuleCreateInfo({}, sizeof(code), code)};
 }
 
-/// How a pipeline meets the depth of what was drawn before.
+/// Use of the depth buffer.
 enum class Depth { written, tested };
 
 vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout layout,
@@ -112,8 +112,9 @@ Pipelines::Pipelines(const gpu::Device& device, vk::RenderPass render_pass)
                               vk::ComputePipelineCreateInfo({}, stage, *layout_));
   arrows_ = make_pipeline(device, *layout_, render_pass, make_module(device, arrow_vert),
                           make_module(device, arrow_frag), Depth::tested);
-  fans_ = make_pipeline(device, *layout_, render_pass, make_module(device, fan_vert),
-                        make_module(device, fan_frag), Depth::tested);
+  sectors_ =
+      make_pipeline(device, *layout_, render_pass, make_module(device, uncertainty_sector_vert),
+                    make_module(device, uncertainty_sector_frag), Depth::tested);
 }
 
 vk::Pipeline Pipelines::heat(const HeatKind& kind) {

@@ -7,7 +7,7 @@
 
 namespace pillarfield::viewer {
 
-/// What shaders/bindings.glsl calls its blocks, one buffer each.
+/// One buffer for each block of shaders/bindings.glsl.
 struct Bindings {
   vk::Buffer scene;
   vk::Buffer colours;
@@ -16,32 +16,32 @@ struct Bindings {
   vk::Buffer cells;
 };
 
-/// What the heat map's shader is compiled for: the constants of shaders/shared.h.
+/// Specialisation constants of the heat map's shader, see shaders/shared.h.
 struct HeatKind {
   std::uint32_t quantity;
   std::uint32_t scale;
   std::uint32_t readings;
   vk::Bool32 means;
 
-  // NOLINTNEXTLINE(modernize-use-nullptr): of comparisons that the compiler writes
+  // NOLINTNEXTLINE(modernize-use-nullptr): defaulted comparison
   friend auto operator<=>(const HeatKind&, const HeatKind&) = default;
 };
 
-/// All pipelines of a picture and the one layout and descriptor set that they share.
+/// The pipelines of a picture, with their common layout and descriptor set.
 class Pipelines {
  public:
   Pipelines(const gpu::Device& device, vk::RenderPass render_pass);
 
-  /// Only between submissions: the set is read while commands run.
+  /// Call it between submissions only: running commands read the set.
   void bind(const Bindings& bindings);
 
   [[nodiscard]] vk::PipelineLayout layout() const { return *layout_; }
   [[nodiscard]] vk::DescriptorSet set() const { return *set_; }
   [[nodiscard]] vk::Pipeline cells() const { return *cells_; }
-  /// Made when it is first asked for, and kept.
+  /// Created on first use and cached.
   [[nodiscard]] vk::Pipeline heat(const HeatKind& kind);
   [[nodiscard]] vk::Pipeline arrows() const { return *arrows_; }
-  [[nodiscard]] vk::Pipeline fans() const { return *fans_; }
+  [[nodiscard]] vk::Pipeline sectors() const { return *sectors_; }
 
  private:
   const gpu::Device* device_;
@@ -55,7 +55,7 @@ class Pipelines {
   vk::raii::ShaderModule heat_fragment_;
   std::map<HeatKind, vk::raii::Pipeline> heat_;
   vk::raii::Pipeline arrows_ = nullptr;
-  vk::raii::Pipeline fans_ = nullptr;
+  vk::raii::Pipeline sectors_ = nullptr;
 };
 
 }  // namespace pillarfield::viewer

@@ -8,18 +8,19 @@ namespace {
 
 using shader::uint;
 
-constexpr float kSmallestForceShare = 0.01f;  ///< of the full force: below it no arrow
+constexpr float kSmallestForceFraction =
+    0.01f;  ///< of the full force; smaller forces have no arrow
 
-/// Pixels along a pillar beyond which the heat map's shader takes no mean, with some air: there it
-/// is 1 / 1.5.
-constexpr double kPixelsOfOne = 0.7;
+/// From this many pixels per pillar the heat map shows single pillars; the shader's own limit is
+/// 1 / 1.5.
+constexpr double kSinglePillarPixels = 0.7;
 
 uint pack(const Colour& colour, unsigned alpha = 255) {
   return static_cast<uint>(colour.red) | static_cast<uint>(colour.green) << 8u |
          static_cast<uint>(colour.blue) << 16u | alpha << 24u;
 }
 
-/// Where a plane begins in the field's memory, in words.
+/// Offset of a plane in the field's memory, in words.
 template <class Value>
 uint plane_of(const ShownField& field, std::span<const Value> plane) {
   if (plane.empty()) return shader::kNoPlane;
@@ -27,17 +28,17 @@ uint plane_of(const ShownField& field, std::span<const Value> plane) {
   return static_cast<uint>((first - field.pages.data()) / 4);
 }
 
-shader::uvec4 cells_in_sight(const SourceInfo& source, const Look& look, const Viewport& plot,
-                             uint block) {
+shader::uvec4 cells_in_sight(const SourceInfo& source, const RenderSettings& settings,
+                             const Viewport& plot, uint block) {
   const uint rows = source.skin.pillar_rows();
   const uint cols = source.skin.pillar_cols();
   uint row_begin = 0;
   uint row_end = rows;
   uint col_begin = 0;
   uint col_end = cols;
-  if (const auto* top = std::get_if<TopView>(&look.view)) {
+  if (const auto* top = std::get_if<TopView>(&settings.view)) {
     const double pitch = source.skin.pillar_pitch_mm();
-    // One cell more at each side: an arrow may be longer than its cell.
+    // One more cell at each side, since arrows may be longer than a cell.
     const auto clamped = [&](double value, uint most) {
       return static_cast<uint>(std::clamp(value, 0.0, static_cast<double>(most)));
     };
@@ -49,7 +50,7 @@ shader::uvec4 cells_in_sight(const SourceInfo& source, const Look& look, const V
     row_begin = clamped((-top->centre_mm.y - half_height) / pitch + 0.5 * rows - air, rows);
     row_end = clamped((-top->centre_mm.y + half_height) / pitch + 0.5 * rows + air + 1, rows);
   }
-  // Cells stay where they are on the skin while the view moves.
+  // Align cells to the skin, so that they do not move with the view.
   row_begin = row_begin / block * block;
   col_begin = col_begin / block * block;
   const auto cells = [&](uint begin, uint end) {
@@ -65,25 +66,28 @@ SkinSize skin_size(const SourceInfo& source) {
   return {source.skin.pillar_cols() * pitch, source.skin.pillar_rows() * pitch};
 }
 
-std::uint32_t arrow_block_of(const Look& look, const Viewport& plot, double pitch_mm) {
-  return arrow_block(pitch_mm * pixels_per_mm(look.view, plot), look.arrow_cell * look.scale);
+std::uint32_t arrow_block_of(const RenderSettings& settings, const Viewport& plot,
+                             double pitch_mm) {
+  return arrow_block(pitch_mm * pixels_per_mm(settings.view, plot),
+                     settings.arrow_cell * settings.scale);
 }
 
-double full_arrow_n(const Look& look) {
-  return std::holds_alternative<TopView>(look.view) ? look.full_shear_n : look.full_force_n;
+double full_arrow_n(const RenderSettings& settings) {
+  return std::holds_alternative<TopView>(settings.view) ? settings.full_shear_n
+                                                        : settings.full_force_n;
 }
 
-double arrow_mm_per_newton(const Look& look, double pitch_mm, std::uint32_t block) {
-  return 1.5 * pitch_mm / (full_arrow_n(look) * block);
+double arrow_mm_per_newton(const RenderSettings& settings, double pitch_mm, std::uint32_t block) {
+  return 1.5 * pitch_mm / (full_arrow_n(settings) * block);
 }
 
-shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const Look& look,
-                       const Viewport& plot) {
-  const bool from_above = std::holds_alternative<TopView>(look.view);
+shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
+                       const RenderSettings& settings, const Viewport& plot) {
+  const bool from_above = std::holds_alternative<TopView>(settings.view);
   const SkinSize size = skin_size(source);
   const double pitch = source.skin.pillar_pitch_mm();
-  const Surface surface = from_above ? Surface{} : look.surface;
-  const std::uint32_t block = arrow_block_of(look, plot, pitch);
+  const Surface surface = from_above ? Surface{} : settings.surface;
+  const std::uint32_t block = arrow_block_of(settings, plot, pitch);
   const std::uint32_t mesh = surface.kind == SurfaceKind::plane ? 1 : 96;
   const auto plane = [&](Uncertainty kind) {
     return plane_of(field, field.forces.uncertainty[kind]);
@@ -91,7 +95,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const 
   const auto narrow = [](double value) { return static_cast<float>(value); };
 
   shader::Scene scene;
-  scene.clip_from_world = clip_from_world(look.view, surface, size, plot);
+  scene.clip_from_world = clip_from_world(settings.view, surface, size, plot);
   scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch),
                  narrow(surface.radius_mm)};
   scene.grid = {field.forces.rows, field.forces.cols, mesh, 1};
@@ -106,40 +110,40 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source, const 
   scene.incline = {plane(Uncertainty::theta_low), plane(Uncertainty::theta_high), 0, 0};
   scene.readings = {0, static_cast<uint>(field.raw.row_stride), field.raw.data != nullptr ? 1u : 0u,
                     static_cast<uint>(surface.kind)};
-  const double hatch = std::max(std::round(5 * look.scale), 4.0);
-  scene.shown = {look.hatch ? 1u : 0u, static_cast<uint>(hatch), 0, 0};
-  scene.range = {look.range.low, look.range.high - look.range.low,
-                 kSmallestForceShare * narrow(full_arrow_n(look)), 0};
+  const double hatch = std::max(std::round(5 * settings.scale), 4.0);
+  scene.shown = {settings.hatch ? 1u : 0u, static_cast<uint>(hatch), 0, 0};
+  scene.range = {settings.range.low, settings.range.high - settings.range.low,
+                 kSmallestForceFraction * narrow(full_arrow_n(settings)), 0};
   scene.viewport = {narrow(plot.x), narrow(plot.y), narrow(plot.width), narrow(plot.height)};
-  scene.cells = cells_in_sight(source, look, plot, block);
+  scene.cells = cells_in_sight(source, settings, plot, block);
   scene.block = {block, from_above ? 1u : 0u, 0, 0};
-  scene.arrow = {narrow(arrow_mm_per_newton(look, pitch, block)), narrow(6 * look.scale),
-                 narrow(1.3 * look.scale), from_above ? 0.5f : 1.0f};
+  scene.arrow = {narrow(arrow_mm_per_newton(settings, pitch, block)), narrow(6 * settings.scale),
+                 narrow(1.3 * settings.scale), from_above ? 0.5f : 1.0f};
   const Colour white{255, 255, 255};
   const Colour black{12, 14, 18};
-  scene.ink = {pack(white), pack(black), pack(white, 110), 0};
+  scene.layer_colours = {pack(white), pack(black), pack(white, 110), 0};
   return scene;
 }
 
-HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source, const Look& look,
-                      const Viewport& plot) {
-  const Scale scale = info_of(look.quantity).scale;
-  // Directions and classes have no mean, and seen from above all pixels cover as many pillars.
-  const double pixels = source.skin.pillar_pitch_mm() * pixels_per_mm(look.view, plot);
-  const bool near = std::holds_alternative<TopView>(look.view) && pixels > kPixelsOfOne;
+HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
+                      const RenderSettings& settings, const Viewport& plot) {
+  const Scale scale = info_of(settings.quantity).scale;
+  // Directions and classes have no mean; in a top view all pixels cover equally many pillars.
+  const double pixels = source.skin.pillar_pitch_mm() * pixels_per_mm(settings.view, plot);
+  const bool near = std::holds_alternative<TopView>(settings.view) && pixels > kSinglePillarPixels;
   const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
-  return {static_cast<uint>(look.quantity), static_cast<uint>(scale),
-          look.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,
+  return {static_cast<uint>(settings.quantity), static_cast<uint>(scale),
+          settings.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,
           has_mean && !near ? VK_TRUE : VK_FALSE};
 }
 
-shader::Colours colours_of(const Look& look) {
+shader::Colours colours_of(const RenderSettings& settings) {
   shader::Colours colours;
-  const auto table = table_of(look.map);
+  const auto table = table_of(settings.map);
   for (std::size_t i = 0; i < table.size(); ++i) colours.entries.at(i).x = pack(table[i]);
   for (std::size_t i = 0; i < kSpecials; ++i) {
     colours.entries.at(shader::kFirstSpecial + i).x =
-        pack(colour_of(static_cast<Special>(i), look.theme));
+        pack(colour_of(static_cast<Special>(i), settings.theme));
   }
   return colours;
 }

@@ -4,14 +4,13 @@
 
 #include "viewer/source/field_producer.h"
 #include "viewer/source/selection.h"
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
-/// The outline of pillars on the skin in pixels of `plot`'s picture, without the first point again
-/// at the end. Where the skin is bent its sides have points in between. Empty where a part of it is
-/// behind the eye.
+/// Outline of a rectangle of pillars, in pixels, as an open-ended polygon; sides on a curved skin
+/// have intermediate points. Empty where a part lies behind the eye.
 [[nodiscard]] std::vector<Vec2> outline_of(const PillarRect& rect, const SourceInfo& source,
-                                           const Look& look, const Viewport& plot);
+                                           const RenderSettings& settings, const Viewport& plot);
 
 }  // namespace pillarfield::viewer

@@ -41,7 +41,7 @@ vk::raii::RenderPass Target::make_render_pass(const gpu::Device& device) {
   const auto draws =
       Stage::eColorAttachmentOutput | Stage::eEarlyFragmentTests | Stage::eLateFragmentTests;
   const std::array dependencies{
-      // The last picture was copied from, and its depth is used again.
+      // Wait for the copy of the last picture, and reuse its depth.
       vk::SubpassDependency(VK_SUBPASS_EXTERNAL, 0, draws | Stage::eTransfer, draws,
                             Access::eDepthStencilAttachmentWrite | Access::eTransferRead,
                             Access::eColorAttachmentWrite | Access::eDepthStencilAttachmentRead |

@@ -7,14 +7,14 @@
 
 namespace pillarfield::viewer {
 
-/// Red, green, blue, alpha, a byte each, row by row from the top.
+/// RGBA, 8 bits each, rows from the top.
 struct Pixels {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<std::uint8_t> rgba;
 };
 
-/// An image to draw a picture into, with depth. After its render pass it can be copied from.
+/// Colour and depth images of a picture; after the render pass the colour image can be copied.
 class Target {
  public:
   Target(const gpu::Device& device, vk::RenderPass render_pass, vk::Extent2D size);
@@ -32,7 +32,7 @@ class Target {
   vk::raii::Framebuffer framebuffer_ = nullptr;
 };
 
-/// Reads a picture that was drawn and whose commands are done.
+/// Reads back a picture whose commands are complete.
 [[nodiscard]] Pixels read_pixels(const gpu::Device& device, const gpu::Image& image);
 
 }  // namespace pillarfield::viewer

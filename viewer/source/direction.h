@@ -2,7 +2,7 @@
 
 namespace pillarfield::viewer {
 
-/// Magnitude and direction of a force; (theta, phi) is where it comes from
+/// Magnitude of a force and the direction (theta, phi) from which it comes
 /// (docs/derivations/pillar_model.md, equation M2).
 struct Direction {
   float magnitude = 0;  ///< N
@@ -10,8 +10,8 @@ struct Direction {
   float phi = 0;        ///< rad in the plane of the skin, (-pi, pi]; 0 without shear
 };
 
-/// Of a force in newtons, in single precision as a solver with angles gives it: within 3 ULP of the
-/// exact values, as its are.
+/// Computes the direction of a force in newtons, within 3 ULP of the exact values, the bound of a
+/// solver with angles.
 [[nodiscard]] Direction direction_of(float shear_x, float shear_y, float normal);
 
 }  // namespace pillarfield::viewer

@@ -11,8 +11,8 @@
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
 #include "viewer/source/force_file_producer.h"
+#include "viewer/source/frame_provider.h"
 #include "viewer/source/frame_rate.h"
-#include "viewer/source/frame_supply.h"
 #include "viewer/source/solved_producer.h"
 
 namespace pillarfield::viewer {
@@ -26,7 +26,7 @@ Processor processor_for(const SolverPlan& plan, const ProducerOptions& options) 
            .on_compiling = options.on_compiling}};
 }
 
-/// What plan and processor tell of themselves.
+/// Fills in the properties that plan and processor determine.
 void describe(SourceInfo& info, const SolverPlan& plan, const Processor& processor) {
   info.skin = plan.skin;
   info.calibration = plan.calibration;
@@ -40,7 +40,7 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
                             processor.shares_memory() ? "zero copy" : "staged");
 }
 
-/// How many frames of a scene are simulated; says so where not all are.
+/// Number of frames to simulate of a scene; adds a warning where it is not all.
 std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptions& options,
                                  SourceInfo& info) {
   constexpr std::uint64_t kMiB = 1U << 20U;
@@ -62,7 +62,7 @@ std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptio
                     fitting, scene.frames, options.memory_bytes / kMiB));
   } else if (wanted < scene.frames) {
     info.warnings.push_back(
-        fmt::format("The first {} of {} frames are shown, as asked.", wanted, scene.frames));
+        fmt::format("The first {} of {} frames are shown, as requested.", wanted, scene.frames));
   }
   return std::min(wanted, fitting);
 }
@@ -78,12 +78,12 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   info.rate_hz = scene.rate_hz;
   const std::uint64_t frames = frames_to_simulate(simulator, options, info);
   if (scene.baseline_time_s) {
-    info.warnings.emplace_back("The baseline is not followed: frames are solved in any order.");
+    info.warnings.emplace_back("The baseline is fixed: frames are solved in any order.");
   }
-  if (remembers(scene.estimator, scene.friction)) {
+  if (carries_prior(scene.estimator, scene.friction)) {
     info.warnings.emplace_back(
-        "Frames that are played know of the one before, one that is jumped to is solved by "
-        "itself.");
+        "Played frames carry friction over from the frame before; a frame that is jumped to is "
+        "solved alone.");
   }
   SolverPlan plan;
   plan.skin = scene.skin;
@@ -91,7 +91,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   plan.calibration = simulator.calibration();
   set_solver(plan, scene);
   plan = shown_plan(std::move(plan));
-  // Before the simulation: what a device has against it shall not come after minutes.
+  // Before the simulation, so that errors of the device come at once.
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   return std::make_unique<SolvedProducer>(
@@ -102,7 +102,7 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                                               const ProducerOptions& options) {
   std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});
   if (source->frames() == 0) {
-    throw Error(path.string(), "it has no frames", "give a recording with one at least");
+    throw Error(path.string(), "it has no frames", "give a recording with at least one frame");
   }
   SourceInfo info;
   info.name = path.filename().string();
@@ -123,9 +123,14 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 
 }  // namespace
 
+void throw_all_fields_in_use() {
+  throw Error("FieldProducer", fmt::format("all {} fields are in use", FieldProducer::kMostShown),
+              "release one before producing another");
+}
+
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
-  if (!watch_) watch_.emplace(info().skin.pillar_pitch_mm(), info().contacts);
-  return watch_->contacts_of(field);
+  if (!found_contacts_) found_contacts_.emplace(info().skin.pillar_pitch_mm(), info().contacts);
+  return found_contacts_->contacts_of(field);
 }
 
 std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,

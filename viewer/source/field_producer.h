@@ -17,67 +17,70 @@
 
 namespace pillarfield::viewer {
 
-/// What there is to see in a source.
+/// Properties of a source of fields.
 struct SourceInfo {
   std::string name;           ///< of the file
   std::string kind;           ///< "scene", "recording", "Tekscan ASCII" or "force field"
-  Skin skin;                  ///< of a force file only size and pitch are known
-  Calibration calibration;    ///< empty of a force file
+  Skin skin;                  ///< a force file gives only size and pitch
+  Calibration calibration;    ///< empty for a force file
   std::uint64_t frames = 0;   ///< at least one
-  double rate_hz = 100;       ///< frames per second of the source's own time
+  double rate_hz = 100;       ///< frames per second, by the times in the source
   bool has_readings = false;  ///< ShownField::raw has data
-  bool has_angles = false;    ///< magnitude, theta and phi; true of all sources there are
+  bool has_angles = false;    ///< magnitude, theta and phi; true for all sources
   bool has_uncertainty = false;
-  std::string solver;  ///< "direct on NAME OF DEVICE, zero copy"; for a force file who solved it
-  ContactOptions contacts = {};       ///< what is known of contacts that are looked for
-  std::vector<std::string> warnings;  ///< what a user should know, one sentence each
+  std::string solver;            ///< "direct on DEVICE, zero copy"; from a force file its solver
+  ContactOptions contacts = {};  ///< for contacts found here
+  std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// Makes the fields of a source, one by one and in any order. For one thread.
+/// Produces the fields of a source one by one, in any order. Not thread safe.
 class FieldProducer {
  public:
   static constexpr int kMostShown = 6;
 
   FieldProducer() = default;
-  virtual ~FieldProducer() = default;  ///< fields that are alive stay as they are
+  virtual ~FieldProducer() = default;  ///< fields that are alive stay valid
   FieldProducer(const FieldProducer&) = delete;
   FieldProducer& operator=(const FieldProducer&) = delete;
 
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
 
-  /// The field of frame `index`, read or solved now, always with angles. At most kMostShown fields
-  /// may be alive at a time, whose copies may go in any thread; throws Error beyond, and where
-  /// there is no such frame or reading or solving fails.
+  /// Reads or solves frame `index`, always with angles. At most kMostShown fields may be alive at a
+  /// time; any thread may destroy them. Throws Error beyond that limit, for a missing frame, and
+  /// where reading or solving fails.
   [[nodiscard]] virtual ShownField produce(std::uint64_t index) = 0;
 
-  /// The contacts of the field that was produced last: those that the source knows, or else such as
-  /// are found now, by what was asked for before. Throws Error where reading fails.
+  /// Returns the contacts of the field that was produced last: those stored in the source, else
+  /// contacts found now and tracked from earlier calls. Throws Error where reading fails.
   [[nodiscard]] virtual ShownContacts contacts_of(const ShownField& field);
 
-  /// Looks whether the source has grown (a recording that is still being written); true if its
-  /// number of frames is another now, which info() tells.
+  /// Checks whether a source that is still being written has grown; returns true where
+  /// info().frames has changed.
   virtual bool refresh() { return false; }
 
  private:
-  std::optional<ContactWatch> watch_;
+  std::optional<FieldContacts> found_contacts_;
 };
+
+/// Throws Error: kMostShown fields of a producer are alive.
+[[noreturn]] void throw_all_fields_in_use();
 
 struct ProducerOptions {
   std::string device = {};  ///< as open_device() takes it
   Memory memory = Memory::automatic;
-  ReadOptions read = {};  ///< of a file, when it is opened first
-  /// Frames of a scene are simulated beforehand, as many as it has and fit.
+  ReadOptions read = {};  ///< for the first opening of a file
+  /// Limit on the frames of a scene, which are all simulated beforehand.
   std::uint64_t memory_bytes = std::uint64_t{2} << 30;
   std::uint64_t most_frames = 0;                              ///< of a scene; 0: all
   std::function<void(const std::string&)> on_compiling = {};  ///< as Processor::Options has it
 };
 
-/// Opens a scene (.toml), a recording, a Tekscan ASCII export or a file of force fields, told apart
-/// by name (scenes) and content (the others). Frames of the first three are solved with angles, and
-/// with uncertainty where the noise is known and the estimator can tell. A scene's baseline stays,
-/// since frames may come in any order; where its frames are close in time, one that is produced
-/// right after the frame before it knows of that.
-/// `progress` is called with shares 0..1 while a scene is simulated; it may throw to stop. Throws
+/// Opens a scene (.toml), a recording, a Tekscan ASCII export or a file of force fields; the name
+/// identifies a scene, the content any other. Frames of the first three are solved with angles, and
+/// with uncertainty where the noise is known and the estimator supports it. The baseline is fixed,
+/// since frames may come in any order. A frame that directly follows its predecessor uses the
+/// friction carried over from it, where the plan has `memory`.
+/// `progress` receives fractions 0..1 while a scene is simulated; it may throw to stop. Throws
 /// Error where the source cannot be opened or has no frames.
 [[nodiscard]] std::unique_ptr<FieldProducer> open_producer(
     const std::filesystem::path& path, const ProducerOptions& options,

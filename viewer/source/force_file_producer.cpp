@@ -9,12 +9,11 @@
 #include "pillarfield/solver_plan.h"
 #include "viewer/source/direction.h"
 #include "viewer/source/frame_rate.h"
-#include "viewer/source/too_many_shown.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-/// open_producer() has probed the file, unless it is trusted.
+/// open_producer() probes every file that is not trusted.
 constexpr ReadOptions kProbed = {.trust = true};
 
 std::string solver_of(const ForceFileInfo& info) {
@@ -26,7 +25,7 @@ std::string solver_of(const ForceFileInfo& info) {
 SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& reader) {
   const ForceFileInfo& file = reader.info();
   if (reader.frames() == 0) {
-    throw Error(path.string(), "it has no frames", "give a file with one at least");
+    throw Error(path.string(), "it has no frames", "give a file with at least one frame");
   }
   SourceInfo info;
   info.name = path.filename().string();
@@ -42,7 +41,7 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   return info;
 }
 
-/// As component_ends() takes it.
+/// The argument of component_ends().
 std::optional<double> direct_point_of(const ForceFileInfo& file) {
   return file.estimator == name_of(Estimator::direct) ? file.segment_point : std::nullopt;
 }
@@ -84,8 +83,8 @@ ForceFileProducer::ForceFileProducer(const std::filesystem::path& path)
 
 ShownField ForceFileProducer::produce(std::uint64_t index) {
   if (!reader_) open(file_.path());
-  const std::shared_ptr<PlaneBlock> block = blocks_.lend();
-  if (block == nullptr) throw_too_many_shown();
+  const std::shared_ptr<PlaneBlock> block = blocks_.acquire();
+  if (block == nullptr) throw_all_fields_in_use();
   const double time_s = reader_->read(index, forces_);
   fill(*block, forces_);
   return {.forces = block->view(),
@@ -108,14 +107,14 @@ void ForceFileProducer::open(const std::filesystem::path& path) {
   const ForceFileInfo& found = reader.info();
   if (found.rows != info_.skin.pillar_rows() || found.cols != info_.skin.pillar_cols() ||
       found.uncertainty != info_.has_uncertainty || reader.frames() == 0) {
-    throw Error(path.string(), "it became another file of forces", "open it anew");
+    throw Error(path.string(), "it was replaced by another force file", "open it again");
   }
   reader_ = std::move(reader);
 }
 
 bool ForceFileProducer::refresh() {
   if (!file_.may_have_changed()) return false;
-  reader_.reset();  // HDF5 shows a file that it has open as it was.
+  reader_.reset();  // HDF5 does not show new data in a file that it holds open.
   if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
   const std::uint64_t before = std::exchange(info_.frames, reader_->frames());
   return info_.frames != before;

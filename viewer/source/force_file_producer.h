@@ -6,16 +6,16 @@
 #include "pillarfield/force_file.h"
 #include "viewer/source/field_producer.h"
 #include "viewer/source/growing_file.h"
-#include "viewer/source/lending_pool.h"
+#include "viewer/source/object_pool.h"
 #include "viewer/source/plane_block.h"
 
 namespace pillarfield::viewer {
 
-/// Fields as a file has them, with magnitude and angles computed from the forces.
+/// Reads fields from a file; computes magnitude and angles from the forces.
 class ForceFileProducer final : public FieldProducer {
  public:
-  /// Of a file that is trusted or that probe_file() has passed. Throws Error where it cannot be
-  /// read or has no frames.
+  /// The file is trusted or has passed probe_file(). Throws Error where it cannot be read or has no
+  /// frames.
   explicit ForceFileProducer(const std::filesystem::path& path);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
@@ -27,10 +27,10 @@ class ForceFileProducer final : public FieldProducer {
   void open(const std::filesystem::path& path);
 
   GrowingFile file_;
-  std::optional<ForceFileReader> reader_;  ///< none where it could not be opened again
+  std::optional<ForceFileReader> reader_;  ///< none where reopening failed
   SourceInfo info_;
-  ForceField forces_;  ///< as read last
-  LendingPool<PlaneBlock> blocks_;
+  ForceField forces_;  ///< read last
+  ObjectPool<PlaneBlock> blocks_;
   ContactLabels map_;
 };
 

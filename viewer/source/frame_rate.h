@@ -5,8 +5,8 @@
 
 namespace pillarfield::viewer {
 
-/// Frames per second of a source, from the median step between the times of its first frames, of
-/// which `time_of` tells; 100 where they do not rise.
+/// Frames per second: the inverse of the median step between the times of the first frames; 100
+/// where the times do not rise.
 [[nodiscard]] double frame_rate(std::uint64_t frames,
                                 const std::function<double(std::uint64_t)>& time_of);
 

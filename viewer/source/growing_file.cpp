@@ -10,20 +10,20 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// The times of files go in steps of some milliseconds.
-constexpr std::chrono::milliseconds kSettled(20);
+/// Upper bound of the resolution of file time stamps.
+constexpr std::chrono::milliseconds kTimeResolution(20);
 
 }  // namespace
 
-GrowingFile::GrowingFile(std::filesystem::path path) : path_(std::move(path)), seen_(look()) {}
+GrowingFile::GrowingFile(std::filesystem::path path) : path_(std::move(path)), seen_(snapshot()) {}
 
-GrowingFile::Look GrowingFile::look() const {
-  std::error_code failed;  // A file that is away for a moment is no reason to end.
-  Look found;
+GrowingFile::Snapshot GrowingFile::snapshot() const {
+  std::error_code failed;  // Ignored: a writer may replace the file.
+  Snapshot found;
   found.bytes = std::filesystem::file_size(path_, failed);
   if (!failed) found.written = std::filesystem::last_write_time(path_, failed);
   if (failed) return {};
-  found.is_settled = std::filesystem::file_time_type::clock::now() > found.written + kSettled;
+  found.is_final = std::filesystem::file_time_type::clock::now() > found.written + kTimeResolution;
   return found;
 }
 
@@ -41,8 +41,8 @@ bool GrowingFile::reopen(const std::function<void(const std::filesystem::path&)>
     try {
       open(path());
       return true;
-    } catch (const Error&) {                              // Perhaps the next time.
-    } catch (const std::filesystem::filesystem_error&) {  // It got its final name just now.
+    } catch (const Error&) {                              // Try again.
+    } catch (const std::filesystem::filesystem_error&) {  // It was just renamed.
     }
   }
   seen_ = {};
@@ -51,10 +51,10 @@ bool GrowingFile::reopen(const std::function<void(const std::filesystem::path&)>
 
 bool GrowingFile::may_have_changed() {
   static_cast<void>(path());
-  const Look found = look();
+  const Snapshot found = snapshot();
   if (found.bytes == 0) return false;
-  const Look before = std::exchange(seen_, found);
-  return !before.is_settled || before.bytes != found.bytes || before.written != found.written;
+  const Snapshot before = std::exchange(seen_, found);
+  return !before.is_final || before.bytes != found.bytes || before.written != found.written;
 }
 
 }  // namespace pillarfield::viewer

@@ -6,34 +6,33 @@
 
 namespace pillarfield::viewer {
 
-/// A file that another program may still write to, seen from outside.
+/// A file that another program may still be writing.
 class GrowingFile {
  public:
   explicit GrowingFile(std::filesystem::path path);
 
-  /// Whether it may have changed since this was last asked, or since it was made: also where it was
-  /// written so shortly before that its time could not tell. A file that was written as NAME.part
-  /// and is finished goes on under NAME.
+  /// True if the file may have changed since the last call (or construction), including a change
+  /// within the resolution of its time stamp. NAME.part becomes NAME when its writer finishes.
   [[nodiscard]] bool may_have_changed();
 
-  /// Calls `open` with the path until it throws no Error nor filesystem_error, five times at most
-  /// within a twentieth of a second: its writer may be about it. False where it threw each time;
-  /// the file then counts as changed when asked next.
+  /// Calls `open` with the path until it succeeds, at most five times within 50 ms, since a writer
+  /// may be active. Returns false where each call threw Error or filesystem_error; the file then
+  /// counts as changed.
   bool reopen(const std::function<void(const std::filesystem::path&)>& open);
 
-  /// Its name by now.
+  /// The current name.
   [[nodiscard]] const std::filesystem::path& path();
 
  private:
-  struct Look {
+  struct Snapshot {
     std::uintmax_t bytes = 0;
     std::filesystem::file_time_type written;
-    bool is_settled = false;  ///< a later write would have a later time
+    bool is_final = false;  ///< any later write has a later time stamp
   };
-  [[nodiscard]] Look look() const;
+  [[nodiscard]] Snapshot snapshot() const;
 
   std::filesystem::path path_;
-  Look seen_;
+  Snapshot seen_;
 };
 
 }  // namespace pillarfield::viewer

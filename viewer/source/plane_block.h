@@ -9,15 +9,15 @@
 
 namespace pillarfield::viewer {
 
-/// The planes of a field with angles in one block of whole pages, each plane on a page of its own,
-/// as a Processor lays them out. Zero at first.
+/// The planes of a field with angles in one zeroed block of whole pages; each plane begins on a
+/// page, as in a Processor.
 class PlaneBlock {
  public:
   enum Plane : std::size_t { kShearX, kShearY, kNormal, kMagnitude, kTheta, kPhi, kUncertainty };
 
   PlaneBlock(std::uint32_t rows, std::uint32_t cols, bool uncertainty);
 
-  /// The planes of Uncertainty follow from kUncertainty on; they are empty where there are none.
+  /// Planes of Uncertainty follow from kUncertainty on, empty for a field without.
   [[nodiscard]] std::span<float> plane(std::size_t which);
   [[nodiscard]] std::span<const float> plane(std::size_t which) const;
   [[nodiscard]] std::span<std::uint8_t> status();
@@ -31,15 +31,15 @@ class PlaneBlock {
     void operator()(std::byte* memory) const;
   };
 
-  /// Where plane `which` begins; the status lies behind all others.
+  /// Begin of plane `which`; the status plane is last.
   [[nodiscard]] float* place(std::size_t which) const;
   [[nodiscard]] std::uint8_t* status_place() const;
   [[nodiscard]] std::size_t pillars() const { return std::size_t{rows_} * cols_; }
 
   std::uint32_t rows_;
   std::uint32_t cols_;
-  std::size_t planes_;       ///< of floats
-  std::size_t plane_bytes_;  ///< from one to the next
+  std::size_t planes_;       ///< number of float planes
+  std::size_t plane_bytes_;  ///< distance between planes
   std::size_t bytes_;
   std::unique_ptr<std::byte[], Free> pages_;
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Playback::Time kMostBehind = std::chrono::seconds(1);
 
-/// Within the limits, also where it is not a number.
+/// Clamps; NaN becomes a limit.
 double limited(double value, double least, double most) {
   return value > least ? std::min(value, most) : least;
 }
@@ -22,7 +22,7 @@ double limited_rate(double rate_hz) { return limited(rate_hz, 1e-3, 1e6); }
 Playback::Playback(std::uint64_t frames, double rate_hz)
     : frames_(frames), rate_hz_(limited_rate(rate_hz)), shown_since_(Time::min()) {
   if (frames == 0)
-    throw Error("Playback", "there are no frames", "give a source with one at least");
+    throw Error("Playback", "there are no frames", "give a source with at least one frame");
 }
 
 Playback::Time Playback::due() const {
@@ -62,7 +62,7 @@ void Playback::again(Time now) { show(frame_, now); }
 
 void Playback::step(std::int64_t frames, Time now) {
   pause();
-  // No source has more frames than a signed number counts.
+  // Frame counts fit into a signed number.
   const auto count = static_cast<std::int64_t>(frames_);
   const auto here = static_cast<std::int64_t>(frame_);
   const std::int64_t target = loops_ ? ((here + frames % count) % count + count) % count
@@ -75,7 +75,7 @@ void Playback::change_pace(double& pace, double value, Time now) {
   const Time left = due() - now;
   pace = value;
   const double share = std::chrono::duration<double, std::nano>(left).count() / before_ns;
-  // One that is late stays as late as it is.
+  // A late frame stays as late.
   restart(left.count() <= 0 ? now + left : now + Time(std::llround(share * period_ns())));
 }
 
@@ -111,7 +111,7 @@ std::uint64_t Playback::give(std::uint64_t frame) {
 std::optional<std::uint64_t> Playback::next(Time now) {
   if (std::exchange(shown_since_, std::nullopt)) return give(frame_);
   if (!playing_ || now < due()) return std::nullopt;
-  if (!loops_ && frame_ == last()) {  // The loop ended while the last frame was shown.
+  if (!loops_ && frame_ == last()) {  // Looping was switched off at the last frame.
     playing_ = false;
     return std::nullopt;
   }

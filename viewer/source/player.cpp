@@ -13,7 +13,7 @@ namespace {
 
 using Time = Playback::Time;
 
-/// How often a source that is followed is looked at.
+/// Interval between refreshes of a followed source.
 constexpr Time kRefreshEvery = std::chrono::milliseconds(100);
 
 Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
@@ -33,7 +33,7 @@ struct Player::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  /// Changes what the thread does next, and wakes it.
+  /// Changes the play head and wakes the thread.
   template <class Change>
   void command(Change change) {
     {
@@ -43,7 +43,7 @@ struct Player::State {
     changed.notify_one();
   }
 
-  // What follows runs in the thread. `lock` holds `mutex` before and after.
+  // Run in the thread. `lock` holds `mutex` on entry and exit.
   void run();
   void produce_until_stopped();
   void wait(std::unique_lock<std::mutex>& lock);
@@ -51,10 +51,10 @@ struct Player::State {
   void produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock);
   void wake_display();
 
-  const std::unique_ptr<FieldProducer> producer;  ///< of the thread alone, once that runs
+  const std::unique_ptr<FieldProducer> producer;  ///< used by the thread only, once it runs
   const SourceInfo info;
 
-  std::mutex mutex;  ///< of all that follows, up to `failed`
+  std::mutex mutex;  ///< guards the members up to `failed`
   std::condition_variable changed;
   Playback playback;
   PlayerStatistics counts;
@@ -65,10 +65,10 @@ struct Player::State {
   bool stopping = false;
   std::exception_ptr failed;
 
-  std::mutex waking;  ///< of `wake`; held while it runs, never together with `mutex`
+  std::mutex waking;  ///< guards `wake`, also while it runs; never held together with `mutex`
   std::function<void()> wake;
 
-  std::thread thread;  ///< last: it uses the others from its first moment
+  std::thread thread;  ///< last: uses the other members
 };
 
 void Player::State::run() {

@@ -11,21 +11,20 @@
 
 namespace pillarfield::viewer {
 
-/// What was measured since the player was made, and lately (the last second or so).
-/// Of what was produced each field was taken, was not shown, or waits:
+/// Counts since construction, and rates and times over about the last second.
 /// produced = taken + not_shown + waiting.
 struct PlayerStatistics {
   std::uint64_t produced = 0;    ///< fields solved or read
-  std::uint64_t taken = 0;       ///< of them, given to the display
-  std::uint64_t not_shown = 0;   ///< replaced by a newer one before the display took them
+  std::uint64_t taken = 0;       ///< passed to the display
+  std::uint64_t not_shown = 0;   ///< replaced by a newer one before being taken
   std::uint64_t waiting = 0;     ///< 0 or 1, not taken yet
-  double produced_hz = 0;        ///< lately
-  double produce_ms_median = 0;  ///< time to solve or read one field, and its contacts, lately
+  double produced_hz = 0;        ///< recent
+  double produce_ms_median = 0;  ///< recent time to solve or read one field and its contacts
   double produce_ms_worst = 0;
-  double behind_ms = 0;  ///< by how much the play head is late
+  double behind_ms = 0;  ///< delay of the play head
 };
 
-/// The state of the play head, copied.
+/// A copy of the play head's state.
 struct PlayerState {
   std::uint64_t frame = 0;
   std::uint64_t frames = 0;
@@ -36,21 +35,20 @@ struct PlayerState {
   double rate_hz = 0;
 };
 
-/// Produces fields in a thread of its own as the play head asks for them, and never waits for the
-/// display: one field waits to be taken, and a newer one replaces it (counted). The first frame is
-/// produced at once; nothing plays until play(). All members may be called from the display's
-/// thread while it runs, and from any other.
+/// Produces fields in its own thread at the pace of the play head, and never waits for the display:
+/// a newer field replaces one that was not taken. Produces the first frame at once; playing starts
+/// with play(). Thread safe.
 ///
-/// While it follows, it looks ten times a second whether the source has grown. One field waits and
-/// one is being made, so the display may hold FieldProducer::kMostShown - 2.
+/// While following, checks the source for new frames ten times a second. One field waits and one is
+/// in production, so the display may hold FieldProducer::kMostShown - 2.
 class Player {
  public:
   explicit Player(std::unique_ptr<FieldProducer> producer);
-  ~Player();  ///< waits for the field that is being made; fields taken stay valid
+  ~Player();  ///< waits for the field in production; taken fields stay valid
   Player(const Player&) = delete;
   Player& operator=(const Player&) = delete;
 
-  /// As the source was at the beginning; state() tells how many frames it has now.
+  /// Properties at construction; state().frames is the current number of frames.
   [[nodiscard]] const SourceInfo& info() const;
 
   void play();
@@ -61,19 +59,19 @@ class Player {
   void set_rate(double rate_hz);
   void set_loop(bool loop);
   void set_follow(bool follow);
-  /// Whether fields come with their contacts; where they begin to, the one shown comes again.
+  /// Switches contacts of fields on or off; on, the current frame is produced again.
   void set_contacts(bool wanted);
 
   [[nodiscard]] PlayerState state() const;
   [[nodiscard]] PlayerStatistics statistics() const;
 
-  /// The newest field that was not taken yet; none where there is none. Throws what ended the
-  /// producing thread, mostly an Error, once, when the fields made before are taken.
+  /// Returns the newest field if it was not taken before. After the last field rethrows, once, the
+  /// exception that ended the thread.
   [[nodiscard]] std::optional<ShownField> take();
 
-  /// Calls `wake` from the player's thread when a field came to wait, or the thread ended by an
-  /// error, to wake the display; what waits already is not told. `wake` may call all members but
-  /// this one. When this returns, the `wake` before it is called no more.
+  /// Calls `wake` from the player's thread for each new field and for an error that ends the
+  /// thread. `wake` may call all members but this one. The previous `wake` is not called after
+  /// return.
   void on_new_field(std::function<void()> wake);
 
  private:

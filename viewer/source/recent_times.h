@@ -5,15 +5,15 @@
 
 namespace pillarfield::viewer {
 
-/// How long things took that were done in the last second, 4096 of them at most.
+/// Durations of the events of the last second, at most 4096.
 class RecentTimes {
  public:
   using Time = std::chrono::nanoseconds;
 
-  void add(Time start, Time end);          ///< `end` not before that of the one before
-  void forget_before(Time now);            ///< what is older than a second
-  [[nodiscard]] double rate_hz() const;    ///< from one end to the next; 0 of less than two
-  [[nodiscard]] double median_ms() const;  ///< 0 without any
+  void add(Time start, Time end);          ///< `end` must not decrease
+  void forget_before(Time now);            ///< drops events older than a second
+  [[nodiscard]] double rate_hz() const;    ///< of ends; 0 for fewer than two
+  [[nodiscard]] double median_ms() const;  ///< 0 for none
   [[nodiscard]] double worst_ms() const;
 
  private:

@@ -2,15 +2,14 @@
 
 #include "pillarfield/error.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 #include "viewer/source/growing_file.h"
-#include "viewer/source/lending_pool.h"
-#include "viewer/source/too_many_shown.h"
+#include "viewer/source/object_pool.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-class RecordedFrames final : public FrameSupply {
+class RecordedFrames final : public FrameProvider {
  public:
   RecordedFrames(const std::filesystem::path& path, std::unique_ptr<FrameSource> source)
       : file_(path),
@@ -24,17 +23,17 @@ class RecordedFrames final : public FrameSupply {
 
   [[nodiscard]] std::uint64_t frames() const override { return frames_; }
 
-  [[nodiscard]] SuppliedFrame frame(std::uint64_t index) override {
+  [[nodiscard]] FrameHandle frame(std::uint64_t index) override {
     if (source_ == nullptr) open(file_.path());
-    const std::shared_ptr<FrameBuffer> buffer = buffers_.lend();
-    if (buffer == nullptr) throw_too_many_shown();
+    const std::shared_ptr<FrameBuffer> buffer = buffers_.acquire();
+    if (buffer == nullptr) throw_all_fields_in_use();
     const double time_s = source_->read(index, *buffer);
     return {buffer, time_s};
   }
 
   bool refresh() override {
     if (!file_.may_have_changed()) return false;
-    source_.reset();  // HDF5 shows a file that it has open as it was.
+    source_.reset();  // HDF5 does not show new data in a file that it holds open.
     if (!file_.reopen([this](const std::filesystem::path& path) { open(path); })) return false;
     const std::uint64_t before = std::exchange(frames_, source_->frames());
     return frames_ != before;
@@ -42,27 +41,27 @@ class RecordedFrames final : public FrameSupply {
 
  private:
   void open(const std::filesystem::path& path) {
-    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // it was probed
+    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // probed before
     const Skin& skin = source->skin();
     if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {
-      throw Error(path.string(), "it became another recording", "open it anew");
+      throw Error(path.string(), "it was replaced by another recording", "open it again");
     }
     source_ = std::move(source);
   }
 
   GrowingFile file_;
-  std::unique_ptr<FrameSource> source_;  ///< null where it could not be opened again
+  std::unique_ptr<FrameSource> source_;  ///< null where reopening failed
   Skin skin_;
   SenselType sensel_type_;
   std::uint64_t frames_;
-  LendingPool<FrameBuffer> buffers_;
+  ObjectPool<FrameBuffer> buffers_;
 };
 
 }  // namespace
 
-std::unique_ptr<FrameSupply> recorded_frames(const std::filesystem::path& path,
-                                             std::unique_ptr<FrameSource> source) {
+std::unique_ptr<FrameProvider> recorded_frames(const std::filesystem::path& path,
+                                               std::unique_ptr<FrameSource> source) {
   return std::make_unique<RecordedFrames>(path, std::move(source));
 }
 

@@ -25,7 +25,7 @@ float reading_at(const FrameView& raw, std::size_t row, std::size_t col) {
   return static_cast<const float*>(raw.data)[at];
 }
 
-/// Sensels 1 to 4 lie upper right, upper left, lower left and lower right.
+/// Sensels 1 to 4: upper right, upper left, lower left, lower right.
 std::array<float, 4> readings_of(const FrameView& raw, PillarIndex pillar) {
   constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
   if (raw.data == nullptr) return {kUnknown, kUnknown, kUnknown, kUnknown};
@@ -60,10 +60,11 @@ bool is_finite(const ForceFieldView& forces, std::size_t at) {
          std::isfinite(forces.normal[at]);
 }
 
-/// Adds pillars up; moments are about the middle of the skin until finish().
-class Adding {
+/// Accumulates SelectionSums; moments are about the middle of the skin until finish().
+class SumBuilder {
  public:
-  Adding(const ForceFieldView& forces, double pitch_mm) : forces_(forces), pitch_mm_(pitch_mm) {}
+  SumBuilder(const ForceFieldView& forces, double pitch_mm)
+      : forces_(forces), pitch_mm_(pitch_mm) {}
 
   void add(PillarIndex pillar) {
     const std::size_t at = std::size_t{pillar.row} * forces_.cols + pillar.col;
@@ -76,7 +77,7 @@ class Adding {
     if ((state & status::kUsable) != 0 && is_finite(forces_, at)) add_force(pillar, at);
   }
 
-  [[nodiscard]] RegionSums finish() {
+  [[nodiscard]] SelectionSums finish() {
     const auto touched = static_cast<double>(sums_.in_contact);
     sums_.area_mm2 = touched * pitch_mm_ * pitch_mm_;
     sums_.mean_normal = sums_.in_contact == 0 ? 0 : sums_.normal / touched;
@@ -109,7 +110,7 @@ class Adding {
 
   const ForceFieldView& forces_;
   double pitch_mm_;
-  RegionSums sums_;
+  SelectionSums sums_;
   double first_x_ = 0;  ///< first moments of the normal force, N mm
   double first_y_ = 0;
   double turn_ = 0;  ///< moment of the shear, N mm
@@ -135,8 +136,8 @@ PillarValues values_at(const ShownField& field, PillarIndex pillar) {
   return values;
 }
 
-RegionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
-  Adding adding(field.forces, pillar_pitch_mm);
+SelectionSums sums_over(const ShownField& field, const PillarRect& rect, double pillar_pitch_mm) {
+  SumBuilder adding(field.forces, pillar_pitch_mm);
   const std::uint32_t row_end = std::min(rect.row_end, field.forces.rows);
   const std::uint32_t col_end = std::min(rect.col_end, field.forces.cols);
   for (std::uint32_t row = rect.row_begin; row < row_end; ++row) {

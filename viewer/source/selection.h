@@ -24,40 +24,40 @@ struct PillarRect {
   std::uint32_t row_begin = 0, row_end = 0, col_begin = 0, col_end = 0;
 };
 
-/// Everything known of one pillar in one frame.
+/// Readings and results of one pillar in one frame.
 struct PillarValues {
-  std::array<float, 4> readings{};  ///< counts as read, sensels 1..4; NaN where not known
+  std::array<float, 4> readings{};             ///< raw counts, sensels 1..4; NaN without readings
   float shear_x = 0, shear_y = 0, normal = 0;  ///< N
-  float magnitude = 0, theta = 0, phi = 0;     ///< N, rad, rad; computed where there is no plane
+  float magnitude = 0, theta = 0, phi = 0;     ///< N, rad, rad; computed for a field without planes
   std::optional<std::array<float, kUncertaintyPlanes>> uncertainty;
-  std::array<float, kComponentEnds> component_ends{};  ///< where there is an uncertainty
+  std::array<float, kComponentEnds> component_ends{};  ///< with `uncertainty` only
   std::uint8_t status = 0;
 };
 
-/// Of a pillar in the field. Throws Error for one that is not.
+/// Throws Error for a pillar outside the field.
 [[nodiscard]] PillarValues values_at(const ShownField& field, PillarIndex pillar);
 
-/// What a rectangle of pillars adds up to. Pillars whose status has no usable sensel, or whose
-/// force is not finite, add no force and are not in contact.
-struct RegionSums {
+/// Sums over a rectangle of pillars. A pillar without usable sensels or with a force that is not
+/// finite adds no force and is not in contact.
+struct SelectionSums {
   double shear_x = 0, shear_y = 0, normal = 0;  ///< total force, N
-  /// Of the shear about the centre of pressure, N mm, counter-clockwise; NaN without load.
+  /// Moment of the shear about the centre of pressure, N mm, counter-clockwise; NaN without load.
   double moment_z = 0;
   /// Centre of pressure from the middle of the skin, + right and up; NaN without load.
   double centre_x_mm = 0, centre_y_mm = 0;
-  double area_mm2 = 0;  ///< of the pillars in contact
+  double area_mm2 = 0;  ///< pillars in contact
   std::uint64_t pillars = 0, in_contact = 0;
   double peak_normal = 0, mean_normal = 0;  ///< N per pillar; the mean is over those in contact
-  PillarIndex peak;                         ///< where
+  PillarIndex peak;
   std::array<std::uint64_t, kRegions> by_region{};  ///< pillars, indexed by Region
   std::uint64_t ambiguous = 0, saturated = 0, inconsistent = 0;
 };
 
-/// Of the part of `rect` that lies in the field.
-[[nodiscard]] RegionSums sums_over(const ShownField& field, const PillarRect& rect,
-                                   double pillar_pitch_mm);
+/// Sums over the part of `rect` inside the field.
+[[nodiscard]] SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
+                                      double pillar_pitch_mm);
 
-/// Values of pinned pillars and regions over time, as many as `capacity` frames back.
+/// Forces of a pinned pillar or a selection over the last `capacity` frames.
 class History {
  public:
   struct Point {
@@ -65,9 +65,9 @@ class History {
     std::uint64_t index;
     float shear_x, shear_y, normal;
   };
-  explicit History(std::size_t capacity = 4096);  ///< one at least
+  explicit History(std::size_t capacity = 4096);  ///< at least 1
 
-  /// Points at this time or later are forgotten first: the head went back.
+  /// Removes points at this time or later first: the play head went back.
   void add(const Point& point);
   void clear();
   [[nodiscard]] const std::deque<Point>& points() const { return points_; }

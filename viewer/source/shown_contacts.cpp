@@ -28,9 +28,9 @@ ShownContacts with_extents(FrameContacts found, const ContactLabels& map) {
   for (const TrackedContact& contact : found.contacts) {
     if (contact.label >= map.contacts()) {
       throw Error("contacts",
-                  fmt::format("number {} is not among the {} that the status tells of",
+                  fmt::format("label {} is not one of the {} contacts of the status plane",
                               contact.label, map.contacts()),
-                  "write the file of forces anew");
+                  "solve the recording again");
     }
     shown.extents.push_back(extent_of(map.runs(contact.label)));
   }
@@ -43,7 +43,7 @@ ShownContacts with_extents(FrameContacts found, const ContactLabels& map) {
   return shown;
 }
 
-ShownContacts ContactWatch::contacts_of(const ShownField& field) {
+ShownContacts FieldContacts::contacts_of(const ShownField& field) {
   if (!tracker_ || field.index < last_index_) {
     tracker_.emplace(pitch_mm_, options_);
   }

@@ -10,25 +10,25 @@
 
 namespace pillarfield::viewer {
 
-/// The contacts of a field to look at.
+/// The contacts of a shown field.
 struct ShownContacts {
   FrameContacts found;
-  std::vector<PillarRect> extents;    ///< the pillars about each, in the order of `found.contacts`
-  std::vector<std::size_t> heaviest;  ///< places in `found.contacts`, by normal force downwards
+  std::vector<PillarRect> extents;    ///< bounding rectangles, in the order of `found.contacts`
+  std::vector<std::size_t> heaviest;  ///< indices into `found.contacts`, by descending normal force
 };
 
-/// Adds where the contacts of a field lie. `map` is that of the field's status, whose numbers
-/// `found` has. Throws Error where it lacks one of them.
+/// Adds the extents of contacts. `map` holds the labels of the field that `found` refers to. Throws
+/// Error for a label that it lacks.
 [[nodiscard]] ShownContacts with_extents(FrameContacts found, const ContactLabels& map);
 
-/// Finds the contacts of field after field, as they are shown: frames may be left out, and one that
-/// comes before the last begins anew, with ids from 1.
-class ContactWatch {
+/// Finds and tracks contacts over the shown fields. Frames may be skipped; an earlier frame
+/// restarts tracking with ids from 1.
+class FieldContacts {
  public:
-  explicit ContactWatch(double pillar_pitch_mm, const ContactOptions& options = {})
+  explicit FieldContacts(double pillar_pitch_mm, const ContactOptions& options = {})
       : pitch_mm_(pillar_pitch_mm), options_(options) {}
 
-  /// Time as ContactTracker::update().
+  /// See ContactTracker::update() for time.
   [[nodiscard]] ShownContacts contacts_of(const ShownField& field);
 
  private:

@@ -13,19 +13,18 @@ namespace pillarfield::viewer {
 
 struct ShownContacts;
 
-/// A field to look at. Its memory stays as it is for as long as a copy of it is alive; whoever made
-/// it gets the memory back with the last one.
+/// A field on display. Its memory stays unchanged while a copy is alive and returns to the producer
+/// with the last copy.
 struct ShownField {
   ForceFieldView forces;
-  FrameView raw;            ///< readings it was solved from; no data where they are not known
-  double time_s = 0;        ///< of the frame, from its source
-  std::uint64_t index = 0;  ///< of the frame in its source
-  std::optional<double> direct_point = {};  ///< as component_ends() takes it
-  /// Whole pages that hold all planes of `forces`, so that a graphics device may read them in
-  /// place.
+  FrameView raw;                            ///< its readings; no data for a source without
+  double time_s = 0;                        ///< time of the frame in its source
+  std::uint64_t index = 0;                  ///< index of the frame in its source
+  std::optional<double> direct_point = {};  ///< argument of component_ends()
+  /// Whole pages with all planes of `forces`, which a graphics device may import.
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;
-  std::shared_ptr<const ShownContacts> contacts = {};  ///< none where they are not looked for
+  std::shared_ptr<const ShownContacts> contacts = {};  ///< null while contacts are off
 };
 
 }  // namespace pillarfield::viewer

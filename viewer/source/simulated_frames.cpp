@@ -7,14 +7,14 @@
 #include <thread>
 #include <vector>
 
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-using Frames = std::vector<SuppliedFrame>;
+using Frames = std::vector<FrameHandle>;
 
-/// Several threads that render frames, each the next one that nobody took.
+/// Threads that each render the next unclaimed frame.
 class Rendering {
  public:
   Rendering(const Simulator& simulator, Frames& frames) : simulator_(simulator), frames_(frames) {
@@ -27,7 +27,7 @@ class Rendering {
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
 
-  /// Waits for all; rethrows what a thread threw.
+  /// Waits for all threads; rethrows the exception of one.
   void wait(const std::function<void(double)>& progress) {
     std::unique_lock lock(mutex_);
     while (working_ > 0) {
@@ -72,18 +72,18 @@ class Rendering {
   std::atomic<std::size_t> next_ = 0;
   std::atomic<std::size_t> done_ = 0;
   std::atomic<bool> stop_ = false;
-  std::mutex mutex_;  ///< of the two that follow
+  std::mutex mutex_;  ///< guards the next two members
   std::size_t working_ = 0;
   std::exception_ptr failed_;
   std::condition_variable ended_;
-  std::vector<std::jthread> threads_;  ///< last: they use the others
+  std::vector<std::jthread> threads_;  ///< last: use the other members
 };
 
-class SimulatedFrames final : public FrameSupply {
+class SimulatedFrames final : public FrameProvider {
  public:
   explicit SimulatedFrames(Frames frames) : frames_(std::move(frames)) {}
   [[nodiscard]] std::uint64_t frames() const override { return frames_.size(); }
-  [[nodiscard]] SuppliedFrame frame(std::uint64_t index) override { return frames_.at(index); }
+  [[nodiscard]] FrameHandle frame(std::uint64_t index) override { return frames_.at(index); }
 
  private:
   Frames frames_;
@@ -91,8 +91,8 @@ class SimulatedFrames final : public FrameSupply {
 
 }  // namespace
 
-std::unique_ptr<FrameSupply> simulate_frames(const Simulator& simulator, std::uint64_t frames,
-                                             const std::function<void(double)>& progress) {
+std::unique_ptr<FrameProvider> simulate_frames(const Simulator& simulator, std::uint64_t frames,
+                                               const std::function<void(double)>& progress) {
   Frames made(frames);
   Rendering(simulator, made).wait(progress);
   return std::make_unique<SimulatedFrames>(std::move(made));

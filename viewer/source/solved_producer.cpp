@@ -5,20 +5,20 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "viewer/source/too_many_shown.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-/// What a field lies in, and what it came from.
-struct Held {
+/// Keeps the memory and the readings of a field alive.
+struct FieldMemoryOwner {
   Processor::PinnedResult result;
-  std::shared_ptr<const FrameBuffer> readings;  ///< goes first: a free slot has a free frame
+  std::shared_ptr<const FrameBuffer>
+      readings;  ///< released first: a free slot implies a free frame
 };
 
 }  // namespace
 
-bool remembers(Estimator estimator, const FrictionKnowledge& friction) {
+bool carries_prior(Estimator estimator, const FrictionKnowledge& friction) {
   return estimator == Estimator::contact && friction.memory;
 }
 
@@ -26,23 +26,22 @@ SolverPlan shown_plan(SolverPlan plan) {
   const bool knows_noise = plan.noise_counts.has_value() || !plan.calibration.noise.empty();
   plan.angles = true;
   plan.uncertainty = knows_noise && plan.estimator != Estimator::paper;
-  plan.baseline_rate.reset();  // It would depend on which frames were looked at before.
+  plan.baseline_rate.reset();  // It would depend on the frames shown before.
   return plan;
 }
 
-SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> supply,
+SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> provider,
                                const SolverPlan& plan, Processor processor)
-    : info_(std::move(info)), supply_(std::move(supply)), processor_(std::move(processor)) {
-  info_.frames = supply_->frames();
+    : info_(std::move(info)), provider_(std::move(provider)), processor_(std::move(processor)) {
+  info_.frames = provider_->frames();
   if (plan.estimator == Estimator::direct) direct_point_ = plan.segment_point;
-  if (!remembers(plan.estimator, plan.friction)) return;
-  silence_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  if (!carries_prior(plan.estimator, plan.friction)) return;
+  idle_frame_.emplace(plan.sensel_type, plan.skin.rows, plan.skin.cols);
 }
 
-void SolvedProducer::forget_the_frame_before() {
-  // What was known of a pillar or a contact is of use in the next frame alone, and an idle one has
-  // neither.
-  processor_.submit(silence_->view());
+void SolvedProducer::clear_prior() {
+  // A prior lasts one frame, and an idle frame leaves none.
+  processor_.submit(idle_frame_->view());
   static_cast<void>(processor_.receive());
 }
 
@@ -51,14 +50,15 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
     throw Error(info_.name, fmt::format("has no frame {}", index),
                 fmt::format("it has {} frames, counted from 0", info_.frames));
   }
-  if (processor_.pinned() == kMostShown) throw_too_many_shown();
-  SuppliedFrame frame = supply_->frame(index);
-  if (silence_ && index != next_) forget_the_frame_before();
+  if (processor_.pinned() == kMostShown) throw_all_fields_in_use();
+  FrameHandle frame = provider_->frame(index);
+  if (idle_frame_ && index != next_) clear_prior();
   const FrameView raw = frame.readings->view();
   processor_.submit(raw);
   const ForceFieldView forces = processor_.receive();
   next_ = index + 1;
-  const auto held = std::make_shared<Held>(Held{processor_.pin(), std::move(frame.readings)});
+  const auto held = std::make_shared<FieldMemoryOwner>(
+      FieldMemoryOwner{processor_.pin(), std::move(frame.readings)});
   return {.forces = forces,
           .raw = raw,
           .time_s = frame.time_s,
@@ -69,8 +69,8 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
 }
 
 bool SolvedProducer::refresh() {
-  if (!supply_->refresh()) return false;
-  info_.frames = supply_->frames();
+  if (!provider_->refresh()) return false;
+  info_.frames = provider_->frames();
   return true;
 }
 

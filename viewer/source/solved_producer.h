@@ -7,25 +7,24 @@
 #include "pillarfield/frame.h"
 #include "pillarfield/processor.h"
 #include "viewer/source/field_producer.h"
-#include "viewer/source/frame_supply.h"
+#include "viewer/source/frame_provider.h"
 
 namespace pillarfield::viewer {
 
-/// Whether frames are estimated with the help of the frame before.
-[[nodiscard]] bool remembers(Estimator estimator, const FrictionKnowledge& friction);
+/// True if a frame uses the friction carried over from the frame before.
+[[nodiscard]] bool carries_prior(Estimator estimator, const FrictionKnowledge& friction);
 
-/// What a source asks of the solver, and what there is to show for it: angles always, uncertainty
-/// where the noise is known and the estimator can tell.
+/// The plan extended for display: with angles, and with uncertainty where the noise is known and
+/// the estimator supports it; with a fixed baseline.
 [[nodiscard]] SolverPlan shown_plan(SolverPlan plan);
 
-/// Solves the frames of a supply, each when it is asked for. A field lies where the processor wrote
-/// it, and keeps the frame that it was solved from. Where the plan says that frames are close, one
-/// that is asked for right after the frame before it knows of that, and any other of none.
+/// Solves the frames of a provider on demand. A field is the processor's pinned result and keeps
+/// its readings alive. Where the plan has `memory`, a frame that follows the previous one uses its
+/// friction; any other frame is solved alone.
 class SolvedProducer final : public FieldProducer {
  public:
-  /// `processor` has kMostShown slots and is that of `plan`, which `supply`'s frames fit. Of `info`
-  /// the number of frames is set here.
-  SolvedProducer(SourceInfo info, std::unique_ptr<FrameSupply> supply, const SolverPlan& plan,
+  /// `processor` is made for `plan`, with kMostShown slots. Sets the number of frames of `info`.
+  SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> provider, const SolverPlan& plan,
                  Processor processor);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
@@ -33,14 +32,14 @@ class SolvedProducer final : public FieldProducer {
   bool refresh() override;
 
  private:
-  void forget_the_frame_before();
+  void clear_prior();
 
   SourceInfo info_;
-  std::unique_ptr<FrameSupply> supply_;
+  std::unique_ptr<FrameProvider> provider_;
   Processor processor_;
-  std::optional<double> direct_point_;  ///< of the plan, where its estimator is direct
-  std::optional<FrameBuffer> silence_;  ///< a frame of it, where frames are close
-  std::uint64_t next_ = 0;              ///< the frame that would come after the last one solved
+  std::optional<double> direct_point_;     ///< of the plan, for the estimator `direct`
+  std::optional<FrameBuffer> idle_frame_;  ///< zero readings, where friction is carried over
+  std::uint64_t next_ = 0;                 ///< index after the last solved frame
 };
 
 }  // namespace pillarfield::viewer

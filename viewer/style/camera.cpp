@@ -23,7 +23,7 @@ Camera camera_around(const OrbitView& view, const Surface& surface, const Viewpo
   const SurfaceFrame target = frame_at(surface, view.target_mm);
   const double sine = std::sin(view.elevation);
   const double cosine = std::cos(view.elevation);
-  /// Along the sheet, away from the eye; defined from straight above, too.
+  /// Along the sheet, away from the eye; defined also for a view from straight above.
   const Vec3 away =
       std::cos(view.azimuth) * target.tangent_y - std::sin(view.azimuth) * target.tangent_x;
   Camera camera;
@@ -45,7 +45,7 @@ Camera camera_of(const View& view, const Surface& surface, const Viewport& viewp
   return camera_around(std::get<OrbitView>(view), surface, viewport);
 }
 
-Vec3 seen_by(const Camera& camera, Vec3 point) {
+Vec3 in_camera(const Camera& camera, Vec3 point) {
   const Vec3 offset = point - camera.eye;
   return {dot(camera.right, offset), dot(camera.up, offset), dot(camera.forward, offset)};
 }
@@ -53,24 +53,24 @@ Vec3 seen_by(const Camera& camera, Vec3 point) {
 Ray ray_through(const Camera& camera, Vec2 offset) {
   const Vec3 aside = offset.x / camera.pixels * camera.right - offset.y / camera.pixels * camera.up;
   if (camera.perspective) return {camera.eye, camera.forward + aside};
-  // From above all that there is: the eye of a top view is on the sheet.
+  // Start above the sheet: the eye of a top view lies on it.
   return {camera.eye + aside - camera.forward, camera.forward};
 }
 
 DepthRange depths_of(const Camera& camera, const Box& box) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   DepthRange range{kInfinity, -kInfinity};
-  for (const double x : {box.low.x - kArrowRoomMm, box.high.x + kArrowRoomMm}) {
-    for (const double y : {box.low.y - kArrowRoomMm, box.high.y + kArrowRoomMm}) {
-      for (const double z : {box.low.z - kArrowRoomMm, box.high.z + kArrowRoomMm}) {
-        const double depth = seen_by(camera, {x, y, z}).z;
+  for (const double x : {box.low.x - kArrowMarginMm, box.high.x + kArrowMarginMm}) {
+    for (const double y : {box.low.y - kArrowMarginMm, box.high.y + kArrowMarginMm}) {
+      for (const double z : {box.low.z - kArrowMarginMm, box.high.z + kArrowMarginMm}) {
+        const double depth = in_camera(camera, {x, y, z}).z;
         range.near_mm = std::min(range.near_mm, depth);
         range.far_mm = std::max(range.far_mm, depth);
       }
     }
   }
   if (!camera.perspective) return range;
-  // An eye among the arrows: the nearest of them are cut, else depth would have no precision left.
+  // With the eye among the arrows, clip the nearest ones to keep depth precision.
   range.near_mm = std::max(range.near_mm, camera.distance_mm / 100);
   range.far_mm = std::max(range.far_mm, 1.01 * range.near_mm);
   return range;

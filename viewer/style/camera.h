@@ -5,25 +5,24 @@
 
 namespace pillarfield::viewer {
 
-/// A view as an eye in space, in double precision. What lies `right` and `up` of the eye's axis by
-/// a millimetre at depth d is `pixels` / d away from the viewport's middle in perspective, else
-/// `pixels`.
+/// A camera in space, in double precision. An offset of 1 mm from its axis at depth d covers
+/// `pixels` / d pixels in perspective, else `pixels`.
 struct Camera {
   Vec3 eye;
   Vec3 right, up, forward;  ///< unit vectors, orthogonal
   double pixels = 1;
   bool perspective = false;
-  double distance_mm = 0;  ///< from the eye to what it looks at
+  double distance_mm = 0;  ///< from the eye to the target
 };
 [[nodiscard]] Camera camera_of(const View& view, const Surface& surface, const Viewport& viewport);
 
-/// A point as the camera sees it, mm.
-[[nodiscard]] Vec3 seen_by(const Camera& camera, Vec3 point);  ///< x right, y up, z depth
+/// A point in camera coordinates, mm.
+[[nodiscard]] Vec3 in_camera(const Camera& camera, Vec3 point);  ///< x right, y up, z depth
 
-/// The points that appear at `offset` pixels (x right, y down) from the viewport's middle.
+/// The ray through the pixel at `offset` (x right, y down) from the viewport's middle.
 [[nodiscard]] Ray ray_through(const Camera& camera, Vec2 offset);
 
-/// Depths between which a box, grown by kArrowRoomMm, lies before the eye.
+/// Range of depths of a box, grown by kArrowMarginMm, before the eye.
 struct DepthRange {
   double near_mm, far_mm;
 };

@@ -9,25 +9,25 @@
 namespace pillarfield::viewer {
 namespace {
 
-// Chosen among all colours far from the maps so that those of one legend, and the skin's, are as
-// far from each other as can be for normal sight and for the three kinds of colour blindness.
-constexpr Colour kSound = colour_from(0x96b478);
+// Chosen far from the maps, with the largest distances within a legend and to the skin's colour,
+// for normal sight and the three kinds of colour blindness.
+constexpr Colour kDetermined = colour_from(0x96b478);
 constexpr Colour kAmbiguous = colour_from(0xff7800);
 constexpr Colour kInconsistent = colour_from(0x870f87);
 constexpr Colour kSaturated = colour_from(0xd21e0f);
-constexpr Colour kFromNeighbours = colour_from(0x2dc3e1);
+constexpr Colour kFromContact = colour_from(0x2dc3e1);
 constexpr Colour kRegion2 = colour_from(0x4bd2ff);
 constexpr Colour kRegion4 = colour_from(0x8769f0);
 
-/// What kinds of colour a pillar of a class has.
+/// The colour of a status class.
 Special special_of(StatusClass status) {
   switch (status) {
-    case StatusClass::sound:
-      return Special::sound;
+    case StatusClass::determined:
+      return Special::determined;
     case StatusClass::ambiguous:
       return Special::ambiguous;
-    case StatusClass::from_neighbours:
-      return Special::from_neighbours;
+    case StatusClass::from_contact:
+      return Special::from_contact;
     case StatusClass::saturated:
       return Special::saturated;
     case StatusClass::inconsistent:
@@ -91,24 +91,23 @@ Colour colour_of(Special special, Theme theme) {
     case Special::ambiguous:
     case Special::region_3:
       return kAmbiguous;
-    case Special::from_neighbours:
-      return kFromNeighbours;
+    case Special::from_contact:
+      return kFromContact;
     case Special::region_2:
       return kRegion2;
     case Special::region_4:
       return kRegion4;
     case Special::region_1:
-    case Special::sound:
+    case Special::determined:
       break;
   }
-  return kSound;
+  return kDetermined;
 }
 
 const char* name_of(Special special) {
   static constexpr std::array<const char*, kSpecials> kNames = {
-      "no contact",      "saturated",        "inconsistent", "ambiguous",
-      "from neighbours", "region 1",         "region 2",     "region 3",
-      "region 4",        "opposite sensels", "sound"};
+      "no contact", "saturated", "inconsistent", "ambiguous",        "from neighbours", "region 1",
+      "region 2",   "region 3",  "region 4",     "opposite sensels", "determined"};
   return kNames.at(static_cast<std::size_t>(special));
 }
 
@@ -131,7 +130,7 @@ std::size_t entry_of(float value, const Range& range, Scale scale) {
   constexpr auto kEntries = static_cast<float>(kColours);
   float place = std::floor((value - range.low) / (range.high - range.low) * kEntries);
   if (scale == Scale::cyclic) place -= kEntries * std::floor(place / kEntries);
-  // Also of what is no number.
+  // True for NaN too.
   if (!(place > 0)) return 0;
   return static_cast<std::size_t>(std::min(place, kEntries - 1));
 }

@@ -22,42 +22,41 @@ enum class ColourMap : std::uint8_t { cividis, viridis, diverging, cyclic };
 inline constexpr int kColourMaps = 4;
 inline constexpr std::size_t kColours = 256;
 
-/// 256 colours from the low end to the high one. `diverging` has its neutral colour in the middle
-/// (between entries 127 and 128); `cyclic` closes: its last entry neighbours its first.
+/// 256 colours from low to high. The neutral colour of `diverging` lies between entries 127 and
+/// 128; `cyclic` continues from the last entry to the first.
 [[nodiscard]] std::span<const Colour, kColours> table_of(ColourMap map);
 [[nodiscard]] const char* name_of(ColourMap map);  ///< "cividis"
-[[nodiscard]] ColourMap default_map(Scale scale);  ///< classes: has none, gives cividis
+[[nodiscard]] ColourMap default_map(Scale scale);  ///< cividis for classes, which use no map
 
-/// Colours of their own, outside every map: of pillars that have no value to show, and of classes.
-/// Those that one legend can hold are told apart, by colour-blind readers too, and from all entries
-/// of the maps by at least 10 in CIE dE2000 (idle excepted). What means the same has one colour:
-/// region 1 and sound, region 3 and ambiguous, opposite and inconsistent.
+/// Colours outside every map, for classes and for pillars without a value. Colours of one legend
+/// differ from each other, also for colour-blind readers, and (except idle) from all entries of the
+/// maps, by at least 10 in CIE dE2000. Region 1 and determined, region 3 and ambiguous, opposite
+/// and inconsistent share a colour each.
 enum class Special : std::uint8_t {
   idle,
   saturated,
   inconsistent,
   ambiguous,
-  from_neighbours,
+  from_contact,
   region_1,
   region_2,
   region_3,
   region_4,
   opposite,
-  sound
+  determined
 };
 inline constexpr int kSpecials = 11;
 enum class Theme : std::uint8_t { dark, light };
 [[nodiscard]] Colour colour_of(Special special, Theme theme);  ///< only idle depends on the theme
-[[nodiscard]] const char* name_of(Special special);            ///< for the legend: "saturated"
-[[nodiscard]] Colour background_of(Theme theme);               ///< of the picture, around the skin
+[[nodiscard]] const char* name_of(Special special);            ///< in the legend: "saturated"
+[[nodiscard]] Colour background_of(Theme theme);               ///< around the skin
 
-/// The colour of its own that a pillar has, by its status; none where the map gives the colour of
-/// its value. A fault is shown whether the pillar is pressed or not; an ambiguous pillar has a
-/// value. In `region` and `status` every pillar has such a colour.
+/// The special colour of a pillar; none where the map colours its value. A fault shows on idle
+/// pillars too; an ambiguous pillar has a value. In `region` and `status` every pillar has one.
 [[nodiscard]] std::optional<Special> special_of(Quantity quantity, std::uint8_t status);
 
-/// The entry of a table that a value gets: floor((value - low) / (high - low) * 256) in single
-/// precision, clamped; a cyclic one wraps. Entry 0 where that is no number. What the shader does.
+/// Table entry of a value, as in the shader: floor((value - low) / (high - low) * 256) in single
+/// precision, clamped, or wrapped for a cyclic scale; 0 for NaN.
 [[nodiscard]] std::size_t entry_of(float value, const Range& range, Scale scale);
 
 }  // namespace pillarfield::viewer

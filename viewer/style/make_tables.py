@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Prints the two colour tables of colour_tables.cpp that are our own, in CIELAB (D65).
+"""Prints the tables `diverging` and `cyclic` of colour_tables.cpp, designed in CIELAB (D65).
 
 diverging  Lightness falls by equal steps from a light neutral in the middle to a blue and an orange
            of the same lightness. Blue and orange stay apart in all three kinds of colour blindness.
-cyclic     A ring on which lightness tells up from down and blue-yellow tells left from right, the
-           two things that red-green blindness leaves; red-green adds to up and down for the others.
+cyclic     A ring on which lightness separates up and down, and blue-yellow left and right, the two
+           dimensions that red-green blindness leaves; red-green adds to up and down for others.
            Entry 128 (angle 0) is yellow, a quarter later light rose, then blue, then dark green.
 """
 
@@ -15,8 +15,8 @@ COLOURS = 256
 
 
 def srgb_of(lab):
-    """The sRGB colour of a CIELAB one, as three shares of 1; outside 0..1 where it has none.
-    Not for the darkest ones, where CIELAB is straight."""
+    """Converts CIELAB to sRGB components; outside 0..1 for colours outside sRGB.
+    Not valid for the darkest colours, where CIELAB is linear."""
     lightness, a, b = lab
     f_y = (lightness + 16) / 116
     x, y, z = 0.95047 * (f_y + a / 500) ** 3, f_y**3, 1.08883 * (f_y - b / 200) ** 3
@@ -47,20 +47,20 @@ def side_of_diverging(away, hue_degrees):
 def diverging():
     for entry in range(COLOURS):
         at = (2 * entry + 1) / COLOURS - 1
-        # CIELAB's lines of one hue bend there: what looks blue is 260 where light, 286 where dark.
+        # Lines of constant perceived hue bend in CIELAB: blue is 260 if light, 286 if dark.
         hue = 260 - 26 * at if at < 0 else 62
         yield side_of_diverging(abs(at), hue)
 
 
 def on_ring(turn):
-    """The colour of an angle, 0..1 being a whole turn from yellow counter-clockwise."""
+    """The colour at `turn`, 0..1, counter-clockwise from yellow."""
     angle = 2 * math.pi * turn
     right, up = math.cos(angle), math.sin(angle)
     return 64 + 17 * up, (26 if up > 0 else 24) * up, (52 if right > 0 else 38) * right
 
 
 def cyclic(fine=20000):
-    """Entries at equal ways along the ring."""
+    """Entries at equal distances along the ring."""
     way = [0.0]
     last = on_ring(0)
     for step in range(1, fine + 1):

@@ -8,9 +8,9 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr double kAir = 0.04;  ///< of the viewport, at each side
+constexpr double kMargin = 0.04;  ///< fraction of the viewport at each side
 
-// Limits: from a pillar that fills the window to a skin larger than any that can be made.
+// Limits: from one pillar filling the window to any realistic skin in view.
 constexpr double kMostPixelsPerMm = 1000;
 constexpr double kLeastPixelsPerMm = 0.005;
 constexpr double kNearestMm = 1;
@@ -37,24 +37,24 @@ Vec2& middle_of(View& view) {
   return std::get<OrbitView>(view).target_mm;
 }
 
-/// How the sheet moves under a mouse that goes by `pixels`, mm.
-Vec2 way_on_sheet(const View& view, const Viewport& viewport, Vec2 pixels) {
+/// Shift of the sheet, mm, for a mouse movement of `pixels`.
+Vec2 sheet_shift(const View& view, const Viewport& viewport, Vec2 pixels) {
   const double scale = pixels_per_mm(view, viewport);
   const Vec2 way{pixels.x / scale, -pixels.y / scale};
   const auto* orbit = std::get_if<OrbitView>(&view);
   if (orbit == nullptr) return way;
-  // Seen flat, a pixel's height is a long way; it is bounded, or the sheet would leap.
+  // At grazing views a pixel spans a long distance; bound it, or the sheet would jump.
   const double away = way.y / std::max(std::sin(orbit->elevation), 0.2);
   const double sine = std::sin(orbit->azimuth);
   const double cosine = std::cos(orbit->azimuth);
   return {cosine * way.x - sine * away, sine * way.x + cosine * away};
 }
 
-/// The distance from which a point, seen from `camera`, is within the viewport and its air.
+/// Distance at which a point lies within the viewport less its margin.
 double distance_to_fit(const Camera& camera, const Viewport& viewport, Vec3 point) {
-  const Vec3 seen = seen_by(camera, point);
-  const double half_width = (0.5 - kAir) * viewport.width;
-  const double half_height = (0.5 - kAir) * viewport.height;
+  const Vec3 seen = in_camera(camera, point);
+  const double half_width = (0.5 - kMargin) * viewport.width;
+  const double half_height = (0.5 - kMargin) * viewport.height;
   const double needed = camera.pixels * std::max(std::abs(seen.x) / half_width,  //
                                                  std::abs(seen.y) / half_height);
   return camera.distance_mm + needed - seen.z;
@@ -63,7 +63,7 @@ double distance_to_fit(const Camera& camera, const Viewport& viewport, Vec3 poin
 }  // namespace
 
 TopView fit_top(const SkinSize& skin, const Viewport& viewport) {
-  const double share = 1 - 2 * kAir;
+  const double share = 1 - 2 * kMargin;
   return {{0, 0},
           limited_scale(std::min(share * viewport.width / skin.width_mm,
                                  share * viewport.height / skin.height_mm))};
@@ -86,7 +86,7 @@ OrbitView fit_orbit(const SkinSize& skin, const Surface& surface, const Viewport
 }
 
 void pan(View& view, const Viewport& viewport, Vec2 pixels) {
-  const Vec2 way = way_on_sheet(view, viewport, pixels);
+  const Vec2 way = sheet_shift(view, viewport, pixels);
   Vec2& middle = middle_of(view);
   middle = limited_place({middle.x - way.x, middle.y - way.y});
 }
@@ -94,7 +94,7 @@ void pan(View& view, const Viewport& viewport, Vec2 pixels) {
 void orbit(View& view, Vec2 pixels) {
   auto* orbit = std::get_if<OrbitView>(&view);
   if (orbit == nullptr) return;
-  // The sheet follows the mouse, so the eye goes the other way.
+  // The sheet follows the mouse, so the eye moves the other way.
   orbit->azimuth =
       std::remainder(orbit->azimuth - kRadiansPerPixel * pixels.x, 2 * std::numbers::pi);
   orbit->elevation = std::clamp(orbit->elevation + kRadiansPerPixel * pixels.y, kLowestElevation,

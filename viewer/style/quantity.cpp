@@ -86,7 +86,7 @@ float status_value(std::uint8_t status) {
   return idle ? kNothing : static_cast<float>(status_class(status));
 }
 
-/// The value of a pillar that is pressed; region and status do not ask for that.
+/// The value of a pressed pillar; region and status apply to any pillar.
 float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t row,
                     std::uint32_t col) {
   const ForceFieldView& forces = field.forces;
@@ -118,10 +118,10 @@ float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t ro
   return parity_of(field.raw, row, col);
 }
 
-/// A single-precision number not below `value`; as round as round_ceiling() makes it.
+/// round_ceiling() in single precision.
 float nice_float(float value) {
   constexpr double kMost = 1e38;
-  // A value that was stored as 0.1 is a little more in single precision, and fits 0.1 all the same.
+  // 0.1 in single precision slightly exceeds 0.1 and must still round to 0.1.
   const double exact = std::clamp(double{value}, 1e-37, kMost);
   const auto nice = static_cast<float>(round_ceiling(exact * (1 - 0x1p-23)));
   return nice >= value ? nice : static_cast<float>(std::min(round_ceiling(exact), kMost));
@@ -143,8 +143,8 @@ std::optional<Quantity> quantity_named(std::string_view name) {
 StatusClass status_class(std::uint8_t status) {
   if ((status & status::kInconsistent) != 0) return StatusClass::inconsistent;
   if ((status & status::kSaturated) != 0) return StatusClass::saturated;
-  if ((status & status::kFromNeighbours) != 0) return StatusClass::from_neighbours;
-  return (status & status::kAmbiguous) != 0 ? StatusClass::ambiguous : StatusClass::sound;
+  if ((status & status::kFromNeighbours) != 0) return StatusClass::from_contact;
+  return (status & status::kAmbiguous) != 0 ? StatusClass::ambiguous : StatusClass::determined;
 }
 
 bool is_pressed(std::uint8_t status) {
@@ -198,8 +198,8 @@ Range fitting_range(Quantity quantity, float largest_value) {
 
 float value_of(Quantity quantity, const ShownField& field, std::uint32_t row, std::uint32_t col) {
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
-  const bool told_by_status = quantity == Quantity::region || quantity == Quantity::status;
-  if (!told_by_status && !is_pressed(status)) return kNothing;
+  const bool has_status_class = quantity == Quantity::region || quantity == Quantity::status;
+  if (!has_status_class && !is_pressed(status)) return kNothing;
   return pressed_value(quantity, field, row, col);
 }
 

@@ -9,13 +9,13 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Where a sensel sits about its pillar, rad in (-pi, pi].
+/// Angular position of a sensel about its pillar, rad in (-pi, pi].
 double place_of(int sensel) {
   const double place = kPi / 4 * (2 * sensel - 1);
   return place > kPi ? place - 2 * kPi : place;
 }
 
-/// Equation (3): the force comes from `phi_from_sensel` off the sensel's place.
+/// Equation (3); `phi_from_sensel` is phi less the sensel's angle.
 double border_theta(double phi_from_sensel) {
   return std::atan2(1.0, std::max(0.0, std::cos(phi_from_sensel)));
 }
@@ -32,7 +32,7 @@ std::vector<Vec2> piece_of_border(int sensel, double from, double to, int points
 std::vector<std::vector<Vec2>> border_of(int sensel, int points) {
   const double from = place_of(sensel) - kPi / 2;
   const double to = place_of(sensel) + kPi / 2;
-  // Half a turn; a quarter of it is beyond the diagram's edge and comes back at the other one.
+  // The curve spans half a turn; a quarter of it wraps around the diagram's edge.
   const int fewer = std::max(2, points / 4);
   const int more = std::max(2, points - fewer);
   if (to > kPi) {
@@ -55,9 +55,9 @@ std::array<std::vector<std::vector<Vec2>>, 4> region_borders(int points_per_curv
 
 std::vector<Vec2> ambiguity_contour(int sensel, double reading, double next_reading, int points) {
   if (!(reading > 0 || next_reading > 0)) return {};
-  // The shear's components along the two sensels, whose places are a quarter turn apart, and the
-  // normal force are, in counts, V - s, V' - s and s: half the parity sum, up to where the third
-  // sensel would answer. The force comes from where the shear does not point to.
+  // In counts, the shear along the two sensels (a quarter turn apart) is V - s and V' - s, and the
+  // normal force is s, half the parity sum, limited by the third sensel. The force comes from the
+  // direction opposite to the shear.
   const double middle = std::remainder(place_of(sensel) + kPi / 4 + kPi, 2 * kPi);
   const double most = std::min(reading, next_reading) / 2;
   std::vector<Vec2> contour;

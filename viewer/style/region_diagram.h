@@ -7,19 +7,17 @@
 
 namespace pillarfield::viewer {
 
-/// The paper's Figure 3: in the plane of phi (x, -pi..pi) and theta (y, 0..pi/2) the curves on
-/// which one sensel lifts: for sensel n, theta where cos theta = sin theta cos(pi/4 (2n-1) - phi).
-/// Of sensel n = 1..4 (index 0..3) the pieces in ascending phi, since a curve exists only where the
-/// cosine is not negative and may leave at phi = +-pi; each begins and ends on the diagram's edge
-/// (theta = pi/2 or phi = +-pi). `points_per_curve` (at least 4) is shared by the pieces of a
-/// curve.
+/// The paper's Figure 3: curves over phi (x, -pi..pi) and theta (y, 0..pi/2) at which the reading
+/// of sensel n = 1..4 (index 0..3) becomes zero: cos theta = sin theta cos(pi/4 (2n-1) - phi). A
+/// curve exists where the cosine is not negative and may cross phi = +-pi, so it consists of pieces
+/// in ascending phi, which begin and end on the diagram's edge. The pieces of a curve share
+/// `points_per_curve` (at least 4) points.
 [[nodiscard]] std::array<std::vector<std::vector<Vec2>>, 4> region_borders(int points_per_curve);
 
-/// The paper's Figure 4: directions (phi, theta) that two adjacent usable readings leave possible,
-/// from the exact segment of forces. `reading` is that of `sensel` (1..4), `next_reading` that of
-/// sensel % 4 + 1; counts as the model has them, not below zero. From theta = pi/2 to the border of
-/// the region, `points` (at least 2) at even steps of the force. A continuous polyline: phi is
-/// unwrapped, its region's middle being in [-pi, pi]. Empty where both readings are zero.
+/// The paper's Figure 4: directions (phi, theta) of the feasible segment of two adjacent usable
+/// readings, of `sensel` (1..4) and of sensel % 4 + 1, in counts, not negative. `points` (at least
+/// 2) lie at even steps of force from theta = pi/2 to the border of the region. Phi is unwrapped,
+/// the middle of the region in [-pi, pi]. Empty where both readings are zero.
 [[nodiscard]] std::vector<Vec2> ambiguity_contour(int sensel, double reading, double next_reading,
                                                   int points);
 

@@ -27,7 +27,7 @@ SurfaceFrame on_cylinder(double radius, Vec2 point) {
   const double sine = std::sin(angle);
   const double cosine = std::cos(angle);
   const double half = std::sin(angle / 2);
-  // cos(angle) - 1 would lose what a large radius leaves of the height.
+  // cos(angle) - 1 would cancel at a large radius.
   return {{radius * sine, point.y, -2 * radius * half * half},
           {cosine, 0, -sine},
           {0, 1, 0},
@@ -42,9 +42,9 @@ std::optional<Vec2> hit_on_plane(const Ray& ray, const SkinSize& skin) {
   return is_on(skin, point) ? std::optional(point) : std::nullopt;
 }
 
-/// Where a ray goes through the whole cylinder: the lesser way first, NaN where it does not.
-std::array<double, 2> ways_to_cylinder(const Ray& ray, double radius) {
-  // In the plane across the axis, whose origin is the axis.
+/// Ray parameters of the intersections with the whole cylinder, ascending; NaN for none.
+std::array<double, 2> cylinder_hits(const Ray& ray, double radius) {
+  // In the plane normal to the axis, with the axis as origin.
   const double x = ray.origin.x;
   const double z = ray.origin.z + radius;
   const double across = std::hypot(ray.direction.x, ray.direction.z);
@@ -57,7 +57,7 @@ std::array<double, 2> ways_to_cylinder(const Ray& ray, double radius) {
 }
 
 std::optional<Vec2> hit_on_cylinder(const Ray& ray, double radius, const SkinSize& skin) {
-  for (const double way : ways_to_cylinder(ray, radius)) {
+  for (const double way : cylinder_hits(ray, radius)) {
     if (!(way > 0)) continue;
     const Vec3 place = ray.origin + way * ray.direction;
     const Vec2 point{radius * std::atan2(place.x, place.z + radius), place.y};

@@ -4,7 +4,7 @@
 
 #include "viewer/style/view.h"
 
-/// What a view needs to know of a surface, beside frame_at().
+/// Intersections and extents of surfaces.
 namespace pillarfield::viewer {
 
 /// The points origin + t * direction, t > 0.
@@ -12,12 +12,12 @@ struct Ray {
   Vec3 origin, direction;
 };
 
-/// Where a ray first meets the skin on its surface, from either side; none where it does not. A
-/// skin that goes around a cylinder more than once is met in its middle turn.
+/// First intersection of a ray with the skin, from either side; none without one. On a skin that
+/// winds around a cylinder more than once, in the middle turn.
 [[nodiscard]] std::optional<Vec2> first_hit(const Ray& ray, const Surface& surface,
                                             const SkinSize& skin);
 
-/// A box about the skin on its surface, mm.
+/// Bounding box of the skin on its surface, mm.
 struct Box {
   Vec3 low, high;
 };

@@ -14,7 +14,7 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr const char* kMinus = "\u2212";
-constexpr int kMostDigits = 6;  ///< before or behind the point, of a label without exponent
+constexpr int kMostDigits = 6;  ///< before or after the point, in a label without exponent
 
 /// digits * 10^exponent
 struct Decimal {
@@ -22,15 +22,14 @@ struct Decimal {
   int exponent;
 };
 
-/// The double nearest to a decimal: powers of ten below one are not exact, so it is divided.
+/// The double nearest to a decimal; divides, since powers of ten below one are not exact.
 double value_of(Decimal decimal) {
   const auto digits = static_cast<double>(decimal.digits);
   const double power = std::pow(10.0, std::abs(decimal.exponent));
   return decimal.exponent < 0 ? digits / power : digits * power;
 }
 
-/// The least of `steps` (ascending, within a power of ten), times a power of ten, not below
-/// `value`.
+/// The least not below `value` of `steps` (ascending, within a power of ten) times a power of ten.
 Decimal least_not_below(double value, std::initializer_list<int> steps) {
   for (int exponent = static_cast<int>(std::floor(std::log10(value))) - 2;; ++exponent) {
     for (const int digits : steps) {
@@ -49,7 +48,7 @@ Decimal next_nicer(Decimal nice) {
 /// Multiples of a step within [low, high], ascending.
 std::vector<Decimal> multiples(Decimal step, double low, double high) {
   const double size = value_of(step);
-  // Divisions may end one too far inside.
+  // One more at each end, since the divisions round.
   const auto first = static_cast<std::int64_t>(std::ceil(low / size)) - 1;
   const auto last = static_cast<std::int64_t>(std::floor(high / size)) + 1;
   std::vector<Decimal> found;
@@ -65,7 +64,7 @@ std::string with_minus(bool negative, const std::string& text) {
   return negative ? kMinus + text : text;
 }
 
-/// "1.5e7" of the digits "15", the first of which counts 10^7.
+/// "1.5e7" for the digits "15" and exponent 7 of the first digit.
 std::string with_exponent(std::string digits, int exponent) {
   if (digits.size() > 1) digits.insert(1, ".");
   return digits + "e" + with_minus(exponent < 0, std::to_string(std::abs(exponent)));
@@ -84,7 +83,7 @@ std::string exponent_label(Decimal decimal) {
   return with_minus(decimal.digits < 0, with_exponent(digits, exponent));
 }
 
-/// Whether labels without exponent stay short, for all of these.
+/// True if all labels without exponent stay short.
 bool are_plain(const std::vector<Decimal>& decimals) {
   return std::all_of(decimals.begin(), decimals.end(), [](Decimal decimal) {
     return decimal.exponent >= -kMostDigits &&

@@ -4,7 +4,7 @@
 
 #include "viewer/style/view.h"
 
-/// What one does with vectors in space.
+/// Vector arithmetic.
 namespace pillarfield::viewer {
 
 [[nodiscard]] constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }

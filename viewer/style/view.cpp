@@ -8,7 +8,7 @@ namespace {
 
 constexpr Surface kFlat;
 
-/// The surface that a view shows.
+/// The surface that applies to a view.
 const Surface& shown(const View& view, const Surface& surface) {
   return std::holds_alternative<TopView>(view) ? kFlat : surface;
 }
@@ -47,7 +47,7 @@ Matrix clip_from_world(const View& view, const Surface& surface, const SkinSize&
   const Surface& laid_on = shown(view, surface);
   const Camera camera = camera_of(view, laid_on, viewport);
   const auto [near, far] = depths_of(camera, box_about(skin, laid_on));
-  // Depth after the division by w, which is the way along `forward`: 0 at near and 1 at far.
+  // Depth after the division by w, the distance along `forward`: 0 at near and 1 at far.
   const double slope = (camera.perspective ? far : 1) / (far - near);
   const Row right = row_along(camera.right, camera.eye, 2 * camera.pixels / viewport.width);
   const Row down = row_along(camera.up, camera.eye, -2 * camera.pixels / viewport.height);
@@ -59,7 +59,7 @@ Matrix clip_from_world(const View& view, const Surface& surface, const SkinSize&
 std::optional<Vec2> project(const View& view, const Surface& surface, const SkinSize&,
                             const Viewport& viewport, Vec3 point_mm) {
   const Camera camera = camera_of(view, shown(view, surface), viewport);
-  const Vec3 seen = seen_by(camera, point_mm);
+  const Vec3 seen = in_camera(camera, point_mm);
   if (camera.perspective && !(seen.z > 0)) return std::nullopt;
   const double scale = camera.perspective ? camera.pixels / seen.z : camera.pixels;
   const Vec2 middle = middle_of(viewport);

@@ -1,10 +1,10 @@
-// What the table of contacts says, and what a click on a line and the key do.
+// Contents of the table of contacts; actions of a click on a row and of the key.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
-#include "tests/viewer/app/fake_session.h"
+#include "tests/viewer/app/fake_app_state.h"
 #include "tests/viewer/source/touched_field.h"
-#include "viewer/app/panels/contact_words.h"
+#include "viewer/app/panels/format_contact.h"
 #include "viewer/app/panels/panels.h"
 
 namespace pillarfield::viewer {
@@ -22,38 +22,38 @@ ContactQuantities a_contact() {
   return contact;
 }
 
-TEST(ContactWords, FollowTheHeads) {
+TEST(FormatContact, FollowTheHeads) {
   ContactQuantities contact = a_contact();
   using Words = std::array<std::string, kContactColumns>;
-  EXPECT_EQ(contact_words("7", contact),
+  EXPECT_EQ(format_contact("7", contact),
             (Words{"7", "50.1", "5.00", "–", "unknown", "0 %", "157", "320", "0.457"}));
   contact.ambiguous = 50;
   contact.friction = 0.6;
   contact.slip = SlipState::partial;
-  EXPECT_EQ(contact_words("7", contact)[3], "0.60");
-  EXPECT_EQ(contact_words("7", contact)[4], "partial");
-  EXPECT_EQ(contact_words("7", contact)[5], "25 %");
+  EXPECT_EQ(format_contact("7", contact)[3], "0.60");
+  EXPECT_EQ(format_contact("7", contact)[4], "partial");
+  EXPECT_EQ(format_contact("7", contact)[5], "25 %");
   contact.resolved = 45;
-  EXPECT_EQ(contact_words("all", contact)[5], "25 % / 90 %");
-  EXPECT_EQ(contact_words("all", {})[5], "–");
+  EXPECT_EQ(format_contact("all", contact)[5], "25 % / 90 %");
+  EXPECT_EQ(format_contact("all", {})[5], "–");
 }
 
 TEST(MarkContact, MovesTheViewOnlyWhereTheContactIsOutOfSight) {
-  FakeSession fake;
-  const View whole = fake.session.look.view;
+  FakeAppState fake;
+  const View whole = fake.state.settings.view;
   const PillarRect extent{2, 4, 20, 24};
-  mark_contact(fake.session, fake.place, {3, 2}, extent);
-  ASSERT_TRUE(fake.session.region);
-  EXPECT_EQ(fake.session.region->rect.col_end, 24U);
-  EXPECT_EQ(fake.session.look.view, whole);
-  fake.session.look.view = TopView{{-10, -5}, 500};
-  mark_contact(fake.session, fake.place, {3, 2}, extent);
-  EXPECT_EQ(std::get<TopView>(fake.session.look.view).centre_mm, (Vec2{3, 2}));
-  EXPECT_FALSE(fake.session.view_is_fitted);
+  mark_contact(fake.state, fake.place, {3, 2}, extent);
+  ASSERT_TRUE(fake.state.selection);
+  EXPECT_EQ(fake.state.selection->rect.col_end, 24U);
+  EXPECT_EQ(fake.state.settings.view, whole);
+  fake.state.settings.view = TopView{{-10, -5}, 500};
+  mark_contact(fake.state, fake.place, {3, 2}, extent);
+  EXPECT_EQ(std::get<TopView>(fake.state.settings.view).centre_mm, (Vec2{3, 2}));
+  EXPECT_FALSE(fake.state.view_is_fitted);
 }
 
 TEST(ShowContacts, TheNextFieldHasThem) {
-  FakeSession fake;
+  FakeAppState fake;
   const auto next_field = [&] {
     std::optional<ShownField> field;
     for (int i = 0; i < 2000 && !field; ++i) {
@@ -63,17 +63,17 @@ TEST(ShowContacts, TheNextFieldHasThem) {
     return field.value();
   };
   EXPECT_EQ(next_field().contacts, nullptr);
-  show_contacts(fake.session, true);
+  show_contacts(fake.state, true);
   const ShownField field = next_field();
-  EXPECT_TRUE(fake.session.look.contacts);
+  EXPECT_TRUE(fake.state.settings.contacts);
   ASSERT_NE(field.contacts, nullptr);
   EXPECT_EQ(field.contacts->found.contacts.size(), 1U);
-  show_contacts(fake.session, false);
+  show_contacts(fake.state, false);
   fake.player.seek(3);
   EXPECT_EQ(next_field().contacts, nullptr);
 }
 
-/// An interface that nobody sees.
+/// An ImGui context without a display.
 class ContactsPanel : public testing::Test {
  public:
   ContactsPanel() : context_(ImGui::CreateContext()) {
@@ -82,24 +82,24 @@ class ContactsPanel : public testing::Test {
     io.DisplaySize = ImVec2(400, 800);
     unsigned char* pixels = nullptr;
     io.Fonts->GetTexDataAsAlpha8(&pixels, nullptr, nullptr);
-    session().look.contacts = true;
+    state().settings.contacts = true;
     ShownField field = touched_field(0, FakeProducer::kRows, FakeProducer::kCols,
                                      {{{1, 3, 1, 3}, 1}, {{8, 12, 8, 12}, 3}, {{15, 17, 20, 22}}});
-    field.contacts = std::make_shared<const ShownContacts>(ContactWatch(1.2).contacts_of(field));
-    session().field = field;
+    field.contacts = std::make_shared<const ShownContacts>(FieldContacts(1.2).contacts_of(field));
+    state().field = field;
   }
   ~ContactsPanel() override { ImGui::DestroyContext(context_); }
 
-  Session& session() { return fake_.session; }
+  AppState& state() { return fake_.state; }
 
-  /// How far down the panel goes.
+  /// Draws a frame; returns the height of the panel.
   float frame() {
     ImGui::GetIO().DeltaTime = 0.02f;
     ImGui::NewFrame();
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(380, 700));
     ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
-    contacts_panel(session(), fake_.place);
+    contacts_panel(state(), fake_.place);
     const float end = ImGui::GetCursorPosY();
     row_ = ImGui::GetTextLineHeight() + 2 * ImGui::GetStyle().CellPadding.y;
     ImGui::End();
@@ -107,7 +107,7 @@ class ContactsPanel : public testing::Test {
     return end;
   }
 
-  /// In the line below so many others; the head is one.
+  /// Clicks the row below `line` others, the head included.
   void click(int line) {
     ImGuiIO& io = ImGui::GetIO();
     frame();
@@ -120,32 +120,32 @@ class ContactsPanel : public testing::Test {
   }
 
  private:
-  FakeSession fake_;
+  FakeAppState fake_;
   ImGuiContext* context_;
   float row_ = 0;
 };
 
 TEST_F(ContactsPanel, AClickMarksTheContactOfTheLine) {
-  click(2);  // The heaviest, below the head and the sum of all.
-  ASSERT_TRUE(session().region);
-  EXPECT_EQ(session().region->rect.row_begin, 8U);
-  EXPECT_EQ(session().region->rect.col_end, 12U);
+  click(2);  // The heaviest, below the head and the total.
+  ASSERT_TRUE(state().selection);
+  EXPECT_EQ(state().selection->rect.row_begin, 8U);
+  EXPECT_EQ(state().selection->rect.col_end, 12U);
   click(3);
-  EXPECT_EQ(session().region->rect.row_begin, 1U);
+  EXPECT_EQ(state().selection->rect.row_begin, 1U);
 }
 
 TEST_F(ContactsPanel, TheSumOfAllIsNoContact) {
   click(1);
-  EXPECT_FALSE(session().region);
+  EXPECT_FALSE(state().selection);
 }
 
-TEST_F(ContactsPanel, HasNoTableWhereContactsAreNotLookedFor) {
+TEST_F(ContactsPanel, HasNoTableWhileContactsAreOff) {
   frame();
   const float with_table = frame();
-  session().look.contacts = false;
+  state().settings.contacts = false;
   EXPECT_LT(frame(), with_table / 2);
-  session().look.contacts = true;
-  session().field->contacts = nullptr;
+  state().settings.contacts = true;
+  state().field->contacts = nullptr;
   EXPECT_LT(frame(), with_table / 2);
 }
 

@@ -1,4 +1,4 @@
-// What the viewer writes: pictures, names of sequences, tables.
+// Written files: pictures, names of sequences, tables.
 #include "viewer/app/export/export.h"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ Pixels noise(std::uint32_t width, std::uint32_t height) {
   return pixels;
 }
 
-/// Decoded by libpng, as it says that it is stored.
+/// A picture decoded by libpng in its stored format.
 struct Decoded {
   std::uint32_t width, height, format;
   std::vector<std::uint8_t> bytes;
@@ -158,7 +158,7 @@ TEST_F(Export, NamesOfASequenceSortByFrame) {
   }
 }
 
-/// The table that the library writes of a field.
+/// The table of a field as the library writes it.
 std::string librarys_table(const fs::path& path, const MadeField& made, const ShownField& field) {
   ForceFileInfo info;
   info.rows = made.forces.rows;
@@ -175,7 +175,7 @@ std::string librarys_table(const fs::path& path, const MadeField& made, const Sh
 TEST_F(Export, TheTableOfAWholeFieldIsTheLibrarys) {
   const MadeField made;
   ShownField field = made.shown();
-  field.index = 0;  // The library counts the frames that it was given.
+  field.index = 0;  // The library counts appended frames.
   field.time_s = 0.1;
   const PillarRect all{0, made.forces.rows, 0, made.forces.cols};
   write_csv(folder_ / "ours.csv", field, all);

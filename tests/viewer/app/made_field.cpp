@@ -18,7 +18,7 @@ struct Force {
   double x = 0, y = 0, normal = 0;
 };
 
-/// A ball that presses hardest at its middle, and is dragged so hard that its rim slips.
+/// Force under a ball in partial slip.
 Force force_at(double row, double col) {
   const double right = (col - 21) / 13;
   const double up = (14 - row) / 11;
@@ -39,7 +39,7 @@ std::array<double, 4> model_of(const Force& force) {
   return readings;
 }
 
-/// Region 3: all forces from `none` to `most` normal force give the two readings.
+/// Region 3: the force at `normal` on the feasible segment of the two readings.
 Force on_segment(const std::array<double, 4>& readings, std::size_t sensel, double normal) {
   Force force{0, 0, normal};
   for (const std::size_t each : {sensel, (sensel + 1) % 4}) {

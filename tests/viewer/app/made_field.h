@@ -1,11 +1,11 @@
 #pragma once
 
-#include "viewer/app/session.h"
+#include "viewer/app/app_state.h"
 
 namespace pillarfield::viewer {
 
-/// Forces, readings and uncertainty that the model gives for a ball that presses and shears a skin
-/// of 32 x 40 pillars, as a solver would find them.
+/// Readings of the model under a ball that presses and shears 32 x 40 pillars, with the solver's
+/// forces and uncertainty.
 struct MadeField {
   MadeField();
 
@@ -19,11 +19,11 @@ struct MadeField {
 
  private:
   void set_pillar(PillarIndex pillar);
-  /// Whole counts go into the frame; returned in newtons, as the solver has them.
+  /// Stores whole counts in the frame; returns them in newtons.
   std::array<double, 4> read(PillarIndex pillar, const std::array<double, 4>& model);
 };
 
-/// A history of `points` frames, 100 a second, that ends in a force.
+/// A history of `points` frames at 100 Hz that ends in a force.
 [[nodiscard]] History made_history(const PillarValues& last, std::size_t points);
 
 }  // namespace pillarfield::viewer

@@ -1,18 +1,18 @@
-// What the mouse does in the field, without a window.
+// Mouse gestures in the field, without a window.
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/viewer/app/fake_session.h"
+#include "tests/viewer/app/fake_app_state.h"
 #include "viewer/app/input/controls.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-/// A hand on the mouse over a session.
-struct Hand : FakeSession {
+/// Simulated gestures.
+struct Mouse : FakeAppState {
   Controls controls;
   double time_s = 0;
 
@@ -36,189 +36,190 @@ struct Hand : FakeSession {
     move(to);
     button(false, to, which, modifiers);
   }
-  [[nodiscard]] TopView top() const { return std::get<TopView>(session.look.view); }
+  [[nodiscard]] TopView top() const { return std::get<TopView>(state.settings.view); }
 };
 
 TEST(Mouse, HoverFindsThePillarUnderTheCursor) {
-  Hand hand;
-  hand.move(hand.pixel(7, 21));
-  EXPECT_EQ(hand.session.hovered, (PillarIndex{7, 21}));
-  hand.move({799, 599});
-  EXPECT_FALSE(hand.session.hovered);
-  hand.move(hand.pixel(0, 0));
-  EXPECT_EQ(hand.session.hovered, (PillarIndex{0, 0}));
-  hand.controls.take(LeaveEvent{}, hand.command());
-  EXPECT_FALSE(hand.session.hovered);
+  Mouse mouse;
+  mouse.move(mouse.pixel(7, 21));
+  EXPECT_EQ(mouse.state.hovered, (PillarIndex{7, 21}));
+  mouse.move({799, 599});
+  EXPECT_FALSE(mouse.state.hovered);
+  mouse.move(mouse.pixel(0, 0));
+  EXPECT_EQ(mouse.state.hovered, (PillarIndex{0, 0}));
+  mouse.controls.take(LeaveEvent{}, mouse.command());
+  EXPECT_FALSE(mouse.state.hovered);
 }
 
 TEST(Mouse, AClickPinsAndAnotherUnpins) {
-  Hand hand;
-  hand.click(hand.pixel(7, 21));
-  hand.click(hand.pixel(2, 3));
-  ASSERT_EQ(hand.session.pins.size(), 2u);
-  EXPECT_EQ(hand.session.pins[0].pillar, (PillarIndex{7, 21}));
-  EXPECT_EQ(hand.session.pins[1].history.points().size(), 1u);
-  hand.click(hand.pixel(7, 21));
-  ASSERT_EQ(hand.session.pins.size(), 1u);
-  EXPECT_EQ(hand.session.pins[0].pillar, (PillarIndex{2, 3}));
-  EXPECT_FALSE(hand.session.region);
+  Mouse mouse;
+  mouse.click(mouse.pixel(7, 21));
+  mouse.click(mouse.pixel(2, 3));
+  ASSERT_EQ(mouse.state.pins.size(), 2u);
+  EXPECT_EQ(mouse.state.pins[0].pillar, (PillarIndex{7, 21}));
+  EXPECT_EQ(mouse.state.pins[1].history.points().size(), 1u);
+  mouse.click(mouse.pixel(7, 21));
+  ASSERT_EQ(mouse.state.pins.size(), 1u);
+  EXPECT_EQ(mouse.state.pins[0].pillar, (PillarIndex{2, 3}));
+  EXPECT_FALSE(mouse.state.selection);
 }
 
 TEST(Mouse, PinsAreNotMoreThanThereMayBe) {
-  Hand hand;
-  for (std::uint32_t col = 0; col < Session::kMostPins + 2; ++col) hand.click(hand.pixel(1, col));
-  EXPECT_EQ(hand.session.pins.size(), Session::kMostPins);
-  EXPECT_FALSE(hand.session.notice.empty());
+  Mouse mouse;
+  for (std::uint32_t col = 0; col < AppState::kMostPins + 2; ++col)
+    mouse.click(mouse.pixel(1, col));
+  EXPECT_EQ(mouse.state.pins.size(), AppState::kMostPins);
+  EXPECT_FALSE(mouse.state.notice.empty());
 }
 
 TEST(Mouse, ATremblingClickIsAClick) {
-  Hand hand;
-  const Vec2 pixel = hand.pixel(7, 21);
-  hand.drag(pixel, {pixel.x + 2, pixel.y + 1});
-  EXPECT_EQ(hand.session.pins.size(), 1u);
-  EXPECT_FALSE(hand.session.region);
+  Mouse mouse;
+  const Vec2 pixel = mouse.pixel(7, 21);
+  mouse.drag(pixel, {pixel.x + 2, pixel.y + 1});
+  EXPECT_EQ(mouse.state.pins.size(), 1u);
+  EXPECT_FALSE(mouse.state.selection);
 }
 
 TEST(Mouse, ADoubleClickResetsTheViewAndLeavesPinsAlone) {
-  Hand hand;
-  const TopView fitted = hand.top();
-  hand.controls.take(WheelEvent{3, {300, 250}}, hand.command());
-  ASSERT_NE(hand.top(), fitted);
-  const Vec2 pixel = hand.pixel(9, 12);
-  hand.click(pixel);
-  hand.click_again(pixel);
-  EXPECT_EQ(hand.top(), fitted);
-  EXPECT_TRUE(hand.session.pins.empty());
+  Mouse mouse;
+  const TopView fitted = mouse.top();
+  mouse.controls.take(WheelEvent{3, {300, 250}}, mouse.command());
+  ASSERT_NE(mouse.top(), fitted);
+  const Vec2 pixel = mouse.pixel(9, 12);
+  mouse.click(pixel);
+  mouse.click_again(pixel);
+  EXPECT_EQ(mouse.top(), fitted);
+  EXPECT_TRUE(mouse.state.pins.empty());
 }
 
 TEST(Mouse, TwoSlowClicksAreNoDoubleClick) {
-  Hand hand;
-  hand.controls.take(WheelEvent{3, {300, 250}}, hand.command());
-  const TopView zoomed = hand.top();
-  hand.click(hand.pixel(9, 12));
-  hand.click(hand.pixel(9, 12));
-  EXPECT_EQ(hand.top(), zoomed);
+  Mouse mouse;
+  mouse.controls.take(WheelEvent{3, {300, 250}}, mouse.command());
+  const TopView zoomed = mouse.top();
+  mouse.click(mouse.pixel(9, 12));
+  mouse.click(mouse.pixel(9, 12));
+  EXPECT_EQ(mouse.top(), zoomed);
 }
 
-TEST(Mouse, ADragMarksTheRegionThatItTouches) {
-  Hand hand;
-  hand.drag(hand.pixel(12, 20), hand.pixel(4, 6));
-  ASSERT_TRUE(hand.session.region);
-  const PillarRect& rect = hand.session.region->rect;
+TEST(Mouse, ADragSelectsThePillarsItTouches) {
+  Mouse mouse;
+  mouse.drag(mouse.pixel(12, 20), mouse.pixel(4, 6));
+  ASSERT_TRUE(mouse.state.selection);
+  const PillarRect& rect = mouse.state.selection->rect;
   EXPECT_EQ(rect.row_begin, 4u);
   EXPECT_EQ(rect.row_end, 13u);
   EXPECT_EQ(rect.col_begin, 6u);
   EXPECT_EQ(rect.col_end, 21u);
-  EXPECT_EQ(hand.session.region->history.points().size(), 1u);
-  EXPECT_TRUE(hand.session.pins.empty());
+  EXPECT_EQ(mouse.state.selection->history.points().size(), 1u);
+  EXPECT_TRUE(mouse.state.pins.empty());
 }
 
 TEST(Mouse, ADragBeyondTheSkinEndsAtItsEdge) {
-  Hand hand;
-  hand.drag(hand.pixel(10, 10), {2000, -500});
-  ASSERT_TRUE(hand.session.region);
-  EXPECT_EQ(hand.session.region->rect.row_begin, 0u);
-  EXPECT_EQ(hand.session.region->rect.col_end, FakeProducer::kCols);
+  Mouse mouse;
+  mouse.drag(mouse.pixel(10, 10), {2000, -500});
+  ASSERT_TRUE(mouse.state.selection);
+  EXPECT_EQ(mouse.state.selection->rect.row_begin, 0u);
+  EXPECT_EQ(mouse.state.selection->rect.col_end, FakeProducer::kCols);
 }
 
 TEST(Mouse, OtherButtonsAndShiftMoveTheView) {
   for (const auto& [button, modifiers] :
        {std::pair{MouseButton::right, Modifiers{}}, std::pair{MouseButton::middle, Modifiers{}},
         std::pair{MouseButton::left, Modifiers{true, false}}}) {
-    Hand hand;
-    const Vec2 from = hand.pixel(10, 15);
-    const auto point = sheet_point(hand.place, hand.session.look, from);
-    hand.drag(from, {from.x + 60, from.y - 40}, button, modifiers);
-    const auto moved = pixel_of(hand.place, hand.session.look, *point);
+    Mouse mouse;
+    const Vec2 from = mouse.pixel(10, 15);
+    const auto point = sheet_point(mouse.place, mouse.state.settings, from);
+    mouse.drag(from, {from.x + 60, from.y - 40}, button, modifiers);
+    const auto moved = pixel_of(mouse.place, mouse.state.settings, *point);
     EXPECT_NEAR(moved->x, from.x + 60, 1e-6);
     EXPECT_NEAR(moved->y, from.y - 40, 1e-6);
-    EXPECT_FALSE(hand.session.region);
-    EXPECT_FALSE(hand.session.view_is_fitted);
+    EXPECT_FALSE(mouse.state.selection);
+    EXPECT_FALSE(mouse.state.view_is_fitted);
   }
 }
 
 TEST(Mouse, TheWheelZoomsAboutTheCursor) {
-  Hand hand;
-  const Vec2 pixel = hand.pixel(5, 22);
-  const auto before = sheet_point(hand.place, hand.session.look, pixel);
-  const double scale = hand.top().pixels_per_mm;
-  hand.controls.take(WheelEvent{2, pixel}, hand.command());
-  const auto after = sheet_point(hand.place, hand.session.look, pixel);
-  EXPECT_NEAR(hand.top().pixels_per_mm, scale * 1.44, 1e-9);
+  Mouse mouse;
+  const Vec2 pixel = mouse.pixel(5, 22);
+  const auto before = sheet_point(mouse.place, mouse.state.settings, pixel);
+  const double scale = mouse.top().pixels_per_mm;
+  mouse.controls.take(WheelEvent{2, pixel}, mouse.command());
+  const auto after = sheet_point(mouse.place, mouse.state.settings, pixel);
+  EXPECT_NEAR(mouse.top().pixels_per_mm, scale * 1.44, 1e-9);
   EXPECT_NEAR(after->x, before->x, 1e-9);
   EXPECT_NEAR(after->y, before->y, 1e-9);
 }
 
 TEST(Mouse, ADragTurnsAViewInPerspective) {
-  Hand hand;
-  show_orbit(hand.session, hand.place, true);
-  const auto before = std::get<OrbitView>(hand.session.look.view);
-  hand.drag({400, 300}, {460, 320});
-  const auto after = std::get<OrbitView>(hand.session.look.view);
+  Mouse mouse;
+  show_orbit(mouse.state, mouse.place, true);
+  const auto before = std::get<OrbitView>(mouse.state.settings.view);
+  mouse.drag({400, 300}, {460, 320});
+  const auto after = std::get<OrbitView>(mouse.state.settings.view);
   EXPECT_NE(after.azimuth, before.azimuth);
   EXPECT_NE(after.elevation, before.elevation);
   EXPECT_EQ(after.distance_mm, before.distance_mm);
-  EXPECT_FALSE(hand.session.region);
+  EXPECT_FALSE(mouse.state.selection);
 }
 
 TEST(Mouse, OutsideTheFieldItDoesNothing) {
-  Hand hand;
-  const Look before = hand.session.look;
-  hand.click({900, 300});
-  hand.drag({900, 300}, {950, 350});
-  hand.controls.take(WheelEvent{2, {900, 300}}, hand.command());
-  EXPECT_TRUE(hand.session.pins.empty());
-  EXPECT_FALSE(hand.session.region);
-  EXPECT_EQ(hand.session.look, before);
+  Mouse mouse;
+  const RenderSettings before = mouse.state.settings;
+  mouse.click({900, 300});
+  mouse.drag({900, 300}, {950, 350});
+  mouse.controls.take(WheelEvent{2, {900, 300}}, mouse.command());
+  EXPECT_TRUE(mouse.state.pins.empty());
+  EXPECT_FALSE(mouse.state.selection);
+  EXPECT_EQ(mouse.state.settings, before);
 }
 
 TEST(Mouse, ADragThatBeganInTheFieldGoesOnOutside) {
-  Hand hand;
-  hand.button(true, hand.pixel(10, 15), MouseButton::right, {});
-  EXPECT_TRUE(hand.controls.is_dragging());
-  const TopView before = hand.top();
-  hand.move({900, 300});
-  EXPECT_NE(hand.top(), before);
-  hand.button(false, {900, 300}, MouseButton::right, {});
-  EXPECT_FALSE(hand.controls.is_dragging());
+  Mouse mouse;
+  mouse.button(true, mouse.pixel(10, 15), MouseButton::right, {});
+  EXPECT_TRUE(mouse.controls.is_dragging());
+  const TopView before = mouse.top();
+  mouse.move({900, 300});
+  EXPECT_NE(mouse.top(), before);
+  mouse.button(false, {900, 300}, MouseButton::right, {});
+  EXPECT_FALSE(mouse.controls.is_dragging());
 }
 
 TEST(Mouse, KeysWithUnknownModifiersDoNothing) {
-  Hand hand;
-  hand.controls.take(KeyEvent{GLFW_KEY_Q, {}, true, true}, hand.command());
-  hand.controls.take(KeyEvent{GLFW_KEY_Q, {}, false, false}, hand.command());
-  EXPECT_FALSE(hand.requests.quit);
-  hand.controls.take(KeyEvent{GLFW_KEY_Q, {}, true, false}, hand.command());
-  EXPECT_TRUE(hand.requests.quit);
+  Mouse mouse;
+  mouse.controls.take(KeyEvent{GLFW_KEY_Q, {}, true, true}, mouse.command());
+  mouse.controls.take(KeyEvent{GLFW_KEY_Q, {}, false, false}, mouse.command());
+  EXPECT_FALSE(mouse.pending.quit);
+  mouse.controls.take(KeyEvent{GLFW_KEY_Q, {}, true, false}, mouse.command());
+  EXPECT_TRUE(mouse.pending.quit);
 }
 
-TEST(Views, EachKeepsItsPlaceWhileTheOtherIsLookedAt) {
-  Hand hand;
-  hand.controls.take(WheelEvent{2, {300, 300}}, hand.command());
-  const TopView zoomed = hand.top();
-  show_orbit(hand.session, hand.place, true);
-  hand.drag({400, 300}, {460, 320});
-  const View turned = hand.session.look.view;
-  show_orbit(hand.session, hand.place, false);
-  EXPECT_EQ(hand.top(), zoomed);
-  show_orbit(hand.session, hand.place, true);
-  EXPECT_EQ(hand.session.look.view, turned);
+TEST(Views, EachKeepsItsPositionWhileTheOtherIsShown) {
+  Mouse mouse;
+  mouse.controls.take(WheelEvent{2, {300, 300}}, mouse.command());
+  const TopView zoomed = mouse.top();
+  show_orbit(mouse.state, mouse.place, true);
+  mouse.drag({400, 300}, {460, 320});
+  const View turned = mouse.state.settings.view;
+  show_orbit(mouse.state, mouse.place, false);
+  EXPECT_EQ(mouse.top(), zoomed);
+  show_orbit(mouse.state, mouse.place, true);
+  EXPECT_EQ(mouse.state.settings.view, turned);
 }
 
 TEST(Views, PillarsInSightAreThoseOfThePlot) {
-  Hand hand;
-  const PillarRect all = visible_pillars(hand.place, hand.session.look);
+  Mouse mouse;
+  const PillarRect all = visible_pillars(mouse.place, mouse.state.settings);
   EXPECT_EQ(all.row_end - all.row_begin, FakeProducer::kRows);
   EXPECT_EQ(all.col_end - all.col_begin, FakeProducer::kCols);
   for (int i = 0; i < 8; ++i) {
-    hand.controls.take(WheelEvent{2, hand.pixel(5, 22)}, hand.command());
+    mouse.controls.take(WheelEvent{2, mouse.pixel(5, 22)}, mouse.command());
   }
-  const PillarRect seen = visible_pillars(hand.place, hand.session.look);
+  const PillarRect seen = visible_pillars(mouse.place, mouse.state.settings);
   EXPECT_LE(seen.row_begin, 5u);
   EXPECT_GT(seen.row_end, 5u);
   EXPECT_LE(seen.col_begin, 22u);
   EXPECT_GT(seen.col_end, 22u);
-  const double pillars = 600 / (hand.top().pixels_per_mm * 1.2649);
+  const double pillars = 600 / (mouse.top().pixels_per_mm * 1.2649);
   EXPECT_LE(seen.row_end - seen.row_begin, std::ceil(pillars) + 1);
 }
 

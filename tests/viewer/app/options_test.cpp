@@ -1,4 +1,4 @@
-// The viewer's command line: numbers that are none are refused before anything is opened.
+// The viewer's command line rejects bad numbers before it opens anything.
 
 #include "viewer/options.h"
 
@@ -10,8 +10,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// The status that parsing `--headless --png a.png` and these words ends with; unset where the
-/// program goes on.
+/// Exit status of parsing `--headless --png a.png` and `words`; unset where the program continues.
 std::optional<int> status_of(std::vector<std::string> words, Options& options) {
   words.insert(words.begin(),
                {"pillarfield-viewer", "source.toml", "--headless", "--png", "a.png"});
@@ -39,7 +38,7 @@ TEST(ViewerOptions, NumbersAreTaken) {
   EXPECT_EQ(options.range->low, -0.5F);
 }
 
-TEST(ViewerOptions, WhatIsNoFiniteNumberIsRefused) {
+TEST(ViewerOptions, RejectNumbersThatAreNotFinite) {
   const std::vector<std::string> bad = {"nan", "-nan", "inf", "-inf", "1e999", "x", ""};
   for (const std::string& number : bad) {
     for (const std::string& word :
@@ -57,7 +56,7 @@ TEST(ViewerOptions, WhatIsNoFiniteNumberIsRefused) {
   }
 }
 
-TEST(ViewerOptions, WhatLiesOutOfRangeIsRefused) {
+TEST(ViewerOptions, RejectNumbersOutOfRange) {
   for (const char* word : {"--zoom=0", "--zoom=1001", "--scale=5", "--centre=1.1e6,0",
                            "--centre=0,-1e300", "--range=0:1e31", "--size=640.5x480",
                            "--frames=1.5:3", "--frame=-1", "--frame=99999999999999999999"}) {

@@ -1,4 +1,4 @@
-"""What pillarfield-viewer --headless writes: never onto its source, never over other files."""
+"""pillarfield-viewer --headless never overwrites its source nor other files."""
 
 import os
 import pathlib
@@ -96,7 +96,7 @@ class Outputs(unittest.TestCase):
                 process.kill()
         if "Vulkan" in complaint:
             self.skipTest(complaint)
-        # PoCL may have said something of its compiler before.
+        # PoCL may print messages of its compiler first.
         lines = [line for line in complaint.splitlines() if "pillarfield-viewer" in line]
         self.assertEqual((process.returncode, len(lines)), (1, 1), complaint)
         self.assertIn("interrupted after", lines[0])

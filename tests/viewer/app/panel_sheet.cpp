@@ -1,4 +1,4 @@
-// Draws all panels without a window, in both themes and at two scales, and keeps the pictures.
+// Draws all panels without a window, in both themes and at two scales, into files.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
@@ -7,9 +7,9 @@
 #include "tests/viewer/app/made_field.h"
 #include "viewer/app/export/export.h"
 #include "viewer/app/input/pins.h"
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/render/interface.h"
+#include "viewer/render/gui_context.h"
 #include "viewer/render/target.h"
 
 namespace pillarfield::viewer {
@@ -26,7 +26,7 @@ class OneField final : public FieldProducer {
   SourceInfo info_;
 };
 
-/// The pillar most pressed of those in a region.
+/// The pillar of a region with the largest normal force.
 PillarIndex a_pillar(const MadeField& made, Region region, float left_of = 40) {
   PillarIndex found;
   float most = -1;
@@ -40,26 +40,26 @@ PillarIndex a_pillar(const MadeField& made, Region region, float left_of = 40) {
   return found;
 }
 
-Session make_session(const MadeField& made, Player& player) {
-  Session session;
-  session.player = &player;
-  session.field = made.shown();
-  session.look.contacts = true;
-  session.field->contacts =
-      std::make_shared<const ShownContacts>(ContactWatch(1.265).contacts_of(*session.field));
-  session.hovered = a_pillar(made, Region::two);
+AppState make_state(const MadeField& made, Player& player) {
+  AppState state;
+  state.player = &player;
+  state.field = made.shown();
+  state.settings.contacts = true;
+  state.field->contacts =
+      std::make_shared<const ShownContacts>(FieldContacts(1.265).contacts_of(*state.field));
+  state.hovered = a_pillar(made, Region::two);
   for (const PillarIndex pillar :
        {a_pillar(made, Region::one), a_pillar(made, Region::two), a_pillar(made, Region::three)}) {
-    session.pins.push_back({pillar, made_history(values_at(*session.field, pillar), 400)});
+    state.pins.push_back({pillar, made_history(values_at(*state.field, pillar), 400)});
   }
-  session.region = MarkedRegion{{4, 25, 8, 36}, History()};
-  const RegionSums sums = sums_over(*session.field, session.region->rect, 1.265);
+  state.selection = Selection{{4, 25, 8, 36}, History()};
+  const SelectionSums sums = sums_over(*state.field, state.selection->rect, 1.265);
   PillarValues total;
   total.shear_x = static_cast<float>(sums.shear_x);
   total.shear_y = static_cast<float>(sums.shear_y);
   total.normal = static_cast<float>(sums.normal);
-  session.region->history = made_history(total, 400);
-  return session;
+  state.selection->history = made_history(total, 400);
+  return state;
 }
 
 void set_style(Theme theme, double scale) {
@@ -69,17 +69,17 @@ void set_style(Theme theme, double scale) {
   } else {
     ImGui::StyleColorsLight();
   }
-  ImGuiStyle& style = ImGui::GetStyle();
-  style.WindowPadding = ImVec2(14, 10);
-  style.ItemSpacing = ImVec2(8, 6);
-  style.Colors[ImGuiCol_WindowBg].w = 1;
-  style.ScaleAllSizes(static_cast<float>(scale));
+  ImGuiStyle& imgui_style = ImGui::GetStyle();
+  imgui_style.WindowPadding = ImVec2(14, 10);
+  imgui_style.ItemSpacing = ImVec2(8, 6);
+  imgui_style.Colors[ImGuiCol_WindowBg].w = 1;
+  imgui_style.ScaleAllSizes(static_cast<float>(scale));
 }
 
-/// A window of its own for a panel; places and sizes at scale 1.
+/// Draws a panel in its own ImGui window; position and size at scale 1.
 template <class Panel>
 void in_window(const char* name, const Viewport& box, double scale, Panel&& panel) {
-  const auto sized = [scale](double x, double y) { return point({x * scale, y * scale}); };
+  const auto sized = [scale](double x, double y) { return to_imgui({x * scale, y * scale}); };
   ImGui::SetNextWindowPos(sized(box.x, box.y));
   ImGui::SetNextWindowSize(sized(box.width, box.height));
   ImGui::Begin(name, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse);
@@ -90,33 +90,32 @@ void in_window(const char* name, const Viewport& box, double scale, Panel&& pane
 constexpr double kWidth = 1550;
 constexpr double kHeight = 1260;
 
-/// The column of the window is 340 wide; others may be wider.
-void draw_windows(Session& session, double scale) {
-  const FieldPlace place{{0, 0, 800, 600}, &session.player->info()};
-  in_window("Cursor", {10, 10, 340, 220}, scale, [&] { hover_panel(session); });
-  in_window("Region", {10, 240, 340, 310}, scale, [&] { region_panel(session); });
-  in_window("Region 3", {360, 10, 340, 540}, scale, [&] { pillar_panel(session); });
-  inspect_pin(session, 1);
-  in_window("Region 2", {710, 10, 340, 540}, scale, [&] { pillar_panel(session); });
-  inspect_pin(session, 0);
-  in_window("Region 1, wide", {1060, 10, 480, 540}, scale, [&] { pillar_panel(session); });
-  in_window("Time", {360, 560, 340, 430}, scale, [&] { time_panel(session); });
-  in_window("Time, wide", {710, 560, 830, 320}, scale, [&] { time_panel(session); });
-  Session nothing;
-  nothing.player = session.player;
-  nothing.look = session.look;
+/// The column of the application is 340 wide; some panels are drawn wider.
+void draw_windows(AppState& state, double scale) {
+  const FieldPlace place{{0, 0, 800, 600}, &state.player->info()};
+  in_window("Cursor", {10, 10, 340, 220}, scale, [&] { hover_panel(state); });
+  in_window("Selection", {10, 240, 340, 310}, scale, [&] { selection_panel(state); });
+  in_window("Region 3", {360, 10, 340, 540}, scale, [&] { pillar_panel(state); });
+  inspect_pin(state, 1);
+  in_window("Region 2", {710, 10, 340, 540}, scale, [&] { pillar_panel(state); });
+  inspect_pin(state, 0);
+  in_window("Region 1, wide", {1060, 10, 480, 540}, scale, [&] { pillar_panel(state); });
+  in_window("Time", {360, 560, 340, 430}, scale, [&] { time_panel(state); });
+  in_window("Time, wide", {710, 560, 830, 320}, scale, [&] { time_panel(state); });
+  AppState nothing;
+  nothing.player = state.player;
+  nothing.settings = state.settings;
   in_window("Nothing", {10, 560, 340, 160}, scale, [&] {
     hover_panel(nothing);
     pillar_panel(nothing);
-    region_panel(nothing);
+    selection_panel(nothing);
     contacts_panel(nothing, place);
     time_panel(nothing);
   });
-  in_window("Contacts", {10, 1000, 340, 250}, scale, [&] { contacts_panel(session, place); });
-  in_window("Contacts, wide", {360, 1000, 830, 250}, scale,
-            [&] { contacts_panel(session, place); });
-  session.field->raw = {};
-  in_window("No readings", {10, 730, 340, 260}, scale, [&] { pillar_panel(session); });
+  in_window("Contacts", {10, 1000, 340, 250}, scale, [&] { contacts_panel(state, place); });
+  in_window("Contacts, wide", {360, 1000, 830, 250}, scale, [&] { contacts_panel(state, place); });
+  state.field->raw = {};
+  in_window("No readings", {10, 730, 340, 260}, scale, [&] { pillar_panel(state); });
 }
 
 class PanelSheet : public testing::Test {
@@ -126,18 +125,18 @@ class PanelSheet : public testing::Test {
                             static_cast<std::uint32_t>(kHeight * scale));
     const vk::raii::RenderPass pass = Target::make_render_pass(device_);
     const Target target(device_, *pass, size);
-    const Interface interface(instance_, device_, *pass, scale);
-    interface.use();
+    const GuiContext gui(instance_, device_, *pass, scale);
+    gui.use();
     set_style(theme, scale);
-    for (int frame = 0; frame < 2; ++frame) {  // Windows know their contents from the second on.
-      Session session = make_session(made_, player_);
-      session.look.theme = theme;
-      session.look.scale = scale;
+    for (int frame = 0; frame < 2; ++frame) {  // ImGui lays windows out in the second frame.
+      AppState state = make_state(made_, player_);
+      state.settings.theme = theme;
+      state.settings.scale = scale;
       ImGui::GetIO().DisplaySize =
           ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
       ImGui::GetIO().DeltaTime = 0.1f;
       ImGui::NewFrame();
-      draw_windows(session, scale);
+      draw_windows(state, scale);
       ImGui::Render();
     }
     const std::array<vk::ClearValue, 2> clear{
@@ -147,7 +146,7 @@ class PanelSheet : public testing::Test {
       commands.beginRenderPass(
           vk::RenderPassBeginInfo(*pass, target.framebuffer(), {{0, 0}, size}, clear),
           vk::SubpassContents::eInline);
-      interface.draw(commands);
+      gui.draw(commands);
       commands.endRenderPass();
     });
     return read_pixels(device_, target.image());

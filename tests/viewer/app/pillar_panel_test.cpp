@@ -1,11 +1,11 @@
-// The pins that can be chosen and removed in the panel of the inspected pillar, by mouse.
+// Choosing and removing pins by mouse in the pillar panel.
 #include <gtest/gtest.h>
 #include <imgui.h>
 
 #include "tests/viewer/app/made_field.h"
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
-#include "viewer/app/panels/region_sums.h"
+#include "viewer/app/panels/selection_sums.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -21,7 +21,7 @@ class NoFields final : public FieldProducer {
   SourceInfo info_;
 };
 
-/// An interface that nobody sees.
+/// An ImGui context without a display.
 class PillarPanel : public testing::Test {
  public:
   PillarPanel() : context_(ImGui::CreateContext()) {
@@ -30,9 +30,9 @@ class PillarPanel : public testing::Test {
     io.DisplaySize = ImVec2(400, 800);
     unsigned char* pixels = nullptr;
     io.Fonts->GetTexDataAsAlpha8(&pixels, nullptr, nullptr);
-    session_.player = &player_;
-    session_.field = made_.shown();
-    for (std::uint32_t i = 0; i < 3; ++i) session_.pins.push_back({{10 + i, 20}, History()});
+    state_.player = &player_;
+    state_.field = made_.shown();
+    for (std::uint32_t i = 0; i < 3; ++i) state_.pins.push_back({{10 + i, 20}, History()});
   }
   ~PillarPanel() override { ImGui::DestroyContext(context_); }
 
@@ -42,7 +42,7 @@ class PillarPanel : public testing::Test {
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(kWidth, 700));
     ImGui::Begin("panel", nullptr, ImGuiWindowFlags_NoTitleBar);
-    pillar_panel(session_);
+    pillar_panel(state_);
     side_ = ImGui::GetTextLineHeight() + 6;
     ImGui::End();
     ImGui::Render();
@@ -60,7 +60,7 @@ class PillarPanel : public testing::Test {
     io.MousePos = ImVec2(-1, -1);
     frame();
   }
-  void click_chip(int number) {
+  void click_button(int number) {
     frame();
     click(ImGui::GetStyle().WindowPadding.x + static_cast<float>(number - 1) * (side_ + 6) +
           side_ / 2);
@@ -71,7 +71,7 @@ class PillarPanel : public testing::Test {
   }
   [[nodiscard]] std::vector<int> numbers() const {
     std::vector<int> found;
-    for (const Pin& pin : session_.pins) found.push_back(pin.number);
+    for (const Pin& pin : state_.pins) found.push_back(pin.number);
     return found;
   }
 
@@ -81,51 +81,51 @@ class PillarPanel : public testing::Test {
   float side_ = 0;
   MadeField made_;
   Player player_{std::make_unique<NoFields>(made_)};
-  Session session_;
+  AppState state_;
 };
 
 TEST_F(PillarPanel, AClickOnANumberInspectsItsPin) {
   frame();
   EXPECT_EQ(numbers(), (std::vector<int>{1, 2, 3}));
-  click_chip(1);
+  click_button(1);
   EXPECT_EQ(numbers(), (std::vector<int>{2, 3, 1}));
-  click_chip(3);  // Chips stay where they are.
+  click_button(3);  // Buttons keep their positions.
   EXPECT_EQ(numbers(), (std::vector<int>{2, 1, 3}));
 }
 
 TEST_F(PillarPanel, TheCrossRemovesTheInspectedPinUntilNoneIsLeft) {
-  click_chip(2);
+  click_button(2);
   click_remove();
   EXPECT_EQ(numbers(), (std::vector<int>{1, 3}));
   click_remove();
   EXPECT_EQ(numbers(), (std::vector<int>{1}));
   click_remove();
   frame();
-  EXPECT_TRUE(session_.pins.empty());
+  EXPECT_TRUE(state_.pins.empty());
 }
 
 TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
-  session_.pins.push_back({{1000, 1000}, History()});
+  state_.pins.push_back({{1000, 1000}, History()});
   frame();
-  session_.field.reset();
+  state_.field.reset();
   frame();
-  EXPECT_EQ(session_.pins.size(), 4u);
+  EXPECT_EQ(state_.pins.size(), 4u);
 }
 
-TEST_F(PillarPanel, SumsOfTheRegionFollowRectangleAndFrame) {
-  session_.region = MarkedRegion{{4, 20, 8, 30}, History()};
+TEST_F(PillarPanel, SumsOfTheSelectionFollowRectangleAndFrame) {
+  state_.selection = Selection{{4, 20, 8, 30}, History()};
   const double pitch_mm = made_.skin.pillar_pitch_mm();
-  const double first = region_sums(session_).normal;
-  EXPECT_EQ(first, sums_over(*session_.field, {4, 20, 8, 30}, pitch_mm).normal);
-  session_.region->rect.row_end = 14;
-  const double second = region_sums(session_).normal;
-  EXPECT_EQ(second, sums_over(*session_.field, {4, 14, 8, 30}, pitch_mm).normal);
+  const double first = selection_sums(state_).normal;
+  EXPECT_EQ(first, sums_over(*state_.field, {4, 20, 8, 30}, pitch_mm).normal);
+  state_.selection->rect.row_end = 14;
+  const double second = selection_sums(state_).normal;
+  EXPECT_EQ(second, sums_over(*state_.field, {4, 14, 8, 30}, pitch_mm).normal);
   EXPECT_LT(second, first);
 
   for (float& normal : made_.forces.normal) normal *= 2;
-  EXPECT_EQ(region_sums(session_).normal, second);  // The same frame is not added up again.
-  ++session_.field->index;
-  EXPECT_NEAR(region_sums(session_).normal, 2 * second, 1e-6);
+  EXPECT_EQ(selection_sums(state_).normal, second);  // Cached for the frame.
+  ++state_.field->index;
+  EXPECT_NEAR(selection_sums(state_).normal, 2 * second, 1e-6);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Where values lie in plots, and what is left of curves and shares on whole pixels.
+// Plots: positions of values; curves and shares on whole pixels.
 #include "viewer/app/panels/plot.h"
 
 #include <gtest/gtest.h>
@@ -9,18 +9,18 @@
 #include <numeric>
 #include <random>
 
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 
 namespace pillarfield::viewer {
 namespace {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-PanelInk ink_of(double scale) {
-  PanelInk ink{};
-  ink.unit = scale;
-  ink.line = 16 * scale;
-  return ink;
+PanelStyle style_of(double scale) {
+  PanelStyle style{};
+  style.unit = scale;
+  style.line = 16 * scale;
+  return style;
 }
 
 TEST(PlotArea, ValuesAtTheEndsLieInTheCorners) {
@@ -43,7 +43,7 @@ TEST(PlotArea, PixelsLeadBackToValues) {
   }
 }
 
-TEST(RoundSpan, HoldsZeroAndAllValuesWithoutWastingRoom) {
+TEST(RoundSpan, HoldsZeroAndAllValuesTightly) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> exponent(-6, 6);
   std::normal_distribution<double> sign(0.5, 1);
@@ -55,7 +55,7 @@ TEST(RoundSpan, HoldsZeroAndAllValuesWithoutWastingRoom) {
     const double width = std::max(high, 0.0) - std::min(low, 0.0);
     EXPECT_LE(span.from, std::min(low, 0.0));
     EXPECT_GE(span.to, std::max(high, 0.0));
-    // A step at each end at most, and a step is at most half of what is there.
+    // At most one step at each end, and a step is at most half of the range.
     EXPECT_LE(span.to - span.from, 2.01 * width);
     EXPECT_GE(ticks(span.from, span.to, 8).size(), 3u);
   }
@@ -122,7 +122,7 @@ TEST(Thinned, LeavesFewPointsAsTheyAre) {
   EXPECT_TRUE(thinned({}, area).empty());
 }
 
-TEST(Thinned, PassesOverWhatIsNoNumber) {
+TEST(Thinned, SkipsNan) {
   const PlotArea area{{0, 0, 100, 60}, {0, 1}, {-1, 1}};
   const std::vector<Vec2> curve{{0, kNoNumber}, {0.5, 0}, {0.7, kNoNumber}, {1, 1}};
   EXPECT_EQ(thinned(curve, area).size(), 2u);
@@ -147,21 +147,21 @@ TEST(SharesOf, FillTheWidthInProportionAndHideNobody) {
 TEST(InsideAxes, LeavesRoomForLabelsAndGrowsWithTheScale) {
   for (const double scale : {1.0, 1.5, 2.0}) {
     const Viewport outer{5, 7, 300 * scale, 120 * scale};
-    const Viewport box = inside_axes(outer, 30 * scale, ink_of(scale));
+    const Viewport box = inside_axes(outer, 30 * scale, style_of(scale));
     EXPECT_GE(box.x, outer.x + 30 * scale);
     EXPECT_LE(box.x + box.width, outer.x + outer.width);
     EXPECT_LE(box.y + box.height + 16 * scale, outer.y + outer.height);
     EXPECT_GT(box.width, 240 * scale);
     EXPECT_GT(box.height, 80 * scale);
   }
-  EXPECT_GE(inside_axes({0, 0, 3, 3}, 30, ink_of(1)).width, 1);
+  EXPECT_GE(inside_axes({0, 0, 3, 3}, 30, style_of(1)).width, 1);
 }
 
-TEST(TicksOf, AreFewerWhereThereIsLessRoom) {
+TEST(TicksOf, AreFewerInASmallerPlot) {
   const PlotArea wide{{0, 0, 600, 300}, {0, 10}, {0, 1}};
   const PlotArea narrow{{0, 0, 130, 40}, {0, 10}, {0, 1}};
-  const PlotTicks many = ticks_of(wide, ink_of(1));
-  const PlotTicks few = ticks_of(narrow, ink_of(1));
+  const PlotTicks many = ticks_of(wide, style_of(1));
+  const PlotTicks few = ticks_of(narrow, style_of(1));
   EXPECT_GT(many.x.size(), few.x.size());
   EXPECT_GT(many.y.size(), few.y.size());
   EXPECT_GE(few.x.size(), 1u);

@@ -1,4 +1,4 @@
-// The paper's diagram of regions, what is drawn of a pillar in it, its bars, and the pins' numbers.
+// The paper's region diagram, its drawing of a pillar, reading bars, and pin numbers.
 #include "viewer/app/panels/region_plot.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ int usable(double phi, double theta) {
   return count;
 }
 
-TEST(RegionLimits, TellHowManySenselsTheModelHasUsable) {
+TEST(RegionLimits, MatchTheUsableSenselsOfTheModel) {
   for (int column = 0; column < 360; ++column) {
     const double phi = column - 179.5;
     const RegionLimits limits = region_limits(phi);
@@ -115,13 +115,13 @@ TEST(DirectionBox, IsNotThereWithoutUncertainty) {
   EXPECT_FALSE(direction_box(values));
 }
 
-TEST(TrailOf, BreaksWherePhiLeapsAndLeavesOutSilence) {
+TEST(TrailOf, BreaksWherePhiWrapsAndOmitsIdlePillars) {
   History history;
   for (int i = 0; i < 40; ++i) {
     const float angle = 0.1f + 0.2f * static_cast<float>(i);
-    const bool silent = i == 10;
-    history.add({i * 0.01, static_cast<std::uint64_t>(i), silent ? 0 : std::cos(angle),
-                 silent ? 0 : std::sin(angle), silent ? 0.f : 1.f});
+    const bool idle = i == 10;
+    history.add({i * 0.01, static_cast<std::uint64_t>(i), idle ? 0 : std::cos(angle),
+                 idle ? 0 : std::sin(angle), idle ? 0.f : 1.f});
   }
   std::size_t points = 0;
   const auto pieces = trail_of(history, 100);
@@ -185,20 +185,20 @@ TEST(FullBar, IsTheFullScaleOrRoomForAllReadings) {
 }
 
 TEST(Pins, KeepTheirNumbersWhileOthersComeAndGo) {
-  Session session;
-  for (std::uint32_t i = 0; i < 4; ++i) session.pins.push_back({{i, i}, History()});
-  number_pins(session);
-  inspect_pin(session, 1);
-  EXPECT_EQ(session.pins.back().number, 2);
-  EXPECT_EQ(session.pins.back().pillar, (PillarIndex{1, 1}));
-  remove_pin(session, 0);
-  session.pins.push_back({{9, 9}, History()});
-  number_pins(session);
+  AppState state;
+  for (std::uint32_t i = 0; i < 4; ++i) state.pins.push_back({{i, i}, History()});
+  number_pins(state);
+  inspect_pin(state, 1);
+  EXPECT_EQ(state.pins.back().number, 2);
+  EXPECT_EQ(state.pins.back().pillar, (PillarIndex{1, 1}));
+  remove_pin(state, 0);
+  state.pins.push_back({{9, 9}, History()});
+  number_pins(state);
   std::vector<int> numbers;
-  for (const Pin& pin : session.pins) numbers.push_back(pin.number);
+  for (const Pin& pin : state.pins) numbers.push_back(pin.number);
   EXPECT_EQ(numbers, (std::vector<int>{3, 4, 2, 1}));
-  remove_pin(session, 77);
-  EXPECT_EQ(session.pins.size(), 4u);
+  remove_pin(state, 77);
+  EXPECT_EQ(state.pins.size(), 4u);
 }
 
 TEST(Pins, HaveColoursOfTheirOwn) {

@@ -1,4 +1,4 @@
-// The table of shortcuts: no key twice, and each does something.
+// The table of shortcuts: keys are unique, and each has an effect.
 
 #include "viewer/app/input/shortcuts.h"
 
@@ -10,30 +10,30 @@
 #include <tuple>
 #include <vector>
 
-#include "tests/viewer/app/fake_session.h"
+#include "tests/viewer/app/fake_app_state.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-/// Everything that a shortcut may change, to be compared.
-auto state_of(const FakeSession& fake) {
-  const Session& session = fake.session;
+/// All state that a shortcut may change, for comparison.
+auto state_of(const FakeAppState& fake) {
+  const AppState& state = fake.state;
   const PlayerState player = fake.player.state();
-  const Requests& requests = fake.requests;
-  return std::tuple(session.look, session.pins.size(), session.region.has_value(),
-                    session.show_help, session.show_panels, player.frame, player.playing,
-                    player.loops, player.follows, player.speed, requests.quit, requests.picture,
-                    requests.sequence, requests.video, requests.table, requests.stop);
+  const PendingActions& pending = fake.pending;
+  return std::tuple(state.settings, state.pins.size(), state.selection.has_value(), state.show_help,
+                    state.show_panels, player.frame, player.playing, player.loops, player.follows,
+                    player.speed, pending.quit, pending.picture, pending.sequence, pending.video,
+                    pending.table, pending.stop);
 }
 
-/// A session in the middle of things: nothing is where a key would leave it.
-void set_up(FakeSession& fake, Quantity quantity) {
-  show_quantity(fake.session, quantity);
-  set_range(fake.session, {0, 7.5f});
+/// A state that every shortcut changes.
+void set_up(FakeAppState& fake, Quantity quantity) {
+  show_quantity(fake.state, quantity);
+  set_range(fake.state, {0, 7.5f});
   fake.player.seek(50);
-  toggle_pin(fake.session, {3, 4});
-  mark_region(fake.session, {1, 2, 3, 4});
-  zoom(fake.session.look.view, fake.place.plot(fake.session.look), {300, 300}, 2);
+  toggle_pin(fake.state, {3, 4});
+  select_pillars(fake.state, {1, 2, 3, 4});
+  zoom(fake.state.settings.view, fake.place.plot(fake.state.settings), {300, 300}, 2);
 }
 
 std::vector<Chord> chords_of(const Shortcut& shortcut) {
@@ -50,33 +50,33 @@ TEST(Shortcuts, NoChordIsThereTwice) {
     for (const Chord& chord : chords_of(shortcut)) {
       const auto [key, modifiers] = chord;
       EXPECT_TRUE(seen.insert({key, modifiers.shift, modifiers.control}).second)
-          << shortcut.keys << ": " << shortcut.what;
+          << shortcut.keys << ": " << shortcut.description;
     }
   }
 }
 
-TEST(Shortcuts, EachHasAKeyAndWordsAndIsToldApart) {
+TEST(Shortcuts, EachHasADistinctKeyAndDescription) {
   std::set<std::string> words;
   for (const Shortcut& shortcut : shortcuts()) {
-    EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.what;
+    EXPECT_FALSE(chords_of(shortcut).empty()) << shortcut.description;
     EXPECT_NE(*shortcut.keys, '\0');
-    EXPECT_TRUE(words.insert(shortcut.what).second) << shortcut.what;
+    EXPECT_TRUE(words.insert(shortcut.description).second) << shortcut.description;
   }
 }
 
-TEST(Shortcuts, EachChordDoesSomethingToASession) {
+TEST(Shortcuts, EachChordChangesTheState) {
   for (const Shortcut& shortcut : shortcuts()) {
     for (const Chord& chord : chords_of(shortcut)) {
       bool changed = false;
-      // Of two quantities on display one at least is not the one that a key asks for.
+      // At least one of the two quantities differs from the one that a key selects.
       for (const Quantity quantity : {Quantity::normal, Quantity::shear}) {
-        FakeSession fake;
+        FakeAppState fake;
         set_up(fake, quantity);
         const auto before = state_of(fake);
         EXPECT_TRUE(dispatch(chord, fake.command()));
         changed |= state_of(fake) != before;
       }
-      EXPECT_TRUE(changed) << shortcut.keys << ": " << shortcut.what;
+      EXPECT_TRUE(changed) << shortcut.keys << ": " << shortcut.description;
     }
   }
 }
@@ -85,15 +85,15 @@ TEST(Shortcuts, EveryQuantityHasOne) {
   std::set<Quantity> shown;
   for (const Shortcut& shortcut : shortcuts()) {
     if (shortcut.group != ShortcutGroup::show) continue;
-    FakeSession fake;
+    FakeAppState fake;
     shortcut.act(fake.command());
-    shown.insert(fake.session.look.quantity);
+    shown.insert(fake.state.settings.quantity);
   }
   EXPECT_EQ(shown.size(), static_cast<std::size_t>(kQuantities));
 }
 
 TEST(Shortcuts, OthersDoNothing) {
-  FakeSession fake;
+  FakeAppState fake;
   const auto before = state_of(fake);
   EXPECT_FALSE(dispatch({GLFW_KEY_F12, {}}, fake.command()));
   EXPECT_FALSE(dispatch({GLFW_KEY_Q, {true, true}}, fake.command()));
@@ -102,7 +102,7 @@ TEST(Shortcuts, OthersDoNothing) {
 }
 
 TEST(Shortcuts, StepsGoOnAndBack) {
-  FakeSession fake;
+  FakeAppState fake;
   fake.player.set_loop(false);
   fake.player.seek(50);
   dispatch({GLFW_KEY_RIGHT, {true, false}}, fake.command());
@@ -116,7 +116,7 @@ TEST(Shortcuts, StepsGoOnAndBack) {
 }
 
 TEST(Shortcuts, SpeedGoesInStepsAndComesBack) {
-  FakeSession fake;
+  FakeAppState fake;
   std::vector<double> speeds;
   for (int i = 0; i < 3; ++i) {
     dispatch({GLFW_KEY_EQUAL, {true, false}}, fake.command());
@@ -128,32 +128,32 @@ TEST(Shortcuts, SpeedGoesInStepsAndComesBack) {
 }
 
 TEST(Shortcuts, EscapeClosesTheHelpFirstAndStopsWritingBeforeItClears) {
-  FakeSession fake;
-  toggle_pin(fake.session, {3, 4});
-  fake.session.show_help = true;
-  fake.session.writing = true;
+  FakeAppState fake;
+  toggle_pin(fake.state, {3, 4});
+  fake.state.show_help = true;
+  fake.state.writing = true;
   const Chord escape{GLFW_KEY_ESCAPE, {}};
   dispatch(escape, fake.command());
-  EXPECT_FALSE(fake.session.show_help);
-  EXPECT_FALSE(fake.requests.stop);
+  EXPECT_FALSE(fake.state.show_help);
+  EXPECT_FALSE(fake.pending.stop);
   dispatch(escape, fake.command());
-  EXPECT_TRUE(fake.requests.stop);
-  EXPECT_EQ(fake.session.pins.size(), 1u);
-  fake.session.writing = false;
+  EXPECT_TRUE(fake.pending.stop);
+  EXPECT_EQ(fake.state.pins.size(), 1u);
+  fake.state.writing = false;
   dispatch(escape, fake.command());
-  EXPECT_TRUE(fake.session.pins.empty());
+  EXPECT_TRUE(fake.state.pins.empty());
 }
 
 TEST(Shortcuts, AQuantityKeepsItsRange) {
-  FakeSession fake;
-  show_quantity(fake.session, Quantity::normal);
-  set_range(fake.session, {0.5f, 2.5f});
-  show_quantity(fake.session, Quantity::shear_x);
-  EXPECT_EQ(fake.session.look.range.low, -fake.session.look.range.high);
-  EXPECT_EQ(fake.session.look.map, default_map(Scale::diverging));
-  show_quantity(fake.session, Quantity::normal);
-  EXPECT_EQ(fake.session.look.range, (Range{0.5f, 2.5f}));
-  EXPECT_EQ(fake.session.look.map, default_map(Scale::sequential));
+  FakeAppState fake;
+  show_quantity(fake.state, Quantity::normal);
+  set_range(fake.state, {0.5f, 2.5f});
+  show_quantity(fake.state, Quantity::shear_x);
+  EXPECT_EQ(fake.state.settings.range.low, -fake.state.settings.range.high);
+  EXPECT_EQ(fake.state.settings.map, default_map(Scale::diverging));
+  show_quantity(fake.state, Quantity::normal);
+  EXPECT_EQ(fake.state.settings.range, (Range{0.5f, 2.5f}));
+  EXPECT_EQ(fake.state.settings.map, default_map(Scale::sequential));
 }
 
 }  // namespace

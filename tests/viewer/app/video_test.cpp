@@ -1,4 +1,4 @@
-// Videos, by ffmpeg where it is installed, and by stand-ins for what can go wrong with it.
+// Videos, by ffmpeg where installed, and failures, by stand-ins for ffmpeg.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -31,7 +31,7 @@ std::string complaint_about(const std::function<void()>& act) {
   return "no error";
 }
 
-/// Where programs are looked for.
+/// The search path of programs.
 std::string own_path() {
   const char* const path = std::getenv("PATH");
   return path == nullptr ? "" : path;
@@ -51,7 +51,7 @@ class Video : public testing::Test {
     fs::remove_all(folder_);
   }
 
-  /// From now on `ffmpeg` is this shell script; `$out` is the file that it is to write.
+  /// Replaces `ffmpeg` by a shell script; `$out` is its output file.
   void stand_in(const std::string& script) const {
     const fs::path name = folder_ / "bin" / "ffmpeg";
     std::ofstream(name) << "#!/bin/sh\nfor out; do :; done; out=${out#file:}\n" << script << "\n";
@@ -104,7 +104,7 @@ TEST_F(Video, WithoutFfmpegTheErrorNamesThePackage) {
   EXPECT_TRUE(is_alone(""));
 }
 
-TEST_F(Video, WhatFfmpegComplainsOfIsInTheError) {
+TEST_F(Video, TheErrorHoldsFfmpegsMessage) {
   stand_in("cat > /dev/null; echo first complaint >&2; echo second >&2; exit 3");
   VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
   video.add(grey(4, 4, 1));
@@ -133,7 +133,7 @@ TEST_F(Video, AnUnfinishedVideoLeavesNothing) {
     video.add(grey(4, 4, 1));
   }
   EXPECT_TRUE(is_alone(""));
-  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // No child is left, not even a dead one.
+  EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);  // No child is left, not even a zombie.
   EXPECT_EQ(errno, ECHILD);
 }
 
@@ -147,7 +147,7 @@ TEST_F(Video, WrongEndingsSizesAndRatesAreErrors) {
   EXPECT_NE(message("a.mp4", 4, 0).find("0 pictures a second"), std::string::npos);
   VideoWriter video(folder_ / "a.mp4", 4, 4, 25);
   EXPECT_NE(complaint_about([&] { video.add(grey(4, 5, 1)); }).find("4 x 5"), std::string::npos);
-  EXPECT_NE(complaint_about([&] { video.finish(); }).find("needs pictures"), std::string::npos);
+  EXPECT_NE(complaint_about([&] { video.finish(); }).find("has no pictures"), std::string::npos);
 }
 
 TEST_F(Video, FfmpegWritesVideosOfOddSizes) {
@@ -159,9 +159,9 @@ TEST_F(Video, FfmpegWritesVideosOfOddSizes) {
     for (std::uint8_t level = 0; level < 12; ++level) video.add(grey(65, 33, level));
     video.finish();
     EXPECT_GT(fs::file_size(folder_ / name), 500u);
-    const std::string look = "ffmpeg -loglevel error -i " + (folder_ / name).string() +
-                             " -f rawvideo -pix_fmt gray " + (folder_ / "raw").string();
-    ASSERT_EQ(std::system(look.c_str()), 0);
+    const std::string settings = "ffmpeg -loglevel error -i " + (folder_ / name).string() +
+                                 " -f rawvideo -pix_fmt gray " + (folder_ / "raw").string();
+    ASSERT_EQ(std::system(settings.c_str()), 0);
     EXPECT_EQ(fs::file_size(folder_ / "raw"), 12u * 66 * 34);
     fs::remove(folder_ / "raw");
   }

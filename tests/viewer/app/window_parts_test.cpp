@@ -1,4 +1,4 @@
-// How the window is divided, when it is drawn, and what is measured of that.
+// Layout of the window, scheduling of drawing, and its statistics.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(Screen, SizesFollowTheScale) {
   EXPECT_EQ(two.status.height, 2 * one.status.height);
 }
 
-/// Draws as long as it is due; how often.
+/// Draws while due; returns the number of frames.
 int draw_all(Redraws& redraws, double now_s) {
   int frames = 0;
   while (redraws.due(now_s) && frames < 100) {

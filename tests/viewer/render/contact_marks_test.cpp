@@ -1,4 +1,4 @@
-// Where the marks of contacts are in a picture, and what they say.
+// Positions and texts of contact marks.
 
 #include "viewer/render/contact_marks.h"
 
@@ -20,19 +20,19 @@ SourceInfo source() {
   SourceInfo info;
   info.skin.rows = 2 * kRows;
   info.skin.cols = 2 * kCols;
-  info.skin.sensel_pitch_mm = 0.5;  // a pillar is a millimetre
+  info.skin.sensel_pitch_mm = 0.5;  // pillar pitch 1 mm
   return info;
 }
 
-/// Ten pixels a millimetre, and the middle of the skin in that of the plot: pixel (230, 120).
-Look top_look() {
-  Look look;
-  look.view = TopView{{0, 0}, 10};
-  return look;
+/// 10 pixels per millimetre; the middle of the skin is pixel (230, 120).
+RenderSettings top_settings() {
+  RenderSettings settings;
+  settings.view = TopView{{0, 0}, 10};
+  return settings;
 }
 
 ShownContacts contacts_of(std::initializer_list<Touch> touches) {
-  return ContactWatch(1).contacts_of(touched_field(0, kRows, kCols, touches));
+  return FieldContacts(1).contacts_of(touched_field(0, kRows, kCols, touches));
 }
 
 void expect_point(const Vec2& point, double x, double y) {
@@ -43,7 +43,7 @@ void expect_point(const Vec2& point, double x, double y) {
 TEST(ContactMarks, AreWhereTheContactIs) {
   // Rows 4 to 7, columns 22 to 27: x from 2 to 8 mm, y from 2 to 6 mm.
   const ShownContacts contacts = contacts_of({{{4, 8, 22, 28}, 0.5F, 0.25F, 0}});
-  const auto marks = contact_marks(contacts, source(), top_look(), kPlot);
+  const auto marks = contact_marks(contacts, source(), top_settings(), kPlot);
   ASSERT_EQ(marks.size(), 1U);
   const ContactMark& mark = marks.front();
   ASSERT_EQ(mark.outline.size(), 4U);
@@ -58,48 +58,48 @@ TEST(ContactMarks, AreWhereTheContactIs) {
 }
 
 TEST(ContactMarks, ArrowsPointUpWhereShearDoesAndGrowWithTheScaleAndNotForEver) {
-  Look look = top_look();
+  RenderSettings settings = top_settings();
   const auto tip_of = [&](float shear_y) {
     const auto marks =
-        contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}), source(), look, kPlot);
+        contact_marks(contacts_of({{{4, 8, 22, 28}, 1, 0, shear_y}}), source(), settings, kPlot);
     return marks.front().tip;
   };
   expect_point(tip_of(1).value(), 280, 80 - kContactArrowPixels);
   expect_point(tip_of(100).value(), 280, 80 - 3 * kContactArrowPixels);
   EXPECT_FALSE(tip_of(0.02F));
-  look.scale = 2;
+  settings.scale = 2;
   expect_point(tip_of(-1).value(), 280, 80 + 2 * kContactArrowPixels);
 }
 
 TEST(ContactMarks, HeaviestFirstAndNoneOutOfSight) {
   const ShownContacts contacts =
       contacts_of({{{1, 3, 1, 3}, 1}, {{8, 10, 8, 10}, 3}, {{15, 17, 35, 37}, 2}});
-  const auto marks = contact_marks(contacts, source(), top_look(), kPlot);
+  const auto marks = contact_marks(contacts, source(), top_settings(), kPlot);
   ASSERT_EQ(marks.size(), 3U);
   EXPECT_EQ(marks[0].words, "2  12.0 N");
   EXPECT_EQ(marks[1].words, "3  8.00 N");
   EXPECT_EQ(marks[2].words, "1  4.00 N");
-  Look near = top_look();
+  RenderSettings near = top_settings();
   near.view = TopView{{-10, 1}, 100};
   EXPECT_EQ(contact_marks(contacts, source(), near, kPlot).size(), 1U);
 }
 
 TEST(ContactMarks, OnACylinderFollowTheSurface) {
-  Look look = top_look();
-  look.surface = {SurfaceKind::cylinder, 10};
-  look.view = fit_orbit({kCols, kRows}, look.surface, kPlot);
+  RenderSettings settings = top_settings();
+  settings.surface = {SurfaceKind::cylinder, 10};
+  settings.view = fit_orbit({kCols, kRows}, settings.surface, kPlot);
   const ShownContacts contacts = contacts_of({{{4, 8, 18, 24}, 1, 0.5F, 0}});
-  const auto marks = contact_marks(contacts, source(), look, kPlot);
+  const auto marks = contact_marks(contacts, source(), settings, kPlot);
   ASSERT_EQ(marks.size(), 1U);
   EXPECT_EQ(marks[0].outline.size(), 4U * 32U);
-  const auto middle = project(look.view, look.surface, {kCols, kRows}, kPlot,
-                              frame_at(look.surface, {1, 4}).position);
+  const auto middle = project(settings.view, settings.surface, {kCols, kRows}, kPlot,
+                              frame_at(settings.surface, {1, 4}).position);
   ASSERT_TRUE(middle);
   expect_point(marks[0].centre, middle->x, middle->y);
   EXPECT_TRUE(marks[0].tip);
 }
 
-TEST(ContactMarks, AFewHundredAreDrawnAndTheRestIsTold) {
+TEST(ContactMarks, TheHeaviestAreDrawnAndTheRestIsReported) {
   const ShownContacts few = contacts_of({{{4, 8, 22, 28}}});
   EXPECT_EQ(contacts_left_out(few), "");
   ForceField forces(100, 100);
@@ -111,12 +111,12 @@ TEST(ContactMarks, AFewHundredAreDrawnAndTheRestIsTold) {
   }
   ShownField field;
   field.forces = forces.view();
-  const ShownContacts many = ContactWatch(1).contacts_of(field);
+  const ShownContacts many = FieldContacts(1).contacts_of(field);
   SourceInfo wide = source();
   wide.skin.rows = wide.skin.cols = 200;
-  Look look = top_look();
-  look.view = fit_top({100, 100}, kPlot);
-  const auto marks = contact_marks(many, wide, look, kPlot);
+  RenderSettings settings = top_settings();
+  settings.view = fit_top({100, 100}, kPlot);
+  const auto marks = contact_marks(many, wide, settings, kPlot);
   EXPECT_EQ(marks.size(), kMostContactsDrawn);
   EXPECT_EQ(marks.front().words, "2500  990 N");
   EXPECT_EQ(contacts_left_out(many), "256 of 2500 contacts are drawn, the heaviest");

@@ -28,15 +28,15 @@ gpu::Device preferred_device(const gpu::Instance& instance, bool import_memory) 
 Drawing::Drawing(bool import_memory)
     : instance_(watched_instance()),
       device_(preferred_device(instance_, import_memory)),
-      painter_(instance_, device_, {64, 64}, 1) {}
+      renderer_(instance_, device_, {64, 64}, 1) {}
 
-Pixels Drawing::draw(const ShownField& field, const SourceInfo& source, const Look& look,
-                     std::uint32_t width, std::uint32_t height) {
-  painter_.resize({width, height}, look.scale);
+Pixels Drawing::draw(const ShownField& field, const SourceInfo& source,
+                     const RenderSettings& settings, std::uint32_t width, std::uint32_t height) {
+  renderer_.resize({width, height}, settings.scale);
   device_.run([&](const vk::raii::CommandBuffer& commands) {
-    painter_.record(commands, field, source, look);
+    renderer_.record(commands, field, source, settings);
   });
-  return read_pixels(device_, painter_.image());
+  return read_pixels(device_, renderer_.image());
 }
 
 Colour colour_at(const Pixels& pixels, std::uint32_t x, std::uint32_t y) {
@@ -44,24 +44,24 @@ Colour colour_at(const Pixels& pixels, std::uint32_t x, std::uint32_t y) {
   return {pixels.rgba.at(place), pixels.rgba.at(place + 1), pixels.rgba.at(place + 2)};
 }
 
-Look bare_look(const MadeUpField& field, std::uint32_t width, std::uint32_t height) {
-  Look look;
-  look.arrows = false;
-  look.hatch = false;
-  look.legend = false;
-  look.view = fit_top(skin_size(field.source()),
-                      {0, 0, static_cast<double>(width), static_cast<double>(height)});
-  return look;
+RenderSettings bare_settings(const MadeUpField& field, std::uint32_t width, std::uint32_t height) {
+  RenderSettings settings;
+  settings.arrows = false;
+  settings.hatch = false;
+  settings.legend = false;
+  settings.view = fit_top(skin_size(field.source()),
+                          {0, 0, static_cast<double>(width), static_cast<double>(height)});
+  return settings;
 }
 
-PixelPlace middle_of(const MadeUpField& field, const Look& look, std::uint32_t width,
+PixelPlace middle_of(const MadeUpField& field, const RenderSettings& settings, std::uint32_t width,
                      std::uint32_t height, std::uint32_t row, std::uint32_t col) {
   const Skin& skin = field.source().skin;
   const double pitch = skin.pillar_pitch_mm();
   const Viewport plot{0, 0, static_cast<double>(width), static_cast<double>(height)};
   const Vec3 place{(col + 0.5 - 0.5 * skin.pillar_cols()) * pitch,
                    (0.5 * skin.pillar_rows() - row - 0.5) * pitch, 0};
-  const auto pixel = project(look.view, {}, skin_size(field.source()), plot, place);
+  const auto pixel = project(settings.view, {}, skin_size(field.source()), plot, place);
   EXPECT_TRUE(pixel.has_value());
   return {static_cast<std::uint32_t>(pixel->x), static_cast<std::uint32_t>(pixel->y)};
 }

@@ -1,5 +1,5 @@
-// Pictures of scenes beside pictures that somebody has looked at: tests/viewer/render/golden. To
-// draw them anew after a change that is meant: PILLARFIELD_DRAW_GOLDEN=1, and look at them.
+// Compares pictures of scenes with reviewed ones in tests/viewer/render/golden. After an intended
+// change, PILLARFIELD_DRAW_GOLDEN=1 draws new ones; review each.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct GoldenPicture {
   Options options;
 };
 
-/// What GoogleTest says of a parameter, by the name that it looks for.
+/// GoogleTest's hook for printing a parameter.
 // NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const GoldenPicture& picture, std::ostream* stream) { *stream << picture.name; }
 
@@ -55,7 +55,7 @@ const std::vector<GoldenPicture>& golden_pictures() {
        with(look_at(Quantity::uncertainty),
             [](Options& o) {
               o.zoom = 5;
-              o.fans = true;
+              o.sectors = true;
               o.centre_mm = Vec2{6, 1};
             })},
       {"demo_contacts", "demo", 30,
@@ -86,8 +86,8 @@ const std::vector<GoldenPicture>& golden_pictures() {
   return pictures;
 }
 
-/// Pixels that differ by more than rounding, as a share of all.
-double share_of_others(const Pixels& a, const Pixels& b) {
+/// Fraction of pixels that differ by more than rounding.
+double fraction_differing(const Pixels& a, const Pixels& b) {
   if (a.width != b.width || a.height != b.height) return 1;
   std::size_t others = 0;
   for (std::size_t i = 0; i < a.rgba.size(); i += 4) {
@@ -100,7 +100,7 @@ double share_of_others(const Pixels& a, const Pixels& b) {
   return static_cast<double>(others) / (static_cast<double>(a.rgba.size()) / 4);
 }
 
-// Another processor may round a pixel at the border of a pillar or an arrow the other way.
+// Pixels at borders of pillars and arrows may round differently on another processor.
 constexpr double kTolerance = 0.0008;
 
 /// The picture moved by a pixel to the right.
@@ -123,28 +123,28 @@ class Golden : public testing::TestWithParam<GoldenPicture> {
     const auto producer = open_producer(
         std::filesystem::path(PILLARFIELD_SCENES) / (std::string(picture.scene) + ".toml"), {});
     const double scale = picture.options.scale > 0 ? picture.options.scale : 1;
-    Look look = first_look(picture.options, *producer, scale);
-    look.view =
-        first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, look).plot);
-    if (other_map) look.map = *other_map;
+    RenderSettings settings = default_settings(picture.options, *producer, scale);
+    settings.view =
+        first_view(picture.options, producer->info(), layout_of(kWidth, kHeight, settings).plot);
+    if (other_map) settings.map = *other_map;
     Drawing drawing;
     ShownField field = producer->produce(picture.frame);
-    if (look.contacts) {
+    if (settings.contacts) {
       field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
     }
-    Pixels pixels = drawing.draw(field, producer->info(), look, kWidth, kHeight);
+    Pixels pixels = drawing.draw(field, producer->info(), settings, kWidth, kHeight);
     EXPECT_EQ(drawing.validation_messages(), 0);
     return pixels;
   }
 };
 
-TEST_P(Golden, LooksAsItDid) {
+TEST_P(Golden, EqualsTheReviewedPicture) {
   const GoldenPicture& picture = GetParam();
   const std::filesystem::path file = kFolder / (std::string(picture.name) + ".png");
   const Pixels drawn = draw(picture);
   if (std::getenv("PILLARFIELD_DRAW_GOLDEN") != nullptr) write_png(file, drawn);
   const Pixels golden = read_png(file);
-  const double share = share_of_others(drawn, golden);
+  const double share = fraction_differing(drawn, golden);
   if (share > kTolerance) {
     write_png(std::string(picture.name) + "_drawn.png", drawn);
     FAIL() << share << " of the pixels differ; the picture is in " << picture.name << "_drawn.png";
@@ -153,7 +153,7 @@ TEST_P(Golden, LooksAsItDid) {
 
 TEST_P(Golden, WouldShowAShiftOfOnePixel) {
   const Pixels golden = read_png(kFolder / (std::string(GetParam().name) + ".png"));
-  EXPECT_GT(share_of_others(shifted(golden), golden), 5 * kTolerance);
+  EXPECT_GT(fraction_differing(shifted(golden), golden), 5 * kTolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Pictures, Golden, testing::ValuesIn(golden_pictures()),
@@ -166,7 +166,7 @@ TEST_P(GoldenColours, WouldShowAnotherColourMap) {
   const bool is_cividis =
       default_map(info_of(GetParam().options.quantity).scale) == ColourMap::cividis;
   const Pixels other = draw(GetParam(), is_cividis ? ColourMap::viridis : ColourMap::cividis);
-  EXPECT_GT(share_of_others(other, golden), 5 * kTolerance);
+  EXPECT_GT(fraction_differing(other, golden), 5 * kTolerance);
 }
 
 INSTANTIATE_TEST_SUITE_P(Pictures, GoldenColours,

@@ -1,4 +1,4 @@
-// Values and states go into the heat map's pixels, and must come out of them again.
+// Values and states decoded from the heat map's pixels.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kMapWidth = 640;
 constexpr std::uint32_t kMapHeight = 480;
 
-/// Every pillar another force, in all directions.
+/// A different force on every pillar, in all directions.
 MadeUpField varied_field() {
   return {18, 24, [](std::uint32_t row, std::uint32_t col) {
             const float angle = 0.37F * static_cast<float>(row * 24 + col);
@@ -25,7 +25,7 @@ MadeUpField varied_field() {
 
 class HeatMap : public testing::TestWithParam<Quantity> {};
 
-/// Entries of a table that have this colour: neighbours may be equal.
+/// Entries of a table with this colour; neighbours may be equal.
 std::set<std::size_t> entries_with(ColourMap map, const Colour& colour) {
   std::set<std::size_t> entries;
   const auto table = table_of(map);
@@ -39,23 +39,23 @@ TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
   const Quantity quantity = GetParam();
   const MadeUpField field = varied_field();
   Drawing drawing;
-  Look look = bare_look(field, kMapWidth, kMapHeight);
-  look.quantity = quantity;
-  look.map = default_map(info_of(quantity).scale);
-  look.range = fitting_range(quantity, largest(quantity, field.shown()));
-  const Pixels pixels = drawing.draw(field, look, kMapWidth, kMapHeight);
+  RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
+  settings.quantity = quantity;
+  settings.map = default_map(info_of(quantity).scale);
+  settings.range = fitting_range(quantity, largest(quantity, field.shown()));
+  const Pixels pixels = drawing.draw(field, settings, kMapWidth, kMapHeight);
   std::set<std::size_t> seen;
   for (std::uint32_t row = 0; row < 18; ++row) {
     for (std::uint32_t col = 0; col < 24; ++col) {
-      const PixelPlace place = middle_of(field, look, kMapWidth, kMapHeight, row, col);
-      const auto entries = entries_with(look.map, colour_at(pixels, place.x, place.y));
+      const PixelPlace place = middle_of(field, settings, kMapWidth, kMapHeight, row, col);
+      const auto entries = entries_with(settings.map, colour_at(pixels, place.x, place.y));
       const float value = value_of(quantity, field.shown(), row, col);
-      const std::size_t expected = entry_of(value, look.range, info_of(quantity).scale);
+      const std::size_t expected = entry_of(value, settings.range, info_of(quantity).scale);
       EXPECT_TRUE(entries.count(expected) == 1) << row << ", " << col << ": " << value;
       seen.insert(entries.begin(), entries.end());
     }
   }
-  EXPECT_GT(seen.size(), 15U);  // Not one colour all over.
+  EXPECT_GT(seen.size(), 15U);  // More than a single colour.
   EXPECT_EQ(drawing.validation_messages(), 0);
 }
 
@@ -74,17 +74,17 @@ TEST_P(States, HaveColoursOfTheirOwn) {
   });
   Drawing drawing;
   for (const Theme theme : {Theme::dark, Theme::light}) {
-    Look look = bare_look(field, kMapWidth, kMapHeight);
-    look.theme = theme;
-    look.quantity = quantity;
-    const Pixels pixels = drawing.draw(field, look, kMapWidth, kMapHeight);
+    RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
+    settings.theme = theme;
+    settings.quantity = quantity;
+    const Pixels pixels = drawing.draw(field, settings, kMapWidth, kMapHeight);
     for (std::uint32_t status = 0; status < 256; ++status) {
       const PixelPlace place =
-          middle_of(field, look, kMapWidth, kMapHeight, status / 16, status % 16);
+          middle_of(field, settings, kMapWidth, kMapHeight, status / 16, status % 16);
       const auto special = special_of(quantity, static_cast<std::uint8_t>(status));
-      const Colour mapped =
-          table_of(look.map)[entry_of(value_of(quantity, field.shown(), status / 16, status % 16),
-                                      look.range, info_of(quantity).scale)];
+      const Colour mapped = table_of(
+          settings.map)[entry_of(value_of(quantity, field.shown(), status / 16, status % 16),
+                                 settings.range, info_of(quantity).scale)];
       EXPECT_EQ(colour_at(pixels, place.x, place.y), special ? colour_of(*special, theme) : mapped)
           << "status " << status;
     }
@@ -102,25 +102,25 @@ TEST(HeatMapFromAfar, AveragesThoseInContact) {
                         static_cast<std::uint8_t>(col < 320 ? 15 : 0)};
   });
   Drawing drawing;
-  Look look = bare_look(field, 160, 120);
-  const Pixels pixels = drawing.draw(field, look, 160, 120);
-  // Samples are few, so that a mean may be off by one of them.
+  RenderSettings settings = bare_settings(field, 160, 120);
+  const Pixels pixels = drawing.draw(field, settings, 160, 120);
+  // With few samples a mean may be off by one of them.
   const Colour left = colour_at(pixels, 40, 60);
-  const auto table = table_of(look.map);
+  const auto table = table_of(settings.map);
   const auto close = std::find(table.begin() + 96, table.begin() + 160, left);
   EXPECT_NE(close, table.begin() + 160);
-  EXPECT_EQ(colour_at(pixels, 120, 60), colour_of(Special::idle, look.theme));
+  EXPECT_EQ(colour_at(pixels, 120, 60), colour_of(Special::idle, settings.theme));
 }
 
 TEST(HeatMap, IsTheSameReadInPlaceAndCopied) {
   const MadeUpField field = varied_field();
   Drawing in_place;
   Drawing copied(false);
-  Look look = bare_look(field, kMapWidth, kMapHeight);
-  look.arrows = true;
-  look.legend = true;
-  const Pixels first = in_place.draw(field, look, kMapWidth, kMapHeight);
-  const Pixels second = copied.draw(field, look, kMapWidth, kMapHeight);
+  RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
+  settings.arrows = true;
+  settings.legend = true;
+  const Pixels first = in_place.draw(field, settings, kMapWidth, kMapHeight);
+  const Pixels second = copied.draw(field, settings, kMapWidth, kMapHeight);
   EXPECT_EQ(first.rgba, second.rgba);
   EXPECT_EQ(copied.memory().fields_in_place(), 0U);
   EXPECT_EQ(copied.memory().bytes_copied(), field.shown().pages.size());
@@ -133,15 +133,15 @@ TEST(HeatMap, ReadInPlaceFollowsTheMemory) {
   const MadeUpField field = varied_field();
   Drawing drawing;
   if (!drawing.device().imports_memory()) GTEST_SKIP() << "this device reads no host memory";
-  const Look look = bare_look(field, kMapWidth, kMapHeight);
-  const Pixels before = drawing.draw(field, look, kMapWidth, kMapHeight);
-  // What a solver does: it writes where the device reads, and nobody copies.
+  const RenderSettings settings = bare_settings(field, kMapWidth, kMapHeight);
+  const Pixels before = drawing.draw(field, settings, kMapWidth, kMapHeight);
+  // A solver writes into the imported memory, without a copy.
   auto* const normal = const_cast<float*>(field.shown().forces.normal.data());
   std::fill(normal, normal + field.shown().forces.normal.size(), 1.0F);
-  const Pixels after = drawing.draw(field, look, kMapWidth, kMapHeight);
+  const Pixels after = drawing.draw(field, settings, kMapWidth, kMapHeight);
   EXPECT_NE(before.rgba, after.rgba);
-  const PixelPlace place = middle_of(field, look, kMapWidth, kMapHeight, 3, 3);
-  EXPECT_EQ(colour_at(after, place.x, place.y), table_of(look.map).back());
+  const PixelPlace place = middle_of(field, settings, kMapWidth, kMapHeight, 3, 3);
+  EXPECT_EQ(colour_at(after, place.x, place.y), table_of(settings.map).back());
   EXPECT_EQ(drawing.memory().bytes_copied(), 0U);
 }
 

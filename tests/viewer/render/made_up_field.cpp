@@ -17,7 +17,7 @@ std::shared_ptr<std::byte[]> make_pages(std::size_t bytes) {
   return {pages, [](std::byte* memory) { ::operator delete[](memory, std::align_val_t{kPage}); }};
 }
 
-/// Readings that the pillar model gives for a force, k = 100 counts per newton.
+/// Readings of the pillar model under a force, k = 100 counts per newton.
 std::array<float, 4> readings_of(const MadeUpPillar& pillar) {
   const float k = 100;
   const float a = std::sqrt(0.5F);
@@ -29,7 +29,7 @@ std::array<float, 4> readings_of(const MadeUpPillar& pillar) {
 
 constexpr std::size_t kFloatPlanes = 6 + kUncertaintyPlanes;
 
-/// What the float planes of a field have for a pillar, in their order.
+/// Values of a pillar in the float planes, in their order.
 std::array<float, kFloatPlanes> planes_of(const MadeUpPillar& pillar, std::size_t index) {
   const float shear = std::hypot(pillar.shear_x, pillar.shear_y);
   const float magnitude = std::hypot(shear, pillar.normal);

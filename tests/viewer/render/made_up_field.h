@@ -7,14 +7,14 @@
 
 namespace pillarfield::viewer {
 
-/// A pillar as somebody thought it up.
+/// An arbitrary pillar.
 struct MadeUpPillar {
   float shear_x = 0, shear_y = 0, normal = 0;  ///< N
   std::uint8_t status = 15;                    ///< all four sensels usable
 };
 
-/// A field on pages of its own, with angles, uncertainty and readings, from a function of row and
-/// column.
+/// A field with angles, uncertainty and readings from a function of row and column, on its own
+/// pages.
 class MadeUpField {
  public:
   using Pillar = std::function<MadeUpPillar(std::uint32_t row, std::uint32_t col)>;

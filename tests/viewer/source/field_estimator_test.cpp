@@ -1,4 +1,4 @@
-// Scenes that ask for the estimator `contact`, as the viewer shows them.
+// Scenes with the estimator `contact` in the viewer.
 
 #include <gtest/gtest.h>
 
@@ -20,9 +20,9 @@ using io_test::has_all;
 using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
-/// A ball that slides, solved by the estimator `contact`, to which `told` is told.
-std::string sliding_scene(const std::string& told) {
-  return "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n" + told +
+/// A sliding ball, solved by the estimator `contact`, with further lines of [solver].
+std::string sliding_scene(const std::string& solver_lines) {
+  return "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n" + solver_lines +
          "[sensor]\nnoise_counts = 0.5\n[time]\nframes = 6\n"
          "[[contact]]\nshape = \"sphere\"\nmotion = \"slide\"\ncontact_radius_mm = 8\n"
          "friction = 1.8\ndirection_deg = 0\nposition_mm = [0, 0]\nload_n = 30\n";
@@ -47,26 +47,26 @@ TEST(SceneProducer, SolvesWithTheContactEstimatorAndItsUncertainty) {
   EXPECT_GT(resolved, 100);
   const ShownContacts contacts = producer->contacts_of(field);
   ASSERT_EQ(contacts.found.contacts.size(), 3U);
-  std::uint64_t told = 0;
-  for (const auto& contact : contacts.found.contacts) told += contact.quantities.resolved;
-  EXPECT_EQ(told, static_cast<std::uint64_t>(resolved));
+  std::uint64_t from_contact = 0;
+  for (const auto& contact : contacts.found.contacts) from_contact += contact.quantities.resolved;
+  EXPECT_EQ(from_contact, static_cast<std::uint64_t>(resolved));
 }
 
-TEST(SceneProducer, ContactsHaveTheFrictionThatTheSceneTells) {
+TEST(SceneProducer, ContactsHaveTheFrictionOfTheScene) {
   const TemporaryDirectory directory;
-  for (const bool told : {false, true}) {
-    const auto path = directory / (told ? "told.toml" : "untold.toml");
-    write_bytes(path, sliding_scene(told ? "friction = 2.5\n" : ""));
+  for (const bool given : {false, true}) {
+    const auto path = directory / (given ? "given.toml" : "observed.toml");
+    write_bytes(path, sliding_scene(given ? "friction = 2.5\n" : ""));
     const auto producer = open_producer(path, {.most_frames = 1});
     const ShownContacts contacts = producer->contacts_of(producer->produce(0));
     ASSERT_EQ(contacts.found.contacts.size(), 1U);
     const ContactQuantities& found = contacts.found.contacts[0].quantities;
-    EXPECT_EQ(found.friction_source == FrictionSource::given, told);
-    EXPECT_EQ(found.friction == 2.5, told);
+    EXPECT_EQ(found.friction_source == FrictionSource::given, given);
+    EXPECT_EQ(found.friction == 2.5, given);
   }
 }
 
-/// The frames of a scene solved one after the other in C++, each with what the frame before knew.
+/// The frames of a scene solved in order in C++, with the prior carried over.
 std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::uint64_t frames) {
   const Simulator simulator(load_scene(path));
   SolverPlan plan = plan_of(simulator);
@@ -83,7 +83,7 @@ std::vector<ForceField> solved_in_order(const std::filesystem::path& path, std::
   return solved;
 }
 
-/// A ball whose shear grows: what it shows in frame 2 tells of frame 3.
+/// A ball with growing shear: the friction observed in frame 2 resolves frame 3.
 constexpr const char* kGrowingShear =
     "[skin]\nsize_mm = [30, 30]\n[solver]\nestimator = \"contact\"\n"
     "[sensor]\nnoise_counts = 0.3\n[time]\nframes = 6\n"
@@ -103,7 +103,7 @@ class FramesInOrder : public testing::Test {
   std::filesystem::path path_ = directory_ / "growing.toml";
 };
 
-TEST_F(FramesInOrder, KnowOfTheOneBeforeWhereTheyArePlayed) {
+TEST_F(FramesInOrder, CarryThePriorOverWhilePlayed) {
   const std::vector<ForceField> expected = solved_in_order(path_, 4);
   for (const Memory memory : {Memory::automatic, Memory::staged}) {
     const auto producer = open_producer(path_, {.memory = memory});
@@ -113,10 +113,10 @@ TEST_F(FramesInOrder, KnowOfTheOneBeforeWhereTheyArePlayed) {
   }
 }
 
-TEST_F(FramesInOrder, KnowNothingWhereTheyAreJumpedTo) {
+TEST_F(FramesInOrder, HaveNoPriorAfterAJump) {
   const auto producer = open_producer(path_, {});
   ASSERT_EQ(producer->info().warnings.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().warnings[0], {"jumped to", "by itself"}));
+  EXPECT_TRUE(has_all(producer->info().warnings[0], {"jumped to", "solved alone"}));
   const ForceField alone = copy_of(producer->produce(3).forces);
   for (const std::uint64_t before : {0U, 4U, 3U}) {
     static_cast<void>(producer->produce(before));

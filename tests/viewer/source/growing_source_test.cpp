@@ -1,4 +1,4 @@
-// Files that grow while they are looked at.
+// Files that grow while shown.
 
 #include <gtest/gtest.h>
 
@@ -23,10 +23,10 @@ using io_test::sample_forces;
 using io_test::TemporaryDirectory;
 using io_test::write_bytes;
 
-/// Until the time of the file tells one write from the next.
+/// Waits until the file's time stamp distinguishes two writes.
 void settle() { std::this_thread::sleep_for(std::chrono::milliseconds(40)); }
 
-TEST(GrowingFile, TellsEachChangeOnce) {
+TEST(GrowingFile, ReportsEachChangeOnce) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   write_bytes(path, "1");
@@ -41,7 +41,7 @@ TEST(GrowingFile, TellsEachChangeOnce) {
   EXPECT_FALSE(file.may_have_changed()) << "a file that is away is nothing new";
 }
 
-TEST(GrowingFile, IsLookedAtAgainWhereItsTimeCannotTell) {
+TEST(GrowingFile, IsCheckedAgainWithinTheTimeResolution) {
   const TemporaryDirectory directory;
   const auto path = directory / "a.h5";
   write_bytes(path, "1");
@@ -90,7 +90,7 @@ void write_forces(const std::filesystem::path& path, std::uint64_t frames, std::
   sink->finish();
 }
 
-TEST(GrowingSource, AFileOfForcesIsReadAnewWhereItChanged) {
+TEST(GrowingSource, AChangedForceFileIsReadAgain) {
   const TemporaryDirectory directory;
   const auto path = directory / "f.h5";
   write_forces(path, 3, 9);
@@ -118,7 +118,7 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Waits until it says that so many frames more are flushed, if it does not end before.
+  /// Waits until the process reports a flush or ends.
   void wait_for_flush() {
     char line[64];
     EXPECT_NE(std::fgets(line, sizeof line, pipe_), nullptr);
@@ -141,7 +141,7 @@ void expect_written(const ShownField& field) {
       << field.index;
 }
 
-/// Follows a writer to its last frame; its file takes its final name on the way.
+/// Follows a writer to its last frame, across the final renaming of its file.
 void expect_followed(const std::string& kind) {
   constexpr int kFrames = 3000;
   const TemporaryDirectory directory;
@@ -149,7 +149,7 @@ void expect_followed(const std::string& kind) {
   Writer writer(kind, path, kFrames);
   writer.wait_for_flush();
   std::unique_ptr<FieldProducer> producer;
-  GrowingFile file(directory / (kind + ".h5.part"));  // Or finished already.
+  GrowingFile file(directory / (kind + ".h5.part"));  // It may have finished already.
   ASSERT_TRUE(file.reopen([&](const auto& by_now) { producer = open_producer(by_now, {}); }));
   while (true) {
     const std::uint64_t frames = producer->info().frames;

@@ -19,11 +19,11 @@ TEST(History, KeepsTheNewestInOrder) {
   EXPECT_TRUE(history.points().empty());
 }
 
-TEST(History, ForgetsWhatLiesAheadWhenTheHeadGoesBack) {
+TEST(History, RemovesLaterPointsWhenThePlayHeadGoesBack) {
   History history(100);
   for (const double time_s : {1.0, 2.0, 3.0, 4.0}) history.add(at(time_s));
   history.add(at(3.0));
-  EXPECT_EQ(history.points().size(), 3U) << "3 anew, 4 gone";
+  EXPECT_EQ(history.points().size(), 3U) << "3 replaced, 4 removed";
   history.add(at(0.5));
   EXPECT_EQ(history.points().size(), 1U);
 }

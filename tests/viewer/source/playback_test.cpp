@@ -1,4 +1,4 @@
-// The play head, by a clock that the test turns.
+// The play head under a simulated clock.
 
 #include "viewer/source/playback.h"
 
@@ -21,7 +21,7 @@ using std::chrono::seconds;
 
 constexpr Time kStart = seconds(1000);
 
-/// A head of which the first frame was given.
+/// A head after its first frame.
 Playback head(std::uint64_t frames, double rate_hz) {
   Playback playback(frames, rate_hz);
   EXPECT_EQ(playback.next(kStart), 0U);
@@ -46,7 +46,7 @@ TEST(Playback, GivesTheFirstFrameAtOnceAndOnce) {
   EXPECT_FALSE(playback.playing());
 }
 
-TEST(Playback, LeavesNoFrameOutHoweverItIsAsked) {
+TEST(Playback, GivesEveryFrameAtAnyPollingRate) {
   std::mt19937 random(3);
   for (const double rate_hz : {7.0, 100.0, 4321.0}) {
     for (const double speed : {0.05, 1.0, 13.0}) {
@@ -57,7 +57,7 @@ TEST(Playback, LeavesNoFrameOutHoweverItIsAsked) {
       Time now = kStart;
       for (int i = 0; i < 3000; ++i) {
         now += microseconds(std::uniform_int_distribution(0, 3000)(random));
-        if (i % 500 == 499) now += seconds(3);  // Whoever asks was away.
+        if (i % 500 == 499) now += seconds(3);  // A pause of the caller.
         const auto frame = playback.next(now);
         if (!frame) continue;
         expected = (expected + 1) % 17;
@@ -85,7 +85,7 @@ TEST(Playback, KeepsItsRateWithoutDrift) {
   }
 }
 
-TEST(Playback, StopsAtTheEndWithoutLoopAndStartsAnew) {
+TEST(Playback, StopsAtTheEndWithoutLoopAndRestarts) {
   Playback playback = head(3, 10);
   playback.set_loop(false);
   playback.play(kStart);
@@ -141,7 +141,7 @@ TEST(Playback, IsLateByASecondAtMost) {
   const Time late = kStart + seconds(60);
   EXPECT_EQ(playback.behind(late), seconds(1));
   EXPECT_EQ(playback.next(late), 1U) << "late, but not left out";
-  EXPECT_EQ(all_due(playback, late).size(), 100U) << "what a second holds, and no more";
+  EXPECT_EQ(all_due(playback, late).size(), 100U) << "the frames of one second";
   EXPECT_EQ(playback.behind(late), Time::zero());
   EXPECT_EQ(playback.next(late + milliseconds(10)), 102U) << "in time again";
 }

@@ -1,4 +1,4 @@
-// The thread that produces, with displays of all tempers.
+// The producing thread, with fast, slow and failing displays.
 
 #include "viewer/source/player.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// What the test sees of a producer that the player owns.
+/// Observations of the producer, which the player owns.
 struct Seen {
   std::mutex mutex;
   std::vector<std::uint64_t> frames;
@@ -33,7 +33,7 @@ struct Seen {
   }
 };
 
-/// Fields that hold nothing but their index.
+/// Fields with nothing but an index.
 class FakeProducer final : public FieldProducer {
  public:
   FakeProducer(std::shared_ptr<Seen> seen, double rate_hz) : seen_(std::move(seen)) {
@@ -79,7 +79,7 @@ struct Fixture {
     player = std::make_unique<Player>(std::make_unique<FakeProducer>(seen, rate_hz));
   }
 
-  /// Waits for something that the thread does sooner or later.
+  /// Waits until the thread fulfils a condition.
   template <class Condition>
   void wait_until(Condition condition) {
     while (!condition()) std::this_thread::sleep_for(milliseconds(1));
@@ -206,7 +206,7 @@ TEST(Player, AnErrorComesOnceAfterTheFieldsBeforeIt) {
     }
     return thrown;
   });
-  fixture.player->seek(3);  // The thread has ended, and nothing happens.
+  fixture.player->seek(3);  // The thread has ended; no effect.
   EXPECT_EQ(fixture.player->take(), std::nullopt);
   expect_balanced(fixture.player->statistics());
 }

@@ -1,4 +1,4 @@
-// Fields from every kind of source, against what the source says and the C++ loop computes.
+// Fields from every kind of source, compared with its data and the C++ solver.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ using io_test::write_bytes;
 
 const std::filesystem::path kDemo = std::filesystem::path(PILLARFIELD_SCENES) / "demo.toml";
 
-/// Magnitude, theta and phi are those of the forces beside them.
+/// Expects magnitude, theta and phi of the forces.
 void expect_angles(const ForceFieldView& forces) {
   ASSERT_EQ(forces.phi.size(), forces.normal.size());
   for (std::size_t i = 0; i < forces.normal.size(); ++i) {
@@ -46,7 +46,7 @@ void expect_angles(const ForceFieldView& forces) {
   }
 }
 
-/// Whole pages, in which every plane lies.
+/// Expects whole pages that contain every plane.
 void expect_pages(const ShownField& field) {
   EXPECT_EQ(reinterpret_cast<std::uintptr_t>(field.pages.data()) % 4096, 0U);
   EXPECT_EQ(field.pages.size() % 4096, 0U);
@@ -86,7 +86,7 @@ TEST(SceneProducer, SolvesTheFramesOfTheSceneInAnyOrder) {
   }
 }
 
-TEST(SceneProducer, TellsWhatTheSceneIs) {
+TEST(SceneProducer, DescribesTheScene) {
   const auto producer = open_producer(kDemo, {.memory = Memory::staged, .most_frames = 4});
   const SourceInfo& info = producer->info();
   EXPECT_EQ(info.name, "demo.toml");
@@ -96,7 +96,7 @@ TEST(SceneProducer, TellsWhatTheSceneIs) {
   EXPECT_TRUE(info.has_readings && info.has_angles && info.has_uncertainty);
   EXPECT_TRUE(has_all(info.solver, {"direct on ", ", staged"}));
   ASSERT_EQ(info.warnings.size(), 1U);
-  EXPECT_TRUE(has_all(info.warnings[0], {"4 of 60 frames", "as asked"}));
+  EXPECT_TRUE(has_all(info.warnings[0], {"4 of 60 frames", "as requested"}));
   EXPECT_FALSE(producer->refresh());
   EXPECT_TRUE(has_all(error_of([&] { static_cast<void>(producer->produce(4)); }),
                       {"demo.toml", "no frame 4", "4 frames"}));
@@ -149,7 +149,7 @@ TEST(SceneProducer, WithoutNoiseThereIsNoUncertainty) {
   expect_angles(field.forces);
 }
 
-TEST(SceneProducer, TheBaselineStaysAndThePaperTellsNoUncertainty) {
+TEST(SceneProducer, TheBaselineIsFixedAndThePaperHasNoUncertainty) {
   const TemporaryDirectory directory;
   const auto path = directory / "paper.toml";
   write_bytes(path,
@@ -160,14 +160,14 @@ TEST(SceneProducer, TheBaselineStaysAndThePaperTellsNoUncertainty) {
   const auto producer = open_producer(path, {});
   EXPECT_FALSE(producer->info().has_uncertainty);
   ASSERT_EQ(producer->info().warnings.size(), 1U);
-  EXPECT_TRUE(has_all(producer->info().warnings[0], {"baseline is not followed"}));
+  EXPECT_TRUE(has_all(producer->info().warnings[0], {"baseline is fixed"}));
   EXPECT_TRUE(has_all(producer->info().solver, {"paper on "}));
   const ForceField first = copy_of(producer->produce(2).forces);
   static_cast<void>(producer->produce(1));
   expect_same_forces(producer->produce(2).forces, first.view());
 }
 
-/// Whatever the source: fields stay, and there are so many of them.
+/// Expects that fields of any source stay valid, up to kMostShown.
 void expect_fields_stay(FieldProducer& producer) {
   const std::uint64_t frames = producer.info().frames;
   std::vector<ShownField> shown = {producer.produce(0)};
@@ -180,7 +180,7 @@ void expect_fields_stay(FieldProducer& producer) {
   expect_same_forces(shown[0].forces, first.view());
   while (shown.size() < FieldProducer::kMostShown) shown.push_back(producer.produce(1));
   const std::string error = error_of([&] { static_cast<void>(producer.produce(0)); });
-  EXPECT_TRUE(has_all(error, {"6 fields are in use", "let one go"}));
+  EXPECT_TRUE(has_all(error, {"6 fields are in use", "release one"}));
   expect_same_forces(shown[0].forces, first.view());
   std::jthread([&] { shown.pop_back(); }).join();
   shown.push_back(producer.produce(0));
@@ -266,7 +266,7 @@ TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
   EXPECT_THROW(static_cast<void>(producer->produce(kFrames)), Error);
 }
 
-TEST(RecordingProducer, WithoutNoiseOrTimeItSaysSo) {
+TEST(RecordingProducer, ReportsMissingNoiseAndTime) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";
   write_recording(path, {}, 0);
@@ -319,7 +319,7 @@ TEST(ForceFileProducer, ShowsWhatTheFileHasAndAngles) {
   }
 }
 
-/// Two bodies that pass from frame to frame; in frame 2 the left one is away.
+/// Two moving indenters; the left one is absent in frame 2.
 ShownField passing(std::uint64_t index) {
   const auto col = static_cast<std::uint32_t>(index);
   const Touch left{{2, 6, 2 + col, 6 + col}};
@@ -328,7 +328,7 @@ ShownField passing(std::uint64_t index) {
                     : touched_field(index, 20, 30, {left, right});
 }
 
-/// Written with the contacts of two pillars or more, or with none.
+/// Writes the fields, with contacts of at least two pillars or without contacts.
 void write_passing(const std::filesystem::path& path, bool with_contacts) {
   ForceFileInfo info = {20, 30, 1.3, "direct", "a device", "press.h5", false, false};
   const ContactOptions options{.minimum_pillars = 2};
@@ -405,7 +405,7 @@ TEST(FieldProducer, FieldsOutliveTheirProducer) {
   }
 }
 
-TEST(FieldProducer, RefusesWhatItCannotShow) {
+TEST(FieldProducer, RejectsFilesThatItCannotShow) {
   const TemporaryDirectory directory;
   EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.h5", {})), Error);
   EXPECT_THROW(static_cast<void>(open_producer(directory / "absent.toml", {})), Error);

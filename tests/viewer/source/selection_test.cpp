@@ -15,7 +15,7 @@ namespace {
 constexpr double kPitch = 1.25;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A field of random forces and status bytes, and readings of u16 that tell where they stand.
+/// A field of random forces and status bytes, with u16 readings that encode their position.
 class Sample {
  public:
   Sample(std::uint32_t rows, std::uint32_t cols)
@@ -46,10 +46,10 @@ class Sample {
   FrameBuffer raw_;
 };
 
-/// The definitions, one after the other.
-RegionSums plain_sums(const ShownField& field, const PillarRect& rect) {
+/// The sums by their definitions.
+SelectionSums plain_sums(const ShownField& field, const PillarRect& rect) {
   const ForceFieldView& f = field.forces;
-  RegionSums sums;
+  SelectionSums sums;
   double weighted_x = 0;
   double weighted_y = 0;
   const auto x_of = [&](std::uint32_t col) { return kPitch * (col + 0.5) - kPitch * f.cols / 2; };
@@ -86,8 +86,8 @@ RegionSums plain_sums(const ShownField& field, const PillarRect& rect) {
 TEST(Selection, SumsAreThoseOfAPlainLoop) {
   const Sample sample(13, 21);
   for (const PillarRect rect : {PillarRect{0, 13, 0, 21}, {2, 9, 5, 6}, {12, 13, 0, 21}}) {
-    const RegionSums expected = plain_sums(sample.shown(), rect);
-    const RegionSums sums = sums_over(sample.shown(), rect, kPitch);
+    const SelectionSums expected = plain_sums(sample.shown(), rect);
+    const SelectionSums sums = sums_over(sample.shown(), rect, kPitch);
     EXPECT_NEAR(sums.shear_x, expected.shear_x, 1e-12);
     EXPECT_NEAR(sums.shear_y, expected.shear_y, 1e-12);
     EXPECT_NEAR(sums.normal, expected.normal, 1e-12);
@@ -104,7 +104,7 @@ TEST(Selection, SumsAreThoseOfAPlainLoop) {
 TEST(Selection, CountsEveryPillarOnce) {
   const Sample sample(9, 14);
   const ShownField field = sample.shown();
-  const RegionSums sums = sums_over(field, {0, 9, 0, 14}, kPitch);
+  const SelectionSums sums = sums_over(field, {0, 9, 0, 14}, kPitch);
   std::uint64_t all = 0;
   for (const std::uint64_t pillars : sums.by_region) all += pillars;
   EXPECT_EQ(sums.pillars, 9U * 14U);
@@ -126,9 +126,9 @@ TEST(Selection, CountsEveryPillarOnce) {
 TEST(Selection, PartsAddUpToTheWhole) {
   const Sample sample(16, 16);
   const ShownField field = sample.shown();
-  const RegionSums whole = sums_over(field, {0, 16, 0, 16}, kPitch);
-  const RegionSums left = sums_over(field, {0, 16, 0, 7}, kPitch);
-  const RegionSums right = sums_over(field, {0, 16, 7, 16}, kPitch);
+  const SelectionSums whole = sums_over(field, {0, 16, 0, 16}, kPitch);
+  const SelectionSums left = sums_over(field, {0, 16, 0, 7}, kPitch);
+  const SelectionSums right = sums_over(field, {0, 16, 7, 16}, kPitch);
   EXPECT_NEAR(whole.shear_x, left.shear_x + right.shear_x, 1e-12);
   EXPECT_NEAR(whole.normal, left.normal + right.normal, 1e-12);
   EXPECT_EQ(whole.in_contact, left.in_contact + right.in_contact);
@@ -144,11 +144,11 @@ TEST(Selection, ATurnToTheLeftIsPositive) {
     forces.normal[pillar] = 2;
     forces.shear_y[pillar] = pillar == 5 ? 1 : -1;
   }
-  const RegionSums sums = sums_over(sample.shown(), {0, 3, 0, 3}, kPitch);
+  const SelectionSums sums = sums_over(sample.shown(), {0, 3, 0, 3}, kPitch);
   EXPECT_DOUBLE_EQ(sums.moment_z, 2 * kPitch);
   EXPECT_DOUBLE_EQ(sums.centre_x_mm, 0);
   EXPECT_DOUBLE_EQ(sums.centre_y_mm, 0);
-  const RegionSums right = sums_over(sample.shown(), {0, 3, 2, 3}, kPitch);
+  const SelectionSums right = sums_over(sample.shown(), {0, 3, 2, 3}, kPitch);
   EXPECT_DOUBLE_EQ(right.centre_x_mm, kPitch);
   EXPECT_DOUBLE_EQ(right.moment_z, 0);
 }
@@ -156,17 +156,17 @@ TEST(Selection, ATurnToTheLeftIsPositive) {
 TEST(Selection, WithoutLoadThereIsNoCentre) {
   Sample sample(4, 4);
   sample.forces() = ForceField(4, 4);
-  const RegionSums sums = sums_over(sample.shown(), {0, 4, 0, 4}, kPitch);
+  const SelectionSums sums = sums_over(sample.shown(), {0, 4, 0, 4}, kPitch);
   EXPECT_TRUE(std::isnan(sums.centre_x_mm) && std::isnan(sums.centre_y_mm));
   EXPECT_EQ(sums.mean_normal, 0);
   EXPECT_EQ(sums.area_mm2, 0);
   EXPECT_EQ(sums_over(sample.shown(), {2, 2, 0, 4}, kPitch).pillars, 0U) << "an empty rectangle";
 }
 
-TEST(Selection, WhatLiesOutsideIsLeftOut) {
+TEST(Selection, PillarsOutsideAreOmitted) {
   const Sample sample(5, 6);
-  const RegionSums whole = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
-  const RegionSums more = sums_over(sample.shown(), {0, 500, 0, 600}, kPitch);
+  const SelectionSums whole = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
+  const SelectionSums more = sums_over(sample.shown(), {0, 500, 0, 600}, kPitch);
   EXPECT_EQ(more.pillars, 30U);
   EXPECT_EQ(more.normal, whole.normal);
   EXPECT_EQ(sums_over(sample.shown(), {7, 9, 0, 6}, kPitch).pillars, 0U);
@@ -177,15 +177,15 @@ TEST(Selection, ForcesThatAreNoNumbersSpoilNothing) {
   const std::uint64_t in_contact = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch).in_contact;
   sample.forces().status[7] = 15;
   sample.forces().normal[7] = kNan;
-  const RegionSums sums = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
+  const SelectionSums sums = sums_over(sample.shown(), {0, 5, 0, 6}, kPitch);
   EXPECT_TRUE(std::isfinite(sums.normal) && std::isfinite(sums.moment_z));
   EXPECT_LE(sums.in_contact, in_contact);
 }
 
-TEST(Selection, ReadingsStandWhereTheSenselsAre) {
+TEST(Selection, ReadingsFollowThePositionsOfSensels) {
   const Sample sample(4, 5);
   const PillarValues values = values_at(sample.shown(), {2, 3});
-  const float stride = 11;  // An odd column more than the pillars need.
+  const float stride = 11;  // One column more than the pillars use.
   const float upper_left = 4 * stride + 6;
   EXPECT_EQ(values.readings[0], upper_left + 1);
   EXPECT_EQ(values.readings[1], upper_left);
@@ -207,7 +207,7 @@ TEST(Selection, ReadingsOfEveryTypeAreRead) {
   }
 }
 
-TEST(Selection, UnknownReadingsAndUncertaintyAreSaidToBe) {
+TEST(Selection, MissingReadingsAndUncertaintyAreMarked) {
   const Sample sample(3, 3);
   ShownField field = sample.shown();
   field.raw = {};

@@ -1,4 +1,4 @@
-// The contacts of fields that are shown: where they lie, in which order, and who they are.
+// Contacts of shown fields: extents, order and ids.
 
 #include "viewer/source/shown_contacts.h"
 
@@ -26,10 +26,10 @@ std::vector<std::uint64_t> shown_ids_of(const ShownContacts& contacts) {
 }
 
 TEST(ShownContacts, HaveTheExtentOfTheirPillarsWhateverTheShape) {
-  // An L that begins to the right of where it ends, and a pillar inside its corner.
+  // An L whose first run lies right of its last, and a pillar inside its corner.
   const ShownField field =
       touched_field(0, 20, 30, {{{2, 9, 12, 14}}, {{8, 9, 4, 12}}, {{3, 4, 5, 6}}});
-  const ShownContacts contacts = ContactWatch(kContactPitch).contacts_of(field);
+  const ShownContacts contacts = FieldContacts(kContactPitch).contacts_of(field);
   ASSERT_EQ(contacts.extents.size(), 2U);
   expect_rect(contacts.extents[0], {2, 9, 4, 14});
   expect_rect(contacts.extents[1], {3, 4, 5, 6});
@@ -38,7 +38,7 @@ TEST(ShownContacts, HaveTheExtentOfTheirPillarsWhateverTheShape) {
 TEST(ShownContacts, TheHeaviestComesFirst) {
   const ShownField field = touched_field(
       0, 20, 30, {{{1, 3, 1, 3}, 1}, {{5, 7, 5, 7}, 3}, {{9, 11, 9, 11}, 2}, {{15, 17, 2, 4}, 3}});
-  const ShownContacts contacts = ContactWatch(kContactPitch).contacts_of(field);
+  const ShownContacts contacts = FieldContacts(kContactPitch).contacts_of(field);
   EXPECT_EQ(contacts.heaviest, (std::vector<std::size_t>{1, 3, 2, 0}));
   EXPECT_DOUBLE_EQ(contacts.found.total.normal_n, 4 * (1 + 3 + 2 + 3));
 }
@@ -52,8 +52,8 @@ TEST(ShownContacts, ANumberThatTheStatusLacksIsAnError) {
   EXPECT_THROW(static_cast<void>(with_extents(found, map)), Error);
 }
 
-TEST(ContactWatch, FollowsOnwardsAlsoPastFramesLeftOut) {
-  ContactWatch watch(kContactPitch);
+TEST(FieldContacts, FollowsOnwardsAlsoPastFramesLeftOut) {
+  FieldContacts watch(kContactPitch);
   const Touch left{{2, 6, 2, 6}};
   const Touch right{{12, 16, 20, 24}};
   EXPECT_EQ(shown_ids_of(watch.contacts_of(touched_field(3, 20, 30, {left}))),
@@ -62,13 +62,13 @@ TEST(ContactWatch, FollowsOnwardsAlsoPastFramesLeftOut) {
             (std::vector<std::uint64_t>{1, 2}));
   EXPECT_EQ(shown_ids_of(watch.contacts_of(touched_field(9, 20, 30, {right}))),
             (std::vector<std::uint64_t>{2}));
-  // The same once more, as when nothing plays.
+  // The same field once more, as while paused.
   EXPECT_EQ(shown_ids_of(watch.contacts_of(touched_field(9, 20, 30, {right}))),
             (std::vector<std::uint64_t>{2}));
 }
 
-TEST(ContactWatch, BeginsAnewWhereTheHeadGoesBack) {
-  ContactWatch watch(kContactPitch);
+TEST(FieldContacts, RestartsWhenThePlayHeadGoesBack) {
+  FieldContacts watch(kContactPitch);
   const Touch left{{2, 6, 2, 6}};
   const Touch right{{12, 16, 20, 24}};
   static_cast<void>(watch.contacts_of(touched_field(7, 20, 30, {left})));

@@ -34,7 +34,7 @@ inline ForceField copy_of(const ForceFieldView& forces) {
   return copy;
 }
 
-/// As a scene's frames are shown, whose noise is known.
+/// The viewer's plan for a scene with known noise.
 inline SolverPlan plan_of(const Simulator& simulator) {
   SolverPlan plan;
   plan.skin = simulator.scene().skin;

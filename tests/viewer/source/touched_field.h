@@ -8,13 +8,13 @@
 
 namespace pillarfield::viewer {
 
-/// A rectangle of pillars on which every one has the same force, N.
+/// A rectangle of pillars with equal forces, N.
 struct Touch {
   PillarRect rect;
   float normal = 1, shear_x = 0, shear_y = 0;
 };
 
-/// A field of touches on a skin that is idle elsewhere.
+/// A field of touches, idle elsewhere.
 inline ShownField touched_field(std::uint64_t index, std::uint32_t rows, std::uint32_t cols,
                                 std::initializer_list<Touch> touches) {
   const auto forces = std::make_shared<ForceField>(rows, cols);

@@ -26,10 +26,10 @@ using status::kUsable;
 
 constexpr Theme kThemes[] = {Theme::dark, Theme::light};
 
-/// What one legend can hold.
+/// The sets of colours of one legend.
 const std::vector<std::vector<Special>>& legends() {
   static const std::vector<std::vector<Special>> legends = {
-      {Special::idle, Special::sound, Special::ambiguous, Special::from_neighbours,
+      {Special::idle, Special::determined, Special::ambiguous, Special::from_contact,
        Special::saturated, Special::inconsistent},
       {Special::idle, Special::region_1, Special::region_2, Special::region_3, Special::region_4,
        Special::opposite, Special::saturated},
@@ -92,7 +92,7 @@ TEST(Names, AreThereAndDiffer) {
   for (int i = 0; i < kSpecials; ++i) names.insert(name_of(static_cast<Special>(i)));
   EXPECT_EQ(names.size(), std::size_t{kSpecials});
   EXPECT_STREQ(name_of(Special::saturated), "saturated");
-  EXPECT_STREQ(name_of(Special::sound), "sound");
+  EXPECT_STREQ(name_of(Special::determined), "determined");
   EXPECT_STREQ(name_of(ColourMap::cividis), "cividis");
   EXPECT_STREQ(name_of(ColourMap::cyclic), "cyclic");
 }
@@ -104,7 +104,7 @@ TEST(DefaultMap, FollowsTheScale) {
   EXPECT_EQ(default_map(Scale::classes), ColourMap::cividis);
 }
 
-TEST(SpecialOf, MapsGiveColoursToSoundAndAmbiguousPillarsOnly) {
+TEST(SpecialOf, MapsColourDeterminedAndAmbiguousPillarsOnly) {
   EXPECT_EQ(special_of(Quantity::normal, kUsable), std::nullopt);
   EXPECT_EQ(special_of(Quantity::shear_x, kSensel1 | kSensel2 | kAmbiguous), std::nullopt);
   EXPECT_EQ(special_of(Quantity::normal, 0), Special::idle);
@@ -122,10 +122,10 @@ TEST(SpecialOf, RegionAndStatusAreClasses) {
   EXPECT_EQ(special_of(Quantity::region, kSensel1 | kSensel3), Special::opposite);
   EXPECT_EQ(special_of(Quantity::region, kSaturated), Special::saturated) << "nothing usable";
   EXPECT_EQ(special_of(Quantity::region, 0), Special::idle);
-  EXPECT_EQ(special_of(Quantity::status, kUsable), Special::sound);
+  EXPECT_EQ(special_of(Quantity::status, kUsable), Special::determined);
   EXPECT_EQ(special_of(Quantity::status, kSensel1 | kSensel2 | kAmbiguous), Special::ambiguous);
   EXPECT_EQ(special_of(Quantity::status, kSensel1 | kSensel2 | kFromNeighbours),
-            Special::from_neighbours);
+            Special::from_contact);
   EXPECT_EQ(special_of(Quantity::status, kUsable | kSaturated | kInconsistent),
             Special::inconsistent);
   EXPECT_EQ(special_of(Quantity::status, 0), Special::idle);

@@ -7,13 +7,13 @@
 
 #include "viewer/style/colour_map.h"
 
-/// What eyes make of colours: CIELAB (D65), the difference CIEDE2000, and colour blindness.
+/// Colour perception: CIELAB (D65), CIEDE2000, and colour blindness.
 namespace pillarfield::viewer {
 
 struct Lab {
   double lightness, a, b;
 };
-using Linear = std::array<double, 3>;  ///< red, green, blue of sRGB before its curve, 0..1
+using Linear = std::array<double, 3>;  ///< linear sRGB, 0..1
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
 inline double linear_of(std::uint8_t byte) {

@@ -10,8 +10,8 @@ struct KnownDifference {
   double difference;
 };
 
-// Of the test data of Sharma, Wu and Dalal (2005): hues around blue and about the cut, greys, large
-// and small differences.
+// From the test data of Sharma, Wu and Dalal (2005): hues around blue and across the hue cut,
+// greys, large and small differences.
 constexpr KnownDifference kKnown[] = {
     {{50, 2.6772, -79.7751}, {50, 0, -82.7485}, 2.0425},
     {{50, 3.1571, -77.2803}, {50, 0, -82.7485}, 2.8615},

@@ -1,4 +1,4 @@
-// The tables themselves: what makes a colour map honest.
+// Perceptual properties of the colour tables.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ std::vector<Lab> seen_table(ColourMap map, Sight sight = Sight::normal) {
   return labs;
 }
 
-/// Differences between entries `stride` apart: over fewer, the rounding to bytes shows.
+/// Differences between entries `stride` apart; over smaller strides rounding to bytes dominates.
 std::vector<double> steps(const std::vector<Lab>& labs, std::size_t stride, bool closed) {
   std::vector<double> steps;
   const std::size_t last = closed ? labs.size() : labs.size() - stride;
@@ -91,7 +91,7 @@ TEST(DivergingTable, IsBlueBelowAndOrangeAbove) {
 TEST(DivergingTable, KeepsItsSidesApartForEveryEye) {
   for (const Sight sight : kSights) {
     const std::vector<Lab> labs = seen_table(ColourMap::diverging, sight);
-    // A quarter of the way out the sides are plainly two; from there on they only part further.
+    // The two sides differ clearly a quarter of the way out, and increasingly beyond.
     for (std::size_t i = 0; i < 128 - 32; ++i) {
       EXPECT_GT(difference(labs[i], labs[255 - i]), 14) << i << " " << static_cast<int>(sight);
     }
@@ -127,7 +127,7 @@ TEST(CyclicTable, HasFourQuadrantsForEveryEye) {
   }
 }
 
-TEST(CyclicTable, TellsUpByLightnessAndRightByYellow) {
+TEST(CyclicTable, SeparatesUpByLightnessAndRightByYellow) {
   const std::vector<Lab> labs = seen_table(ColourMap::cyclic);
   EXPECT_GT(labs[192].lightness, labs[64].lightness + 30);
   EXPECT_GT(labs[128].b, labs[0].b + 70);

@@ -7,7 +7,7 @@
 
 namespace pillarfield::viewer {
 
-/// A field with all planes and readings, of 2 x 3 pillars unless told otherwise, to be filled in.
+/// A field with all planes and readings, 2 x 3 pillars by default, for a test to fill in.
 struct MadeUpField {
   std::uint32_t rows, cols;
   std::vector<float> shear_x, shear_y, normal, magnitude, theta, phi;

@@ -1,4 +1,4 @@
-// Fitting, and what the mouse does.
+// Fitting views and navigating by mouse.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ struct Extent {
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
 };
 
-/// What a skin takes of the viewport, in shares of it; the middle is 0.
+/// Extent of the skin as a fraction of the viewport, from its middle.
 Extent extent_of(const Situation& situation) {
   const auto& [view, surface, skin, viewport] = situation;
   const Surface shown = std::holds_alternative<TopView>(view) ? Surface{} : surface;
@@ -38,7 +38,7 @@ double largest_of(const Extent& extent) {
   return std::max({-extent.left, extent.right, -extent.top, extent.bottom});
 }
 
-TEST(Fit, TopViewHasTheWholeSkinAndFourPercentAir) {
+TEST(Fit, TopViewHasTheWholeSkinAndFourPercentMargin) {
   std::mt19937 random(1);
   for (int i = 0; i < 200; ++i) {
     Situation situation = random_situation(random);
@@ -92,7 +92,7 @@ TEST(Pan, InAnOrbitViewTheMiddleFollowsTheMouse) {
     orbit.elevation = random_between(random, 0.3, 1.57);
     orbit.target_mm = random_place_on(skin, random);
     view = orbit;
-    // On a bent skin the eye turns along; the way of its target on the sheet is the same.
+    // On a curved skin the eye turns along; the path of its target on the sheet is unchanged.
     const Vec3 point{orbit.target_mm.x, orbit.target_mm.y, 0};
     const Vec2 before = *project(view, {}, skin, viewport, point);
     const Vec2 way{random_between(random, -0.1, 0.1), random_between(random, -0.1, 0.1)};

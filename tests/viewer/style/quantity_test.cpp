@@ -88,10 +88,10 @@ TEST(Availability, FollowsWhatTheSourceHas) {
   EXPECT_EQ(available().size(), std::size_t{kQuantities});
 }
 
-TEST(StatusClasses, TellTheWorst) {
-  EXPECT_EQ(status_class(kUsable), StatusClass::sound);
+TEST(StatusClasses, ReportTheWorst) {
+  EXPECT_EQ(status_class(kUsable), StatusClass::determined);
   EXPECT_EQ(status_class(kSensel1 | kSensel2 | kAmbiguous), StatusClass::ambiguous);
-  EXPECT_EQ(status_class(kAmbiguous | kFromNeighbours), StatusClass::from_neighbours);
+  EXPECT_EQ(status_class(kAmbiguous | kFromNeighbours), StatusClass::from_contact);
   EXPECT_EQ(status_class(kUsable | kAmbiguous | kFromNeighbours | kSaturated),
             StatusClass::saturated);
   EXPECT_EQ(status_class(0xFF), StatusClass::inconsistent);
@@ -190,7 +190,7 @@ TEST(Value, IsNoneWhereTheSourceLacksIt) {
   }
 }
 
-/// Readings of sensel n of the pillar at (r, c), all of them different.
+/// Distinct readings of sensel n of the pillar at (r, c).
 template <class Reading>
 Reading reading_at(std::uint32_t r, std::uint32_t c, int n) {
   return static_cast<Reading>((r * 3 + c) * 7 + static_cast<std::uint32_t>(n * n * n));
@@ -209,7 +209,7 @@ void expect_parity(SenselType type, std::size_t stride) {
       readings[upper_left + stride + 1] = reading_at<Reading>(r, c, 4);
     }
   }
-  // One of them alone, so that the pillars differ.
+  // Only one, so that the pillars differ.
   readings[3 * stride + 5] = Reading{200};
   ShownField field = made_up.shown();
   field.raw = {readings.data(), type, 4, 6, stride};
@@ -240,7 +240,7 @@ TEST(Value, ParityOfTheLargestWholeReadingsIsExact) {
   EXPECT_EQ(value_of(Quantity::parity, field, 0, 0), 131069);
 }
 
-TEST(Largest, IsOverSoundAndAmbiguousPillars) {
+TEST(Largest, IsOverDeterminedAndAmbiguousPillars) {
   MadeUpField made_up;
   made_up.shear_x = {1, -4, 9, 16, 25, 36};
   made_up.status = {kUsable,
@@ -255,7 +255,7 @@ TEST(Largest, IsOverSoundAndAmbiguousPillars) {
   EXPECT_EQ(largest(Quantity::shear_x, made_up.shown()), 0);
 }
 
-TEST(Largest, PassesOverWhatIsNotFinite) {
+TEST(Largest, SkipsValuesThatAreNotFinite) {
   MadeUpField made_up;
   made_up.normal = {kNan, kInfinity, 2, -kInfinity, 1, kNan};
   EXPECT_EQ(largest(Quantity::normal, made_up.shown()), 2);

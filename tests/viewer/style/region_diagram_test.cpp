@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// What sensel 1..4 reads under a force of one newton and one count per newton, by kernels/pillar.
+/// Reading of sensel 1..4 under 1 N at 1 count per newton, by kernels/pillar.
 double reading_under(int sensel, Vec2 phi_theta) {
   const double sine = std::sin(phi_theta.y);
   const double_precision::Force force = {-sine * std::cos(phi_theta.x),
@@ -39,7 +39,7 @@ TEST(RegionBorders, AreWhereTheirSenselReadsNothing) {
   }
 }
 
-TEST(RegionBorders, BelowAndAboveTheirSenselAnswersAndLifts) {
+TEST(RegionBorders, SeparateActiveFromInactiveReadings) {
   const auto borders = region_borders(50);
   for (int sensel = 1; sensel <= 4; ++sensel) {
     for (const auto& piece : borders.at(static_cast<std::size_t>(sensel - 1))) {
@@ -72,7 +72,7 @@ TEST(RegionBorders, HaveTheirPointsInAscendingPhiFromEdgeToEdge) {
         }
         length += piece.back().x - piece.front().x;
       }
-      EXPECT_NEAR(length, kPi, 1e-12) << "each sensel lifts over half a turn";
+      EXPECT_NEAR(length, kPi, 1e-12) << "each border spans half a turn";
       EXPECT_LE(total, static_cast<std::size_t>(points) + 1);
     }
   }

@@ -137,7 +137,7 @@ TEST(FirstHit, IsTheNearestOfSkinOnEitherSide) {
   const Ray from_above{{5, 0, 100}, {0, 0, -1}};
   const Ray from_below{{5, 0, -100}, {0, 0, 1}};
   const double there = 20 * std::asin(0.25);
-  // A skin over the upper half only, and one all around.
+  // A skin over the upper half only, and one around the whole cylinder.
   EXPECT_NEAR(first_hit(from_above, surface, {60, 10})->x, there, 1e-12);
   EXPECT_NEAR(first_hit(from_below, surface, {60, 10})->x, there, 1e-12) << "its inner side";
   EXPECT_NEAR(first_hit(from_below, surface, {130, 10})->x, 20 * std::numbers::pi - there, 1e-12);

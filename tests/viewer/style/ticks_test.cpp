@@ -19,7 +19,7 @@ std::vector<std::string> labels(double low, double high, int most) {
 
 using Labels = std::vector<std::string>;
 
-/// What a label says: its minus signs are not those of the C library.
+/// Number of a label, which has a Unicode minus sign.
 double number_of(std::string label) {
   const std::string minus = "\u2212";
   for (auto at = label.find(minus); at != std::string::npos; at = label.find(minus)) {
@@ -73,7 +73,7 @@ TEST(Ticks, AreAsManyAsMayBe) {
   for (int i = 0; i < 3000; ++i) {
     const auto [low, high, most] = random_axis(random);
     if (most < 5) continue;
-    // The next finer steps are at most 2.5 times as many, and do not fit.
+    // The next finer steps are at most 2.5 times as many and do not fit.
     EXPECT_GE(ticks(low, high, most).size(), static_cast<std::size_t>((most + 1) / 2.5) - 1);
   }
 }
@@ -91,7 +91,7 @@ TEST(Ticks, LabelsSayTheValueAndDiffer) {
   }
 }
 
-TEST(Ticks, AreWhatAReaderExpects) {
+TEST(Ticks, HaveTheExpectedLabels) {
   EXPECT_EQ(labels(0, 1, 6), (Labels{"0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
   EXPECT_EQ(labels(0, 0.3, 4), (Labels{"0", "0.1", "0.2", "0.3"})) << "both ends";
   EXPECT_EQ(labels(-2, 2, 5), (Labels{"−2", "−1", "0", "1", "2"}));

@@ -16,12 +16,12 @@ constexpr int kSituations = 3000;
 
 bool is_top(const View& view) { return std::holds_alternative<TopView>(view); }
 
-/// The surface as the view shows it.
+/// The surface that applies to the view.
 Surface shown_surface(const Situation& situation) {
   return is_top(situation.view) ? Surface{} : situation.surface;
 }
 
-/// The cosine between a line of sight and the surface's normal at a point of the sheet.
+/// Cosine between the line of sight and the surface normal at a point of the sheet.
 double facing(const Situation& situation, Vec2 point) {
   const Surface surface = shown_surface(situation);
   const SurfaceFrame frame = frame_at(surface, point);
@@ -68,9 +68,9 @@ TEST(Views, PickFindsWhatProjectShows) {
     ASSERT_TRUE(found) << i;
     const Vec3 found_place = frame_at(surface, *found).position;
     if (length(found_place - place) > 1e-6) {
-      // Another part of the skin is in front of it.
+      // Another part of the skin hides it.
       const Camera camera = camera_of(situation.view, surface, situation.viewport);
-      EXPECT_LT(seen_by(camera, found_place).z, seen_by(camera, place).z) << i;
+      EXPECT_LT(in_camera(camera, found_place).z, in_camera(camera, place).z) << i;
       continue;
     }
     ++compared;
@@ -130,14 +130,14 @@ TEST(Views, MatrixShowsPointsWhereProjectSays) {
     const Viewport& viewport = situation.viewport;
     const Surface surface = shown_surface(situation);
     const SurfaceFrame frame = frame_at(surface, random_place_on(situation.skin, random));
-    const Vec3 point = frame.position + random_between(random, 0, kArrowRoomMm) * frame.normal;
+    const Vec3 point = frame.position + random_between(random, 0, kArrowMarginMm) * frame.normal;
     const auto pixel = projected(situation, point);
     const Clip clip = clipped(situation, point);
     EXPECT_EQ(pixel.has_value(), clip.w > 0);
     if (!pixel || clip.w < 5) continue;
     const double x = viewport.x + (clip.x / clip.w + 1) / 2 * viewport.width;
     const double y = viewport.y + (clip.y / clip.w + 1) / 2 * viewport.height;
-    // Single precision: a part in 10^7 of how far things are off the picture's middle or the eye.
+    // Single precision: 1e-7 of the distance from the picture's middle or the eye.
     const double scale = 1 + std::abs(pixel->x) + std::abs(pixel->y) + 1e4 / clip.w;
     EXPECT_NEAR(x, pixel->x, 2e-4 * scale) << i;
     EXPECT_NEAR(y, pixel->y, 2e-4 * scale) << i;
@@ -154,14 +154,14 @@ TEST(Views, DepthIsWithinVulkansRangeForAllArrowsAndGrowsWithTheWay) {
     const Vec3 lean = random_between(random, -1, 1) * frame.tangent_x +
                       random_between(random, -1, 1) * frame.tangent_y +
                       random_between(random, 0.1, 1) * frame.normal;
-    const Vec3 arrow = random_between(random, 0, kArrowRoomMm) / length(lean) * lean;
+    const Vec3 arrow = random_between(random, 0, kArrowMarginMm) / length(lean) * lean;
     double nearer = -1;
-    // From the arrow's end that is nearer to the eye to the other one.
+    // From the arrow's nearer end to the other one.
     const bool towards_eye = dot(arrow, camera.forward) < 0;
     for (const double share : {0.0, 0.5, 1.0}) {
       const Vec3 point = frame.position + (towards_eye ? 1 - share : share) * arrow;
       const Clip clip = clipped(situation, point);
-      const bool cut = camera.perspective && seen_by(camera, point).z < camera.distance_mm / 99;
+      const bool cut = camera.perspective && in_camera(camera, point).z < camera.distance_mm / 99;
       if (cut) break;
       EXPECT_GE(clip.z / clip.w, -1e-5) << i;
       EXPECT_LE(clip.z / clip.w, 1 + 1e-5) << i;
@@ -175,14 +175,14 @@ TEST(Views, DepthUsesItsRange) {
   const SkinSize skin{100, 100};
   const Viewport viewport{0, 0, 800, 600};
   const Situation top{fit_top(skin, viewport), {}, skin, viewport};
-  EXPECT_NEAR(clipped(top, {0, 0, kArrowRoomMm}).z, 0, 1e-6);
-  EXPECT_NEAR(clipped(top, {0, 0, -kArrowRoomMm}).z, 1, 1e-6);
+  EXPECT_NEAR(clipped(top, {0, 0, kArrowMarginMm}).z, 0, 1e-6);
+  EXPECT_NEAR(clipped(top, {0, 0, -kArrowMarginMm}).z, 1, 1e-6);
   OrbitView straight_down;
   straight_down.elevation = std::numbers::pi / 2;
   straight_down.distance_mm = 400;
   const Situation orbit{straight_down, {}, skin, viewport};
-  const Clip nearest = clipped(orbit, {0, 0, kArrowRoomMm});
-  const Clip farthest = clipped(orbit, {0, 0, -kArrowRoomMm});
+  const Clip nearest = clipped(orbit, {0, 0, kArrowMarginMm});
+  const Clip farthest = clipped(orbit, {0, 0, -kArrowMarginMm});
   EXPECT_NEAR(nearest.z / nearest.w, 0, 1e-6);
   EXPECT_NEAR(farthest.z / farthest.w, 1, 1e-6);
 }

@@ -1,4 +1,4 @@
-"""A display without a screen: Xvfb, its pixels, its mouse and its keys."""
+"""A virtual display by Xvfb: pixels, mouse and keys."""
 
 import os
 import shutil
@@ -92,7 +92,7 @@ def unfiltered(kind, line, above, channels):
 
 
 class Display:
-    """An X server with one screen, whose pixels lie in a file."""
+    """An X server with one screen, which stores its pixels in a file."""
 
     def __init__(self, folder, width, height):
         self.folder = folder
@@ -113,7 +113,7 @@ class Display:
         return read_xwd(self.folder / "Xvfb_screen0")
 
     def still_pixels(self, seconds=20):
-        """The screen once it has not changed for a while."""
+        """The screen after a period without changes."""
         deadline = time.monotonic() + seconds
         last = self.pixels()
         since = time.monotonic()

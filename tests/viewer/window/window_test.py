@@ -28,7 +28,7 @@ WIDTH, HEIGHT = 1280, 720
 
 
 class Window:
-    """A running viewer with the keyboard's focus."""
+    """A running viewer with keyboard focus."""
 
     def __init__(self, screen, folder, *arguments):
         self.screen = screen
@@ -76,7 +76,7 @@ class Window:
         self.screen.xdotool("mouseup", button)
 
     def quit(self):
-        """The statistics, once the window is closed by its key."""
+        """Closes the window by its key; returns the statistics."""
         self.key("q")
         (output, _) = self.process.communicate(timeout=60)
         assert self.process.returncode == 0, self.error_text()
@@ -117,7 +117,7 @@ class WindowTest(unittest.TestCase):
         return pixels
 
     def shoot_changed(self, name, before, patience_s):
-        """Waits for another picture than `before`, for so long at most."""
+        """Waits for a picture other than `before`, up to a time limit."""
         end = time.monotonic() + patience_s
         pixels = self.shoot(name)
         while numpy.array_equal(before, pixels) and time.monotonic() < end:
@@ -126,7 +126,7 @@ class WindowTest(unittest.TestCase):
         return pixels
 
     def assert_quiet(self, window):
-        """Closes the window; validation must have been silent."""
+        """Closes the window; expects no validation messages."""
         statistics = window.quit()
         text = window.error_text()
         self.assertNotIn("validation", text.lower())
@@ -167,7 +167,7 @@ class KeyTest(WindowTest):
         for (index, key) in enumerate(keys):
             window.key(key)
             time.sleep(0.1)
-            # Fans and views need a view that was changed: see below.
+            # Sectors and views need another view: see below.
             patience_s = 0 if key in ("u", "r") else 10
             after = self.shoot_changed(f"key_{index:02}_{key.replace('+', '_')}", before, patience_s)
             if patience_s > 0:

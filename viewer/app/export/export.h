@@ -11,27 +11,27 @@
 
 namespace pillarfield::viewer {
 
-// Of what bears the name of an output, `replace` says what is replaced.
+// `replace` selects which existing files an output may replace.
 
-/// Writes a PNG, without its alpha. Throws Error where that fails; nothing half-written stays.
+/// Writes a PNG without alpha. On failure throws Error and leaves no partial file.
 void write_png(const std::filesystem::path& path, const Pixels& pixels,
                Replace replace = Replace::results);
 
-/// "field.png" and frame 12 of 100, counted from 1 as people see it, becomes "field_012.png": names
-/// of a sequence sort by frame.
+/// "field_012.png" for "field.png" and frame 12 of 100, counted from 1, so that names sort by
+/// frame.
 [[nodiscard]] std::filesystem::path numbered(const std::filesystem::path& path, std::uint64_t frame,
                                              std::uint64_t frames);
 
-/// Pillars of `rect` as CSV, one line each that is not idle, columns as `pillarfield solve -o
-/// x.csv` has them (docs/formats.md).
+/// Writes the pillars of `rect` that are not idle as CSV, one line each, in the columns of
+/// `pillarfield solve -o x.csv` (docs/formats.md).
 void write_csv(const std::filesystem::path& path, const ShownField& field, const PillarRect& rect,
                Replace replace = Replace::results);
 
-/// Pictures of one size that become a video, through a child process ffmpeg. A picture that fails
-/// to be taken ends in an Error with what ffmpeg said.
+/// Encodes pictures of one size as a video by a child process ffmpeg. A failure throws Error with
+/// ffmpeg's message.
 class VideoWriter {
  public:
-  /// Throws Error where ffmpeg is not installed, names the Debian package.
+  /// Throws Error, with the Debian package, where ffmpeg is not installed.
   VideoWriter(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
               double rate_hz, Replace replace = Replace::results);
   ~VideoWriter();

@@ -17,7 +17,7 @@ void write_csv(const std::filesystem::path& path, const ShownField& field, const
   info.uncertainty = !forces.uncertainty[Uncertainty::normal].empty();
   if (field.direct_point) info.estimator = name_of(Estimator::direct);
   info.segment_point = field.direct_point;
-  // Pillars outside are left out as idle ones are.
+  // Pillars outside `rect` count as idle, which are omitted.
   std::vector<std::uint8_t> status(forces.status.size());
   const std::uint32_t col_end = std::min(rect.col_end, forces.cols);
   for (std::uint32_t row = rect.row_begin; row < std::min(rect.row_end, forces.rows); ++row) {

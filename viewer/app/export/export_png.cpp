@@ -24,10 +24,10 @@ std::vector<std::uint8_t> without_alpha(const Pixels& pixels) {
 
 [[noreturn]] void fail_to_write_png(const std::filesystem::path& path, const char* reason) {
   throw Error(path.string(), fmt::format("cannot be written: {}", reason),
-              "check its directory and the space left on its disk");
+              "check the directory and the free disk space");
 }
 
-/// A stream to the part, which closing it leaves open.
+/// A stream on a duplicate of the file descriptor.
 std::FILE* stream_of(const OutputFile& file) {
   const int duplicate = fcntl(file.descriptor(), F_DUPFD_CLOEXEC, 0);
   return duplicate < 0 ? nullptr : fdopen(duplicate, "wb");
@@ -37,7 +37,7 @@ std::FILE* stream_of(const OutputFile& file) {
 
 void write_png(const std::filesystem::path& path, const Pixels& pixels, Replace replace) {
   if (pixels.rgba.empty() || pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
-    throw Error(path.string(), "there is no picture to be written", "give it a size");
+    throw Error(path.string(), "the picture has no pixels", "set a size above 0");
   }
   OutputFile file(path, OutputKind::png, replace);
   png_image image{};

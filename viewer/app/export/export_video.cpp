@@ -14,13 +14,14 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// What ffmpeg makes of a file's ending.
+/// ffmpeg's options for a file name extension.
 struct Encoding {
   std::string_view ending;
-  Words words;  ///< the muxer's name is among them, for the part's ending does not tell it
+  Words words;  ///< with the muxer, which the temporary name does not determine
 };
 
-/// H.264 at a quality that keeps thin lines and small text; players want an index at the beginning.
+/// H.264 at a quality that keeps thin lines and small text, with the index first, as players
+/// expect.
 const std::array<Encoding, 4>& encodings() {
   static const Words mp4{"-c:v", "libx264",   "-preset",    "medium", "-crf",
                          "16",   "-movflags", "+faststart", "-f",     "mp4"};
@@ -38,7 +39,8 @@ const Words& encoding_of(const std::filesystem::path& path) {
   const std::string ending = path.extension().string();
   const auto* const found = std::ranges::find(encodings(), ending, &Encoding::ending);
   if (found != encodings().end()) return found->words;
-  throw Error(path.string(), "no video has this ending", "use .mp4, .mkv, .mov or .webm");
+  throw Error(path.string(), "the extension is not a video format",
+              "use .mp4, .mkv, .mov or .webm");
 }
 
 Words command(const OutputFile& file, std::uint32_t width, std::uint32_t height, double rate_hz) {
@@ -59,7 +61,7 @@ Words command(const OutputFile& file, std::uint32_t width, std::uint32_t height,
               "-i",
               "pipe:0",
               "-an"};
-  // Colours are halved in both directions, which takes even sizes; players expect those of HDTV.
+  // 4:2:0 chroma needs even sizes; players expect HDTV colours.
   const Words colours{"-vf",
                       "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p",
                       "-colorspace",
@@ -79,11 +81,11 @@ void check(const std::filesystem::path& path, std::uint32_t width, std::uint32_t
            double rate_hz) {
   static_cast<void>(encoding_of(path));
   if (width == 0 || height == 0) {
-    throw Error(path.string(), "a video needs pictures with pixels", "give it a size");
+    throw Error(path.string(), "the size is 0 pixels", "set a size above 0");
   }
   if (!std::isfinite(rate_hz) || rate_hz <= 0) {
-    throw Error(path.string(), fmt::format("a video cannot have {} pictures a second", rate_hz),
-                "give it a rate above 0");
+    throw Error(path.string(), fmt::format("the rate is {} pictures a second", rate_hz),
+                "set a rate above 0");
   }
 }
 
@@ -100,10 +102,10 @@ struct VideoWriter::State {
 
   [[noreturn]] void fail() const {
     throw Error(file.path().string(), "ffmpeg failed: " + ffmpeg.error_line(),
-                "mend that, or write a sequence of PNG files");
+                "fix that, or write a sequence of PNG files");
   }
 
-  OutputFile file;  ///< outlives ffmpeg, which writes it by its name
+  OutputFile file;  ///< declared before ffmpeg, which writes the file
   ChildProgram ffmpeg;
   std::uint32_t width;
   std::uint32_t height;
@@ -121,7 +123,7 @@ VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const Pixels& pixels) {
   const std::filesystem::path& path = state_->file.path();
-  if (state_->finished) throw Error(path.string(), "is finished", "start another video");
+  if (state_->finished) throw Error(path.string(), "the video is finished", "start another video");
   if (pixels.width != state_->width || pixels.height != state_->height ||
       pixels.rgba.size() != std::size_t{4} * pixels.width * pixels.height) {
     throw Error(path.string(),
@@ -132,7 +134,7 @@ void VideoWriter::add(const Pixels& pixels) {
   ++state_->pictures;
   if (state_->ffmpeg.feed(std::as_bytes(std::span(pixels.rgba)))) return;
   state_->finished = true;
-  static_cast<void>(state_->ffmpeg.finish());  // Its last words.
+  static_cast<void>(state_->ffmpeg.finish());  // Collects its message.
   state_->fail();
 }
 
@@ -141,7 +143,7 @@ void VideoWriter::finish() {
   state_->finished = true;
   if (!state_->ffmpeg.finish()) state_->fail();
   if (state_->pictures == 0) {
-    throw Error(state_->file.path().string(), "a video needs pictures", "add one at least");
+    throw Error(state_->file.path().string(), "the video has no pictures", "add at least one");
   }
   state_->file.commit();
 }

@@ -7,7 +7,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// The first of NAME_DETAIL, NAME_DETAIL_2, ... whose file `looked_for` is not there.
+/// The first of NAME_DETAIL, NAME_DETAIL_2, ... for which the file `looked_for` does not exist.
 template <class LookedFor>
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
                                  const char* ending, const LookedFor& looked_for) {
@@ -23,23 +23,21 @@ std::filesystem::path first_free(const SourceInfo& source, const std::string& de
 
 }  // namespace
 
-FrameWriter::FrameWriter(Session& session, Kind kind, std::filesystem::path path,
+FrameWriter::FrameWriter(AppState& state, Kind kind, std::filesystem::path path,
                          std::uint32_t width, std::uint32_t height)
-    : session_(&session), path_(std::move(path)), frames_(session.player->state().frames) {
+    : state_(&state), path_(std::move(path)), frames_(state.player->state().frames) {
   if (kind == Kind::video) {
-    const double rate = session.player->info().rate_hz;
+    const double rate = state.player->info().rate_hz;
     video_ = std::make_unique<VideoWriter>(path_, width, height, rate, Replace::nothing);
   }
-  session.writing = true;
-  session.player->pause();
-  session.player->seek(0);
+  state.writing = true;
+  state.player->pause();
+  state.player->seek(0);
 }
 
-FrameWriter::~FrameWriter() { session_->writing = false; }
+FrameWriter::~FrameWriter() { state_->writing = false; }
 
-bool FrameWriter::wants_picture() const {
-  return session_->field && session_->field->index == next_;
-}
+bool FrameWriter::wants_picture() const { return state_->field && state_->field->index == next_; }
 
 bool FrameWriter::add(const Pixels& pixels) {
   if (video_ != nullptr) {
@@ -49,12 +47,12 @@ bool FrameWriter::add(const Pixels& pixels) {
   }
   ++next_;
   if (next_ < frames_) {
-    session_->notice = fmt::format("writing {} of {} (Esc stops)", next_, frames_);
-    session_->player->seek(next_);
+    state_->notice = fmt::format("writing {} of {} (Esc stops)", next_, frames_);
+    state_->player->seek(next_);
     return false;
   }
   if (video_ != nullptr) video_->finish();
-  session_->notice = fmt::format("wrote {} frames: {}", frames_, path_.string());
+  state_->notice = fmt::format("wrote {} frames: {}", frames_, path_.string());
   return true;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/app/input/changes.h"
+#include "viewer/app/input/actions.h"
 #include "viewer/app/window/screen.h"
 
 namespace pillarfield::viewer {
@@ -15,33 +15,34 @@ constexpr double kZoomOfStep = 1.2;
 
 double distance(Vec2 a, Vec2 b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-double shake_of(const Command& command) { return kShake * command.session.look.scale; }
+double shake_of(const Command& command) { return kShake * command.state.settings.scale; }
 
-/// Views are told of pixels in the picture, not in the window.
+/// The plot in pixels of the picture, which views use.
 Viewport plot_of(const Command& command) {
-  return layout_of(command.place.area.width, command.place.area.height, command.session.look).plot;
+  return layout_of(command.place.area.width, command.place.area.height, command.state.settings)
+      .plot;
 }
 
 Vec2 in_picture(const Command& command, Vec2 pixel) {
   return {pixel.x - command.place.area.x, pixel.y - command.place.area.y};
 }
 
-/// The view moved: it is kept on the skin, and no longer follows the window's size.
+/// After a move: clamps the view to the skin and detaches it from the window's size.
 void settle(const Command& command) {
-  keep_on_skin(command.session.look.view, command.place.skin());
-  command.session.view_is_fitted = false;
+  keep_on_skin(command.state.settings.view, command.place.skin());
+  command.state.view_is_fitted = false;
 }
 
 void mark_between(const Command& command, Vec2 begin_mm, Vec2 pixel) {
-  const Look& look = command.session.look;
-  const auto* const view = std::get_if<TopView>(&look.view);
+  const RenderSettings& settings = command.state.settings;
+  const auto* const view = std::get_if<TopView>(&settings.view);
   if (view == nullptr) return;
-  const Vec2 end_mm = sheet_point_beyond(command.place, look, *view, pixel);
+  const Vec2 end_mm = sheet_point_beyond(command.place, settings, *view, pixel);
   const auto rect = pillars_between(command.place, begin_mm, end_mm);
   if (rect) {
-    mark_region(command.session, *rect);
+    select_pillars(command.state, *rect);
   } else {
-    command.session.region.reset();
+    command.state.selection.reset();
   }
 }
 
@@ -63,18 +64,20 @@ void Controls::take(const InputEvent& event, const Command& command) {
 }
 
 void Controls::hover(const Command& command) const {
-  Session& session = command.session;
-  session.hovered = cursor_ ? pillar_at(command.place, session.look, *cursor_) : std::nullopt;
+  AppState& state = command.state;
+  state.hovered = cursor_ ? pillar_at(command.place, state.settings, *cursor_) : std::nullopt;
 }
 
 void Controls::press(const ButtonEvent& event, const Command& command) {
   if (drag_ || !contains(command.place.area, event.pixel)) return;
-  const Look& look = command.session.look;
+  const RenderSettings& settings = command.state.settings;
   const bool pans = event.button != MouseButton::left || event.modifiers.shift;
-  const Purpose purpose = pans ? Purpose::pan : shows_orbit(look) ? Purpose::orbit : Purpose::mark;
+  const Purpose purpose = pans                    ? Purpose::pan
+                          : shows_orbit(settings) ? Purpose::orbit
+                                                  : Purpose::mark;
   drag_ = Drag{event.button, purpose, event.pixel, event.pixel, false};
-  if (const auto* view = std::get_if<TopView>(&look.view)) {
-    drag_->begin_mm = sheet_point_beyond(command.place, look, *view, event.pixel);
+  if (const auto* view = std::get_if<TopView>(&settings.view)) {
+    drag_->begin_mm = sheet_point_beyond(command.place, settings, *view, event.pixel);
   }
 }
 
@@ -86,7 +89,7 @@ void Controls::move(Vec2 pixel, const Command& command) {
   drag_->moved = true;
   const Vec2 way{pixel.x - drag_->last.x, pixel.y - drag_->last.y};
   drag_->last = pixel;
-  View& view = command.session.look.view;
+  View& view = command.state.settings.view;
   if (drag_->purpose == Purpose::mark) {
     mark_between(command, drag_->begin_mm, pixel);
   } else if (drag_->purpose == Purpose::orbit) {
@@ -109,19 +112,19 @@ void Controls::release(const ButtonEvent& event, const Command& command) {
 void Controls::click(const ButtonEvent& event, const Command& command) {
   const bool again = last_click_ && event.time_s - last_click_->time_s < kDoubleClickSeconds &&
                      distance(last_click_->pixel, event.pixel) <= shake_of(command);
-  // The second click undoes what the first did to the pin.
-  if (const auto pillar = pillar_at(command.place, command.session.look, event.pixel)) {
-    toggle_pin(command.session, *pillar);
+  // Undoes the first click's change of the pin.
+  if (const auto pillar = pillar_at(command.place, command.state.settings, event.pixel)) {
+    toggle_pin(command.state, *pillar);
   }
   last_click_ = Click{event.time_s, event.pixel};
   if (!again) return;
-  reset_view(command.session, command.place);
+  reset_view(command.state, command.place);
   last_click_.reset();
 }
 
 void Controls::turn_wheel(const WheelEvent& event, const Command& command) {
   if (!contains(command.place.area, event.pixel)) return;
-  zoom(command.session.look.view, plot_of(command), in_picture(command, event.pixel),
+  zoom(command.state.settings.view, plot_of(command), in_picture(command, event.pixel),
        std::pow(kZoomOfStep, event.steps));
   settle(command);
 }

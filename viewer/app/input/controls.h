@@ -6,23 +6,22 @@
 
 namespace pillarfield::viewer {
 
-/// What keys and the mouse in the field do to a session. Knows no window: events come from there,
-/// or from a test.
+/// Translates key and mouse events in the field into actions, independent of a window.
 ///
-/// A press and release in one place is a click: it pins the pillar or takes its pin away. Two in
-/// quick succession reset the view, and the pin is what it was before. A drag marks a region of a
-/// top view, turns a 3-D view, and with Shift or another button moves either.
+/// A click (press and release in one place) toggles a pin; a double click resets the view and
+/// restores the pin. A drag selects pillars in a top view and turns a 3-D view; with Shift or
+/// another button it moves either.
 class Controls {
  public:
   void take(const InputEvent& event, const Command& command);
 
-  /// Whether a button went down in the field and is still held.
+  /// True while a button that was pressed in the field is held.
   [[nodiscard]] bool is_dragging() const { return drag_.has_value(); }
 
   /// The cursor over the field; none elsewhere.
   [[nodiscard]] std::optional<Vec2> cursor() const { return cursor_; }
 
-  /// Looks again what is under the cursor: the view or the source has changed.
+  /// Updates the pillar under the cursor after a change of view or field.
   void hover(const Command& command) const;
 
  private:
@@ -30,10 +29,10 @@ class Controls {
   struct Drag {
     MouseButton button;
     Purpose purpose;
-    Vec2 begin;       ///< where the button went down
-    Vec2 last;        ///< where the mouse was last
-    bool moved;       ///< further than a hand shakes
-    Vec2 begin_mm{};  ///< of a top view
+    Vec2 begin;       ///< position of the press
+    Vec2 last;        ///< last position
+    bool moved;       ///< beyond the tolerance of a click
+    Vec2 begin_mm{};  ///< in a top view
   };
   struct Click {
     double time_s;

@@ -7,8 +7,8 @@
 
 namespace pillarfield::viewer {
 
-// What a hand did, in the order in which it did it. Pixels are those of the window, from its upper
-// left corner; keys are GLFW's codes, letters by what the layout of the keyboard has written there.
+// Input events in order. Pixels count from the window's upper left corner; keys are GLFW codes,
+// letters by keyboard layout.
 
 struct Modifiers {
   bool shift = false;
@@ -21,8 +21,8 @@ enum class MouseButton : std::uint8_t { left, right, middle };
 struct KeyEvent {
   int key = 0;
   Modifiers modifiers;
-  bool pressed = true;    ///< false: let go
-  bool unusable = false;  ///< pressed with a modifier that nothing here uses
+  bool pressed = true;    ///< false: released
+  bool unusable = false;  ///< pressed with an unsupported modifier
 };
 
 struct TextEvent {
@@ -44,7 +44,7 @@ struct ButtonEvent {
 };
 
 struct WheelEvent {
-  double steps = 0;  ///< away from the hand
+  double steps = 0;  ///< positive away from the user
   Vec2 pixel;
 };
 

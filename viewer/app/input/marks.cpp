@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "viewer/app/input/pins.h"
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/window/style.h"
 #include "viewer/render/imgui_point.h"
 #include "viewer/render/skin_outline.h"
@@ -15,18 +15,18 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Draws on top of everything that the picture shows, with an edge that any colour lets see.
+/// Draws over the picture, with an edge visible on any colour.
 class Marker {
  public:
-  Marker(const Session& session, const FieldPlace& place)
-      : look_(session.look),
+  Marker(const AppState& state, const FieldPlace& place)
+      : settings_(state.settings),
         place_(place),
         list_(*ImGui::GetBackgroundDrawList()),
-        unit_(static_cast<float>(session.look.scale)) {}
+        unit_(static_cast<float>(state.settings.scale)) {}
 
   void outline(const PillarRect& rect, ImU32 colour) const {
     std::vector<ImVec2> points;
-    for (const Vec2& point : outline_of(rect, *place_.source, look_, place_.plot(look_))) {
+    for (const Vec2& point : outline_of(rect, *place_.source, settings_, place_.plot(settings_))) {
       points.push_back(to_imgui(point));
     }
     const auto count = static_cast<int>(points.size());
@@ -58,7 +58,7 @@ class Marker {
   }
 
   void clip() const {
-    const Viewport plot = place_.plot(look_);
+    const Viewport plot = place_.plot(settings_);
     list_.PushClipRect(to_imgui({plot.x, plot.y}),
                        to_imgui({plot.x + plot.width, plot.y + plot.height}));
   }
@@ -68,10 +68,10 @@ class Marker {
   [[nodiscard]] std::optional<Vec2> middle_of(const PillarIndex& pillar) const {
     const Vec2 corner = corner_of(place_, pillar.row, pillar.col);
     const double half = 0.5 * place_.source->skin.pillar_pitch_mm();
-    return pixel_of(place_, look_, {corner.x + half, corner.y - half});
+    return pixel_of(place_, settings_, {corner.x + half, corner.y - half});
   }
 
-  const Look& look_;
+  const RenderSettings& settings_;
   const FieldPlace& place_;
   ImDrawList& list_;
   float unit_;
@@ -83,13 +83,13 @@ PillarRect only(const PillarIndex& pillar) {
 
 }  // namespace
 
-void draw_marks(const Session& session, const FieldPlace& place) {
-  const Marker marker(session, place);
+void draw_marks(const AppState& state, const FieldPlace& place) {
+  const Marker marker(state, place);
   marker.clip();
-  if (session.region) marker.outline(session.region->rect, palette_of(Theme::dark).accent);
-  if (session.hovered) marker.outline(only(*session.hovered), IM_COL32(255, 255, 255, 230));
-  for (std::size_t i = 0; i < session.pins.size(); ++i) {
-    marker.pin(session.pins[i], i + 1 == session.pins.size());
+  if (state.selection) marker.outline(state.selection->rect, palette_of(Theme::dark).accent);
+  if (state.hovered) marker.outline(only(*state.hovered), IM_COL32(255, 255, 255, 230));
+  for (std::size_t i = 0; i < state.pins.size(); ++i) {
+    marker.pin(state.pins[i], i + 1 == state.pins.size());
   }
   marker.unclip();
 }

@@ -6,9 +6,9 @@
 namespace pillarfield::viewer {
 namespace {
 
-using PinColours = std::array<Colour, Session::kMostPins>;
+using PinColours = std::array<Colour, AppState::kMostPins>;
 
-// After Okabe and Ito; lighter on dark ground, darker on light ground.
+// After Okabe and Ito; lighter on a dark background, darker on a light one.
 constexpr PinColours kOnDark{{{86, 180, 233},
                               {240, 167, 50},
                               {38, 198, 150},
@@ -18,31 +18,30 @@ constexpr PinColours kOnDark{{{86, 180, 233},
 constexpr PinColours kOnLight{
     {{0, 106, 170}, {196, 122, 0}, {0, 134, 98}, {174, 84, 134}, {110, 100, 0}, {196, 70, 0}}};
 
-bool is_taken(const Session& session, int number) {
-  return std::ranges::any_of(session.pins,
-                             [number](const Pin& pin) { return pin.number == number; });
+bool is_taken(const AppState& state, int number) {
+  return std::ranges::any_of(state.pins, [number](const Pin& pin) { return pin.number == number; });
 }
 
 }  // namespace
 
-void number_pins(Session& session) {
-  for (Pin& pin : session.pins) {
+void number_pins(AppState& state) {
+  for (Pin& pin : state.pins) {
     if (pin.number != 0) continue;
     int number = 1;
-    while (is_taken(session, number)) ++number;
+    while (is_taken(state, number)) ++number;
     pin.number = number;
   }
 }
 
-void inspect_pin(Session& session, std::size_t index) {
-  if (index >= session.pins.size()) return;
-  const auto pin = session.pins.begin() + static_cast<std::ptrdiff_t>(index);
-  std::rotate(pin, pin + 1, session.pins.end());
+void inspect_pin(AppState& state, std::size_t index) {
+  if (index >= state.pins.size()) return;
+  const auto pin = state.pins.begin() + static_cast<std::ptrdiff_t>(index);
+  std::rotate(pin, pin + 1, state.pins.end());
 }
 
-void remove_pin(Session& session, std::size_t index) {
-  if (index >= session.pins.size()) return;
-  session.pins.erase(session.pins.begin() + static_cast<std::ptrdiff_t>(index));
+void remove_pin(AppState& state, std::size_t index) {
+  if (index >= state.pins.size()) return;
+  state.pins.erase(state.pins.begin() + static_cast<std::ptrdiff_t>(index));
 }
 
 Colour pin_colour(int number, Theme theme) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "viewer/app/input/changes.h"
+#include "viewer/app/input/actions.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -24,26 +24,26 @@ constexpr std::array<Chord, 3> with(Modifiers modifiers, int key) {
 
 template <Quantity quantity>
 void show(const Command& command) {
-  show_quantity(command.session, quantity);
+  show_quantity(command.state, quantity);
 }
 
-template <bool Look::*layer>
+template <bool RenderSettings::*layer>
 void toggle(const Command& command) {
-  command.session.look.*layer = !(command.session.look.*layer);
+  command.state.settings.*layer = !(command.state.settings.*layer);
 }
 
 template <std::int64_t frames>
 void step(const Command& command) {
-  command.session.player->step(frames);
+  command.state.player->step(frames);
 }
 
-template <bool Requests::*request>
+template <bool PendingActions::*request>
 void ask(const Command& command) {
-  command.requests.*request = true;
+  command.pending.*request = true;
 }
 
 void toggle_play(const Command& command) {
-  Player& player = *command.session.player;
+  Player& player = *command.state.player;
   if (player.state().playing) {
     player.pause();
   } else {
@@ -51,41 +51,41 @@ void toggle_play(const Command& command) {
   }
 }
 
-void go_to_begin(const Command& command) { command.session.player->seek(0); }
+void go_to_begin(const Command& command) { command.state.player->seek(0); }
 
 void go_to_end(const Command& command) {
-  command.session.player->seek(command.session.player->state().frames - 1);
+  command.state.player->seek(command.state.player->state().frames - 1);
 }
 
 void toggle_loop(const Command& command) {
-  command.session.player->set_loop(!command.session.player->state().loops);
+  command.state.player->set_loop(!command.state.player->state().loops);
 }
 
 void toggle_follow(const Command& command) {
-  command.session.player->set_follow(!command.session.player->state().follows);
+  command.state.player->set_follow(!command.state.player->state().follows);
 }
 
 void toggle_theme(const Command& command) {
-  Theme& theme = command.session.look.theme;
+  Theme& theme = command.state.settings.theme;
   theme = theme == Theme::dark ? Theme::light : Theme::dark;
 }
 
 void toggle_view(const Command& command) {
-  show_orbit(command.session, command.place, !shows_orbit(command.session.look));
+  show_orbit(command.state, command.place, !shows_orbit(command.state.settings));
 }
 
 void toggle_contacts(const Command& command) {
-  show_contacts(command.session, !command.session.look.contacts);
+  show_contacts(command.state, !command.state.settings.contacts);
 }
 
-/// What is open or under way ends first.
+/// Closes help, else stops writing, else clears the marks.
 void escape(const Command& command) {
-  if (command.session.show_help) {
-    command.session.show_help = false;
-  } else if (command.session.writing) {
-    command.requests.stop = true;
+  if (command.state.show_help) {
+    command.state.show_help = false;
+  } else if (command.state.writing) {
+    command.pending.stop = true;
   } else {
-    clear_marks(command.session);
+    clear_marks(command.state);
   }
 }
 
@@ -103,9 +103,9 @@ constexpr std::array kShortcuts{
              {Chord{GLFW_KEY_EQUAL, {}}, Chord{GLFW_KEY_EQUAL, kShift}, Chord{GLFW_KEY_KP_ADD, {}}},
              "+",
              "faster",
-             [](const Command& command) { change_speed(command.session, 1); }},
+             [](const Command& command) { change_speed(command.state, 1); }},
     Shortcut{Group::play, plain(GLFW_KEY_MINUS, GLFW_KEY_KP_SUBTRACT), "−", "slower",
-             [](const Command& command) { change_speed(command.session, -1); }},
+             [](const Command& command) { change_speed(command.state, -1); }},
     Shortcut{Group::play, plain(GLFW_KEY_L), "L", "loop", toggle_loop},
     Shortcut{Group::play, plain(GLFW_KEY_F), "F", "follow the newest frame", toggle_follow},
 
@@ -129,43 +129,44 @@ constexpr std::array kShortcuts{
              show<Quantity::uncertainty>},
     Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
 
-    Shortcut{Group::look, plain(GLFW_KEY_A), "A", "arrows", toggle<&Look::arrows>},
-    Shortcut{Group::look, plain(GLFW_KEY_U), "U", "fans of the ambiguous", toggle<&Look::fans>},
-    Shortcut{Group::look, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars", toggle<&Look::hatch>},
-    Shortcut{Group::look, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
-    Shortcut{Group::look, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
-    Shortcut{Group::look, plain(GLFW_KEY_R), "R", "the whole skin",
-             [](const Command& command) { reset_view(command.session, command.place); }},
-    Shortcut{Group::look, plain(GLFW_KEY_G), "G", "fit the range to this frame",
-             [](const Command& command) { fit_range(command.session); }},
-    Shortcut{Group::look, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
+    Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows", toggle<&RenderSettings::arrows>},
+    Shortcut{Group::view, plain(GLFW_KEY_U), "U", "uncertainty sectors",
+             toggle<&RenderSettings::sectors>},
+    Shortcut{Group::view, plain(GLFW_KEY_X), "X", "hatch ambiguous pillars",
+             toggle<&RenderSettings::hatch>},
+    Shortcut{Group::view, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
+    Shortcut{Group::view, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
+    Shortcut{Group::view, plain(GLFW_KEY_R), "R", "the whole skin",
+             [](const Command& command) { reset_view(command.state, command.place); }},
+    Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
+             [](const Command& command) { fit_range(command.state); }},
+    Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
     Shortcut{
-        Group::look, plain(GLFW_KEY_TAB), "Tab", "panels",
-        [](const Command& command) { command.session.show_panels = !command.session.show_panels; }},
+        Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
+        [](const Command& command) { command.state.show_panels = !command.state.show_panels; }},
 
-    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins, region", escape},
+    Shortcut{Group::mark, plain(GLFW_KEY_ESCAPE), "Esc", "clear pins and selection", escape},
 
     Shortcut{Group::write, plain(GLFW_KEY_P), "P", "write this picture (PNG)",
-             ask<&Requests::picture>},
+             ask<&PendingActions::picture>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_P), "Ctrl+P", "write all frames (PNG)",
-             ask<&Requests::sequence>},
+             ask<&PendingActions::sequence>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_M), "Ctrl+M", "write all frames (video)",
-             ask<&Requests::video>},
-    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write what is in sight (CSV)",
-             ask<&Requests::table>},
-    Shortcut{
-        Group::write,
-        {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
-        "?, H, F1",
-        "this help",
-        [](const Command& command) { command.session.show_help = !command.session.show_help; }},
-    Shortcut{Group::write, plain(GLFW_KEY_Q), "Q", "quit", ask<&Requests::quit>},
+             ask<&PendingActions::video>},
+    Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write visible pillars (CSV)",
+             ask<&PendingActions::table>},
+    Shortcut{Group::write,
+             {Chord{GLFW_KEY_H, {}}, Chord{GLFW_KEY_F1, {}}, Chord{GLFW_KEY_SLASH, kShift}},
+             "?, H, F1",
+             "this help",
+             [](const Command& command) { command.state.show_help = !command.state.show_help; }},
+    Shortcut{Group::write, plain(GLFW_KEY_Q), "Q", "quit", ask<&PendingActions::quit>},
 };
 
 constexpr std::array kMouseHelp{
     MouseHelp{"hover", "values under the cursor"},
-    MouseHelp{"click", "pin a pillar, or take its pin away"},
-    MouseHelp{"drag", "mark a region; in 3-D turn the view"},
+    MouseHelp{"click", "pin or unpin a pillar"},
+    MouseHelp{"drag", "select pillars; in 3-D turn the view"},
     MouseHelp{"right drag, Shift+drag", "move the view"},
     MouseHelp{"wheel", "zoom about the cursor"},
     MouseHelp{"double click", "the whole skin"},
@@ -174,7 +175,7 @@ constexpr std::array kMouseHelp{
 }  // namespace
 
 const char* title_of(ShortcutGroup group) {
-  constexpr std::array kTitles{"Play", "Show", "Look", "Marks", "Write"};
+  constexpr std::array kTitles{"Play", "Show", "View", "Marks", "Write"};
   return kTitles.at(static_cast<std::size_t>(group));
 }
 

@@ -3,59 +3,59 @@
 #include <array>
 #include <span>
 
+#include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
 #include "viewer/app/input/input.h"
-#include "viewer/app/session.h"
 
 namespace pillarfield::viewer {
 
-/// What was asked of the program rather than of the session.
-struct Requests {
+/// Actions that the application performs after input handling.
+struct PendingActions {
   bool quit = false;
   bool picture = false;   ///< write the picture on display
   bool sequence = false;  ///< write pictures of all frames
-  bool video = false;     ///< make a film of all frames
-  bool table = false;     ///< write the pillars in sight as CSV
+  bool video = false;     ///< write a video of all frames
+  bool table = false;     ///< write the visible pillars as CSV
   bool stop = false;      ///< stop writing
 };
 
-/// What a shortcut acts upon.
+/// Arguments of an action.
 struct Command {
-  Session& session;
+  AppState& state;
   const FieldPlace& place;
-  Requests& requests;
+  PendingActions& pending;
 };
 
-/// A key as GLFW counts it, with what is held down beside it. Key 0: none.
+/// A GLFW key with modifiers; key 0: none.
 struct Chord {
   int key = 0;
   Modifiers modifiers;
   friend bool operator==(const Chord&, const Chord&) = default;
 };
 
-enum class ShortcutGroup : std::uint8_t { play, show, look, mark, write };
+enum class ShortcutGroup : std::uint8_t { play, show, view, mark, write };
 inline constexpr int kShortcutGroups = 5;
 [[nodiscard]] const char* title_of(ShortcutGroup group);
 
 struct Shortcut {
   ShortcutGroup group = ShortcutGroup::play;
   std::array<Chord, 3> chords{};
-  const char* keys = "";  ///< for a reader: "Ctrl+P"
-  const char* what = "";  ///< for a reader: "write a picture of every frame"
+  const char* keys = "";         ///< for the reader: "Ctrl+P"
+  const char* description = "";  ///< for the reader: "write all frames (PNG)"
   void (*act)(const Command& command) = nullptr;
 };
 
-/// All of them, in the order of the help.
+/// All shortcuts, in the order of the help.
 [[nodiscard]] std::span<const Shortcut> shortcuts();
 
-/// What the mouse does in the field, for the help: "drag", "mark a region, or turn the 3-D view".
+/// Help on a mouse gesture: "wheel", "zoom about the cursor".
 struct MouseHelp {
-  const char* hand = "";
-  const char* what = "";
+  const char* gesture = "";
+  const char* description = "";
 };
 [[nodiscard]] std::span<const MouseHelp> mouse_help();
 
-/// Does what the table says of a key; false where it says nothing.
+/// Performs the action of a key; false without one.
 bool dispatch(const Chord& chord, const Command& command);
 
 }  // namespace pillarfield::viewer

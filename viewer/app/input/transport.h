@@ -4,8 +4,8 @@
 
 namespace pillarfield::viewer {
 
-/// The play head in one row: play, step, where it is, how fast, loop, follow. Fills the current
-/// window of ImGui.
+/// Controls of the play head in one row: play, step, position, speed, loop, follow. Fills the
+/// current ImGui window.
 void transport(const Command& command);
 
 }  // namespace pillarfield::viewer

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <optional>
 
-#include "viewer/app/input/changes.h"
-#include "viewer/app/panels/contact_words.h"
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/input/actions.h"
+#include "viewer/app/panels/format_contact.h"
+#include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/panels.h"
 #include "viewer/render/contact_marks.h"
 #include "viewer/source/shown_contacts.h"
@@ -15,9 +15,9 @@ namespace {
 constexpr int kTableFlags = ImGuiTableFlags_ScrollX | ImGuiTableFlags_ScrollY |
                             ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit |
                             ImGuiTableFlags_BordersInnerV;
-constexpr std::size_t kMostRows = 9;  ///< seen at a time
+constexpr std::size_t kMostRows = 9;  ///< visible at a time
 
-/// Columns stand where they are, whatever the numbers.
+/// Columns of fixed width.
 void set_columns() {
   for (const ContactColumn& column : contact_columns()) {
     const double width = std::max(width_of(column.head), width_of(column.widest));
@@ -26,7 +26,7 @@ void set_columns() {
   }
 }
 
-/// Stands still while contacts are scrolled.
+/// Fixed head row above the scrolled contacts.
 void write_head() {
   ImGui::TableNextRow(ImGuiTableRowFlags_Headers);
   for (const ContactColumn& column : contact_columns()) {
@@ -37,15 +37,15 @@ void write_head() {
 }
 
 void write_right(const std::string& words) {
-  const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(words.c_str()).x;
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(room, 0.0f));
+  const float left_over = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(words.c_str()).x;
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(left_over, 0.0f));
   ImGui::TextUnformatted(words.c_str());
 }
 
-/// True where it was clicked.
+/// Returns true if clicked.
 bool write_row(const std::string& name, const ContactQuantities& contact) {
   bool clicked = false;
-  const auto words = contact_words(name, contact);
+  const auto words = format_contact(name, contact);
   ImGui::TableNextRow();
   for (std::size_t i = 0; i < words.size(); ++i) {
     ImGui::TableNextColumn();
@@ -58,7 +58,7 @@ bool write_row(const std::string& name, const ContactQuantities& contact) {
   return clicked;
 }
 
-/// The place in the frame's contacts of the one that was clicked.
+/// Index of the clicked contact in the frame's contacts.
 std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
   std::optional<std::size_t> clicked;
   ImGuiListClipper clipper;
@@ -73,11 +73,11 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
   return clicked;
 }
 
-std::optional<std::size_t> contact_table(const PanelInk& ink, const ShownContacts& contacts) {
+std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts) {
   const std::size_t rows = std::min(contacts.heaviest.size(), kMostRows) + 2;
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float row = static_cast<float>(ink.line) + 2 * style.CellPadding.y;
-  const float height = row * static_cast<float>(rows) + style.ScrollbarSize + 2;
+  const ImGuiStyle& imgui_style = ImGui::GetStyle();
+  const float row = static_cast<float>(style.line) + 2 * imgui_style.CellPadding.y;
+  const float height = row * static_cast<float>(rows) + imgui_style.ScrollbarSize + 2;
   if (!ImGui::BeginTable("contacts", static_cast<int>(kContactColumns), kTableFlags,
                          ImVec2(0, height))) {
     return std::nullopt;
@@ -93,19 +93,19 @@ std::optional<std::size_t> contact_table(const PanelInk& ink, const ShownContact
 
 }  // namespace
 
-void contacts_panel(Session& session, const FieldPlace& place) {
-  const PanelInk ink = panel_ink(session.look.scale);
-  if (!session.look.contacts || !session.field || session.field->contacts == nullptr) {
-    faint_words(ink, "Contacts are not looked for (K).");
+void contacts_panel(AppState& state, const FieldPlace& place) {
+  const PanelStyle style = panel_style(state.settings.scale);
+  if (!state.settings.contacts || !state.field || state.field->contacts == nullptr) {
+    faint_text(style, "Contacts are off; K shows them.");
     return;
   }
-  const ShownContacts& contacts = *session.field->contacts;
-  if (const auto clicked = contact_table(ink, contacts)) {
-    mark_contact(session, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
+  const ShownContacts& contacts = *state.field->contacts;
+  if (const auto clicked = contact_table(style, contacts)) {
+    mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
   }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
-    faint_words(ink, warning.c_str());
+    faint_text(style, warning.c_str());
   }
 }
 

@@ -11,12 +11,12 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr float kKeyColumn = 5.8f;  ///< width of the keys, font sizes
-constexpr float kBlock = 19.5f;     ///< width of a block of keys and words
+constexpr float kBlock = 19.5f;     ///< width of a block of keys and descriptions
 
-void line(const char* keys, const char* what) {
+void line(const char* keys, const char* description) {
   ImGui::TextUnformatted(keys);
   ImGui::SameLine(kKeyColumn * ImGui::GetFontSize());
-  ImGui::TextDisabled("%s", what);
+  ImGui::TextDisabled("%s", description);
 }
 
 void title(const char* words) {
@@ -28,7 +28,7 @@ void title(const char* words) {
 void group(ShortcutGroup shown) {
   title(title_of(shown));
   for (const Shortcut& shortcut : shortcuts()) {
-    if (shortcut.group == shown) line(shortcut.keys, shortcut.what);
+    if (shortcut.group == shown) line(shortcut.keys, shortcut.description);
   }
   ImGui::Spacing();
   ImGui::Spacing();
@@ -37,10 +37,10 @@ void group(ShortcutGroup shown) {
 void mouse() {
   title("Mouse in the field");
   for (const MouseHelp& help : mouse_help()) {
-    ImGui::TextUnformatted(help.hand);
+    ImGui::TextUnformatted(help.gesture);
     const float indent = ImGui::GetFontSize();
     ImGui::Indent(indent);
-    ImGui::TextDisabled("%s", help.what);
+    ImGui::TextDisabled("%s", help.description);
     ImGui::Unindent(indent);
   }
 }
@@ -63,7 +63,7 @@ void help_overlay(const Viewport& area) {
   if (ImGui::Begin("help", nullptr, kFlags | ImGuiWindowFlags_HorizontalScrollbar)) {
     ImGui::BeginGroup();
     group(ShortcutGroup::play);
-    group(ShortcutGroup::look);
+    group(ShortcutGroup::view);
     ImGui::EndGroup();
     ImGui::SameLine(kBlock * em);
     ImGui::BeginGroup();

@@ -4,7 +4,7 @@
 
 namespace pillarfield::viewer {
 
-/// All keys and what the mouse does, over the field.
+/// Draws the help on keys and mouse over the field.
 void help_overlay(const Viewport& area);
 
 }  // namespace pillarfield::viewer

@@ -15,100 +15,100 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// A button with a pin's number in its colour; filled if it is the inspected one. True if clicked.
-bool pin_chip(const PanelInk& ink, const Pin& pin, Theme theme, bool inspected) {
-  const double side = std::round(ink.line + 6 * ink.unit);
+/// A button with a pin's number in its colour, filled for the inspected pin. True if clicked.
+bool pin_button(const PanelStyle& style, const Pin& pin, Theme theme, bool inspected) {
+  const double side = std::round(style.line + 6 * style.unit);
   const std::string name = fmt::format("pin {}", pin.number);
-  const bool clicked = ImGui::InvisibleButton(name.c_str(), point({side, side}));
+  const bool clicked = ImGui::InvisibleButton(name.c_str(), to_imgui({side, side}));
   const bool lit = inspected || ImGui::IsItemHovered();
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", pillar_words(pin.pillar).c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", format_pillar(pin.pillar).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   const ImU32 colour = packed(pin_colour(pin.number, theme));
-  const auto rounding = static_cast<float>(4 * ink.unit);
+  const auto rounding = static_cast<float>(4 * style.unit);
   if (lit) list.AddRectFilled(low, high, inspected ? colour : with_alpha(colour, 0.3), rounding);
-  list.AddRect(low, high, colour, rounding, ImDrawFlags_None, static_cast<float>(1.4 * ink.unit));
+  list.AddRect(low, high, colour, rounding, ImDrawFlags_None, static_cast<float>(1.4 * style.unit));
   const double middle = static_cast<double>(low.x) + 0.5 * side;
-  const double top = static_cast<double>(low.y) + 0.5 * (side - ink.line);
-  draw_text(list, {middle, top}, inspected ? ink.ground : ink.text, std::to_string(pin.number),
+  const double top = static_cast<double>(low.y) + 0.5 * (side - style.line);
+  draw_text(list, {middle, top}, inspected ? style.ground : style.text, std::to_string(pin.number),
             Align::middle);
   return clicked;
 }
 
 /// A cross at the right edge that removes the inspected pin. True if clicked.
-bool remove_button(const PanelInk& ink) {
-  const double side = std::round(ink.line + 6 * ink.unit);
+bool remove_button(const PanelStyle& style) {
+  const double side = std::round(style.line + 6 * style.unit);
   const auto right = ImGui::GetWindowContentRegionMax().x;
   ImGui::SameLine(right - static_cast<float>(side));
-  const bool clicked = ImGui::InvisibleButton("remove", point({side, side}));
+  const bool clicked = ImGui::InvisibleButton("remove", to_imgui({side, side}));
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("remove this pin");
-  const ImU32 colour = ImGui::IsItemHovered() ? ink.text : ink.faint;
+  const ImU32 colour = ImGui::IsItemHovered() ? style.text : style.faint;
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   const auto inset = static_cast<float>(0.33 * side);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const auto width = static_cast<float>(1.5 * ink.unit);
+  const auto width = static_cast<float>(1.5 * style.unit);
   list.AddLine({low.x + inset, low.y + inset}, {high.x - inset, high.y - inset}, colour, width);
   list.AddLine({low.x + inset, high.y - inset}, {high.x - inset, low.y + inset}, colour, width);
   return clicked;
 }
 
-/// Chips in the order of their numbers, so that choosing one does not move them.
-void choose_pin(const PanelInk& ink, Session& session) {
+/// Buttons in the order of pin numbers, so that choosing one does not move them.
+void choose_pin(const PanelStyle& style, AppState& state) {
   std::vector<std::size_t> order;
-  for (std::size_t index = 0; index < session.pins.size(); ++index) order.push_back(index);
-  std::ranges::sort(order, {}, [&](std::size_t index) { return session.pins[index].number; });
+  for (std::size_t index = 0; index < state.pins.size(); ++index) order.push_back(index);
+  std::ranges::sort(order, {}, [&](std::size_t index) { return state.pins[index].number; });
   std::optional<std::size_t> chosen;
   for (const std::size_t index : order) {
-    const bool inspected = index + 1 == session.pins.size();
-    if (pin_chip(ink, session.pins[index], session.look.theme, inspected)) chosen = index;
-    ImGui::SameLine(0, static_cast<float>(6 * ink.unit));
+    const bool inspected = index + 1 == state.pins.size();
+    if (pin_button(style, state.pins[index], state.settings.theme, inspected)) chosen = index;
+    ImGui::SameLine(0, static_cast<float>(6 * style.unit));
   }
-  const bool removed = remove_button(ink);
-  if (chosen) inspect_pin(session, *chosen);
-  if (removed) remove_pin(session, session.pins.size() - 1);
+  const bool removed = remove_button(style);
+  if (chosen) inspect_pin(state, *chosen);
+  if (removed) remove_pin(state, state.pins.size() - 1);
 }
 
-void draw_readings(const PanelInk& ink, const Session& session, const PillarValues& values,
+void draw_readings(const PanelStyle& style, const AppState& state, const PillarValues& values,
                    ImU32 colour) {
-  const Pin& pin = session.pins.back();
-  const SourceInfo& source = session.player->info();
+  const Pin& pin = state.pins.back();
+  const SourceInfo& source = state.player->info();
   const auto bars = reading_bars(values, pin.pillar, source);
-  const double full = full_bar(bars, source, session.field->raw.type);
-  const Viewport room = take_room(kReadingBarsSize.x * ink.unit, kReadingBarsSize.y * ink.unit);
-  draw_reading_bars(*ImGui::GetWindowDrawList(), {room.x, room.y}, bars, full, colour, ink);
+  const double full = full_bar(bars, source, state.field->raw.type);
+  const Viewport box = reserve(kReadingBarsSize.x * style.unit, kReadingBarsSize.y * style.unit);
+  draw_reading_bars(*ImGui::GetWindowDrawList(), {box.x, box.y}, bars, full, colour, style);
 }
 
-/// The readings, and beside them the direction that follows; below where it is too narrow.
-void draw_readings_and_direction(const PanelInk& ink, const Session& session,
+/// The readings and the direction, side by side if they fit.
+void draw_readings_and_direction(const PanelStyle& style, const AppState& state,
                                  const PillarValues& values, ImU32 colour) {
   constexpr double kLeast = 130;
   constexpr double kMost = 190;
-  double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  if (session.field->raw.data == nullptr) {
-    faint_words(ink, "The source has no readings.");
+  double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  if (state.field->raw.data == nullptr) {
+    faint_text(style, "The source has no readings.");
   } else {
-    draw_readings(ink, session, values, colour);
-    const double gap = 16 * ink.unit;
-    const double beside = room - kReadingBarsSize.x * ink.unit - gap;
-    if (beside >= kLeast * ink.unit) {
+    draw_readings(style, state, values, colour);
+    const double gap = 16 * style.unit;
+    const double beside = width - kReadingBarsSize.x * style.unit - gap;
+    if (beside >= kLeast * style.unit) {
       ImGui::SameLine(0, static_cast<float>(gap));
-      room = beside;
+      width = beside;
     }
   }
-  readouts(ink, shown_direction(values), std::min(room, kMost * ink.unit));
+  readouts(style, shown_direction(values), std::min(width, kMost * style.unit));
 }
 
-void draw_diagram(const PanelInk& ink, const Session& session, const PillarValues& values,
+void draw_diagram(const PanelStyle& style, const AppState& state, const PillarValues& values,
                   ImU32 colour) {
   const std::string section = section_name(values.status);
-  heading(ink, "θ over φ, in degrees", section.empty() ? "" : "region " + section);
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  const double height = std::clamp(0.5 * room, 120 * ink.unit, 230 * ink.unit);
-  const Viewport outer = take_room(0, height);
-  draw_region_plot(*ImGui::GetWindowDrawList(), outer, values, session.pins.back().history, ink,
-                   colour, session.look.theme);
+  heading(style, "θ over φ, in degrees", section.empty() ? "" : "region " + section);
+  const double width = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double height = std::clamp(0.5 * width, 120 * style.unit, 230 * style.unit);
+  const Viewport outer = reserve(0, height);
+  draw_region_plot(*ImGui::GetWindowDrawList(), outer, values, state.pins.back().history, style,
+                   colour, state.settings.theme);
 }
 
 bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
@@ -117,28 +117,29 @@ bool is_in(const ForceFieldView& forces, PillarIndex pillar) {
 
 }  // namespace
 
-void pillar_panel(Session& session) {
-  const PanelInk ink = panel_ink(session.look.scale);
-  number_pins(session);
-  if (session.pins.empty()) {
-    faint_words(ink, "Click a pillar to pin it.");
+void pillar_panel(AppState& state) {
+  const PanelStyle style = panel_style(state.settings.scale);
+  number_pins(state);
+  if (state.pins.empty()) {
+    faint_text(style, "Click a pillar to pin it.");
     return;
   }
-  choose_pin(ink, session);
-  if (session.pins.empty() || !session.field) return;
-  const Pin& pin = session.pins.back();
-  if (!is_in(session.field->forces, pin.pillar)) return;
-  const PillarValues values = values_at(*session.field, pin.pillar);
-  const ImU32 colour = packed(pin_colour(pin.number, session.look.theme));
-  const double pitch_mm = session.player->info().skin.pillar_pitch_mm();
-  heading(ink, pillar_words(pin.pillar), place_words(session.field->forces, pin.pillar, pitch_mm));
-  status_line(ink, values.status, session.look.theme);
-  leave_gap(ink, 4);
-  draw_readings_and_direction(ink, session, values, colour);
-  leave_gap(ink, 2);
-  value_table(ink, shown_components(values));
-  leave_gap(ink, 4);
-  draw_diagram(ink, session, values, colour);
+  choose_pin(style, state);
+  if (state.pins.empty() || !state.field) return;
+  const Pin& pin = state.pins.back();
+  if (!is_in(state.field->forces, pin.pillar)) return;
+  const PillarValues values = values_at(*state.field, pin.pillar);
+  const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
+  const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+  heading(style, format_pillar(pin.pillar),
+          format_place(state.field->forces, pin.pillar, pitch_mm));
+  status_line(style, values.status, state.settings.theme);
+  leave_gap(style, 4);
+  draw_readings_and_direction(style, state, values, colour);
+  leave_gap(style, 2);
+  value_table(style, shown_components(values));
+  leave_gap(style, 4);
+  draw_diagram(style, state, values, colour);
 }
 
 }  // namespace pillarfield::viewer

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "viewer/app/panels/panel_ink.h"
+#include "viewer/app/panels/panel_style.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -13,7 +13,7 @@ double share_in(const Span& span, double value) {
   return (value - span.from) / (span.to - span.from);
 }
 
-/// What is seen of a column of pixels.
+/// Points of a curve in a column of pixels.
 struct ColumnOfPixels {
   std::size_t first, lowest, highest, last;
 };
@@ -84,43 +84,43 @@ std::vector<int> shares_of(std::span<const std::uint64_t> counts, int width) {
     left -= widths[i];
     if (counts[i] > counts[widest]) widest = i;
   }
-  // What rounding left over or took too much is the widest one's, where nobody sees it.
+  // The widest share absorbs the rounding error.
   widths[widest] = std::max(widths[widest] + left, 0);
   return widths;
 }
 
-PlotTicks ticks_of(const PlotArea& area, const PanelInk& ink) {
-  const int most_x = std::max(static_cast<int>(area.box.width / (64 * ink.unit)), 2);
-  const int most_y = std::max(static_cast<int>(area.box.height / (1.2 * ink.line)), 3);
+PlotTicks ticks_of(const PlotArea& area, const PanelStyle& style) {
+  const int most_x = std::max(static_cast<int>(area.box.width / (64 * style.unit)), 2);
+  const int most_y = std::max(static_cast<int>(area.box.height / (1.2 * style.line)), 3);
   return {ticks(area.x.from, area.x.to, most_x), ticks(area.y.from, area.y.to, most_y)};
 }
 
-Viewport inside_axes(const Viewport& outer, double label_width, const PanelInk& ink) {
-  const double left = std::ceil(label_width + 6 * ink.unit);
-  const double top = std::ceil(0.5 * ink.line);
-  const double bottom = std::ceil(ink.line + 4 * ink.unit);
-  // The last label of the x axis is half outside.
-  const double right = std::ceil(12 * ink.unit);
+Viewport inside_axes(const Viewport& outer, double label_width, const PanelStyle& style) {
+  const double left = std::ceil(label_width + 6 * style.unit);
+  const double top = std::ceil(0.5 * style.line);
+  const double bottom = std::ceil(style.line + 4 * style.unit);
+  // Half of the last x label lies outside the plot.
+  const double right = std::ceil(12 * style.unit);
   return {outer.x + left, outer.y + top, std::max(outer.width - left - right, 1.0),
           std::max(outer.height - top - bottom, 1.0)};
 }
 
 void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
-               const PanelInk& ink) {
+               const PanelStyle& style) {
   const Viewport& box = area.box;
-  const double hair = std::max(std::round(ink.unit), 1.0);
-  draw_block(list, box, ink.raised);
+  const double hair = std::max(std::round(style.unit), 1.0);
+  draw_block(list, box, style.raised);
   for (const Tick& tick : ticks.y) {
     const Vec2 place = area.at({area.x.from, tick.value});
     draw_block(list, {box.x, place.y - 0.5 * hair, box.width, hair},
-               tick.value == 0 ? mixed(ink.grid, ink.text, 0.25) : ink.grid);
-    draw_text(list, {box.x - 6 * ink.unit, place.y - 0.5 * ink.line}, ink.faint, tick.label,
+               tick.value == 0 ? mixed(style.grid, style.text, 0.25) : style.grid);
+    draw_text(list, {box.x - 6 * style.unit, place.y - 0.5 * style.line}, style.faint, tick.label,
               Align::right);
   }
   for (const Tick& tick : ticks.x) {
     const Vec2 place = area.at({tick.value, area.y.from});
-    draw_block(list, {place.x - 0.5 * hair, box.y, hair, box.height}, ink.grid);
-    draw_text(list, {place.x, box.y + box.height + 3 * ink.unit}, ink.faint, tick.label,
+    draw_block(list, {place.x - 0.5 * hair, box.y, hair, box.height}, style.grid);
+    draw_text(list, {place.x, box.y + box.height + 3 * style.unit}, style.faint, tick.label,
               Align::middle);
   }
 }
@@ -128,23 +128,23 @@ void draw_axes(ImDrawList& list, const PlotArea& area, const PlotTicks& ticks,
 void draw_curve(ImDrawList& list, const PlotArea& area, std::span<const Vec2> curve,
                 std::uint32_t colour, double width) {
   std::vector<ImVec2> points;
-  for (const Vec2& pixel : thinned(curve, area)) points.push_back(point(pixel));
+  for (const Vec2& pixel : thinned(curve, area)) points.push_back(to_imgui(pixel));
   const Viewport& box = area.box;
-  list.PushClipRect(point({box.x, box.y - width}),
-                    point({box.x + box.width, box.y + box.height + width}), true);
+  list.PushClipRect(to_imgui({box.x, box.y - width}),
+                    to_imgui({box.x + box.width, box.y + box.height + width}), true);
   list.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
                    static_cast<float>(width));
   list.PopClipRect();
 }
 
-void draw_head(ImDrawList& list, const PlotArea& area, double x, const PanelInk& ink) {
-  const double hair = std::max(std::round(ink.unit), 1.0);
+void draw_head(ImDrawList& list, const PlotArea& area, double x, const PanelStyle& style) {
+  const double hair = std::max(std::round(style.unit), 1.0);
   const Vec2 top = area.at({x, area.y.to});
-  draw_block(list, {top.x - 0.5 * hair, area.box.y, hair, area.box.height}, ink.text);
-  const double side = 4 * ink.unit;
-  list.AddTriangleFilled(point({top.x - side, area.box.y - side}),
-                         point({top.x + side, area.box.y - side}),
-                         point({top.x, area.box.y + 0.5 * side}), ink.text);
+  draw_block(list, {top.x - 0.5 * hair, area.box.y, hair, area.box.height}, style.text);
+  const double side = 4 * style.unit;
+  list.AddTriangleFilled(to_imgui({top.x - side, area.box.y - side}),
+                         to_imgui({top.x + side, area.box.y - side}),
+                         to_imgui({top.x, area.box.y + 0.5 * side}), style.text);
 }
 
 }  // namespace pillarfield::viewer

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "viewer/app/panels/format_value.h"
 #include "viewer/app/panels/status_line.h"
-#include "viewer/app/panels/value_words.h"
 #include "viewer/source/direction.h"
 #include "viewer/style/region_diagram.h"
 
@@ -22,7 +22,7 @@ double in_degrees(float radians) { return static_cast<double>(radians) * kDegree
 
 int sensel_bit(int sensel) { return 1 << (sensel - 1); }
 
-/// The sensel n whose neighbour n % 4 + 1 is the other usable one; 0 outside region 3.
+/// Sensel n of the usable pair n, n % 4 + 1; 0 outside region 3.
 int first_of_pair(std::uint8_t status) {
   if (region_of(status) != Region::three) return 0;
   for (int sensel = 1; sensel <= 4; ++sensel) {
@@ -32,7 +32,7 @@ int first_of_pair(std::uint8_t status) {
   return 0;
 }
 
-/// Equation (2), with a k of one count per newton.
+/// Equation (2) with k = 1 count per newton.
 double model_reading(const PillarValues& values, int sensel) {
   const double place = std::numbers::pi / 4 * (2 * sensel - 1);
   return std::max(0.0, static_cast<double>(values.normal) +
@@ -40,7 +40,7 @@ double model_reading(const PillarValues& values, int sensel) {
                            static_cast<double>(values.shear_y) * std::sin(place));
 }
 
-/// Theta of a border at phi, degrees; 90 where it is not there.
+/// Theta of a border at phi, degrees; 90 without a border.
 double border_at(const std::vector<std::vector<Vec2>>& pieces, double phi) {
   const double x = phi / kDegreesPerRadian;
   for (const auto& piece : pieces) {
@@ -61,14 +61,14 @@ const Borders& borders() {
   return known;
 }
 
-/// Drawing in one plot for one pillar.
+/// Draws the plot of one pillar.
 class Drawing {
  public:
-  Drawing(ImDrawList& list, const PlotArea& area, const PanelInk& ink, Theme theme,
+  Drawing(ImDrawList& list, const PlotArea& area, const PanelStyle& style, Theme theme,
           const PillarValues& values)
       : list_(list),
         area_(area),
-        ink_(ink),
+        style_(style),
         theme_(theme),
         usable_(values.status & status::kUsable),
         point_{in_degrees(values.phi), std::min(in_degrees(values.theta), 90.0)} {}
@@ -86,28 +86,28 @@ class Drawing {
   [[nodiscard]] ImU32 tint_of(int usable) const {
     const Region region = region_of(static_cast<std::uint8_t>(usable));
     const double share = usable == usable_ ? 0.5 : 0.13;
-    return mixed(ink_.ground, packed(region_colour(region, theme_)), share);
+    return mixed(style_.ground, packed(region_colour(region, theme_)), share);
   }
   void strip(double left, double right, Span from, Span to, int usable) const;
   void number(const char* words, Vec2 place, int inactive, Align align = Align::middle) const;
 
   ImDrawList& list_;
   const PlotArea& area_;
-  const PanelInk& ink_;
+  const PanelStyle& style_;
   Theme theme_;
-  int usable_;  ///< sensels, as in a status byte
+  int usable_;  ///< sensel bits of a status byte
   Vec2 point_;  ///< phi and theta, degrees
 };
 
-/// Between two thetas (degrees) at its left end and two at its right one.
+/// A strip between theta intervals (degrees) at its left and right end.
 void Drawing::strip(double left, double right, Span from, Span to, int usable) const {
-  list_.AddQuadFilled(point(area_.at({left, from.from})), point(area_.at({right, to.from})),
-                      point(area_.at({right, to.to})), point(area_.at({left, from.to})),
+  list_.AddQuadFilled(to_imgui(area_.at({left, from.from})), to_imgui(area_.at({right, to.from})),
+                      to_imgui(area_.at({right, to.to})), to_imgui(area_.at({left, from.to})),
                       tint_of(usable));
 }
 
 void Drawing::tint() const {
-  // Smoothed edges of neighbouring strips would let the ground shine through.
+  // Antialiased edges of neighbouring strips would show the background.
   const ImDrawListFlags flags = list_.Flags;
   list_.Flags &= ~ImDrawListFlags_AntiAliasedFill;
   constexpr double kStep = 3;
@@ -116,7 +116,7 @@ void Drawing::tint() const {
     const double phi = -180 + kStep * i;
     const RegionLimits left = region_limits(phi);
     const RegionLimits right = region_limits(phi + kStep);
-    // Borders cross at multiples of the step, where it would be anybody's guess who lifts first.
+    // Borders cross at multiples of the step; sample between them.
     const RegionLimits middle = region_limits(phi + kStep / 2);
     const int three = status::kUsable & ~sensel_bit(middle.first);
     const int two = three & ~sensel_bit(middle.second);
@@ -135,7 +135,7 @@ void Drawing::draw_borders() const {
       for (const Vec2& radians : piece) {
         line.push_back({radians.x * kDegreesPerRadian, radians.y * kDegreesPerRadian});
       }
-      draw_line(line, mixed(ink_.ground, ink_.text, 0.5), 1.2 * ink_.unit);
+      draw_line(line, mixed(style_.ground, style_.text, 0.5), 1.2 * style_.unit);
     }
   }
 }
@@ -144,63 +144,63 @@ void Drawing::number(const char* words, Vec2 place, int inactive, Align align) c
   const Vec2 pixel = area_.at(place);
   const bool here = (status::kUsable & ~inactive) == usable_;
   const Vec2 taken = area_.at(point_);
-  if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * ink_.line) return;
-  draw_text(list_, {pixel.x, pixel.y - 0.5 * ink_.line},
-            here ? ink_.text : mixed(ink_.ground, ink_.text, 0.45), words, align);
+  if (here && std::hypot(pixel.x - taken.x, pixel.y - taken.y) < 1.6 * style_.line) return;
+  draw_text(list_, {pixel.x, pixel.y - 0.5 * style_.line},
+            here ? style_.text : mixed(style_.ground, style_.text, 0.45), words, align);
 }
 
-/// As in the paper: behind the point the sensels that are not usable.
+/// Section numbers of the paper; the digits after the point are the unusable sensels.
 void Drawing::draw_numbers() const {
   number("1", {0, 21}, 0);
   number("2.3", {-135, 66}, status::kSensel3);
   number("2.4", {-45, 66}, status::kSensel4);
   number("2.1", {45, 66}, status::kSensel1);
   number("2.2", {135, 66}, status::kSensel2);
-  // Between the borders this is where there is room.
+  // Positions between the borders.
   number("3.34", {-90, 80}, status::kSensel3 | status::kSensel4);
   number("3.14", {0, 80}, status::kSensel1 | status::kSensel4);
   number("3.12", {90, 80}, status::kSensel1 | status::kSensel2);
-  // Half of this one is at either edge, which may be too narrow for its number.
+  // This section wraps around; each half may be too narrow for its number.
   const double half_width = area_.at({70.0 / 2, 0}).x - area_.at({0, 0}).x;
-  if (width_of("3.23") + 3 * ink_.unit > half_width) return;
+  if (width_of("3.23") + 3 * style_.unit > half_width) return;
   number("3.23", {-179, 80}, status::kSensel2 | status::kSensel3, Align::left);
   number("3.23", {179, 80}, status::kSensel2 | status::kSensel3, Align::right);
 }
 
-/// Region 4: four points at the upper edge.
+/// Draws region 4: four points at the upper edge.
 void Drawing::draw_corners() const {
-  // The force comes from the side opposite to the one sensel that it presses.
+  // The force comes from the side opposite to the pressed sensel.
   const std::array<std::pair<double, int>, 4> corners{{{-135, status::kSensel1},
                                                        {-45, status::kSensel2},
                                                        {45, status::kSensel3},
                                                        {135, status::kSensel4}}};
   for (const auto& [phi, usable] : corners) {
     const bool here = usable_ == usable;
-    list_.AddCircleFilled(point(area_.at({phi, 90})),
-                          static_cast<float>((here ? 4.5 : 3) * ink_.unit),
-                          here ? packed(region_colour(Region::four, theme_)) : ink_.faint, 16);
+    list_.AddCircleFilled(to_imgui(area_.at({phi, 90})),
+                          static_cast<float>((here ? 4.5 : 3) * style_.unit),
+                          here ? packed(region_colour(Region::four, theme_)) : style_.faint, 16);
   }
 }
 
 void Drawing::draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const {
   std::vector<ImVec2> points;
   points.reserve(line.size());
-  for (const Vec2& direction : line) points.push_back(point(area_.at(direction)));
+  for (const Vec2& direction : line) points.push_back(to_imgui(area_.at(direction)));
   list_.AddPolyline(points.data(), static_cast<int>(points.size()), colour, ImDrawFlags_None,
                     static_cast<float>(width));
 }
 
 void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
-  // Smaller than the point it would not be seen.
-  const ImVec2 least = point({1.5 * ink_.unit, 1.5 * ink_.unit});
+  // A box smaller than the point would be hidden.
+  const ImVec2 least = to_imgui({1.5 * style_.unit, 1.5 * style_.unit});
   for (const double turn : {-360.0, 0.0, 360.0}) {
-    ImVec2 low = point(area_.at({box.phi.from + turn, box.theta.to}));
-    ImVec2 high = point(area_.at({box.phi.to + turn, box.theta.from}));
+    ImVec2 low = to_imgui(area_.at({box.phi.from + turn, box.theta.to}));
+    ImVec2 high = to_imgui(area_.at({box.phi.to + turn, box.theta.from}));
     if (high.x - low.x < least.x) high.x = low.x + least.x;
     if (high.y - low.y < least.y) high.y = low.y + least.y;
     list_.AddRectFilled(low, high, with_alpha(colour, 0.22));
     list_.AddRect(low, high, with_alpha(colour, 0.9), 0, ImDrawFlags_None,
-                  static_cast<float>(ink_.unit));
+                  static_cast<float>(style_.unit));
   }
 }
 
@@ -212,17 +212,17 @@ void Drawing::draw_trail(const History& history, ImU32 colour) const {
   for (const auto& piece : pieces) {
     for (std::size_t i = 1; i < piece.size(); ++i) {
       const double age = static_cast<double>(seen + i) / static_cast<double>(all);
-      list_.AddLine(point(area_.at(piece[i - 1])), point(area_.at(piece[i])),
-                    with_alpha(colour, 0.75 * age), static_cast<float>(1.6 * ink_.unit));
+      list_.AddLine(to_imgui(area_.at(piece[i - 1])), to_imgui(area_.at(piece[i])),
+                    with_alpha(colour, 0.75 * age), static_cast<float>(1.6 * style_.unit));
     }
     seen += piece.size();
   }
 }
 
 void Drawing::draw_point(ImU32 colour) const {
-  const ImVec2 place = point(area_.at(point_));
-  const auto radius = static_cast<float>(4.5 * ink_.unit);
-  list_.AddCircleFilled(place, radius + static_cast<float>(2 * ink_.unit), ink_.ground, 24);
+  const ImVec2 place = to_imgui(area_.at(point_));
+  const auto radius = static_cast<float>(4.5 * style_.unit);
+  list_.AddCircleFilled(place, radius + static_cast<float>(2 * style_.unit), style_.ground, 24);
   list_.AddCircleFilled(place, radius, colour, 24);
 }
 
@@ -248,7 +248,7 @@ std::optional<DirectionBox> direction_box(const PillarValues& values) {
     const DirectionDeviation deviation = direction_deviation(values);
     const double phi = in_degrees(values.phi);
     const double theta = in_degrees(values.theta);
-    // Without shear every direction in the plane is as good.
+    // Without shear phi is undetermined.
     const double phi_half = std::min(deviation.phi * kDegreesPerRadian, 180.0);
     const double theta_half = deviation.theta * kDegreesPerRadian;
     box.phi = std::isfinite(phi_half) ? Span{phi - phi_half, phi + phi_half} : Span{-180, 180};
@@ -305,12 +305,13 @@ RegionLimits region_limits(double phi) {
 }
 
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      const History& history, const PanelInk& ink, ImU32 colour, Theme theme) {
-  const PlotArea area{inside_axes(outer, width_of("90"), ink), {-180, 180}, {0, 90}};
+                      const History& history, const PanelStyle& style, ImU32 colour, Theme theme) {
+  const PlotArea area{inside_axes(outer, width_of("90"), style), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
-  const Drawing drawing(list, area, ink, theme, values);
-  draw_axes(list, area, angle_ticks(), ink);
-  list.PushClipRect(point({box.x, box.y}), point({box.x + box.width, box.y + box.height}), true);
+  const Drawing drawing(list, area, style, theme, values);
+  draw_axes(list, area, angle_ticks(), style);
+  list.PushClipRect(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
+                    true);
   drawing.tint();
   drawing.draw_borders();
   drawing.draw_numbers();
@@ -319,7 +320,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
   for (const double turn : {-360.0, 0.0, 360.0}) {
     std::vector<Vec2> contour = contour_of(values);
     for (Vec2& direction : contour) direction.x += turn;
-    drawing.draw_line(contour, ink.text, 1.8 * ink.unit);
+    drawing.draw_line(contour, style.text, 1.8 * style.unit);
   }
   list.PopClipRect();
   drawing.draw_corners();

@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "viewer/app/panels/value_words.h"
+#include "viewer/app/panels/format_value.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 Colour status_colour(std::uint8_t status, Theme theme) {
   if ((status & status::kSaturated) != 0) return colour_of(Special::saturated, theme);
   if ((status & status::kInconsistent) != 0) return colour_of(Special::inconsistent, theme);
-  if ((status & status::kFromNeighbours) != 0) return colour_of(Special::from_neighbours, theme);
+  if ((status & status::kFromNeighbours) != 0) return colour_of(Special::from_contact, theme);
   return region_colour(region_of(status), theme);
 }
 
@@ -24,19 +24,19 @@ Colour region_colour(Region region, Theme theme) {
   return colour_of(kSpecial[static_cast<std::size_t>(region)], theme);
 }
 
-void swatch(const PanelInk& ink, ImU32 colour) {
-  const double side = std::round(0.66 * ink.line);
-  const Viewport room = take_room(side, ink.line);
+void swatch(const PanelStyle& style, ImU32 colour) {
+  const double side = std::round(0.66 * style.line);
+  const Viewport line = reserve(side, style.line);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const Viewport box{room.x, room.y + std::round(0.5 * (ink.line - side)) + 1, side, side};
+  const Viewport box{line.x, line.y + std::round(0.5 * (style.line - side)) + 1, side, side};
   draw_block(list, box, colour);
-  list.AddRect(point({box.x, box.y}), point({box.x + side, box.y + side}), ink.grid);
-  ImGui::SameLine(0, static_cast<float>(7 * ink.unit));
+  list.AddRect(to_imgui({box.x, box.y}), to_imgui({box.x + side, box.y + side}), style.grid);
+  ImGui::SameLine(0, static_cast<float>(7 * style.unit));
 }
 
-void status_line(const PanelInk& ink, std::uint8_t status, Theme theme) {
-  swatch(ink, packed(status_colour(status, theme)));
-  ImGui::TextUnformatted(status_words(status).c_str());
+void status_line(const PanelStyle& style, std::uint8_t status, Theme theme) {
+  swatch(style, packed(status_colour(status, theme)));
+  ImGui::TextUnformatted(format_status(status).c_str());
 }
 
 }  // namespace pillarfield::viewer

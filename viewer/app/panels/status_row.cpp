@@ -8,23 +8,23 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// Writes columns from the left: a faint label, then its value right-aligned in a place of its own.
+/// Writes columns from the left: a faint label, then its value, right-aligned in a fixed width.
 class Row {
  public:
   void add(const char* label, const std::string& value, const char* widest) {
-    const float room = ImGui::CalcTextSize(widest).x;
-    full_ |= x_ + ImGui::CalcTextSize(label).x + gap() * 0.4f + room > right();
+    const float width = ImGui::CalcTextSize(widest).x;
+    full_ |= x_ + ImGui::CalcTextSize(label).x + gap() * 0.4f + width > right();
     if (full_) return;
     write(label, ImGuiCol_TextDisabled);
-    x_ += gap() * 0.4f + room - ImGui::CalcTextSize(value.c_str()).x;
+    x_ += gap() * 0.4f + width - ImGui::CalcTextSize(value.c_str()).x;
     write(value.c_str(), ImGuiCol_Text);
     x_ += gap();
   }
 
-  /// At the beginning of what is left of the row, whether there is room or not.
+  /// Writes text at the current position, whether it fits or not.
   void begin(const std::string& words, ImGuiCol colour) { write(words.c_str(), colour); }
 
-  /// At the end of the row; false where there is no room for it.
+  /// Writes text at the end of the row; false if it does not fit.
   bool finish(const std::string& words, ImGuiCol colour) {
     const float width = ImGui::CalcTextSize(words.c_str()).x;
     if (right() - width < x_) return false;
@@ -46,13 +46,13 @@ class Row {
     x_ += ImGui::CalcTextSize(words).x;
   }
 
-  bool full_ = false;  ///< there was no room for a column
+  bool full_ = false;  ///< a column did not fit
   float x_ = ImGui::GetStyle().WindowPadding.x;
 };
 
-void add_measures(Row& row, const Session& session) {
-  const PlayerStatistics solved = session.player->statistics();
-  const DrawStatistics& drawn = session.draw;
+void add_measures(Row& row, const AppState& state) {
+  const PlayerStatistics solved = state.player->statistics();
+  const DrawStatistics& drawn = state.draw;
   row.add("solve", fmt::format("{:.0f} Hz", solved.produced_hz), "0000 Hz");
   row.add("", fmt::format("{:.1f} ms", solved.produce_ms_median), "000.0 ms");
   row.add("show", fmt::format("{:.0f} Hz", drawn.frames_hz), "000 Hz");
@@ -69,15 +69,15 @@ bool fits_beside_measures(const std::string& words) {
 
 }  // namespace
 
-void status_row(const Session& session, const std::string& gpu) {
+void status_row(const AppState& state, const std::string& gpu) {
   Row row;
-  const std::string& notice = session.notice;
-  if (notice.empty() || fits_beside_measures(notice)) add_measures(row, session);
+  const std::string& notice = state.notice;
+  if (notice.empty() || fits_beside_measures(notice)) add_measures(row, state);
   if (!notice.empty()) {
     if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
     return;
   }
-  const std::string& solver = session.player->info().solver;
+  const std::string& solver = state.player->info().solver;
   if (!row.finish(fmt::format("{}  ·  {}", solver, gpu), ImGuiCol_TextDisabled)) {
     row.finish(gpu, ImGuiCol_TextDisabled);
   }

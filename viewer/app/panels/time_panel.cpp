@@ -37,31 +37,31 @@ std::vector<Vec2> curve_of(const History& history, Component component) {
   return points;
 }
 
-Chart chart_of_pins(const char* title, const Session& session, Component component) {
+Chart chart_of_pins(const char* title, const AppState& state, Component component) {
   Chart chart{title, {}};
-  for (const Pin& pin : session.pins) {
+  for (const Pin& pin : state.pins) {
     chart.curves.push_back(
-        {curve_of(pin.history, component), packed(pin_colour(pin.number, session.look.theme))});
+        {curve_of(pin.history, component), packed(pin_colour(pin.number, state.settings.theme))});
   }
   return chart;
 }
 
-/// The region bears much more than a pillar, so it has scales of its own.
-std::vector<Chart> charts_of(const Session& session, const PanelInk& ink) {
+/// The selection has its own charts, since it carries much more than a pillar.
+std::vector<Chart> charts_of(const AppState& state, const PanelStyle& style) {
   std::vector<Chart> charts;
-  if (!session.pins.empty()) {
-    charts.push_back(chart_of_pins("Normal of the pins, N", session, normal_of));
-    charts.push_back(chart_of_pins("|Shear| of the pins, N", session, shear_of));
+  if (!state.pins.empty()) {
+    charts.push_back(chart_of_pins("Normal of the pins, N", state, normal_of));
+    charts.push_back(chart_of_pins("|Shear| of the pins, N", state, shear_of));
   }
-  if (session.region) {
-    const History& history = session.region->history;
-    charts.push_back({"Normal of the region, N", {{curve_of(history, normal_of), ink.text}}});
-    charts.push_back({"|Shear| of the region, N", {{curve_of(history, shear_of), ink.text}}});
+  if (state.selection) {
+    const History& history = state.selection->history;
+    charts.push_back({"Normal of the selection, N", {{curve_of(history, normal_of), style.text}}});
+    charts.push_back({"|Shear| of the selection, N", {{curve_of(history, shear_of), style.text}}});
   }
   return charts;
 }
 
-/// All curves share it, so that the play head stands at the same place in each.
+/// Common time span of all curves, which aligns the play head.
 Span time_span(const std::vector<Chart>& charts, double now_s) {
   Span span{now_s, now_s};
   for (const Chart& chart : charts) {
@@ -86,17 +86,19 @@ Span force_span(const Chart& chart) {
 
 constexpr double kChartHeight = 116;
 
-/// The widest label at the y axis of any chart: their axes stand below each other.
-double label_width(const std::vector<Chart>& charts, const PanelInk& ink) {
+/// Widest y label of all charts, which aligns their axes.
+double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
   double widest = 0;
   for (const Chart& chart : charts) {
-    const PlotArea area{{0, 0, 1, kChartHeight * ink.unit - 3 * ink.line}, {}, force_span(chart)};
-    for (const Tick& tick : ticks_of(area, ink).y) widest = std::max(widest, width_of(tick.label));
+    const PlotArea area{
+        {0, 0, 1, kChartHeight * style.unit - 3 * style.line}, {}, force_span(chart)};
+    for (const Tick& tick : ticks_of(area, style).y)
+      widest = std::max(widest, width_of(tick.label));
   }
   return widest;
 }
 
-/// What all charts of a panel have in common.
+/// Common properties of all charts.
 struct ChartFrame {
   Span time;
   double now_s = 0;
@@ -104,67 +106,69 @@ struct ChartFrame {
 };
 
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
-                const PanelInk& ink) {
+                const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const double title = ink.line + 2 * ink.unit;
+  const double title = style.line + 2 * style.unit;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
-  const PlotArea area{inside_axes(below, frame.label_width, ink), frame.time, force_span(chart)};
-  draw_text(list, {outer.x, outer.y}, ink.text, chart.title);
-  PlotTicks ticks = ticks_of(area, ink);
+  const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, force_span(chart)};
+  draw_text(list, {outer.x, outer.y}, style.text, chart.title);
+  PlotTicks ticks = ticks_of(area, style);
   if (!ticks.x.empty()) ticks.x.back().label += " s";
-  draw_axes(list, area, ticks, ink);
+  draw_axes(list, area, ticks, style);
   for (const Curve& curve : chart.curves) {
-    draw_curve(list, area, curve.points, curve.colour, 1.6 * ink.unit);
+    draw_curve(list, area, curve.points, curve.colour, 1.6 * style.unit);
   }
-  draw_head(list, area, frame.now_s, ink);
+  draw_head(list, area, frame.now_s, style);
 }
 
-void draw_legend(const Session& session, const PanelInk& ink) {
+void draw_legend(const AppState& state, const PanelStyle& style) {
   std::vector<const Pin*> pins;
-  for (const Pin& pin : session.pins) pins.push_back(&pin);
+  for (const Pin& pin : state.pins) pins.push_back(&pin);
   std::ranges::sort(pins, {}, [](const Pin* pin) { return pin->number; });
   const double right = static_cast<double>(ImGui::GetWindowContentRegionMax().x);
   for (std::size_t i = 0; i < pins.size(); ++i) {
     const std::string words =
         fmt::format("{}  ({}, {})", pins[i]->number, pins[i]->pillar.row, pins[i]->pillar.col);
     if (i > 0) {
-      ImGui::SameLine(0, static_cast<float>(16 * ink.unit));
+      ImGui::SameLine(0, static_cast<float>(16 * style.unit));
       const double end =
-          static_cast<double>(ImGui::GetCursorPosX()) + width_of(words) + 2 * ink.line;
+          static_cast<double>(ImGui::GetCursorPosX()) + width_of(words) + 2 * style.line;
       if (end > right) ImGui::NewLine();
     }
-    swatch(ink, packed(pin_colour(pins[i]->number, session.look.theme)));
+    swatch(style, packed(pin_colour(pins[i]->number, state.settings.theme)));
     ImGui::TextUnformatted(words.c_str());
   }
 }
 
-/// Charts in rows, as many beside each other as the width takes.
-void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame, const PanelInk& ink) {
-  const double room = static_cast<double>(ImGui::GetContentRegionAvail().x);
-  const double gap = 14 * ink.unit;
-  const auto fitting = static_cast<std::size_t>(std::max(room / (300 * ink.unit), 1.0));
+/// Charts in rows, as many per row as fit.
+void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
+                 const PanelStyle& style) {
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const double gap = 14 * style.unit;
+  const auto fitting = static_cast<std::size_t>(std::max(available / (300 * style.unit), 1.0));
   const std::size_t beside =
       std::min(fitting >= 4 ? 4 : std::min<std::size_t>(fitting, 2), charts.size());
-  const double width = (room - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
+  const double width =
+      (available - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
-    draw_chart(charts[i], take_room(width, kChartHeight * ink.unit), frame, ink);
+    draw_chart(charts[i], reserve(width, kChartHeight * style.unit), frame, style);
   }
 }
 
 }  // namespace
 
-void time_panel(Session& session) {
-  const PanelInk ink = panel_ink(session.look.scale);
-  number_pins(session);
-  const std::vector<Chart> charts = charts_of(session, ink);
-  if (charts.empty() || !session.field) {
-    faint_words(ink, "Pinned pillars and the marked region show their forces over time here.");
+void time_panel(AppState& state) {
+  const PanelStyle style = panel_style(state.settings.scale);
+  number_pins(state);
+  const std::vector<Chart> charts = charts_of(state, style);
+  if (charts.empty() || !state.field) {
+    faint_text(style, "Pinned pillars and the selection show their forces over time here.");
     return;
   }
-  const double now_s = session.field->time_s;
-  draw_legend(session, ink);
-  draw_charts(charts, {time_span(charts, now_s), now_s, label_width(charts, ink)}, ink);
+  const double now_s = state.field->time_s;
+  draw_legend(state, style);
+  draw_charts(charts, {time_span(charts, now_s), now_s, label_width(charts, style)}, style);
 }
 
 }  // namespace pillarfield::viewer

@@ -2,20 +2,20 @@
 
 #include <span>
 
-#include "viewer/app/panels/panel_ink.h"
-#include "viewer/app/panels/value_words.h"
+#include "viewer/app/panels/format_value.h"
+#include "viewer/app/panels/panel_style.h"
 
 namespace pillarfield::viewer {
 
-/// A line each: label, value flush right, deviation or interval and unit. The columns stand where
-/// they do in every table of the panels, whatever the values.
-void value_table(const PanelInk& ink, std::span<const ShownValue> values);
+/// One line for each value: label, value flush right, deviation or interval, unit; in fixed
+/// columns.
+void value_table(const PanelStyle& style, std::span<const ShownValue> values);
 
-/// The same in two lines each, `width` wide: label and value with its unit, and below the deviation
-/// or interval, flush right.
-void readouts(const PanelInk& ink, std::span<const ShownValue> values, double width);
+/// Two lines for each value, `width` wide: label and value with its unit; below, flush right, the
+/// deviation or interval.
+void readouts(const PanelStyle& style, std::span<const ShownValue> values, double width);
 
-/// The width that a table takes, pixels.
-[[nodiscard]] double value_table_width(const PanelInk& ink);
+/// Width of a table, pixels.
+[[nodiscard]] double value_table_width(const PanelStyle& style);
 
 }  // namespace pillarfield::viewer

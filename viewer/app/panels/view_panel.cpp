@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "viewer/app/input/changes.h"
+#include "viewer/app/input/actions.h"
 #include "viewer/app/panels/widgets.h"
 #include "viewer/render/scene.h"
 
@@ -19,18 +19,18 @@ std::string words_of(Quantity quantity) {
   return fmt::format("{}, {}", info.title, info.unit);
 }
 
-void choose_quantity(Session& session) {
+void choose_quantity(AppState& state) {
   labelled("Quantity");
-  if (!ImGui::BeginCombo("##quantity", words_of(session.look.quantity).c_str(),
+  if (!ImGui::BeginCombo("##quantity", words_of(state.settings.quantity).c_str(),
                          ImGuiComboFlags_HeightLargest)) {
     return;
   }
   for (int i = 0; i < kQuantities; ++i) {
     const auto quantity = static_cast<Quantity>(i);
-    const bool possible = is_available(quantity, session.player->info());
-    if (ImGui::Selectable(words_of(quantity).c_str(), quantity == session.look.quantity,
+    const bool possible = is_available(quantity, state.player->info());
+    if (ImGui::Selectable(words_of(quantity).c_str(), quantity == state.settings.quantity,
                           possible ? 0 : ImGuiSelectableFlags_Disabled)) {
-      show_quantity(session, quantity);
+      show_quantity(state, quantity);
     }
   }
   ImGui::EndCombo();
@@ -41,34 +41,34 @@ bool is_fixed(Quantity quantity) {
   return scale == Scale::classes || scale == Scale::cyclic;
 }
 
-/// Low and high end as they are displayed, side by side.
-void edit_range(Session& session) {
-  Look& look = session.look;
-  const auto factor = static_cast<float>(info_of(look.quantity).factor);
-  std::array<float, 2> ends{look.range.low * factor, look.range.high * factor};
+/// Low and high end in the displayed unit, side by side.
+void edit_range(AppState& state) {
+  RenderSettings& settings = state.settings;
+  const auto factor = static_cast<float>(info_of(settings.quantity).factor);
+  std::array<float, 2> ends{settings.range.low * factor, settings.range.high * factor};
   const float width = ends[1] - ends[0];
   labelled("Range");
   if (ImGui::DragFloat2("##range", ends.data(), 0.005f * width, 0, 0, "%.4g")) {
-    // Of two ends about zero, the one that was not touched follows.
-    const bool low_moved = ends[0] != look.range.low * factor;
-    const bool symmetric = info_of(look.quantity).scale == Scale::diverging;
+    // In a symmetric range the other end follows.
+    const bool low_moved = ends[0] != settings.range.low * factor;
+    const bool symmetric = info_of(settings.quantity).scale == Scale::diverging;
     const float high = symmetric && low_moved ? -ends[0] : ends[1];
-    session.fit_each_field = false;
-    set_range(session, {ends[0] / factor, high / factor});
+    state.fit_each_field = false;
+    set_range(state, {ends[0] / factor, high / factor});
   }
 }
 
-void choose_range(Session& session) {
-  if (is_fixed(session.look.quantity)) return;
-  edit_range(session);
+void choose_range(AppState& state) {
+  if (is_fixed(state.settings.quantity)) return;
+  edit_range(state);
   labelled("");
   const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-  if (ImGui::Button("Fit", ImVec2(half, 0))) fit_range(session);
+  if (ImGui::Button("Fit", ImVec2(half, 0))) fit_range(state);
   ImGui::SameLine();
-  ImGui::Checkbox("each frame", &session.fit_each_field);
+  ImGui::Checkbox("each frame", &state.fit_each_field);
 }
 
-/// A colour map as a strip, at the place of the item drawn last.
+/// A colour map as a strip over the last item.
 void draw_map(ColourMap map, float left, float right, float top, float bottom) {
   const auto table = table_of(map);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -83,12 +83,12 @@ void draw_map(ColourMap map, float left, float right, float top, float bottom) {
   }
 }
 
-void draw_map_in_item(ColourMap map, float room_right) {
+void draw_map_in_item(ColourMap map, float margin_right) {
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   const float middle = low.x + 0.45f * (high.x - low.x);
   const float inset = 0.28f * (high.y - low.y);
-  draw_map(map, middle, high.x - room_right, low.y + inset, high.y - inset);
+  draw_map(map, middle, high.x - margin_right, low.y + inset, high.y - inset);
 }
 
 bool suits(ColourMap map, Scale scale) {
@@ -96,107 +96,108 @@ bool suits(ColourMap map, Scale scale) {
   return map == default_map(scale);
 }
 
-void choose_map(Look& look) {
-  const Scale scale = info_of(look.quantity).scale;
+void choose_map(RenderSettings& settings) {
+  const Scale scale = info_of(settings.quantity).scale;
   if (scale == Scale::classes) return;
   labelled("Colours");
-  const bool open = ImGui::BeginCombo("##map", name_of(look.map));
+  const bool open = ImGui::BeginCombo("##map", name_of(settings.map));
   if (!open) {
-    draw_map_in_item(look.map, ImGui::GetFrameHeight() + ImGui::GetStyle().FramePadding.x);
+    draw_map_in_item(settings.map, ImGui::GetFrameHeight() + ImGui::GetStyle().FramePadding.x);
     return;
   }
   for (int i = 0; i < kColourMaps; ++i) {
     const auto map = static_cast<ColourMap>(i);
     if (!suits(map, scale)) continue;
-    if (ImGui::Selectable(name_of(map), map == look.map)) look.map = map;
+    if (ImGui::Selectable(name_of(map), map == settings.map)) settings.map = map;
     draw_map_in_item(map, ImGui::GetStyle().FramePadding.x);
   }
   ImGui::EndCombo();
 }
 
-void choose_layers(Session& session) {
-  Look& look = session.look;
+void choose_layers(AppState& state) {
+  RenderSettings& settings = state.settings;
   labelled("Layers");
-  ImGui::Checkbox("arrows", &look.arrows);
+  ImGui::Checkbox("arrows", &settings.arrows);
   ImGui::SameLine();
-  ImGui::Checkbox("fans", &look.fans);
+  ImGui::Checkbox("uncertainty sectors", &settings.sectors);
   ImGui::SameLine();
-  ImGui::Checkbox("hatch", &look.hatch);
+  ImGui::Checkbox("hatch", &settings.hatch);
   labelled("");
-  bool contacts = look.contacts;
-  if (ImGui::Checkbox("contacts", &contacts)) show_contacts(session, contacts);
+  bool contacts = settings.contacts;
+  if (ImGui::Checkbox("contacts", &contacts)) show_contacts(state, contacts);
 }
 
 void choose_view(const Command& command) {
   constexpr std::array<const char*, 2> kViews{"Top", "3-D"};
   labelled("View");
-  int chosen = shows_orbit(command.session.look) ? 1 : 0;
-  if (segments("view", kViews, chosen)) show_orbit(command.session, command.place, chosen == 1);
+  int chosen = shows_orbit(command.state.settings) ? 1 : 0;
+  if (toggle_group("view", kViews, chosen)) show_orbit(command.state, command.place, chosen == 1);
 }
 
 void choose_surface(const Command& command) {
   constexpr std::array<const char*, 2> kSurfaces{"Plane", "Cylinder"};
-  Surface surface = command.session.look.surface;
+  Surface surface = command.state.settings.surface;
   int chosen = surface.kind == SurfaceKind::cylinder ? 1 : 0;
   labelled("Surface");
   const double width = command.place.skin().width_mm;
-  if (segments("surface", kSurfaces, chosen)) {
+  if (toggle_group("surface", kSurfaces, chosen)) {
     surface.kind = chosen == 1 ? SurfaceKind::cylinder : SurfaceKind::plane;
     if (surface.radius_mm <= 0) surface.radius_mm = 0.5 * width;
-    set_surface(command.session, command.place, surface);
+    set_surface(command.state, command.place, surface);
   }
   if (surface.kind != SurfaceKind::cylinder) return;
   labelled("Radius");
   auto radius = static_cast<float>(surface.radius_mm);
-  // A sheet that meets itself behind the cylinder is the narrowest there can be.
+  // The smallest radius lets the sheet close around the cylinder.
   const auto least = static_cast<float>(0.17 * width);
   const auto most = static_cast<float>(20 * width);
   if (ImGui::DragFloat("##radius", &radius, 0.01f * radius, least, most, "%.1f mm",
                        ImGuiSliderFlags_AlwaysClamp)) {
     surface.radius_mm = static_cast<double>(radius);
-    set_surface(command.session, command.place, surface);
+    set_surface(command.state, command.place, surface);
   }
 }
 
-void choose_theme(Look& look) {
+void choose_theme(RenderSettings& settings) {
   constexpr std::array<const char*, 2> kThemes{"Dark", "Light"};
   labelled("Theme");
-  int chosen = look.theme == Theme::dark ? 0 : 1;
-  if (segments("theme", kThemes, chosen)) look.theme = chosen == 0 ? Theme::dark : Theme::light;
+  int chosen = settings.theme == Theme::dark ? 0 : 1;
+  if (toggle_group("theme", kThemes, chosen))
+    settings.theme = chosen == 0 ? Theme::dark : Theme::light;
 }
 
 }  // namespace
 
 void view_panel(const Command& command) {
-  Session& session = command.session;
-  choose_quantity(session);
-  choose_range(session);
-  choose_map(session.look);
-  choose_layers(session);
+  AppState& state = command.state;
+  choose_quantity(state);
+  choose_range(state);
+  choose_map(state.settings);
+  choose_layers(state);
   choose_view(command);
-  if (shows_orbit(session.look)) choose_surface(command);
-  choose_theme(session.look);
+  if (shows_orbit(state.settings)) choose_surface(command);
+  choose_theme(state.settings);
 }
 
 void write_panel(const Command& command) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float width = (ImGui::GetContentRegionAvail().x - 3 * style.ItemSpacing.x) / 4;
+  const ImGuiStyle& imgui_style = ImGui::GetStyle();
+  const float width = (ImGui::GetContentRegionAvail().x - 3 * imgui_style.ItemSpacing.x) / 4;
   const auto button = [&](const char* words, const char* help, bool& request) {
     if (ImGui::Button(words, ImVec2(width, 0))) request = true;
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", help);
   };
-  if (command.session.writing) {
-    if (ImGui::Button("Stop writing", ImVec2(-1, 0))) command.requests.stop = true;
+  if (command.state.writing) {
+    if (ImGui::Button("Stop writing", ImVec2(-1, 0))) command.pending.stop = true;
     return;
   }
-  Requests& requests = command.requests;
-  button("Picture", "Write this picture as PNG (P)", requests.picture);
+  PendingActions& pending = command.pending;
+  button("Picture", "Write this picture as PNG (P)", pending.picture);
   ImGui::SameLine();
-  button("Frames", "Write a PNG of every frame (Ctrl+P)", requests.sequence);
+  button("Frames", "Write a PNG of every frame (Ctrl+P)", pending.sequence);
   ImGui::SameLine();
-  button("Video", "Write a video of all frames, by ffmpeg (Ctrl+M)", requests.video);
+  button("Video", "Write a video of all frames, by ffmpeg (Ctrl+M)", pending.video);
   ImGui::SameLine();
-  button("Table", "Write the pillars in sight as CSV (C)", requests.table);
+  button("Table", "Write the visible pillars as CSV (C)", pending.table);
 }
 
 }  // namespace pillarfield::viewer

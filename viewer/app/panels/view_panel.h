@@ -4,10 +4,10 @@
 
 namespace pillarfield::viewer {
 
-/// What is shown and how: quantity, range, colours, layers, view, surface, theme.
+/// Settings of the picture: quantity, range, colours, layers, view, surface, theme.
 void view_panel(const Command& command);
 
-/// What can be written to files.
+/// Buttons that write files.
 void write_panel(const Command& command);
 
 }  // namespace pillarfield::viewer

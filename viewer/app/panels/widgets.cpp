@@ -8,7 +8,7 @@
 namespace pillarfield::viewer {
 namespace {
 
-/// What a button looks like behind its sign or word.
+/// Background of a button.
 ImU32 ground(bool lit, bool hovered, bool held) {
   if (held) return ImGui::GetColorU32(ImGuiCol_ButtonActive);
   if (hovered) return ImGui::GetColorU32(ImGuiCol_ButtonHovered);
@@ -44,12 +44,12 @@ void labelled(const char* label) {
   ImGui::SetNextItemWidth(-1);
 }
 
-bool segments(const char* id, std::span<const char* const> words, int& chosen) {
+bool toggle_group(const char* id, std::span<const char* const> words, int& chosen) {
   ImGui::PushID(id);
   const float gap = 1;
   const auto count = static_cast<float>(words.size());
-  const float room = ImGui::GetContentRegionAvail().x;
-  const float width = std::floor((room - gap * (count - 1)) / count);
+  const float available = ImGui::GetContentRegionAvail().x;
+  const float width = std::floor((available - gap * (count - 1)) / count);
   bool changed = false;
   for (int i = 0; i < static_cast<int>(words.size()); ++i) {
     if (i > 0) ImGui::SameLine(0, gap);
@@ -69,7 +69,7 @@ bool segments(const char* id, std::span<const char* const> words, int& chosen) {
   return changed;
 }
 
-bool sign_button(const char* id, Sign sign, bool lit, const char* help) {
+bool icon_button(const char* id, Icon icon, bool lit, const char* help) {
   const float side = std::round(ImGui::GetFontSize() * 2);
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const bool pressed = ImGui::InvisibleButton(id, ImVec2(side, side));
@@ -77,16 +77,16 @@ bool sign_button(const char* id, Sign sign, bool lit, const char* help) {
   const ImU32 back = ground(lit, ImGui::IsItemHovered(), ImGui::IsItemActive());
   list.AddRectFilled(corner, ImVec2(corner.x + side, corner.y + side), back,
                      ImGui::GetStyle().FrameRounding);
-  const ImU32 ink = ImGui::GetColorU32(lit ? ImGuiCol_CheckMark : ImGuiCol_Text);
-  sign(list, ImVec2(corner.x + side / 2, corner.y + side / 2), side * 0.42f, ink);
+  const ImU32 colour = ImGui::GetColorU32(lit ? ImGuiCol_CheckMark : ImGuiCol_Text);
+  icon(list, ImVec2(corner.x + side / 2, corner.y + side / 2), side * 0.42f, colour);
   tip(help);
   return pressed;
 }
 
-namespace sign {
+namespace icon {
 namespace {
 
-/// A triangle that points right (way 1) or left (-1).
+/// A triangle that points right (`way` 1) or left (-1).
 void triangle(ImDrawList& list, const ImVec2& middle, float width, float height, float way,
               unsigned colour) {
   const float back = middle.x - way * width / 2;
@@ -158,5 +158,5 @@ void question(ImDrawList& list, const ImVec2& middle, float /*side*/, unsigned c
                "?");
 }
 
-}  // namespace sign
+}  // namespace icon
 }  // namespace pillarfield::viewer

@@ -8,24 +8,24 @@ struct ImVec2;
 
 namespace pillarfield::viewer {
 
-// What ImGui has not, drawn in its style and for its current window.
+// Widgets that ImGui lacks, in its style, for its current window.
 
-/// A heading of the column that opens and closes; true while it is open.
+/// A collapsible heading; true while expanded.
 [[nodiscard]] bool section(const char* title, bool opened = true);
 
-/// Label left, and room for a control right of it as wide as there is.
+/// A label on the left; the next control takes the rest of the line.
 void labelled(const char* label);
 
-/// Words side by side of which one holds; true where another was chosen.
-bool segments(const char* id, std::span<const char* const> words, int& chosen);
+/// A group of exclusive toggle buttons; true if the choice changed.
+bool toggle_group(const char* id, std::span<const char* const> words, int& chosen);
 
-/// Draws a sign in a square of `side` pixels whose middle is `middle`.
-using Sign = void (*)(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
+/// Draws an icon in a square of `side` pixels about `middle`.
+using Icon = void (*)(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 
-/// A square button with a sign; lit where what it stands for is on.
-bool sign_button(const char* id, Sign sign, bool lit, const char* help);
+/// A square button with an icon, lit while its state is on.
+bool icon_button(const char* id, Icon icon, bool lit, const char* help);
 
-namespace sign {
+namespace icon {
 void play(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void pause(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void step_on(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
@@ -35,6 +35,6 @@ void follow(ImDrawList& list, const ImVec2& middle, float side, unsigned colour)
 void less(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void more(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void question(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
-}  // namespace sign
+}  // namespace icon
 
 }  // namespace pillarfield::viewer

@@ -4,24 +4,22 @@
 #include <deque>
 #include <vector>
 
-#include "viewer/app/session.h"
+#include "viewer/app/app_state.h"
 
 namespace pillarfield::viewer {
 
-/// Measures drawing: over the last second for the eye, and over all frames for a report. Times are
-/// given; it has no clock.
+/// Statistics of drawing over the last second and over all frames. The caller passes times.
 class DrawClock {
  public:
-  /// A frame was drawn and handed to the display at `now_s`. `latency_ms`: only where it showed a
-  /// field for the first time.
+  /// Adds a frame presented at `now_s`; `latency_ms` only for the first picture of a field.
   void add(double now_s, double draw_ms, std::optional<double> latency_ms);
 
-  /// Of the second before `now_s`.
+  /// Statistics of the second before `now_s`.
   [[nodiscard]] DrawStatistics lately(double now_s) const;
 
   [[nodiscard]] std::uint64_t frames() const { return draw_ms_.size(); }
-  [[nodiscard]] double draw_ms_median() const;     ///< of all frames; 0 where there is none
-  [[nodiscard]] double latency_ms_median() const;  ///< of all fields; 0 where there is none
+  [[nodiscard]] double draw_ms_median() const;     ///< over all frames; 0 for none
+  [[nodiscard]] double latency_ms_median() const;  ///< over all fields; 0 for none
 
  private:
   struct Frame {

@@ -13,8 +13,8 @@ using Access = vk::AccessFlagBits;
 constexpr vk::ImageSubresourceLayers kColour{vk::ImageAspectFlagBits::eColor, 0, 0, 1};
 constexpr vk::ImageSubresourceRange kWholeColour{vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1};
 
-/// Draws over what was copied into the image, and leaves it ready to be shown.
-vk::raii::RenderPass make_front_pass(const gpu::Device& device, vk::Format format) {
+/// Render pass that draws over the copied picture and leaves the image ready to present.
+vk::raii::RenderPass make_gui_pass(const gpu::Device& device, vk::Format format) {
   const vk::AttachmentDescription attachment(
       {}, format, vk::SampleCountFlagBits::e1, vk::AttachmentLoadOp::eLoad,
       vk::AttachmentStoreOp::eStore, vk::AttachmentLoadOp::eDontCare,
@@ -42,9 +42,9 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
     : instance_(&instance),
       device_(&device),
       chain_(device, surface),
-      render_pass_(make_front_pass(device, chain_.format())),
-      painter_(instance, device, {1, 1}, scale),
-      front_(std::make_unique<Interface>(instance, device, *render_pass_, scale)),
+      render_pass_(make_gui_pass(device, chain_.format())),
+      renderer_(instance, device, {1, 1}, scale),
+      gui_(std::make_unique<GuiContext>(instance, device, *render_pass_, scale)),
       pool_(device.handle(),
             {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
       buffers_(device.handle(),
@@ -53,15 +53,15 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
       done_(device.handle(), vk::FenceCreateInfo()) {}
 
 bool Presenter::resize(vk::Extent2D window, vk::Extent2D picture, double scale) {
-  // What is being shown still uses the semaphores of the old images.
+  // Presentation may still use the semaphores of the old images.
   finish();
   framebuffers_.clear();
   if (!chain_.resize(window)) return false;
   make_framebuffers();
-  if (picture != painter_.image().size()) has_picture_ = false;
-  painter_.resize(picture, scale);
-  if (scale != front_->scale()) {
-    front_ = std::make_unique<Interface>(*instance_, *device_, *render_pass_, scale);
+  if (picture != renderer_.image().size()) has_picture_ = false;
+  renderer_.resize(picture, scale);
+  if (scale != gui_->scale()) {
+    gui_ = std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale);
   }
   return true;
 }
@@ -91,16 +91,16 @@ void Presenter::record(std::uint32_t index, const Picture* picture) {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   if (picture != nullptr) {
-    painter_.record(commands, picture->field, picture->source, picture->look);
+    renderer_.record(commands, picture->field, picture->source, picture->settings);
     has_picture_ = true;
   }
   copy_picture(chain_.image(index));
-  draw_front(index);
+  draw_gui(index);
   commands.end();
 }
 
-/// What the image held is of no interest: the picture and the panels cover all of it, and before
-/// there is a picture it is blank.
+/// Discards the old contents: picture and panels cover the whole image, which is blank without a
+/// picture.
 void Presenter::copy_picture(vk::Image image) const {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   const vk::ImageMemoryBarrier to_target({}, Access::eTransferWrite, ImageLayout::eUndefined,
@@ -113,7 +113,7 @@ void Presenter::copy_picture(vk::Image image) const {
                              kWholeColour);
     return;
   }
-  const gpu::Image& picture = painter_.image();
+  const gpu::Image& picture = renderer_.image();
   const vk::Extent2D size{std::min(picture.size().width, chain_.size().width),
                           std::min(picture.size().height, chain_.size().height)};
   if (chain_.format() == Target::kFormat) {
@@ -128,17 +128,17 @@ void Presenter::copy_picture(vk::Image image) const {
   }
 }
 
-void Presenter::draw_front(std::uint32_t index) const {
+void Presenter::draw_gui(std::uint32_t index) const {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   commands.beginRenderPass(
       vk::RenderPassBeginInfo(*render_pass_, *framebuffers_.at(index), {{0, 0}, chain_.size()}),
       vk::SubpassContents::eInline);
-  front_->draw(commands);
+  gui_->draw(commands);
   commands.endRenderPass();
 }
 
 void Presenter::submit(std::uint32_t index) {
-  // The image is touched by the copy first.
+  // The copy is the first access to the image.
   const vk::PipelineStageFlags waits = Stage::eTransfer;
   const vk::Semaphore ready = *ready_;
   const vk::Semaphore drawn = chain_.drawn(index);

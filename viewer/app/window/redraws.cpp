@@ -5,8 +5,8 @@
 namespace pillarfield::viewer {
 namespace {
 
-constexpr int kFramesOfInput = 3;        ///< what ImGui takes until everything has reacted
-constexpr double kSettlesSeconds = 1.1;  ///< rates are those of the last second
+constexpr int kFramesOfInput = 3;        ///< frames that ImGui needs to react fully
+constexpr double kSettlesSeconds = 1.1;  ///< rates cover the last second
 constexpr double kNoticeSeconds = 6;
 
 }  // namespace

@@ -4,30 +4,30 @@
 
 namespace pillarfield::viewer {
 
-/// When the window is to be drawn, and for how long there is nothing to do: an idle window costs
-/// nothing. Times are given, in seconds.
+/// Schedules drawing of the window, so that an idle window costs nothing. The caller passes times,
+/// in seconds.
 class Redraws {
  public:
-  /// A key, the mouse, the window: what they change may show a frame late.
+  /// An event of keys, mouse or window; its effects may show a frame late.
   void input(double now_s);
-  void field();               ///< a new one is there
-  void notice(double now_s);  ///< a line to be read, and to go away after a while
+  void field();               ///< a new field arrived
+  void notice(double now_s);  ///< a new notice, which expires
 
-  /// Whether to draw now.
+  /// True if the window must be drawn now.
   [[nodiscard]] bool due(double now_s) const;
 
-  /// How long nothing is to be done, unless something happens; none: for ever.
+  /// Time to wait without events; none: no limit.
   [[nodiscard]] std::optional<double> rest(double now_s) const;
 
   void drawn(double now_s);
 
-  /// The line was there for long enough.
+  /// The notice has expired.
   [[nodiscard]] bool notice_is_old(double now_s) const;
   void forget_notice() { notice_ends_s_.reset(); }
 
  private:
   int frames_ = 1;
-  bool settling_ = false;  ///< measured rates still show what was, and are drawn once more
+  bool settling_ = false;  ///< draw once more when the measured rates have decayed
   double settled_s_ = 0;
   std::optional<double> notice_ends_s_;
 };

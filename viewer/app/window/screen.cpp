@@ -15,7 +15,7 @@ constexpr double kStatus = 26;
 Screen divide(std::uint32_t width, std::uint32_t height, double scale, bool with_column) {
   const double wide = std::max(width, 1u);
   const double high = std::max(height, 1u);
-  // A narrow window is the field's: the column takes less than half of it.
+  // In a narrow window the column takes less than half.
   const double column = with_column ? std::round(std::min(kColumn * scale, 0.45 * wide)) : 0;
   const double status = std::min(std::round(kStatus * scale), high - 1);
   const double transport = std::min(std::round(kTransport * scale), high - 1 - status);

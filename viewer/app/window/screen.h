@@ -6,15 +6,15 @@
 
 namespace pillarfield::viewer {
 
-/// How the window is divided, in whole pixels.
+/// Parts of the window, in whole pixels.
 struct Screen {
   Viewport field;      ///< the picture
-  Viewport column;     ///< the panels, right; no width where they are hidden
+  Viewport column;     ///< the panels, right; width 0 while hidden
   Viewport transport;  ///< the play head, below the field
   Viewport status;     ///< one line at the bottom
 };
 
-/// Divides `width` x `height` pixels. The field keeps one pixel at least, however small the window.
+/// Divides `width` x `height` pixels; the field has at least one pixel.
 [[nodiscard]] Screen divide(std::uint32_t width, std::uint32_t height, double scale,
                             bool with_column);
 

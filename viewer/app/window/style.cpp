@@ -13,9 +13,9 @@ constexpr unsigned colour(unsigned rgb, unsigned alpha = 255) {
   return IM_COL32(rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255, alpha);
 }
 
-/// The shades that everything is drawn with, from the ground up.
+/// Shades of a theme.
 struct Shades {
-  unsigned ground, panel, popup, field, field_hovered, field_active, line, ink, faint, accent;
+  unsigned ground, panel, popup, field, field_hovered, field_active, line, text, faint, accent;
 };
 
 constexpr Shades kDark{0x0b0e13, 0x14181f, 0x1a1f28, 0x262d38, 0x2f3845,
@@ -53,7 +53,7 @@ void set_sizes(ImGuiStyle& style) {
 }
 
 void set_text(ImGuiStyle& style, const Shades& shades) {
-  style.Colors[ImGuiCol_Text] = vector(shades.ink);
+  style.Colors[ImGuiCol_Text] = vector(shades.text);
   style.Colors[ImGuiCol_TextDisabled] = vector(shades.faint);
   style.Colors[ImGuiCol_TextSelectedBg] = vector(shades.accent, 0.35f);
   style.Colors[ImGuiCol_CheckMark] = vector(shades.accent);
@@ -77,7 +77,7 @@ void set_surfaces(ImGuiStyle& style, const Shades& shades) {
   style.Colors[ImGuiCol_ScrollbarGrabActive] = vector(shades.faint);
 }
 
-/// Colours of ImGui's that come as at rest, under the mouse, and held.
+/// ImGui's colours of an item: at rest, hovered, active.
 struct Three {
   int rest, hovered, active;
 };
@@ -112,7 +112,7 @@ void set_style(Theme theme, double scale) {
 Palette palette_of(Theme theme) {
   const Shades& shades = shades_of(theme);
   return {colour(shades.ground), colour(shades.panel), colour(shades.line),
-          colour(shades.ink),    colour(shades.faint), colour(shades.accent)};
+          colour(shades.text),   colour(shades.faint), colour(shades.accent)};
 }
 
 }  // namespace pillarfield::viewer

@@ -1,18 +1,18 @@
 #pragma once
 
-#include "viewer/style/look.h"
+#include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
-/// Gives the current context of ImGui the window's colours, spacing and edges.
+/// Sets colours, spacing and edges of the current ImGui context.
 void set_style(Theme theme, double scale);
 
-/// Colours that ImGui has no name for, as it packs them.
+/// Further colours, packed as in ImGui.
 struct Palette {
-  unsigned background;  ///< behind everything
+  unsigned background;  ///< of the window
   unsigned panel;       ///< column and transport
-  unsigned line;        ///< between parts
-  unsigned ink;
+  unsigned line;        ///< separators
+  unsigned text;
   unsigned faint;
   unsigned accent;
 };

@@ -1,6 +1,6 @@
 #include "viewer/app/window/window.h"
 
-// Vulkan is included before GLFW, which then offers its surfaces.
+// GLFW declares Vulkan surfaces only if Vulkan is included first.
 #include <GLFW/glfw3.h>
 
 #include <cctype>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kMend = "render to a file instead: --headless";
 
-/// What GLFW says went wrong last, in its words.
+/// GLFW's description of the last error.
 std::string last_failure() {
   const char* words = nullptr;
   if (glfwGetError(&words) == GLFW_NO_ERROR || words == nullptr) return "it cannot be opened";
@@ -33,7 +33,7 @@ Modifiers modifiers_of(int bits) {
   return {(bits & GLFW_MOD_SHIFT) != 0, (bits & GLFW_MOD_CONTROL) != 0};
 }
 
-/// The key that the keyboard's layout calls so: Q is where AZERTY has it.
+/// The key by the keyboard's layout, so that Q is Q on AZERTY.
 int key_by_layout(int key, int scancode) {
   if (key < GLFW_KEY_A || key > GLFW_KEY_Z) return key;
   const char* const name = glfwGetKeyName(key, scancode);
@@ -49,7 +49,7 @@ std::optional<MouseButton> button_of(int button) {
   return std::nullopt;
 }
 
-/// GLFW counts the cursor in units of the desktop, which need not be pixels.
+/// GLFW's cursor positions are in desktop units, which may differ from pixels.
 Vec2 to_pixels(GLFWwindow* window, double x, double y) {
   int width = 0;
   int height = 0;
@@ -63,7 +63,7 @@ Vec2 to_pixels(GLFWwindow* window, double x, double y) {
 
 }  // namespace
 
-/// GLFW's callbacks, which only write down what happened.
+/// GLFW's callbacks, which append events.
 struct Window::Callbacks {
   static Window& of(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
@@ -101,7 +101,7 @@ Window::Window(const std::string& title, std::uint32_t width, std::uint32_t heig
   if (glfwInit() == GLFW_FALSE) fail();
   if (glfwVulkanSupported() == GLFW_FALSE) {
     glfwTerminate();
-    throw Error("window", "no Vulkan driver that can draw into windows was found",
+    throw Error("window", "no Vulkan driver can draw into windows",
                 "install one, for instance mesa-vulkan-drivers");
   }
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
@@ -165,7 +165,7 @@ bool Window::closes() const { return glfwWindowShouldClose(window_) != 0; }
 
 void Window::show() { glfwShowWindow(window_); }
 
-// GLFW's events are those of all windows, and there is one.
+// GLFW polls all windows; only one exists.
 // NOLINTNEXTLINE(readability-convert-member-functions-to-static)
 void Window::poll() { glfwPollEvents(); }
 

@@ -11,11 +11,10 @@ struct GLFWwindow;
 
 namespace pillarfield::viewer {
 
-/// A window of the display, at first hidden, without anything that draws into it. One at a time, in
-/// the main thread.
+/// A window, at first hidden, without drawing. At most one exists, in the main thread.
 class Window {
  public:
-  /// Throws Error that names --headless where there is no display.
+  /// Without a display throws Error that suggests --headless.
   Window(const std::string& title, std::uint32_t width, std::uint32_t height);
   ~Window();
   Window(const Window&) = delete;
@@ -23,24 +22,24 @@ class Window {
   Window(Window&&) = delete;
   Window& operator=(Window&&) = delete;
 
-  /// What Vulkan needs to draw into it.
+  /// Vulkan instance extensions for the window.
   [[nodiscard]] static std::span<const char* const> extensions();
   [[nodiscard]] vk::raii::SurfaceKHR make_surface(const gpu::Instance& instance) const;
 
   [[nodiscard]] vk::Extent2D size() const;  ///< pixels; 0 x 0 while it is minimised
-  [[nodiscard]] double scale() const;       ///< of the display: 1, 1.5, 2, ...
-  [[nodiscard]] bool closes() const;        ///< somebody wants it closed
+  [[nodiscard]] double scale() const;       ///< scale of the display: 1, 1.5, 2, ...
+  [[nodiscard]] bool closes() const;        ///< the user asked to close it
   void show();
 
-  void poll();                          ///< collects what happened
-  void wait(double seconds);            ///< the same, once something has happened or then
+  void poll();                          ///< collects events
+  void wait(double seconds);            ///< waits for an event or the timeout, then collects
   static void wake();                   ///< ends wait(); from any thread
   [[nodiscard]] static double now_s();  ///< the clock of ButtonEvent::time_s
 
-  /// What was collected, and forgets it.
+  /// Returns and clears the collected events.
   [[nodiscard]] std::vector<InputEvent> take_events();
 
-  /// Whether it must be drawn anew: it was uncovered, resized, or moved to another display.
+  /// True if it must be redrawn: uncovered, resized, or moved to another display.
   [[nodiscard]] bool take_damage();
 
  private:
@@ -49,7 +48,7 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::vector<InputEvent> events_;
-  /// As the last event had it: asked for, GLFW gives where the cursor is now, not where it was.
+  /// Position of the last motion event; GLFW's query returns the current position.
   Vec2 cursor_;
   bool damaged_ = true;
 };

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "viewer/app/input/actions.h"
+#include "viewer/app/input/shortcuts.h"
+
+namespace pillarfield::viewer {
+
+/// Fields of 20 x 30 pressed pillars, with forces that increase to the right.
+class FakeProducer final : public FieldProducer {
+ public:
+  static constexpr std::uint32_t kRows = 20;
+  static constexpr std::uint32_t kCols = 30;
+  static constexpr std::uint64_t kFrames = 100;
+
+  FakeProducer() {
+    info_.name = "fake.h5";
+    info_.skin.rows = 2 * kRows;
+    info_.skin.cols = 2 * kCols;
+    info_.frames = kFrames;
+    info_.has_readings = info_.has_angles = info_.has_uncertainty = true;
+  }
+  [[nodiscard]] const SourceInfo& info() const override { return info_; }
+
+  [[nodiscard]] ShownField produce(std::uint64_t index) override {
+    auto memory = std::make_shared<ForceField>(kRows, kCols);
+    for (std::size_t i = 0; i < memory->pillars(); ++i) {
+      memory->normal[i] = 0.1f * static_cast<float>(i % kCols);
+      memory->shear_x[i] = 0.03f;
+      memory->status[i] = 15;
+    }
+    ShownField field;
+    field.forces = memory->view();
+    field.index = index;
+    field.time_s = 0.01 * static_cast<double>(index);
+    field.keep_alive = memory;
+    return field;
+  }
+
+ private:
+  SourceInfo info_;
+};
+
+/// The state of a window of 1000 x 700 pixels with a picture of 800 x 600.
+struct FakeAppState {
+  Player player{std::make_unique<FakeProducer>()};
+  AppState state;
+  FieldPlace place{{0, 0, 800, 600}, &player.info()};
+  PendingActions pending;
+
+  FakeAppState() {
+    state.player = &player;
+    take_field(state, FakeProducer().produce(0));
+    reset_view(state, place);
+  }
+  [[nodiscard]] Command command() { return {state, place, pending}; }
+
+  /// Window pixel of the centre of a pillar.
+  [[nodiscard]] Vec2 pixel(std::uint32_t row, std::uint32_t col) const {
+    const Vec2 corner = corner_of(place, row, col);
+    const double half = 0.5 * player.info().skin.pillar_pitch_mm();
+    return pixel_of(place, state.settings, {corner.x + half, corner.y - half}).value();
+  }
+};
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,82 @@
+#include "viewer/app/input/gui_input.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "viewer/render/imgui_point.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr std::array kImGuiKeys{std::pair{ImGuiKey_Tab, GLFW_KEY_TAB},
+                                std::pair{ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+                                std::pair{ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
+                                std::pair{ImGuiKey_Home, GLFW_KEY_HOME},
+                                std::pair{ImGuiKey_End, GLFW_KEY_END},
+                                std::pair{ImGuiKey_Delete, GLFW_KEY_DELETE},
+                                std::pair{ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
+                                std::pair{ImGuiKey_Enter, GLFW_KEY_ENTER},
+                                std::pair{ImGuiKey_Escape, GLFW_KEY_ESCAPE},
+                                std::pair{ImGuiKey_KeyPadEnter, GLFW_KEY_KP_ENTER},
+                                std::pair{ImGuiKey_A, GLFW_KEY_A},
+                                std::pair{ImGuiKey_C, GLFW_KEY_C},
+                                std::pair{ImGuiKey_V, GLFW_KEY_V},
+                                std::pair{ImGuiKey_X, GLFW_KEY_X}};
+
+void take_key(ImGuiIO& io, const KeyEvent& event) {
+  if (event.key < 0 || event.key >= IM_ARRAYSIZE(io.KeysDown)) return;
+  io.KeysDown[event.key] = event.pressed;
+  io.KeyCtrl = event.modifiers.control;
+  io.KeyShift = event.modifiers.shift;
+}
+
+}  // namespace
+
+void GuiInput::take(const InputEvent& event) {
+  ImGuiIO& io = ImGui::GetIO();
+  if (const auto* key = std::get_if<KeyEvent>(&event)) {
+    take_key(io, *key);
+  } else if (const auto* text = std::get_if<TextEvent>(&event)) {
+    io.AddInputCharacter(text->character);
+  } else if (const auto* motion = std::get_if<MotionEvent>(&event)) {
+    io.MousePos = to_imgui(motion->pixel);
+  } else if (std::holds_alternative<LeaveEvent>(event)) {
+    const bool holds = std::any_of(buttons_.begin(), buttons_.end(),
+                                   [](const Button& button) { return button.held; });
+    if (!holds) io.MousePos = ImVec2(-1e6f, -1e6f);
+  } else if (const auto* button = std::get_if<ButtonEvent>(&event)) {
+    Button& state = buttons_.at(static_cast<std::size_t>(button->button));
+    io.MousePos = to_imgui(button->pixel);
+    io.KeyCtrl = button->modifiers.control;
+    io.KeyShift = button->modifiers.shift;
+    state.held = button->pressed;
+    state.went_down |= button->pressed;
+  } else if (const auto* wheel = std::get_if<WheelEvent>(&event)) {
+    io.MouseWheel += static_cast<float>(wheel->steps);
+  }
+}
+
+bool GuiInput::has_open_list() {
+  return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
+// ImGui closes popups by keys only with keyboard navigation, which is off.
+void GuiInput::close_lists() {
+  if (has_open_list()) ImGui::ClosePopupToLevel(0, true);
+}
+
+void GuiInput::begin_frame(double seconds_since_last) {
+  ImGuiIO& io = ImGui::GetIO();
+  for (const auto& [name, key] : kImGuiKeys) io.KeyMap[name] = key;
+  io.DeltaTime = static_cast<float>(std::clamp(seconds_since_last, 1e-4, 0.1));
+  for (std::size_t i = 0; i < buttons_.size(); ++i) {
+    io.MouseDown[i] = buttons_[i].held || buttons_[i].went_down;
+    buttons_[i].went_down = false;
+  }
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "viewer/app/input/input.h"
+
+namespace pillarfield::viewer {
+
+/// Passes input events to Dear ImGui. Holds a button pressed and released between two frames for
+/// one frame, so that no click is lost.
+class GuiInput {
+ public:
+  void take(const InputEvent& event);
+
+  /// Queries and closes popup lists.
+  [[nodiscard]] static bool has_open_list();
+  static void close_lists();
+
+  /// Call it before each ImGui frame, with its context current.
+  void begin_frame(double seconds_since_last);
+
+ private:
+  struct Button {
+    bool held = false;
+    bool went_down = false;
+  };
+  std::array<Button, 3> buttons_;
+};
+
+}  // namespace pillarfield::viewer

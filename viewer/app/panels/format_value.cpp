@@ -1,0 +1,177 @@
+#include "viewer/app/panels/format_value.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "viewer/app/panels/plot.h"
+#include "viewer/style/ticks.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr int kMostDecimals = 6;
+
+bool tells(double deviation) { return std::isfinite(deviation) && deviation > 0; }
+
+/// Number of decimals that show `digits` digits of `size`.
+int decimals_of(double size, int digits) {
+  const int first = static_cast<int>(std::floor(std::log10(size)));
+  return std::clamp(digits - 1 - first, 0, kMostDecimals);
+}
+
+std::string fixed(double value, int decimals) {
+  if (!std::isfinite(value)) return "–";
+  const std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
+  const bool zero = text.find_first_not_of("0.") == std::string::npos;
+  return value < 0 && !zero ? "\u2212" + text : text;
+}
+
+double plane(const PillarValues& values, Uncertainty which) {
+  if (!values.uncertainty) return kUnknown;
+  return static_cast<double>((*values.uncertainty)[static_cast<std::size_t>(which)]);
+}
+
+bool is_ambiguous(const PillarValues& values) { return (values.status & status::kAmbiguous) != 0; }
+
+ShownValue with_deviation(const char* label, double value, double deviation, const char* unit) {
+  return {label, format_value(value, deviation), format_deviation(deviation), unit};
+}
+
+/// A value known only as an interval.
+ShownValue with_interval(const char* label, double value, Span ends, const char* unit) {
+  return {label, format_value(value, ends.to - ends.from), format_interval(ends.from, ends.to),
+          unit};
+}
+
+/// Interval of phi; beyond 180 degrees where it crosses pi.
+Span phi_span(const PillarValues& values) {
+  const double low = plane(values, Uncertainty::phi_low) * kDegrees;
+  const double high = plane(values, Uncertainty::phi_high) * kDegrees;
+  return {low, high < low ? high + 360 : high};
+}
+
+}  // namespace
+
+DirectionDeviation direction_deviation(const PillarValues& values) {
+  const auto x = static_cast<double>(values.shear_x);
+  const auto y = static_cast<double>(values.shear_y);
+  const auto n = static_cast<double>(values.normal);
+  const double sx = plane(values, Uncertainty::shear_x);
+  const double sy = plane(values, Uncertainty::shear_y);
+  const double sn = plane(values, Uncertainty::normal);
+  const double shear = std::hypot(x, y);
+  const double force = std::hypot(shear, n);
+  if (!(force > 0)) return {kUnknown, kUnknown, kUnknown};
+  const double magnitude = std::hypot(x * sx, y * sy, n * sn) / force;
+  if (!(shear > 0)) return {magnitude, std::max(sx, sy) / force, kUnknown};
+  const double along = std::hypot(x * sx, y * sy) / shear;
+  const double across = std::hypot(y * sx, x * sy) / shear;
+  return {magnitude, std::hypot(n * along, shear * sn) / (force * force), across / shear};
+}
+
+std::string format_pillar(PillarIndex pillar) {
+  return fmt::format("row {}, column {}", pillar.row, pillar.col);
+}
+
+std::string format_place(const ForceFieldView& forces, PillarIndex pillar, double pillar_pitch_mm) {
+  const double x = (pillar.col + 0.5 - 0.5 * forces.cols) * pillar_pitch_mm;
+  const double y = (0.5 * forces.rows - pillar.row - 0.5) * pillar_pitch_mm;
+  return fmt::format("x {}, y {} mm", fixed(x, 2), fixed(y, 2));
+}
+
+std::string format_count(double counts) {
+  if (!std::isfinite(counts) || counts != std::round(counts)) return three_digits(counts);
+  return fixed(counts, 0);
+}
+
+std::string format_readings(const std::array<float, 4>& readings) {
+  std::string words;
+  for (const float reading : readings) words += format_count(static_cast<double>(reading)) + "  ";
+  return words + "counts";
+}
+
+std::string format_status(std::uint8_t status) {
+  const Region region = region_of(status);
+  std::string words;
+  if (region == Region::none) {
+    words = (status & status::kSaturated) != 0 ? "no usable sensel" : "no contact";
+  } else if (region == Region::opposite) {
+    words = "opposite sensels";
+  } else {
+    words = fmt::format("region {}", name_of(region));
+  }
+  if ((status & status::kFromNeighbours) != 0) {
+    words += ", resolved from the contact";
+  } else if ((status & status::kAmbiguous) != 0) {
+    words += ", ambiguous";
+  }
+  if ((status & status::kSaturated) != 0) words += ", saturated";
+  if ((status & status::kInconsistent) != 0) words += ", inconsistent";
+  return words;
+}
+
+std::string format_value(double value, double deviation) {
+  if (!tells(deviation)) return three_digits(value);
+  return fixed(value, decimals_of(deviation, 2));
+}
+
+std::string format_deviation(double deviation) {
+  if (!tells(deviation)) return {};
+  return "± " + fixed(deviation, decimals_of(deviation, 2));
+}
+
+std::string format_interval(double low, double high) {
+  if (!std::isfinite(low) || !std::isfinite(high)) return {};
+  const double width = high - low;
+  const int decimals = width > 0 ? decimals_of(width, 2) : 3;
+  return fixed(low, decimals) + " … " + fixed(high, decimals);
+}
+
+std::array<ShownValue, 3> shown_direction(const PillarValues& values) {
+  const auto magnitude = static_cast<double>(values.magnitude);
+  const double theta = static_cast<double>(values.theta) * kDegrees;
+  const double phi = static_cast<double>(values.phi) * kDegrees;
+  if (is_ambiguous(values) && values.uncertainty) {
+    const Span force{plane(values, Uncertainty::magnitude_low),
+                     plane(values, Uncertainty::magnitude_high)};
+    const Span inclination{plane(values, Uncertainty::theta_low) * kDegrees,
+                           plane(values, Uncertainty::theta_high) * kDegrees};
+    return {with_interval("magnitude", magnitude, force, "N"),
+            with_interval("θ", theta, inclination, "°"),
+            with_interval("φ", phi, phi_span(values), "°")};
+  }
+  const DirectionDeviation deviation = direction_deviation(values);
+  return {with_deviation("magnitude", magnitude, deviation.magnitude, "N"),
+          with_deviation("θ", theta, deviation.theta * kDegrees, "°"),
+          with_deviation("φ", phi, deviation.phi * kDegrees, "°")};
+}
+
+std::array<ShownValue, 3> shown_components(const PillarValues& values) {
+  if (is_ambiguous(values) && values.uncertainty) {
+    const auto span = [&values](ComponentEnd low) {
+      const auto first = static_cast<std::size_t>(low);
+      return Span{static_cast<double>(values.component_ends[first]),
+                  static_cast<double>(values.component_ends[first + 1])};
+    };
+    return {with_interval("normal", static_cast<double>(values.normal),
+                          span(ComponentEnd::normal_low), "N"),
+            with_interval("shear x", static_cast<double>(values.shear_x),
+                          span(ComponentEnd::shear_x_low), "N"),
+            with_interval("shear y", static_cast<double>(values.shear_y),
+                          span(ComponentEnd::shear_y_low), "N")};
+  }
+  return {with_deviation("normal", static_cast<double>(values.normal),
+                         plane(values, Uncertainty::normal), "N"),
+          with_deviation("shear x", static_cast<double>(values.shear_x),
+                         plane(values, Uncertainty::shear_x), "N"),
+          with_deviation("shear y", static_cast<double>(values.shear_y),
+                         plane(values, Uncertainty::shear_y), "N")};
+}
+
+}  // namespace pillarfield::viewer

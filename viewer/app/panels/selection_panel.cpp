@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/plot.h"
+#include "viewer/app/panels/selection_sums.h"
+#include "viewer/app/panels/status_line.h"
+#include "viewer/app/panels/value_table.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+std::string rect_words(const PillarRect& rect) {
+  return fmt::format("rows {}–{}, columns {}–{}", rect.row_begin, rect.row_end - 1, rect.col_begin,
+                     rect.col_end - 1);
+}
+
+std::string size_words(const PillarRect& rect, double pitch_mm) {
+  return fmt::format("{} × {} mm", three_digits((rect.col_end - rect.col_begin) * pitch_mm),
+                     three_digits((rect.row_end - rect.row_begin) * pitch_mm));
+}
+
+ShownValue shown(const char* label, double value, const char* unit, std::string further = {}) {
+  return {label, three_digits(value), std::move(further), unit};
+}
+
+/// Total force of the selection.
+std::vector<ShownValue> force_lines(const SelectionSums& sums) {
+  return {shown("normal", sums.normal, "N"),
+          shown("|shear|", std::hypot(sums.shear_x, sums.shear_y), "N"),
+          shown("shear x", sums.shear_x, "N"), shown("shear y", sums.shear_y, "N"),
+          shown("moment z", sums.moment_z, "N mm")};
+}
+
+/// Centre of pressure, area, mean and peak.
+std::vector<ShownValue> spread_lines(const SelectionSums& sums) {
+  std::vector<ShownValue> lines{
+      shown("centre x", sums.centre_x_mm, "mm"), shown("centre y", sums.centre_y_mm, "mm"),
+      shown("area", sums.area_mm2, "mm²"), shown("mean", sums.mean_normal, "N"),
+      shown("peak", sums.peak_normal, "N")};
+  if (sums.in_contact > 0) {
+    lines.back().unit = fmt::format("N  at {}, {}", sums.peak.row, sums.peak.col);
+  }
+  return lines;
+}
+
+/// Two tables, side by side if they fit.
+void draw_tables(const PanelStyle& style, const SelectionSums& sums) {
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  value_table(style, force_lines(sums));
+  const double second = value_table_width(style) - 60 * style.unit;
+  if (second + value_table_width(style) <= available) {
+    ImGui::SameLine(0, 0);
+    ImGui::SetCursorPosX(ImGui::GetCursorStartPos().x + static_cast<float>(second));
+  } else {
+    leave_gap(style, 2);
+  }
+  value_table(style, spread_lines(sums));
+}
+
+constexpr std::array<Region, 5> kShown{Region::one, Region::two, Region::three, Region::four,
+                                       Region::opposite};
+
+std::array<std::uint64_t, 5> shown_counts(const SelectionSums& sums) {
+  std::array<std::uint64_t, 5> counts{};
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    counts[i] = sums.by_region[static_cast<std::size_t>(kShown[i])];
+  }
+  return counts;
+}
+
+void draw_shares(const PanelStyle& style, const SelectionSums& sums, Theme theme) {
+  const Viewport bar = reserve(0, std::round(10 * style.unit));
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  draw_block(list, bar, mixed(style.ground, style.text, 0.12));
+  const auto widths = shares_of(shown_counts(sums), static_cast<int>(bar.width));
+  double x = bar.x;
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    if (widths[i] > 0) {
+      draw_block(list, {x, bar.y, static_cast<double>(widths[i]), bar.height},
+                 packed(region_colour(kShown[i], theme)));
+    }
+    x += widths[i];
+  }
+}
+
+std::string share_words(std::uint64_t count, std::uint64_t all) {
+  const double percent = 100 * static_cast<double>(count) / static_cast<double>(all);
+  return fmt::format("{:.{}f} %", percent, percent < 9.95 ? 1 : 0);
+}
+
+/// Legend of the shares, wrapped into lines.
+void draw_legend(const PanelStyle& style, const SelectionSums& sums, Theme theme) {
+  const auto counts = shown_counts(sums);
+  const double cell = 76 * style.unit;
+  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  double used = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (kShown[i] == Region::opposite && counts[i] == 0) continue;
+    if (used > 0 && used + cell <= available) {
+      ImGui::SameLine(ImGui::GetCursorStartPos().x + static_cast<float>(used));
+    } else {
+      used = 0;
+    }
+    swatch(style, packed(region_colour(kShown[i], theme)));
+    const std::string words =
+        fmt::format("{}  {}", name_of(kShown[i]), share_words(counts[i], sums.in_contact));
+    ImGui::TextUnformatted(words.c_str());
+    used += cell;
+  }
+}
+
+std::string fault_words(const SelectionSums& sums) {
+  return fmt::format("{} ambiguous, {} saturated, {} inconsistent", sums.ambiguous, sums.saturated,
+                     sums.inconsistent);
+}
+
+}  // namespace
+
+void selection_panel(AppState& state) {
+  const PanelStyle style = panel_style(state.settings.scale);
+  if (!state.selection || !state.field) {
+    faint_text(style, "Nothing is selected.");
+    return;
+  }
+  const PillarRect& rect = state.selection->rect;
+  const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
+  const SelectionSums& sums = selection_sums(state);
+  heading(style, rect_words(rect), size_words(rect, pitch_mm));
+  leave_gap(style, 2);
+  draw_tables(style, sums);
+  leave_gap(style, 4);
+  heading(style, "Regions of usable sensels",
+          fmt::format("{} of {} in contact", sums.in_contact, sums.pillars));
+  if (sums.in_contact == 0) return;
+  draw_shares(style, sums, state.settings.theme);
+  draw_legend(style, sums, state.settings.theme);
+  faint_text(style, fault_words(sums).c_str());
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "viewer/options.h"
+#include "viewer/render/scene.h"
+#include "viewer/style/ticks.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr std::uint64_t kMostSampled = 16;
+
+// Quantiles of the sampled values: the upper end of the colour bar, so that the pressure peak at
+// the edge of a punch does not darken the rest; the force of an arrow of 1.5 cells.
+constexpr double kRangeQuantile = 0.995;
+constexpr double kArrowQuantile = 0.95;
+
+/// Absolute values of a quantity over valid pillars of evenly spaced frames.
+std::vector<float> survey(FieldProducer& producer, Quantity quantity) {
+  std::vector<float> values;
+  const std::uint64_t frames = producer.info().frames;
+  const std::uint64_t sampled = std::min(frames, kMostSampled);
+  for (std::uint64_t i = 0; i < sampled; ++i) {
+    // Midpoints of equal intervals, since the first frame may be without contact.
+    const ShownField field = producer.produce((2 * i + 1) * frames / (2 * sampled));
+    for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
+      for (std::uint32_t col = 0; col < field.forces.cols; ++col) {
+        const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
+        if (special_of(quantity, status)) continue;
+        const float value = std::abs(value_of(quantity, field, row, col));
+        if (std::isfinite(value)) values.push_back(value);
+      }
+    }
+  }
+  return values;
+}
+
+/// The `share` quantile; 0 without values.
+float quantile(std::vector<float> values, double share) {
+  if (values.empty()) return 0;
+  const auto place = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
+
+double full_arrow(FieldProducer& producer, Quantity quantity) {
+  const float typical = quantile(survey(producer, quantity), kArrowQuantile);
+  return typical > 0 ? round_ceiling(typical) : 1;
+}
+
+Range in_own_unit(const Range& shown, Quantity quantity) {
+  const auto factor = static_cast<float>(info_of(quantity).factor);
+  return {shown.low / factor, shown.high / factor};
+}
+
+void require_available(Quantity quantity, const SourceInfo& source) {
+  if (is_available(quantity, source)) return;
+  throw Error(source.name, std::string("it has no data for ") + info_of(quantity).name,
+              "choose another --layer; not every file holds readings and noise");
+}
+
+}  // namespace
+
+Range range_that_fits(FieldProducer& producer, Quantity quantity) {
+  return fitting_range(quantity, quantile(survey(producer, quantity), kRangeQuantile));
+}
+
+View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {
+  const SkinSize size = skin_size(source);
+  if (options.orbit) {
+    OrbitView view = fit_orbit(size, options.surface, plot);
+    view.azimuth = options.azimuth.value_or(view.azimuth);
+    view.elevation = options.elevation.value_or(view.elevation);
+    view.target_mm = options.centre_mm.value_or(view.target_mm);
+    view.distance_mm /= options.zoom;
+    return view;
+  }
+  TopView view = fit_top(size, plot);
+  view.pixels_per_mm *= options.zoom;
+  view.centre_mm = options.centre_mm.value_or(view.centre_mm);
+  return view;
+}
+
+RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
+  const SourceInfo& source = producer.info();
+  require_available(options.quantity, source);
+  RenderSettings settings;
+  settings.quantity = options.quantity;
+  settings.range = options.range ? in_own_unit(*options.range, options.quantity)
+                                 : range_that_fits(producer, options.quantity);
+  settings.map = options.map.value_or(default_map(info_of(options.quantity).scale));
+  settings.theme = options.theme;
+  settings.surface = options.surface;
+  settings.arrows = options.arrows;
+  settings.sectors = options.sectors;
+  settings.hatch = options.hatch;
+  settings.contacts = options.contacts;
+  settings.legend = options.legend;
+  settings.scale = scale;
+  settings.full_force_n = full_arrow(producer, Quantity::magnitude);
+  settings.full_shear_n = full_arrow(producer, Quantity::shear);
+  return settings;
+}
+
+}  // namespace pillarfield::viewer

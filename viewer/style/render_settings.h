@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+
+#include "viewer/style/colour_map.h"
+#include "viewer/style/quantity.h"
+#include "viewer/style/view.h"
+
+namespace pillarfield::viewer {
+
+/// Everything that a picture depends on except the field and the size.
+struct RenderSettings {
+  Quantity quantity = Quantity::normal;
+  Range range;  ///< ends of the colour bar in the unit of the value
+  ColourMap map = ColourMap::cividis;
+  Theme theme = Theme::dark;
+  View view = TopView{};
+  Surface surface;
+  bool arrows = true;
+  bool sectors = false;   ///< uncertainty sectors of ambiguous shear, once cells are single pillars
+  bool hatch = true;      ///< hatch ambiguous pillars
+  bool contacts = false;  ///< marks of contacts
+  /// Mean force per pillar whose arrow is 1.5 cells long; top views use the shear.
+  double full_force_n = 1;
+  double full_shear_n = 1;
+  double arrow_cell = 14;  ///< least width of an arrow's cell, pixels at scale 1
+  double scale = 1;        ///< pixels of the display per nominal pixel
+  bool legend = true;      ///< axes, colour bar, legends and title
+  std::string title;
+  friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
+};
+
+/// Parts of a picture of `width` x `height` pixels.
+struct Layout {
+  Viewport plot;    ///< the skin
+  Viewport bar;     ///< the colour bar
+  Viewport legend;  ///< the meaning of colours and arrows
+};
+[[nodiscard]] Layout layout_of(double width, double height, const RenderSettings& settings);
+
+/// Pillars along an arrow's cell: the least of 1, 2, 3, 4, 6, 8, 12, 16, ... for which the cell is
+/// at least `least_pixels` wide.
+[[nodiscard]] std::uint32_t arrow_block(double pixels_per_pillar, double least_pixels);
+
+}  // namespace pillarfield::viewer
