@@ -1,5 +1,5 @@
-// Structs and constants shared by C++ and GLSL. All members have 16 bytes, so that std140, std430 and
-// C++ give the same layout.
+// Structs and constants shared by C++ and GLSL. All members have 16 bytes, so that std140, std430
+// and C++ give the same layout.
 #ifndef PILLARFIELD_SHADERS_SHARED_H
 #define PILLARFIELD_SHADERS_SHARED_H
 
@@ -81,26 +81,26 @@ PF_CONSTANT uint kReadingsFloat = 2u;
 // Uniform data of one picture. Planes are offsets in the field's memory, in 4-byte words.
 struct Scene {
   mat4 clip_from_world;
-  vec4 sheet;       // width, height, pillar pitch, radius of the surface: mm
-  uvec4 grid;       // pillar rows, pillar columns; columns and rows of the mesh
-  uvec4 force;      // planes: shear_x, shear_y, normal, status
-  uvec4 angles;     // planes: magnitude, theta, phi, none
-  uvec4 deviation;  // planes: standard deviations of shear_x, shear_y, normal; none
-  uvec4 span;       // planes: magnitude_low, magnitude_high, phi_low, phi_high
-  uvec4 incline;    // planes: theta_low, theta_high; none, none
-  uvec4 readings;   // none, readings per row, 1 with readings, surface kind
-  uvec4 shown;      // 1: hatch ambiguous pillars; hatch period: pixels; none, none
-  vec4 range;       // low end, width; smallest force with an arrow: N per pillar; none
-  vec4 viewport;    // left, top, width, height: pixels
-  uvec4 cells;      // first row and column of pillars, rows and columns of cells
-  uvec4 block;      // pillars along a cell; 1: top view; none
-  vec4 arrow;       // mm per newton; least length, half width: pixels; fraction of the length
-                    // before the anchor
+  vec4 sheet;           // width, height, pillar pitch, radius of the surface: mm
+  uvec4 grid;           // pillar rows, pillar columns; columns and rows of the mesh
+  uvec4 force;          // planes: shear_x, shear_y, normal, status
+  uvec4 angles;         // planes: magnitude, theta, phi, none
+  uvec4 deviation;      // planes: standard deviations of shear_x, shear_y, normal; none
+  uvec4 span;           // planes: magnitude_low, magnitude_high, phi_low, phi_high
+  uvec4 incline;        // planes: theta_low, theta_high; none, none
+  uvec4 readings;       // none, readings per row, 1 with readings, surface kind
+  uvec4 shown;          // 1: hatch ambiguous pillars; hatch period: pixels; none, none
+  vec4 range;           // low end, width; smallest force with an arrow: N per pillar; none
+  vec4 viewport;        // left, top, width, height: pixels
+  uvec4 cells;          // first row and column of pillars, rows and columns of cells
+  uvec4 block;          // pillars along a cell; 1: top view; none
+  vec4 arrow;           // mm per newton; least length, half width: pixels; fraction of the length
+                        // before the anchor
   uvec4 layer_colours;  // colours of an arrow's fill, its outline, a sector; none
 };
 
-// 256 colours of the map and, from kFirstSpecial on, those of Special, for a single look-up. Each is
-// red + green·2^8 + blue·2^16 + alpha·2^24 in the first member; indexing members is slower.
+// 256 colours of the map and, from kFirstSpecial on, those of Special, for a single look-up. Each
+// is red + green·2^8 + blue·2^16 + alpha·2^24 in the first member; indexing members is slower.
 PF_CONSTANT uint kFirstSpecial = 256u;
 struct Colours {
   PF_ARRAY(uvec4, entries, 272);

@@ -261,7 +261,8 @@ TEST_F(Tekscan, HoldsFramesToTheirRawSum) {
   written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,74", "Frame 2, 1,, now,,,Raw Sum=,,385"};
   EXPECT_EQ(open(written.text())->frames(), 2u);
   written.frames[1][5] = 61;
-  EXPECT_TRUE(has_all(refused(written.text()), {"export.asf:19", "frame 2", "386", "raw sum is 385"}));
+  EXPECT_TRUE(
+      has_all(refused(written.text()), {"export.asf:19", "frame 2", "386", "raw sum is 385"}));
 }
 
 struct Mistake {
