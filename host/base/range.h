@@ -5,8 +5,8 @@
 namespace pillarfield {
 
 struct Range {
-  double low;
-  double high;
+  double low = 0;
+  double high = 0;
   bool open_low = false;
   bool open_high = false;
 

@@ -28,7 +28,7 @@ constexpr int kUndetermined = status::kFromNeighbours | status::kSaturated | sta
 /// Loads four forces; NaN, infinity and lanes not `present` become zero.
 PF_WIDE_INLINE void read(const float* from, const Ints& present, Floats& values, Doubles& forces) {
   std::memcpy(&values, from, sizeof values);
-  const Ints finite = values - values == 0;
+  const Ints finite = values - values == 0;  // NOLINT(misc-redundant-expression): false for NaN
   values = __builtin_bit_cast(Floats, __builtin_bit_cast(Ints, values) & finite & present);
   forces = Doubles{values[0], values[1], values[2], values[3]};
 }
@@ -49,15 +49,16 @@ struct Place {
 
 /// A padded copy of the last, fewer than four, pillars of a field.
 struct LastPillars {
-  std::array<float, 3 * kLanes> forces{};
+  std::array<float, std::size_t{3} * kLanes> forces{};
   std::array<std::uint8_t, kLanes> status{};
 
   Place copy(const ForceFieldView& field, std::size_t at) {
     std::ranges::copy(field.shear_x.subspan(at), forces.begin());
     std::ranges::copy(field.shear_y.subspan(at), forces.begin() + kLanes);
-    std::ranges::copy(field.normal.subspan(at), forces.begin() + 2 * kLanes);
+    std::ranges::copy(field.normal.subspan(at), forces.begin() + std::ptrdiff_t{2} * kLanes);
     std::ranges::copy(field.status.subspan(at), status.begin());
-    return {forces.data(), forces.data() + kLanes, forces.data() + 2 * kLanes, status.data()};
+    return {forces.data(), forces.data() + kLanes, forces.data() + std::size_t{2} * kLanes,
+            status.data()};
   }
 };
 

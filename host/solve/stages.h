@@ -14,13 +14,12 @@ enum class StagePlace : std::uint8_t {
 
 /// A stage of the solve.
 struct Stage {
-  const char* name;
-  const char* macro;  ///< defined where the stage is named; null: the stage always runs
-  bool (*is_named)(const SolverPlan& plan);
+  const char* name = nullptr;
+  const char* macro = nullptr;  ///< defined where the stage is named; null: the stage always runs
+  bool (*is_named)(const SolverPlan& plan) = nullptr;
   StagePlace place = StagePlace::pillar;
   bool needs_neighbours = false;  ///< reads sensels or pillars beyond one pillar
-  bool has_memory =
-      false;  ///< keeps state between frames, which are then solved one after the other
+  bool has_memory = false;  ///< keeps state from frame to frame; frames are solved in their order
   /// Idle blocks may be skipped: activation_thresholds() and threshold_of_sensel() in
   /// kernels/frame/idle.h include the stage.
   bool may_skip_idle = true;

@@ -274,7 +274,7 @@ TEST(Friction, IsCarriedOverAsFarAsAContactMayJump) {
 }
 
 /// A sticking punch: all pillars share one ratio, which grows with the shear.
-TEST(Friction, OfAFaceThatMayStickIsNotTold) {
+TEST(Friction, OfAFaceThatMayStickIsNotReported) {
   ContactTracker tracker(kPitchMm);
   for (const double ratio : {0.3, 0.4, 0.55, 0.55, 0.7}) {
     const FrameContacts& frame = tracker.update(face(100, ratio, 0).view(), 0);
@@ -285,7 +285,7 @@ TEST(Friction, OfAFaceThatMayStickIsNotTold) {
 }
 
 /// The posterior is carried over, but losing the shear again proves nothing.
-TEST(Friction, OfAFaceThatStuckIsNotToldWhenItsShearIsGone) {
+TEST(Friction, OfAFaceThatStuckIsNotReportedWhenItsShearIsGone) {
   ContactTracker tracker(kPitchMm);
   for (const double ratio : {0.4, 0.4, 0.0, 0.1, 0.3, 0.25, 0.0}) {
     const FrameContacts& frame = tracker.update(face(100, ratio, 0).view(), 0);
@@ -295,7 +295,7 @@ TEST(Friction, OfAFaceThatStuckIsNotToldWhenItsShearIsGone) {
   }
 }
 
-TEST(Friction, OfAFaceIsToldOnceItStayedWhileOtherPillarsWereLoaded) {
+TEST(Friction, OfAFaceIsReportedOnceItStayedWhileOtherPillarsWereLoaded) {
   ContactTracker tracker(kPitchMm);
   const auto update = [&](double other_ratio) {
     return tracker.update(face(40, 0.8, other_ratio).view(), 0).contacts.at(0).quantities;

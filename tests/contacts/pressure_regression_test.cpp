@@ -52,6 +52,7 @@ TEST(PressureRegression, OutliersCountLittle) {
 TEST(PressureRegression, NeedsSamplesThatSpanThePlane) {
   EXPECT_FALSE(PressureRegression::fit({}));
   std::vector<Sample> line;
+  line.reserve(40);
   for (int i = 0; i < 40; ++i) line.push_back({0.02 * i, 0.3, 1, 1});
   EXPECT_FALSE(PressureRegression::fit(line));
   const std::vector<Sample> point(40, {0.1, 0.2, 1, 1});

@@ -31,8 +31,8 @@ std::array<int, 2> write(int stride, int shift) {
   queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(kItems));
 
   std::array<int, 2> ends{};
-  queue.enqueueReadBuffer(out, CL_TRUE, 0, sizeof(int), &ends[0]);
-  queue.enqueueReadBuffer(out, CL_TRUE, (kItems - 1) * sizeof(int), sizeof(int), &ends[1]);
+  queue.enqueueReadBuffer(out, CL_TRUE, 0, sizeof(int), ends.data());
+  queue.enqueueReadBuffer(out, CL_TRUE, (kItems - 1) * sizeof(int), sizeof(int), ends.data() + 1);
   return ends;
 }
 

@@ -171,7 +171,7 @@ TEST(Scene, AConverterImpliesItsFullScale) {
   EXPECT_EQ(parse("16").skin.full_scale_counts, 65535);
 }
 
-TEST(Scene, AContactHasItsRadiusAtItsHeaviestLoadUnlessToldOtherwise) {
+TEST(Scene, AContactHasItsRadiusAtItsHeaviestLoadUnlessGivenOtherwise) {
   const auto reference_load = [](const std::string& line) {
     const Scene scene = parse_scene(
         "[skin]\nsize_mm = [9, 9]\n[[contact]]\nshape = \"sphere\"\nmotion = \"press\"\n"

@@ -67,7 +67,7 @@ class Outputs(unittest.TestCase):
         for path, content in before.items():
             self.assertEqual(path.read_bytes(), content, path)
 
-    def test_only_earlier_tables_are_replaced_unless_told(self):
+    def test_only_earlier_tables_are_replaced_without_overwrite(self):
         self.assert_refused("forces.h5", "--csv", "rec.h5", says="holds a recording")
         self.assert_refused("forces.h5", "--png", "rec.h5", says="holds a recording")
         notes = self.folder / "notes.csv"
