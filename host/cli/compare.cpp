@@ -108,10 +108,13 @@ std::string fitted(double value, std::size_t width, int decimals, std::string_vi
 
 void print_row(const Row& row) {
   const RegionErrors& errors = row.errors;
-  const double mismatches = errors.pillars == 0
-                                ? 0
-                                : 100 * static_cast<double>(errors.status_mismatches) /
-                                      static_cast<double>(errors.pillars);
+  if (errors.pillars == 0) {
+    fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", row.name, 0, "-", "-",
+               "-", "-", "-", "-", "-");
+    return;
+  }
+  const double mismatches =
+      100 * static_cast<double>(errors.status_mismatches) / static_cast<double>(errors.pillars);
   fmt::print("{:<8} {:>13} {} {}", row.name, grouped(errors.pillars), fitted(errors.rms_n, 9, 4),
              fitted(errors.p95_n, 9, 4));
   if (row.name == "none") {

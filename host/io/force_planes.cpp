@@ -15,7 +15,8 @@ std::vector<ResultPlane> planes_of(const ForceFileInfo& info) {
   return planes;
 }
 
-FramePlanes::FramePlanes(const ForceFileInfo& info) : uncertainty_(info.uncertainty) {
+FramePlanes::FramePlanes(const ForceFileInfo& info)
+    : planes_(planes_of(info)), uncertainty_(info.uncertainty) {
   if (info.estimator == name_of(Estimator::direct)) direct_point_ = info.segment_point;
 }
 

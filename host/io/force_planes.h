@@ -15,10 +15,13 @@ namespace pillarfield {
 /// has.
 [[nodiscard]] std::vector<ResultPlane> planes_of(const ForceFileInfo& info);
 
-/// Values of a frame's planes.
+/// The planes of a file and their values in one frame.
 class FramePlanes {
  public:
   explicit FramePlanes(const ForceFileInfo& info);
+
+  /// planes_of() the file.
+  [[nodiscard]] const std::vector<ResultPlane>& planes() const { return planes_; }
 
   /// Sets the frame; computes the interval ends of components if the file has them. `forces` must
   /// outlive the calls of of().
@@ -26,6 +29,7 @@ class FramePlanes {
   [[nodiscard]] std::span<const float> of(const ResultPlane& plane) const;
 
  private:
+  std::vector<ResultPlane> planes_;
   bool uncertainty_;
   std::optional<double> direct_point_;
   ForceFieldView forces_;

@@ -67,8 +67,9 @@ void check(const SolvedFrame& frame, const ForceFileInfo& info, const std::strin
     throw Error(where, fmt::format("a frame of {} x {} pillars", forces.rows, forces.cols),
                 fmt::format("the file needs frames of {} x {}", info.rows, info.cols));
   }
-  for (const ResultPlane& plane : planes_of(info)) {
-    if (plane.index >= kSolvedPlanes || complete(plane_of(forces, plane.index))) continue;
+  for (const ResultPlane& plane : std::span(kResultPlanes).first(kSolvedPlanes)) {
+    if (!has_planes(info.angles, info.uncertainty, plane.set)) continue;
+    if (complete(plane_of(forces, plane.index))) continue;
     throw Error(where, fmt::format("a frame without {}", plane.field()),
                 "solve with all outputs that the file needs");
   }

@@ -67,7 +67,7 @@ std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, s
   Interval of_y = y.interval();
   Interval of_normal = normal.interval();
   const std::uint8_t status = forces.status[pillar];
-  if (direct_point && is_ambiguous(status) && normal.value > 0) {
+  if (direct_point && has_feasible_segment(status) && normal.value > 0) {
     const bool vertical = shear_y_is_free(status);
     set_segment(*direct_point, vertical ? y : x, normal, vertical ? of_y : of_x, of_normal);
   }

@@ -54,7 +54,7 @@ void for_ambiguous_pillars(Check check, float segment_point = kPoint) {
                                   static_cast<float>(40 * ratio * std::sin(angle)), 40};
       const AmbiguousPillar pillar =
           ambiguous_pillar(maths::model_readings(truth, 1), segment_point);
-      if (!is_ambiguous(static_cast<std::uint8_t>(pillar.status))) continue;
+      if (!has_feasible_segment(static_cast<std::uint8_t>(pillar.status))) continue;
       ++ambiguous_pillars;
       check(pillar, truth);
     }

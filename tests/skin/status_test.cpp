@@ -35,7 +35,7 @@ TEST(Status, ForcesAreDeterminedOrOnASegmentOrNeither) {
     const bool spoilt = saturated || (bits & status::kInconsistent) != 0;
     EXPECT_EQ(is_determined(status), (region == Region::one || region == Region::two) && !saturated)
         << bits;
-    EXPECT_EQ(is_ambiguous(status),
+    EXPECT_EQ(has_feasible_segment(status),
               region == Region::three && (bits & status::kAmbiguous) != 0 && !spoilt)
         << bits;
   }

@@ -104,7 +104,7 @@ def draw_small_forces(points, folder):
                           for point in points], style, label=label, **options)
 
     black, blue, red = pictures.BLACK, pictures.BLUE, pictures.VERMILION
-    curve(left, "after", "unfelt", 100, "unfelt", ":", color=black)
+    curve(left, "after", "undetected", 100, "undetected", ":", color=black)
     curve(left, "after", "wrong_region", 100, "wrong region", "o-", color=black)
     curve(left, "before", "unflagged", 100, "unflagged, before", "s-", color=red)
     curve(left, "after", "unflagged", 100, "unflagged, after", "o-", color=blue)
@@ -115,7 +115,7 @@ def draw_small_forces(points, folder):
     for axis in (left, right):
         axis.set(xscale="log", xlim=(0.3, 105), xlabel="force over dead zone, F k / z")
         pictures.plain_ticks(axis.xaxis, (0.3, 1, 3, 10, 30, 100))
-    left.set(ylim=(-2, 102), ylabel="share of the directions (%)")
+    left.set(ylim=(-2, 102), ylabel="directions (%)")
     right.set(yscale="log", ylim=(1e-4, 1.1), ylabel="RMS error of the force, over F")
     pictures.plain_ticks(right.yaxis, (1e-4, 1e-3, 1e-2, 0.1, 1),
                          ("0.0001", "0.001", "0.01", "0.1", "1"))
@@ -126,7 +126,7 @@ def draw_small_forces(points, folder):
 
 def share_rows(points):
     for point in points:
-        shares = [point["after"]["unfelt"], point["after"]["wrong_region"],
+        shares = [point["after"]["undetected"], point["after"]["wrong_region"],
                   point["before"]["unflagged"], point["after"]["unflagged"],
                   point["before"]["held"], point["after"]["held"]]
         yield [f"{point['load']:g}", *(f"{percent(share)} %" for share in shares)]

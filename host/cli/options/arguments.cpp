@@ -6,12 +6,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/options/argument_group.h"
 #include "cli/options/completion.h"
 #include "cli/options/help.h"
 #include "cli/options/nearest_word.h"
@@ -22,124 +21,8 @@ namespace {
 
 using Work = std::function<void()>;
 
-constexpr double kAny = std::numeric_limits<double>::max();
-
 /// Scenes store seeds as integers of TOML.
 constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
-
-/// Prints that a former name works in this release only.
-void note_former_name(const std::string& former, const std::string& name) {
-  fmt::print(stderr, "pillarfield: '{}' is now '{}'; the former name works in this release only\n",
-             former, name);
-}
-
-/// Accepts a finite number in [least, most]; CLI::Range also accepts NaN.
-CLI::Validator number_in(double least, double most) {
-  const auto error_of = [=](const std::string& text) -> std::string {
-    double value = 0;
-    const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
-    if (is_number && value >= least && value <= most) return {};
-    if (most == kAny) return fmt::format("'{}' is not a number", text);
-    return fmt::format("'{}' is not a number from {:g} to {:g}", text, least, most);
-  };
-  return {error_of, ""};
-}
-
-/// Accepts a whole number in [least, most] in decimal digits. CLI::Range reads "-1" as a large
-/// number, too many digits as the largest, and "010" as eight.
-CLI::Validator whole_number_in(std::uint64_t least, std::uint64_t most) {
-  const auto error_of = [=](const std::string& text) -> std::string {
-    std::uint64_t value = 0;
-    const char* const end = text.data() + text.size();
-    const auto parsed = std::from_chars(text.data(), end, value);
-    const bool octal = text.size() > 1 && text.front() == '0';
-    const bool is_number = parsed.ec == std::errc{} && parsed.ptr == end && !octal;
-    if (is_number && value >= least && value <= most) return {};
-    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
-  };
-  return {error_of, ""};
-}
-
-/// Accepts one of `words`, and `former`.
-CLI::Validator one_of(const std::vector<std::string>& words, const std::string& former = "") {
-  const auto error_of = [=](const std::string& text) -> std::string {
-    if (text == former || std::ranges::find(words, text) != words.end()) return {};
-    return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
-                       suggestion(text, words));
-  };
-  return {error_of, ""};
-}
-
-std::string stream_error(const std::string& text) {
-  return text == "-" ? "'-' names no stream; ./- is a file of this name" : "";
-}
-
-/// Adds arguments under one heading of the help.
-class Group {
- public:
-  Group(CLI::App* command, std::string heading) : command_(command), heading_(std::move(heading)) {}
-
-  template <class Target>
-  CLI::Option* text(const std::string& names, Target& target, const char* kind,
-                    const std::string& description) {
-    return command_->add_option(names, target, description)
-        ->type_name(kind)
-        ->group(heading_)
-        ->check(CLI::Validator(stream_error, ""));
-  }
-
-  template <class Target>
-  void file(const std::string& name, Target& target, const char* description) {
-    text(name, target, "FILE", description)->required();
-  }
-
-  template <class Target>
-  CLI::Option* number(const std::string& names, Target& target, const char* unit,
-                      const char* description, double least = -kAny, double most = kAny) {
-    return text(names, target, unit, description)->check(number_in(least, most));
-  }
-
-  template <class Target>
-  CLI::Option* whole(const std::string& names, Target& target, const char* unit,
-                     const char* description, std::uint64_t least, std::uint64_t most) {
-    return text(names, target, unit, description)->check(whole_number_in(least, most));
-  }
-
-  /// Adds an option of one number per file, separated by commas or repeated.
-  CLI::Option* numbers(const std::string& names, std::vector<double>& target, const char* unit,
-                       const char* description) {
-    return number(names, target, unit, description, 1e-6, 1e6)
-        ->required()
-        ->delimiter(',')
-        ->allow_extra_args(false);
-  }
-
-  /// Adds an option that sets `target` to the value of a word; `former` is a former name of `word`.
-  template <class Value, class Target>
-  void choice(const std::string& name, Target& target,
-              const std::vector<std::pair<std::string, Value>>& choices, const char* description,
-              const std::string& former = "", const std::string& word = "") {
-    std::vector<std::string> words(choices.size());
-    std::ranges::transform(choices, words.begin(), &std::pair<std::string, Value>::first);
-    const auto assign = [=, &target](const std::string& given) {
-      if (given == former) note_former_name(name + " " + former, name + " " + word);
-      const std::string& current = given == former ? word : given;
-      target = std::ranges::find(choices, current, &std::pair<std::string, Value>::first)->second;
-    };
-    command_->add_option_function<std::string>(name, assign, description)
-        ->type_name(fmt::format("{}", fmt::join(words, "|")))
-        ->check(one_of(words, former))
-        ->group(heading_);
-  }
-
-  CLI::Option* flag(const std::string& names, bool& target, const char* description) {
-    return command_->add_flag(names, target, description)->group(heading_);
-  }
-
- private:
-  CLI::App* command_;
-  std::string heading_;
-};
 
 // Arguments of several commands.
 

@@ -130,7 +130,7 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     batch.pillars = 0;
   };
   const auto add = [&](std::uint32_t index) {
-    if (!is_ambiguous(field.status[index])) return;
+    if (!has_feasible_segment(field.status[index])) return;
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormalN)) return;
     const FeasibleSegment segment =
         segment_of(force_of(field, index), shear_y_is_free(field.status[index]), end_);

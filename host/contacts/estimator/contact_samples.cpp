@@ -92,7 +92,7 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
   const double normal = forces_.normal[index];
   const double least = parameters.least_normal * noise_n;
   if (!(normal > 0 && normal < kMostNormalN)) return;
-  if (is_ambiguous(status)) {
+  if (has_feasible_segment(status)) {
     const FeasibleSegment segment = segment_at(forces_, index, end_);
     const double high = segment.high;
     ambiguous_.push_back(index);
@@ -115,7 +115,7 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
 double ContactSamples::most_normal(std::uint32_t index) const {
   const std::uint8_t status = forces_.status[index];
   if (is_determined(status)) return std::max(double{forces_.normal[index]}, 0.0);
-  return is_ambiguous(status) ? segment_at(forces_, index, end_).high : 0;
+  return has_feasible_segment(status) ? segment_at(forces_, index, end_).high : 0;
 }
 
 /// Adds a sample of zero normal force at an edge, weighted by how little the outermost pillars bear

@@ -34,8 +34,9 @@ inline constexpr int kRegions = 6;
 /// The region of a status byte, from its usable bits.
 [[nodiscard]] Region region_of(std::uint8_t status);
 
-/// Whether the readings of a pillar determine its force: three sensels usable or four, and none
-/// saturated.
+/// Whether the readings of a pillar determine its force but for noise: three or four sensels are
+/// usable, none is saturated. If noise leaves it open whether the fourth sensel presses, the pillar
+/// has `status::kAmbiguous` too.
 [[nodiscard]] constexpr bool is_determined(std::uint8_t status) {
   const int unusable = ~status & status::kUsable;
   return ((unusable & (unusable - 1)) | (status & status::kSaturated)) == 0;
@@ -44,7 +45,7 @@ inline constexpr int kRegions = 6;
 /// Whether the readings of a pillar restrict its force to a segment (docs/derivations/segment.md),
 /// resolved or not: two adjacent sensels usable, the others inactive. Other pillars may also have
 /// `status::kAmbiguous`.
-[[nodiscard]] inline bool is_ambiguous(std::uint8_t status) {
+[[nodiscard]] inline bool has_feasible_segment(std::uint8_t status) {
   return (status & status::kAmbiguous) != 0 && region_of(status) == Region::three &&
          (status & (status::kSaturated | status::kInconsistent)) == 0;
 }

@@ -43,7 +43,7 @@ class Hdf5Sink final : public ForceSink {
   std::filesystem::path path_;
   OutputFile part_;
   hdf5::File file_;
-  std::vector<hdf5::ExtendibleDataset> planes_;  // in the order of planes_of()
+  std::vector<hdf5::ExtendibleDataset> planes_;  // in the order of frame_planes_.planes()
   hdf5::ExtendibleDataset status_;
   hdf5::ExtendibleDataset time_;
   ContactTables contacts_;
@@ -93,7 +93,7 @@ void Hdf5Sink::create_datasets() {
   const hdf5::Handle uncertainty =
       info_.uncertainty ? hdf5::create_group(file_, force_format::kUncertainty) : hdf5::Handle();
   const hdf5::FrameShape shape = {info_.rows, info_.cols};
-  for (const ResultPlane& plane : planes_of(info_)) {
+  for (const ResultPlane& plane : frame_planes_.planes()) {
     const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
     planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, shape);
   }
@@ -110,7 +110,7 @@ void Hdf5Sink::require_open() const {
 void Hdf5Sink::put(const SolvedFrame& frame) {
   std::size_t index = 0;
   frame_planes_.set_frame(frame.forces);
-  for (const ResultPlane& plane : planes_of(info_)) {
+  for (const ResultPlane& plane : frame_planes_.planes()) {
     planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
   }
   status_.put(frames_, H5T_NATIVE_UINT8, frame.forces.status.data());

@@ -26,7 +26,6 @@ class ForceCsvSink final : public ForceSink {
   void add_line(const ForceFieldView& forces, std::size_t pillar);
 
   ForceFileInfo info_;
-  std::vector<ResultPlane> planes_;
   FramePlanes frame_planes_;
   std::filesystem::path path_;
   TextPart file_;
@@ -38,13 +37,12 @@ class ForceCsvSink final : public ForceSink {
 ForceCsvSink::ForceCsvSink(const std::filesystem::path& path, const ForceFileInfo& info,
                            Replace replace, std::uint64_t first_frame)
     : info_(info),
-      planes_(planes_of(info)),
       frame_planes_(info),
       path_(path),
       file_(path, OutputKind::forces, replace),
       frame_(first_frame) {
   file_.write("frame,time_s,row,col");
-  for (const ResultPlane& plane : planes_) {
+  for (const ResultPlane& plane : frame_planes_.planes()) {
     file_.write(fmt::format(",{}_{}", plane.field(), plane.unit));
     if (plane.index + 1 == kForcePlanes) file_.write(",status");
   }
@@ -56,7 +54,7 @@ void ForceCsvSink::add_line(const ForceFieldView& forces, std::size_t pillar) {
   line_.append(frame_cells_);
   const auto out = std::back_inserter(line_);
   fmt::format_to(out, "{},{}", pillar / info_.cols, pillar % info_.cols);
-  for (const ResultPlane& plane : planes_) {
+  for (const ResultPlane& plane : frame_planes_.planes()) {
     fmt::format_to(out, ",{}", frame_planes_.of(plane)[pillar]);
     if (plane.index + 1 == kForcePlanes) fmt::format_to(out, ",{}", forces.status[pillar]);
   }

@@ -54,7 +54,6 @@ class NpySink final : public ForceSink {
   void require_open() const;
 
   ForceFileInfo info_;
-  std::vector<ResultPlane> planes_;
   FramePlanes frame_planes_;
   std::filesystem::path path_;
   OutputFile file_;
@@ -65,11 +64,10 @@ class NpySink final : public ForceSink {
 
 NpySink::NpySink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
     : info_(info),
-      planes_(planes_of(info)),
       frame_planes_(info),
       path_(path),
       file_(path, OutputKind::forces, replace),
-      record_bytes_(sizeof(float) * planes_.size() + 1),
+      record_bytes_(sizeof(float) * frame_planes_.planes().size() + 1),
       records_(record_bytes_ * info.rows * info.cols) {
   file_.write(npy_header(info_, 0));
 }
@@ -94,7 +92,7 @@ void NpySink::append(const SolvedFrame& frame) {
   const ForceFieldView& forces = frame.forces;
   frame_planes_.set_frame(forces);
   std::size_t offset = 0;
-  for (const ResultPlane& plane : planes_) {
+  for (const ResultPlane& plane : frame_planes_.planes()) {
     interleave(frame_planes_.of(plane), offset);
     offset += sizeof(float);
     if (plane.index + 1 == kForcePlanes) interleave(forces.status, offset++);

@@ -1,0 +1,56 @@
+#include "cli/options/argument_group.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "cli/options/nearest_word.h"
+
+namespace pillarfield::cli {
+
+void note_former_name(const std::string& former, const std::string& name) {
+  fmt::print(stderr, "pillarfield: '{}' is now '{}'; the former name works in this release only\n",
+             former, name);
+}
+
+CLI::Validator number_in(double least, double most) {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    double value = 0;
+    const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+    if (is_number && value >= least && value <= most) return {};
+    if (most == kAny) return fmt::format("'{}' is not a number", text);
+    return fmt::format("'{}' is not a number from {:g} to {:g}", text, least, most);
+  };
+  return {error_of, ""};
+}
+
+CLI::Validator whole_number_in(std::uint64_t least, std::uint64_t most) {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    std::uint64_t value = 0;
+    const char* const end = text.data() + text.size();
+    const auto parsed = std::from_chars(text.data(), end, value);
+    const bool octal = text.size() > 1 && text.front() == '0';
+    const bool is_number = parsed.ec == std::errc{} && parsed.ptr == end && !octal;
+    if (is_number && value >= least && value <= most) return {};
+    return fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  return {error_of, ""};
+}
+
+CLI::Validator one_of(const std::vector<std::string>& words, const std::string& former) {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    if (text == former || std::ranges::find(words, text) != words.end()) return {};
+    return fmt::format("'{}' is not one of {}{}", text, fmt::join(words, ", "),
+                       suggestion(text, words));
+  };
+  return {error_of, ""};
+}
+
+CLI::Validator no_stream() {
+  const auto error_of = [](const std::string& text) -> std::string {
+    return text == "-" ? "'-' names no stream; ./- is a file of this name" : "";
+  };
+  return {error_of, ""};
+}
+
+}  // namespace pillarfield::cli

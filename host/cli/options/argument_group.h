@@ -1,0 +1,103 @@
+// Adds options to a command under one heading, with checks whose messages name the allowed values.
+
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pillarfield::cli {
+
+inline constexpr double kAny = std::numeric_limits<double>::max();
+
+/// Prints that a former name works in this release only.
+void note_former_name(const std::string& former, const std::string& name);
+
+/// Accepts a finite number in [least, most]; CLI::Range also accepts NaN.
+CLI::Validator number_in(double least, double most);
+
+/// Accepts a whole number in [least, most] in decimal digits. CLI::Range reads "-1" as a large
+/// number, too many digits as the largest, and "010" as eight.
+CLI::Validator whole_number_in(std::uint64_t least, std::uint64_t most);
+
+/// Accepts one of `words`, and `former`.
+CLI::Validator one_of(const std::vector<std::string>& words, const std::string& former = "");
+
+/// Refuses "-".
+CLI::Validator no_stream();
+
+/// Adds arguments under one heading of the help.
+class Group {
+ public:
+  Group(CLI::App* command, std::string heading) : command_(command), heading_(std::move(heading)) {}
+
+  template <class Target>
+  CLI::Option* text(const std::string& names, Target& target, const char* kind,
+                    const std::string& description) {
+    return command_->add_option(names, target, description)
+        ->type_name(kind)
+        ->group(heading_)
+        ->check(no_stream());
+  }
+
+  template <class Target>
+  void file(const std::string& name, Target& target, const char* description) {
+    text(name, target, "FILE", description)->required();
+  }
+
+  template <class Target>
+  CLI::Option* number(const std::string& names, Target& target, const char* unit,
+                      const char* description, double least = -kAny, double most = kAny) {
+    return text(names, target, unit, description)->check(number_in(least, most));
+  }
+
+  template <class Target>
+  CLI::Option* whole(const std::string& names, Target& target, const char* unit,
+                     const char* description, std::uint64_t least, std::uint64_t most) {
+    return text(names, target, unit, description)->check(whole_number_in(least, most));
+  }
+
+  /// Adds an option of one number per file, separated by commas or repeated.
+  CLI::Option* numbers(const std::string& names, std::vector<double>& target, const char* unit,
+                       const char* description) {
+    return number(names, target, unit, description, 1e-6, 1e6)
+        ->required()
+        ->delimiter(',')
+        ->allow_extra_args(false);
+  }
+
+  /// Adds an option that sets `target` to the value of a word; `former` is a former name of `word`.
+  template <class Value, class Target>
+  void choice(const std::string& name, Target& target,
+              const std::vector<std::pair<std::string, Value>>& choices, const char* description,
+              const std::string& former = "", const std::string& word = "") {
+    std::vector<std::string> words(choices.size());
+    std::ranges::transform(choices, words.begin(), &std::pair<std::string, Value>::first);
+    const auto assign = [=, &target](const std::string& given) {
+      if (given == former) note_former_name(name + " " + former, name + " " + word);
+      const std::string& current = given == former ? word : given;
+      target = std::ranges::find(choices, current, &std::pair<std::string, Value>::first)->second;
+    };
+    command_->add_option_function<std::string>(name, assign, description)
+        ->type_name(fmt::format("{}", fmt::join(words, "|")))
+        ->check(one_of(words, former))
+        ->group(heading_);
+  }
+
+  CLI::Option* flag(const std::string& names, bool& target, const char* description) {
+    return command_->add_flag(names, target, description)->group(heading_);
+  }
+
+ private:
+  CLI::App* command_;
+  std::string heading_;
+};
+
+}  // namespace pillarfield::cli
