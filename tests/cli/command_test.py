@@ -131,6 +131,14 @@ class Work(CommandTest):
             self.assertEqual(len(rows), 5)
             self.assertEqual({len(row) for row in rows}, {len(lines[3])}, "\n".join(lines))
 
+    def test_a_region_without_pillars_has_no_figures(self):
+        run("simulate", SCENES / "hertz_press.toml", "-o", self.recording)
+        run("solve", self.recording, "-o", self.forces)
+        lines = run("compare", self.forces, self.recording).stdout.splitlines()
+        rows = {line.split()[0]: line.split()[1:] for line in lines[4:10]}
+        self.assertEqual(rows["4"], ["0"] + 7 * ["-"])
+        self.assertNotIn("-", rows["1"])
+
     def test_seeds_make_frames_reproducible(self):
         copies = [self.folder / name for name in ("a.npy", "b.npy", "c.npy")]
         for copy, seed in zip(copies, (5, 5, 6)):
