@@ -56,6 +56,15 @@ void check(const Calibration& calibration, const Skin& skin, std::string_view wh
   check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, largest);
   check_plane(calibration.mask, "mask", skin, where, 0, 1);
   check_plane(calibration.noise, "noise", skin, where, 0, std::min(largest, kMaxNoiseCounts));
+  check_plane(calibration.bend_x, "bend_x", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
+  check_plane(calibration.bend_y, "bend_y", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
+  check_plane(calibration.bend_xy, "bend_xy", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
+  if (calibration.bend_x.empty() != calibration.bend_y.empty() ||
+      calibration.bend_x.empty() != calibration.bend_xy.empty()) {
+    throw Error(where, "only some of the planes bend_x, bend_y and bend_xy are given",
+                "give all three or none");
+  }
+  check(calibration.effects, where);
 }
 
 }  // namespace pillarfield

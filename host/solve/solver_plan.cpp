@@ -42,6 +42,7 @@ std::optional<double> given_noise(const SolverPlan& plan) {
 }
 
 constexpr int kMaxBaselineInterval = 1024;
+constexpr double kMaxFrameIntervalS = 1e6;
 
 /// Threshold over standard deviation of a reading, assumed where no noise is given.
 constexpr double kThresholdDeviations = 4;
@@ -95,6 +96,13 @@ void check(const SolverPlan& plan, std::string_view where) {
                 fmt::format("it must lie in [1, {}]", kMaxBaselineInterval));
   }
   check(plan.friction, where);
+  if (!(plan.frame_interval_s > 0 && plan.frame_interval_s <= kMaxFrameIntervalS)) {
+    throw Error(where, fmt::format("frame_interval_s is {}", plan.frame_interval_s),
+                fmt::format("it must lie in (0, {}]", kMaxFrameIntervalS));
+  }
+  if (plan.skin.power_law && !plan.calibration.effects.curve.empty()) {
+    throw Error(where, "the skin has a power law and a response curve", "give one of the two");
+  }
   if (!plan.uncertainty) return;
   if (plan.estimator == Estimator::paper) {
     throw Error(where, "the paper's estimator has no uncertainty",

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pillarfield/sensor_effects.h"
 #include "pillarfield/skin.h"
 
 namespace pillarfield {
@@ -22,9 +23,16 @@ struct Calibration {
   std::vector<float> dead_zone;    ///< load below which a sensel reads zero, counts, >= 0
   std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
   std::vector<float> noise;        ///< standard deviation of the unloaded raw reading, counts, >= 0
+  /// Change of the tare with the curvature of the skin, counts·mm: all three or none. The tare of a
+  /// skin bent to curvatures (x, y, xy), 1/mm, is tare + bend_x·x + bend_y·y + bend_xy·xy (E8).
+  std::vector<float> bend_x;
+  std::vector<float> bend_y;
+  std::vector<float> bend_xy;
+  SensorEffects effects;  ///< corrections that all sensels share
 
   [[nodiscard]] bool empty() const {
-    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty() && noise.empty();
+    return tare.empty() && gain.empty() && dead_zone.empty() && mask.empty() && noise.empty() &&
+           bend_x.empty() && effects.empty();
   }
 };
 

@@ -64,6 +64,7 @@
 #include "pillarfield/frame.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/processor.h"
+#include "pillarfield/sensor_effects.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/status.h"

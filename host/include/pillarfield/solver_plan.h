@@ -53,6 +53,8 @@ struct SolverPlan {
   /// every baseline_interval-th pillar row. The tare follows as fast as with 1 at a fraction of the
   /// cost.
   int baseline_interval = 1;
+  /// Time from frame to frame, s, above zero; needed where calibration.effects.memory has creep.
+  double frame_interval_s = 0.01;
   bool angles = false;       ///< also compute magnitude, theta and phi
   bool uncertainty = false;  ///< also compute the planes of Uncertainty; needs the noise of the
                              ///< sensels, and an estimator other than `paper`

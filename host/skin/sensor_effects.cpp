@@ -1,0 +1,178 @@
+#include "pillarfield/sensor_effects.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kLeastKnots = 2;
+constexpr std::size_t kMostKnots = 64;
+constexpr double kMaxKnotCounts = 1e9;
+constexpr double kMaxLeak = 0.2;
+constexpr double kMaxPerCount = 0.1;
+
+void require(std::string_view where, std::string_view name, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  throw Error(where, fmt::format("{} is {}", name, value),
+              fmt::format("it must lie in [{}, {}]", low, high));
+}
+
+void check_knots(const std::vector<double>& knots, const char* name, std::string_view where) {
+  double before = 0;
+  for (const double knot : knots) {
+    if (!(knot > before && knot <= kMaxKnotCounts)) {
+      throw Error(where, fmt::format("the response curve has {} {} after {}", name, knot, before),
+                  "its knots must increase from above zero to at most 1e9 counts");
+    }
+    before = knot;
+  }
+}
+
+void check(const ResponseCurve& curve, std::string_view where) {
+  if (curve.readings.empty() && curve.loads.empty()) return;
+  const std::size_t knots = curve.readings.size();
+  if (knots != curve.loads.size() || knots < kLeastKnots || knots > kMostKnots) {
+    throw Error(
+        where,
+        fmt::format("the response curve has {} readings and {} loads", knots, curve.loads.size()),
+        fmt::format("it needs {} to {} of each", kLeastKnots, kMostKnots));
+  }
+  check_knots(curve.readings, "reading", where);
+  check_knots(curve.loads, "load", where);
+}
+
+void check(const SenselMemory& memory, std::string_view where) {
+  if (memory.plays.size() > kMaxPlays || memory.creep.size() > kMaxCreeps) {
+    throw Error(where,
+                fmt::format("the memory has {} plays and {} creep states", memory.plays.size(),
+                            memory.creep.size()),
+                fmt::format("it may have {} and {}", kMaxPlays, kMaxCreeps));
+  }
+  double width = 0;
+  for (const Play& play : memory.plays) {
+    require(where, "a play's width", play.width_counts, width, kMaxKnotCounts);
+    require(where, "a play's weight", play.weight, -1, 1);
+    width = play.width_counts;
+  }
+  for (const Creep& creep : memory.creep) {
+    require(where, "a creep time", creep.time_s, 1e-6, 1e9);
+    require(where, "a creep weight", creep.weight, -0.5, 0.5);
+  }
+}
+
+/// One interval of a curve; the knot before the first one is (0, 0).
+struct Interval {
+  double r0, r1, v0, v1;  ///< its ends
+  double slope0, slope1;  ///< dV/dr at its ends
+};
+
+double reading_of(const ResponseCurve& curve, std::size_t knot) {
+  return knot == 0 ? 0 : curve.readings[knot - 1];
+}
+double load_of(const ResponseCurve& curve, std::size_t knot) {
+  return knot == 0 ? 0 : curve.loads[knot - 1];
+}
+
+/// Slope of the chord from `knot` to the next one.
+double chord(const ResponseCurve& curve, std::size_t knot) {
+  return (load_of(curve, knot + 1) - load_of(curve, knot)) /
+         (reading_of(curve, knot + 1) - reading_of(curve, knot));
+}
+
+/// dV/dr at a knot: inside the weighted harmonic mean of both chords (Fritsch and Butland 1984),
+/// which keeps the cubic monotone; at the ends that of the nearest chord.
+double slope_at(const ResponseCurve& curve, std::size_t knot) {
+  const std::size_t last = curve.readings.size();
+  if (knot == 0) return chord(curve, 0);
+  if (knot == last) return chord(curve, last - 1);
+  const double before = reading_of(curve, knot) - reading_of(curve, knot - 1);
+  const double after = reading_of(curve, knot + 1) - reading_of(curve, knot);
+  const double weight_before = 2 * after + before;
+  const double weight_after = after + 2 * before;
+  return (weight_before + weight_after) /
+         (weight_before / chord(curve, knot - 1) + weight_after / chord(curve, knot));
+}
+
+Interval interval_from(const ResponseCurve& curve, std::size_t knot) {
+  return {reading_of(curve, knot),  reading_of(curve, knot + 1), load_of(curve, knot),
+          load_of(curve, knot + 1), slope_at(curve, knot),       slope_at(curve, knot + 1)};
+}
+
+/// The cubic of Hermite.
+double value_in(const Interval& at, double reading) {
+  const double width = at.r1 - at.r0;
+  const double t = (reading - at.r0) / width;
+  const double u = 1 - t;
+  return at.v0 * u * u * (1 + 2 * t) + at.v1 * t * t * (1 + 2 * u) +
+         width * t * u * (at.slope0 * u - at.slope1 * t);
+}
+
+/// Index of the interval that holds `value` of increasing `knots`; the number of knots beyond.
+std::size_t interval_of(const std::vector<double>& knots, double value) {
+  return static_cast<std::size_t>(std::ranges::lower_bound(knots, value) - knots.begin());
+}
+
+}  // namespace
+
+void check(const SensorEffects& effects, std::string_view where) {
+  check(effects.curve, where);
+  if (effects.shear_coefficient) {
+    require(where, "the shear coefficient x", effects.shear_coefficient->x, 0.1, 10);
+    require(where, "the shear coefficient y", effects.shear_coefficient->y, 0.1, 10);
+  }
+  if (effects.sensel_leak) {
+    require(where, "the leak inside a pillar", effects.sensel_leak->inside, -kMaxLeak, kMaxLeak);
+    require(where, "the leak across pillars", effects.sensel_leak->across, -kMaxLeak, kMaxLeak);
+  }
+  if (effects.pillar_leak) {
+    require(where, "the leak between pillars, edge", effects.pillar_leak->edge, -kMaxLeak,
+            kMaxLeak);
+    require(where, "the leak between pillars, corner", effects.pillar_leak->corner, -kMaxLeak,
+            kMaxLeak);
+  }
+  if (const auto& wires = effects.wires) {
+    require(where, "tile_rows", wires->tile_rows, 2, 1024);
+    require(where, "tile_cols", wires->tile_cols, 2, 1024);
+    require(where, "row_per_count", wires->row_per_count, 0, kMaxPerCount);
+    require(where, "column_per_count", wires->column_per_count, 0, kMaxPerCount);
+    require(where, "idle_per_count", wires->idle_per_count, 0, kMaxPerCount);
+  }
+  if (effects.memory) check(*effects.memory, where);
+  if (effects.arm_mm) require(where, "the arm of a pillar", *effects.arm_mm, 1e-3, 1e3);
+  if (effects.residual) {
+    require(where, "the relative residual", effects.residual->relative, 0, 1);
+    require(where, "the residual offset", effects.residual->offset_counts, 0, kMaxKnotCounts);
+  }
+}
+
+double load_at(const ResponseCurve& curve, double reading) {
+  if (!(reading > 0) || curve.empty()) return reading;
+  const std::size_t last = curve.readings.size();
+  const std::size_t knot = interval_of(curve.readings, reading);
+  if (knot < last) return value_in(interval_from(curve, knot), reading);
+  return curve.loads.back() + slope_at(curve, last) * (reading - curve.readings.back());
+}
+
+double reading_at(const ResponseCurve& curve, double load) {
+  if (!(load > 0) || curve.empty()) return load;
+  const std::size_t last = curve.readings.size();
+  const std::size_t knot = interval_of(curve.loads, load);
+  if (knot == last) {
+    return curve.readings.back() + (load - curve.loads.back()) / slope_at(curve, last);
+  }
+  const Interval at = interval_from(curve, knot);
+  double low = at.r0;
+  double high = at.r1;
+  for (int step = 0; step < 60; ++step) {
+    const double middle = (low + high) / 2;
+    (value_in(at, middle) < load ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace pillarfield
