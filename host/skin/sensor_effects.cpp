@@ -65,8 +65,8 @@ void check(const SenselMemory& memory, std::string_view where) {
   }
 }
 
-/// One interval of a curve; the knot before the first one is (0, 0).
-struct Interval {
+/// One cubic of a curve; the knot before the first one is (0, 0).
+struct CurvePiece {
   double r0, r1, v0, v1;  ///< its ends
   double slope0, slope1;  ///< dV/dr at its ends
 };
@@ -98,13 +98,13 @@ double slope_at(const ResponseCurve& curve, std::size_t knot) {
          (weight_before / chord(curve, knot - 1) + weight_after / chord(curve, knot));
 }
 
-Interval interval_from(const ResponseCurve& curve, std::size_t knot) {
+CurvePiece piece_from(const ResponseCurve& curve, std::size_t knot) {
   return {reading_of(curve, knot),  reading_of(curve, knot + 1), load_of(curve, knot),
           load_of(curve, knot + 1), slope_at(curve, knot),       slope_at(curve, knot + 1)};
 }
 
 /// The cubic of Hermite.
-double value_in(const Interval& at, double reading) {
+double value_in(const CurvePiece& at, double reading) {
   const double width = at.r1 - at.r0;
   const double t = (reading - at.r0) / width;
   const double u = 1 - t;
@@ -112,8 +112,8 @@ double value_in(const Interval& at, double reading) {
          width * t * u * (at.slope0 * u - at.slope1 * t);
 }
 
-/// Index of the interval that holds `value` of increasing `knots`; the number of knots beyond.
-std::size_t interval_of(const std::vector<double>& knots, double value) {
+/// Index of the piece that holds `value` of increasing `knots`; the number of knots beyond.
+std::size_t piece_of(const std::vector<double>& knots, double value) {
   return static_cast<std::size_t>(std::ranges::lower_bound(knots, value) - knots.begin());
 }
 
@@ -153,19 +153,19 @@ void check(const SensorEffects& effects, std::string_view where) {
 double load_at(const ResponseCurve& curve, double reading) {
   if (!(reading > 0) || curve.empty()) return reading;
   const std::size_t last = curve.readings.size();
-  const std::size_t knot = interval_of(curve.readings, reading);
-  if (knot < last) return value_in(interval_from(curve, knot), reading);
+  const std::size_t knot = piece_of(curve.readings, reading);
+  if (knot < last) return value_in(piece_from(curve, knot), reading);
   return curve.loads.back() + slope_at(curve, last) * (reading - curve.readings.back());
 }
 
 double reading_at(const ResponseCurve& curve, double load) {
   if (!(load > 0) || curve.empty()) return load;
   const std::size_t last = curve.readings.size();
-  const std::size_t knot = interval_of(curve.loads, load);
+  const std::size_t knot = piece_of(curve.loads, load);
   if (knot == last) {
     return curve.readings.back() + (load - curve.loads.back()) / slope_at(curve, last);
   }
-  const Interval at = interval_from(curve, knot);
+  const CurvePiece at = piece_from(curve, knot);
   double low = at.r0;
   double high = at.r1;
   for (int step = 0; step < 60; ++step) {
