@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "calibration/golden_section.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
@@ -140,30 +141,6 @@ double variance_of(const std::vector<double>& values) {
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return squares / static_cast<double>(values.size());
-}
-
-/// Argument of the minimum of a unimodal function, by golden-section search.
-template <class Function>
-double least_of(Function function, double low, double high, double accuracy) {
-  const double section = (std::sqrt(5.0) - 1) / 2;
-  double left = high - section * (high - low);
-  double right = low + section * (high - low);
-  double at_left = function(left);
-  double at_right = function(right);
-  while (high - low > accuracy) {
-    if (at_left < at_right) {
-      high = std::exchange(right, left);
-      at_right = at_left;
-      left = high - section * (high - low);
-      at_left = function(left);
-    } else {
-      low = std::exchange(left, right);
-      at_left = at_right;
-      right = low + section * (high - low);
-      at_right = function(right);
-    }
-  }
-  return (low + high) / 2;
 }
 
 /// Reference reading of the power law: geometric mean over the loads of the force-weighted mean
