@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibration/golden_section.h"
+#include "calibration/mean_frame.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
@@ -22,19 +23,6 @@ constexpr double kDifferent = 1.1;
 constexpr double kExponentAccuracy = 1e-5;
 /// Largest root-mean-square relative error of the solved loads.
 constexpr double kMostMisfit = 0.5;
-
-/// The mean frame; a sensel at full scale in any frame is at full scale.
-FrameBuffer mean_frame(const FrameStatistics& frames) {
-  const Skin& skin = frames.skin();
-  FrameBuffer mean(SenselType::f32, skin.rows, skin.cols);
-  const auto readings = mean.readings<float>();
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const SenselStatistics& sensel = frames.sensels()[i];
-    readings[i] = static_cast<float>(sensel.saturated > 0 ? *skin.full_scale_counts : sensel.mean);
-    if (sensel.readings == 0) readings[i] = std::nanf("");
-  }
-  return mean;
-}
 
 /// The mean frame of a load, and its solution in counts (k = 1).
 class Press {

@@ -67,7 +67,7 @@ void add_equilibrate(CLI::App& parent, Work& work) {
           "tared.h5 "
           "-o equal.h5\n"
           "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --model linear "
-          "--calibration tared.h5 -o equal.h5\n");
+          "--calibration tared.h5 -o lines.h5\n");
   Group(command, "Input")
       .file("UNIFORM", options->files, "Frames under uniform pressure, one file per pressure");
   Group step(command, "Equilibration");
@@ -103,6 +103,33 @@ void add_load(CLI::App& parent, Work& work) {
   add_step(command, *options, true, kCalibration);
   command->parse_complete_callback(
       [options = options] { require_one_each("--load-n", options->files, options->loads_n); });
+}
+
+void add_shear(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<ShearCommand>(
+      parent, work, calibrate, "shear", "Shear coefficients from known tangential loads.",
+      std::string(kPressedSkin) +
+          "  pillarfield simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5\n"
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
+          "tared.h5 -o equal.h5\n"
+          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --calibration equal.h5 -o "
+          "shear.h5\n");
+  Group(command, "Input")
+      .file("SHEARED", options->files,
+            "Frames of bodies that do not slip under a tangential load, one file per load");
+  Group(command, "Load")
+      .number("--shear-n", options->shears_n, "X1,Y1,X2,Y2,...",
+              "Tangential force on the skin of each file, in order: + right, + up", -1e6, 1e6)
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback([options = options] {
+    if (options->shears_n.size() == 2 * options->files.size()) return;
+    throw CLI::ValidationError(
+        "--shear-n", fmt::format("{} files and {} values; give two per file", options->files.size(),
+                                 options->shears_n.size()));
+  });
 }
 
 void add_faults(CLI::App& parent, Work& work) {
@@ -152,6 +179,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   add_tare(*steps, work);
   add_equilibrate(*steps, work);
   add_load(*steps, work);
+  add_shear(*steps, work);
   add_faults(*steps, work);
   add_apply(*steps, work);
   add_help(steps);
