@@ -98,6 +98,10 @@ struct ShearCommand : StepOptions {
   std::vector<double> shears_n;  ///< x and y for each file
 };
 
+struct LeakCommand : StepOptions {
+  std::vector<std::string> files;
+};
+
 struct FaultsCommand : StepOptions {
   std::string frames;
   FaultOptions faults;
@@ -130,6 +134,7 @@ void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);
 void calibrate(const LoadCommand& command);
 void calibrate(const ShearCommand& command);
+void calibrate(const LeakCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);

@@ -11,7 +11,7 @@ import unittest
 
 from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
 
-STEPS = ["tare", "equilibrate", "load", "shear", "faults", "apply"]
+STEPS = ["tare", "equilibrate", "load", "shear", "leak", "faults", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["pace"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["testbed"], ["info"], ["completion"]]
 
@@ -159,7 +159,7 @@ class Numbers(CommandTest):
                   "solve": [recording, "-o", output, "--contacts", output]}
         step = [recording, "--calibration", recording, "-o", output]
         needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
-                   "load": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"]}
+                   "load": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"], "leak": step}
         tried = 0
         for command in COMMANDS:
             text = run(*command, "--help").stdout

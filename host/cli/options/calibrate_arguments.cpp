@@ -132,6 +132,21 @@ void add_shear(CLI::App& parent, Work& work) {
   });
 }
 
+void add_leak(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<LeakCommand>(
+      parent, work, calibrate, "leak",
+      "Leaks between sensels and between pillars, from a fine tip on single pillars.",
+      std::string(kIdleSkin) +
+          "  pillarfield simulate scenes/leaking_skin_pressed.toml --uncalibrated -o pressed.h5\n"
+          "  pillarfield simulate scenes/leaking_skin_tip.toml --uncalibrated -o tip.h5\n"
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
+          "tared.h5 -o equal.h5\n"
+          "  pillarfield calibrate leak tip.h5 --calibration equal.h5 -o leak.h5\n");
+  Group(command, "Input")
+      .file("TIP", options->files, "Frames in which a fine tip presses one pillar after another");
+  add_step(command, *options, true, kCalibration);
+}
+
 void add_faults(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<FaultsCommand>(
       parent, work, calibrate, "faults",
@@ -180,6 +195,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   add_equilibrate(*steps, work);
   add_load(*steps, work);
   add_shear(*steps, work);
+  add_leak(*steps, work);
   add_faults(*steps, work);
   add_apply(*steps, work);
   add_help(steps);
