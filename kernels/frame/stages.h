@@ -70,7 +70,7 @@ typedef struct {
   Counts tare;
   Real gain;
   Counts dead_zone;
-  Counts good; /* zero where the sensel is masked */
+  Counts good; /* 1; 0 where the sensel is masked, 2 where the sensor has none */
 } Correction;
 
 /* Classifies a raw reading as missing or saturated, before calibration. */

@@ -42,7 +42,7 @@ Calibration random_calibration(const Skin& skin, SenselType type, std::mt19937& 
   calibration.dead_zone = plane(0.0f, largest);
   calibration.noise = plane(0.0f, std::min(largest, 1e6f));
   calibration.mask.resize(coin() ? skin.sensels() : 0);
-  for (auto& good : calibration.mask) good = coin() ? 1 : 0;
+  for (auto& good : calibration.mask) good = coin() ? kGood : coin() ? kAbsent : kMissing;
   return calibration;
 }
 
