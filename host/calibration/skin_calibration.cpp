@@ -78,6 +78,9 @@ void check(const SkinCalibration& calibration, std::string_view where) {
   const Skin skin = skin_of(calibration);
   check(skin, where);
   check(calibration.planes, skin, where);
+  if (calibration.power_law && !calibration.planes.effects.curve.empty()) {
+    throw Error(where, "has a power law and a response curve", "remove one of them");
+  }
   if (!calibration.threshold_factor) return;
   const double factor = *calibration.threshold_factor;
   if (factor >= 0 && factor <= kMaxThresholdFactor) return;
@@ -99,6 +102,7 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) 
   planes = calibration.planes;
   planes.mask = std::move(mask);
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
+  if (!planes.effects.curve.empty()) skin.power_law.reset();
   // A power law applies only with the counts per newton fitted with it.
   if (!calibration.counts_per_newton) return;
   skin.counts_per_newton = *calibration.counts_per_newton;
@@ -112,8 +116,9 @@ void set_threshold(SkinCalibration& calibration, double factor) {
   }
   const double threshold = factor * quantile(noise, kQuietShare);
   const auto& law = calibration.power_law;
+  const double load = load_at(calibration.planes.effects.curve, threshold);
   calibration.threshold_factor = factor;
-  calibration.threshold_counts = law ? straightened(*law, threshold) : threshold;
+  calibration.threshold_counts = law ? straightened(*law, threshold) : load;
 }
 
 void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law) {

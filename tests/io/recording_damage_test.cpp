@@ -32,8 +32,9 @@ void write_full_recording(const std::filesystem::path& path) {
   skin.cols = kSize;
   skin.full_scale_counts = 250;
   const std::vector<float> ones(skin.sensels(), 1.0f);
-  const Calibration calibration = {ones, ones, ones, std::vector<std::uint8_t>(skin.sensels(), 1),
-                                   ones};
+  Calibration calibration;
+  calibration.tare = calibration.gain = calibration.dead_zone = calibration.noise = ones;
+  calibration.mask.assign(skin.sensels(), 1);
   RecordingWriter writer(path, skin, SenselType::u8, calibration, {.truth = true});
   FrameBuffer frame(SenselType::u8, kSize, kSize);
   for (std::uint64_t index = 0; index < kDamagedFrames; ++index) {

@@ -126,9 +126,10 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   plan.skin = source->skin();
   plan.sensel_type = source->sensel_type();
   plan.calibration = source->calibration();
-  plan = shown_plan(std::move(plan));
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
+  plan.frame_interval_s = 1 / info.rate_hz;
+  plan = shown_plan(std::move(plan));
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
   if (lacks_tare(*source, plan, processor)) {
