@@ -29,6 +29,9 @@ enum class Stream : std::uint32_t {
   probe,
   roughness,
   friction,
+  bend_x,
+  bend_y,
+  bend_xy,
 };
 
 /// A row of sensels in a frame.

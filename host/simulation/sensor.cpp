@@ -6,6 +6,10 @@
 #include <limits>
 
 #include "base/random.h"
+#include "simulation/effects/known_effects.h"
+#include "simulation/effects/memory_history.h"
+#include "simulation/effects/sensel_leak.h"
+#include "simulation/effects/wire_network.h"
 
 namespace pillarfield {
 namespace {
@@ -67,6 +71,16 @@ Calibration draw_calibration(const Scene& scene) {
     calibration.dead_zone.assign(scene.skin.sensels(), static_cast<float>(model.dead_zone_counts));
   }
   if (model.dead_share > 0) calibration.mask = draw_mask(scene);
+  if (scene.bending) {
+    const auto pattern = [&](random::Stream stream) {
+      return normal_plane(scene, stream,
+                          [&](double n) { return scene.bending->spread_counts_mm * n; });
+    };
+    calibration.bend_x = pattern(random::Stream::bend_x);
+    calibration.bend_y = pattern(random::Stream::bend_y);
+    calibration.bend_xy = pattern(random::Stream::bend_xy);
+  }
+  calibration.effects = known_effects(model, scene.skin);
   return calibration;
 }
 
@@ -80,6 +94,18 @@ void round_to(std::span<const double> signal, double full_scale, std::span<Count
   });
 }
 
+/// Curvature at a time: linear between keys, constant before the first and after the last.
+CurvatureKey curvature_at(const std::vector<CurvatureKey>& path, double time_s) {
+  const auto next = std::upper_bound(path.begin(), path.end(), time_s,
+                                     [](double t, const CurvatureKey& k) { return t < k.time_s; });
+  if (next == path.begin()) return path.front();
+  if (next == path.end()) return path.back();
+  const CurvatureKey& from = *(next - 1);
+  const double fraction = (time_s - from.time_s) / (next->time_s - from.time_s);
+  return {time_s, std::lerp(from.x, next->x, fraction), std::lerp(from.y, next->y, fraction),
+          std::lerp(from.xy, next->xy, fraction)};
+}
+
 std::optional<PowerLaw> inverse(const std::optional<PowerLaw>& law) {
   if (!law) return std::nullopt;
   return PowerLaw{1 / law->exponent, law->reference_counts};
@@ -88,36 +114,62 @@ std::optional<PowerLaw> inverse(const std::optional<PowerLaw>& law) {
 }  // namespace
 
 Sensor::Sensor(const Scene& scene)
-    : model_(scene.sensor),
+    : skin_(scene.skin),
+      model_(scene.sensor),
+      bending_(scene.bending),
       full_scale_counts_(
           scene.skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity())),
-      bend_(inverse(scene.skin.power_law)),
+      power_law_(inverse(scene.skin.power_law)),
       seed_(scene.seed),
       rate_hz_(scene.rate_hz),
-      calibration_(draw_calibration(scene)) {}
+      calibration_(draw_calibration(scene)),
+      needs_frames_(calibration_.effects.sensel_leak || calibration_.effects.wires ||
+                    MemoryHistory::is_needed(model_)) {}
 
 SenselType Sensor::sensel_type() const {
   if (!model_.adc_bits) return SenselType::f32;
   return *model_.adc_bits <= 8 ? SenselType::u8 : SenselType::u16;
 }
 
-void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
-                      FrameBuffer& raw) const {
-  respond(row, signal);
-  if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
-  if (model_.noise_counts > 0) add_noise(frame, row, signal);
-  if (!calibration_.mask.empty()) clear_dead(row, signal);
-  convert(row, signal, raw);
+void Sensor::load(std::span<double> frame_signal) const {
+  subtract_dead_zone(frame_signal);
+  if (const auto& leak = calibration_.effects.sensel_leak) {
+    leak_between_sensels(*leak, skin_.rows, skin_.cols, frame_signal);
+  }
 }
 
-void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
-  if (model_.dead_zone_counts > 0) {
-    // Uses the gain as rounded in the single-precision plane, so that readings are exact.
-    const double dead_zone = calibration_.dead_zone.front();
-    for (double& value : signal) value = std::max(0.0, value - dead_zone);
+void Sensor::read_frame(std::uint64_t frame, std::span<double> frame_signal,
+                        FrameBuffer& raw) const {
+  const auto row_signal = [&](std::uint32_t row) {
+    return frame_signal.subspan(std::size_t{row} * skin_.cols, skin_.cols);
+  };
+  for (std::uint32_t row = 0; row < skin_.rows; ++row) respond(frame, row, row_signal(row));
+  if (const auto& wires = calibration_.effects.wires) {
+    read_through_wires(*wires, skin_.rows, skin_.cols, frame_signal);
   }
-  if (bend_) {
-    for (double& value : signal) value = value > 0 ? straightened(*bend_, value) : value;
+  for (std::uint32_t row = 0; row < skin_.rows; ++row) digitise(frame, row, row_signal(row), raw);
+}
+
+void Sensor::read_row(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
+                      FrameBuffer& raw) const {
+  subtract_dead_zone(signal);
+  respond(frame, row, signal);
+  digitise(frame, row, signal, raw);
+}
+
+void Sensor::subtract_dead_zone(std::span<double> signal) const {
+  if (!(model_.dead_zone_counts > 0)) return;
+  // Uses the dead zone as rounded in the single-precision plane, so that readings are exact.
+  const double dead_zone = calibration_.dead_zone.front();
+  for (double& value : signal) value = std::max(0.0, value - dead_zone);
+}
+
+void Sensor::respond(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
+  if (power_law_) {
+    for (double& value : signal) value = value > 0 ? straightened(*power_law_, value) : value;
+  }
+  if (const ResponseCurve& curve = model_.response_curve; !curve.empty()) {
+    for (double& value : signal) value = reading_at(curve, value);
   }
   if (!calibration_.gain.empty()) {
     const auto gain = row_of(calibration_.gain, row, signal.size());
@@ -127,6 +179,26 @@ void Sensor::respond(std::uint32_t row, std::span<double> signal) const {
     const auto tare = row_of(calibration_.tare, row, signal.size());
     for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += tare[i];
   }
+  if (bending_) add_bending(frame, row, signal);
+}
+
+void Sensor::add_bending(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
+  const CurvatureKey curvature =
+      curvature_at(bending_->path, static_cast<double>(frame) / rate_hz_);
+  const auto x = row_of(calibration_.bend_x, row, signal.size());
+  const auto y = row_of(calibration_.bend_y, row, signal.size());
+  const auto xy = row_of(calibration_.bend_xy, row, signal.size());
+  for (std::size_t i = 0; i < signal.size(); ++i) {
+    signal[i] += curvature.x * x[i] + curvature.y * y[i] + curvature.xy * xy[i];
+  }
+}
+
+void Sensor::digitise(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
+                      FrameBuffer& raw) const {
+  if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
+  if (model_.noise_counts > 0) add_noise(frame, row, signal);
+  if (!calibration_.mask.empty()) clear_dead(row, signal);
+  convert(row, signal, raw);
 }
 
 void Sensor::add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {

@@ -11,6 +11,8 @@
 #include "simulation/body/body_history.h"
 #include "simulation/closed_form/contact_traction.h"
 #include "simulation/closed_form/direction_sweep.h"
+#include "simulation/effects/memory_history.h"
+#include "simulation/effects/pillar_model.h"
 #include "simulation/ideal_readings.h"
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
@@ -31,46 +33,54 @@ void clear(ForceField& field) {
   std::fill(field.status.begin(), field.status.end(), std::uint8_t{0});
 }
 
-void add_forces(const BodyForces& forces, ForceField& field) {
+void add_forces(const BodyForces& forces, ForceField& field, PressureMoments& moments) {
   const auto add = [](double force_n, float& to) { to = static_cast<float>(to + force_n); };
   for (const BodyForce& force : forces) {
     add(force.shear_x, field.shear_x[force.pillar]);
     add(force.shear_y, field.shear_y[force.pillar]);
     add(force.normal, field.normal[force.pillar]);
+    if (moments.empty()) continue;
+    moments.x[force.pillar] += force.moment_x;
+    moments.y[force.pillar] += force.moment_y;
   }
 }
 
-/// V of the two sensel rows under a row of pillars, counts.
-struct SignalRows {
-  explicit SignalRows(std::size_t cols) : upper(cols), lower(cols) {}
-  std::vector<double> upper;
-  std::vector<double> lower;
+/// The load of a frame.
+struct FrameLoad {
+  ForceField& forces;
+  PressureMoments moments;  ///< empty unless pillars need them
 };
 
-/// Fills the signals and the status bytes of one row of pillars.
-void read_pillars(std::uint32_t row, double counts_per_newton, ForceField& truth,
-                  SignalRows& signals) {
-  std::fill(signals.upper.begin(), signals.upper.end(), 0.0);
-  std::fill(signals.lower.begin(), signals.lower.end(), 0.0);
+/// Sets V of the two sensel rows under a row of pillars and their status bytes.
+void read_pillars(std::uint32_t row, const Scene& scene, const PillarModel& pillars,
+                  FrameLoad& load, std::span<double> signal) {
+  ForceField& truth = load.forces;
+  const std::span<double> upper = signal.first(scene.skin.cols);
+  const std::span<double> lower = signal.last(scene.skin.cols);
+  std::ranges::fill(signal, 0.0);
   const std::size_t first = std::size_t{row} * truth.cols;
-  for (std::size_t col = 0; col < truth.cols; ++col) {
+  for (std::uint32_t col = 0; col < truth.cols; ++col) {
     const std::size_t pillar = first + col;
-    const double_precision::Force force = {truth.shear_x[pillar], truth.shear_y[pillar],
-                                           truth.normal[pillar]};
+    double_precision::Force force = {truth.shear_x[pillar], truth.shear_y[pillar],
+                                     truth.normal[pillar]};
+    if (!pillars.is_ideal()) force = pillars.force_on_sensels(truth, load.moments, row, col);
     if (force.normal == 0 && force.shear_x == 0 && force.shear_y == 0) continue;
-    const double_precision::Readings v = ideal_readings(force, counts_per_newton);
+    const double_precision::Readings v = ideal_readings(force, scene.skin.counts_per_newton);
     truth.status[pillar] = usable_bits(v);
-    signals.upper[2 * col] = v.v2;
-    signals.upper[2 * col + 1] = v.v1;
-    signals.lower[2 * col] = v.v3;
-    signals.lower[2 * col + 1] = v.v4;
+    const std::size_t left = std::size_t{2} * col;
+    upper[left] = v.v2;
+    upper[left + 1] = v.v1;
+    lower[left] = v.v3;
+    lower[left + 1] = v.v4;
   }
 }
 
 }  // namespace
 
 struct Simulator::State {
-  explicit State(Scene given) : scene(checked(std::move(given))), sensor(scene) {
+  explicit State(Scene given)
+      : scene(checked(std::move(given))), pillars(scene.sensor), sensor(scene) {
+    if (MemoryHistory::is_needed(scene.sensor)) memory = std::make_unique<MemoryHistory>(scene);
     if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load))
       sweep_truth = direction_sweep_forces(*sweep);
     for (std::size_t number = 0; number < scene.bodies.size(); ++number) {
@@ -79,16 +89,67 @@ struct Simulator::State {
   }
 
   /// Fills the three planes of force, and clears the status bytes.
-  void load(std::uint64_t index, ForceField& truth) const {
+  [[nodiscard]] FrameLoad load(std::uint64_t index, ForceField& truth) const {
+    FrameLoad load{
+        truth, pillars.needs_moments() ? PressureMoments(scene.skin.pillars()) : PressureMoments()};
     if (std::holds_alternative<DirectionSweep>(scene.load)) {
       truth = sweep_truth;
-      return;
+      return load;
     }
     clear(truth);
+    const double pitch_mm = scene.skin.pillar_pitch_mm();
     for (const Contact& contact : std::get<std::vector<Contact>>(scene.load)) {
-      add_contact(contact, state_at(contact, time_of(index)), scene.skin.pillar_pitch_mm(), truth);
+      const ContactKey state = state_at(contact, time_of(index));
+      add_contact(contact, state, pitch_mm, truth);
+      if (!load.moments.empty()) {
+        add_pressure_moments(contact, state, pitch_mm, truth.rows, truth.cols, load.moments);
+      }
     }
-    for (const std::unique_ptr<BodyHistory>& body : bodies) add_forces(*body->forces(index), truth);
+    for (const std::unique_ptr<BodyHistory>& body : bodies) {
+      add_forces(*body->forces(index), truth, load.moments);
+    }
+    return load;
+  }
+
+  /// V of all sensels after dead zone and leak.
+  [[nodiscard]] std::vector<double> loaded_sensels(std::uint64_t index, ForceField& truth) const {
+    const Skin& skin = scene.skin;
+    FrameLoad frame_load = load(index, truth);
+    std::vector<double> signal(skin.sensels());
+    for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
+      const std::size_t first = std::size_t{2} * row * skin.cols;
+      read_pillars(row, scene, pillars, frame_load,
+                   std::span(signal).subspan(first, std::size_t{2} * skin.cols));
+    }
+    sensor.load(signal);
+    return signal;
+  }
+
+  void render_frame(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const {
+    std::vector<double> signal = loaded_sensels(index, truth);
+    if (memory) {
+      memory->apply(index, signal, [&](std::uint64_t earlier) {
+        ForceField forces(truth.rows, truth.cols);
+        return loaded_sensels(earlier, forces);
+      });
+    }
+    sensor.read_frame(index, signal, raw);
+  }
+
+  void render_rows(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const {
+    const Skin& skin = scene.skin;
+    FrameLoad frame_load = load(index, truth);
+    std::vector<double> signal(std::size_t{2} * skin.cols);
+    const std::span<double> upper = std::span(signal).first(skin.cols);
+    for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
+      read_pillars(row, scene, pillars, frame_load, signal);
+      sensor.read_row(index, 2 * row, upper, raw);
+      sensor.read_row(index, 2 * row + 1, std::span(signal).last(skin.cols), raw);
+    }
+    if (skin.rows % 2 != 0) {
+      std::ranges::fill(upper, 0.0);
+      sensor.read_row(index, skin.rows - 1, upper, raw);
+    }
   }
 
   [[nodiscard]] double time_of(std::uint64_t index) const {
@@ -110,8 +171,10 @@ struct Simulator::State {
   }
 
   Scene scene;
+  PillarModel pillars;
   Sensor sensor;
-  ForceField sweep_truth;  ///< empty where the load is not a sweep
+  std::unique_ptr<MemoryHistory> memory;  ///< null without hysteresis and creep
+  ForceField sweep_truth;                 ///< empty where the load is not a sweep
   std::vector<std::unique_ptr<BodyHistory>> bodies;
 };
 
@@ -128,17 +191,10 @@ double Simulator::time_of(std::uint64_t index) const { return state_->time_of(in
 
 void Simulator::render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const {
   state_->check_buffers(raw.view(), truth);
-  state_->load(index, truth);
-  const Skin& skin = state_->scene.skin;
-  SignalRows signals(skin.cols);
-  for (std::uint32_t row = 0; row < skin.pillar_rows(); ++row) {
-    read_pillars(row, skin.counts_per_newton, truth, signals);
-    state_->sensor.read_row(index, 2 * row, signals.upper, raw);
-    state_->sensor.read_row(index, 2 * row + 1, signals.lower, raw);
-  }
-  if (skin.rows % 2 != 0) {
-    std::fill(signals.upper.begin(), signals.upper.end(), 0.0);
-    state_->sensor.read_row(index, skin.rows - 1, signals.upper, raw);
+  if (state_->sensor.needs_frames()) {
+    state_->render_frame(index, raw, truth);
+  } else {
+    state_->render_rows(index, raw, truth);
   }
 }
 

@@ -55,6 +55,19 @@ drift_counts_per_s = 0.375
 dead_share = 0.0625
 power_law_exponent = 1.25
 power_law_reference_counts = 90
+pillar_leak_edge = 0.01
+pillar_leak_corner = 0.003
+pillar_arm_mm = 0.224
+shear_coefficient = 0.9
+leak_inside = 0.05
+leak_across = 0.02
+hysteresis = 0.06
+hysteresis_range_counts = 150
+creep_per_decade = 0.04
+wires = { tile = [32, 16], row_ohm = 50, column_ohm = 40, idle_row_ohm = 60, sensel_ohm = 9000 }
+[surface]
+bend_spread_counts_mm = 100
+path = [{ time_s = 0, curvature_per_mm = [0, 0, 0] }, { time_s = 2, curvature_per_mm = [0.02, 0.01, -0.03] }]
 [time]
 rate_hz = 250
 frames = 12
@@ -104,6 +117,31 @@ load_n = 0.5
   ASSERT_TRUE(scene.skin.power_law);
   EXPECT_EQ(scene.skin.power_law->exponent, 1.25);
   EXPECT_EQ(scene.skin.power_law->reference_counts, 90);
+  EXPECT_EQ(scene.sensor.shear_coefficient->y, 0.9);
+  EXPECT_EQ(scene.sensor.hysteresis_range_counts, 150);
+  EXPECT_EQ(scene.sensor.hysteresis, 0.06);
+  EXPECT_EQ(scene.sensor.creep_per_decade, 0.04);
+  const SensorEffects effects = Simulator(scene).calibration().effects;
+  EXPECT_EQ(effects.pillar_leak->edge, 0.01);
+  EXPECT_EQ(effects.pillar_leak->corner, 0.003);
+  EXPECT_EQ(effects.arm_mm, 0.224);
+  EXPECT_EQ(effects.shear_coefficient->x, 0.9);
+  EXPECT_EQ(effects.sensel_leak->inside, 0.05);
+  EXPECT_EQ(effects.sensel_leak->across, 0.02);
+  EXPECT_FALSE(effects.memory);
+  EXPECT_EQ(effects.wires->tile_rows, 32U);
+  EXPECT_EQ(effects.wires->tile_cols, 16U);
+  EXPECT_EQ(effects.wires->row_per_count, 50 * (1 / 9e6));
+  EXPECT_EQ(effects.wires->column_per_count, 40 * (1 / 9e6));
+  EXPECT_EQ(effects.wires->idle_per_count, 60 * (1 / 9e6));
+  ASSERT_TRUE(scene.bending);
+  EXPECT_EQ(scene.bending->spread_counts_mm, 100);
+  EXPECT_EQ(scene.bending->path.at(1).xy, -0.03);
+  EXPECT_EQ(parse_scene("[skin]\npillars = [2, 2]\n[sensor]\nresponse_curve = [[9, 8], [20, 30]]\n"
+                        "shear_coefficient = [0.8, 1.2]",
+                        "s")
+                .sensor.response_curve.loads,
+            (std::vector<double>{8, 30}));
   EXPECT_EQ(scene.rate_hz, 250);
   EXPECT_EQ(scene.frames, 12U);
   EXPECT_EQ(scene.seed, 99U);
@@ -339,7 +377,17 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "estimator",
                                    "segment_point",
                                    "angles",
-                                   "uncertainty"};
+                                   "uncertainty",
+                                   "pillar_arm_mm",
+                                   "shear_coefficient",
+                                   "hysteresis_range_counts",
+                                   "response_curve",
+                                   "wires",
+                                   "tile",
+                                   "idle_row_ohm",
+                                   "bend_spread_counts_mm",
+                                   "curvature_per_mm"};
+  for (const auto& quantity : kWireQuantities) keys.emplace_back(quantity.key);
   for (const auto& quantity : kSkinQuantities) keys.emplace_back(quantity.key);
   for (const auto& quantity : kSensorQuantities) keys.emplace_back(quantity.key);
   for (const auto& [quantity, required, applies] : kBodyQuantities) {

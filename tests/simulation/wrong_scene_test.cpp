@@ -38,13 +38,16 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
   const std::vector<WrongScene> table = {
       {"sise = 3",
        "s.toml:2: key 'sise' in the scene is unknown here; allowed: title, direction_sweep, "
-       "contact, body, skin, sensor, time, solver"},
+       "contact, body, skin, sensor, surface, time, solver"},
       {"title = 3", "s.toml:2: key 'title' in the scene is 3; allowed: a text in quotes"},
       {"sensor = 3", "s.toml:2: key 'sensor' in the scene is 3; allowed: a table, [sensor]"},
       {"[sensor]\n\nnoise = 1",
-       "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: dead_zone_counts, gain_spread, "
-       "tare_counts, tare_spread_counts, drift_counts_per_s, noise_counts, dead_share, adc_bits, "
-       "full_scale_counts, power_law_exponent, power_law_reference_counts"},
+       "s.toml:4: key 'noise' in [sensor] is unknown here; allowed: pillar_leak_edge, "
+       "pillar_leak_corner, leak_inside, leak_across, hysteresis, creep_per_decade, "
+       "dead_zone_counts, gain_spread, tare_counts, tare_spread_counts, drift_counts_per_s, "
+       "noise_counts, dead_share, pillar_arm_mm, shear_coefficient, hysteresis_range_counts, "
+       "response_curve, wires, adc_bits, full_scale_counts, power_law_exponent, "
+       "power_law_reference_counts"},
       {"[sensor]\nnoise_counts = -1",
        "s.toml:3: key 'noise_counts' in [sensor] is -1; allowed: a number in [0, 1000000]"},
       {"[sensor]\nnoise_counts = nan",
@@ -60,6 +63,34 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[sensor]\npower_law_exponent = 1.2",
        "s.toml:2: key 'power_law_reference_counts' in [sensor] is missing; allowed: a number in "
        "[0.001, 1000000]"},
+      {"[sensor]\nresponse_curve = [[1, 2], [3]]",
+       "s.toml:3: key 'response_curve' in [sensor] has an element that is no such pair; allowed: a "
+       "list of pairs, each a number in (0, 1000000000]"},
+      {"[sensor]\nresponse_curve = [[1, 2], [3, 2]]",
+       "s.toml:3: key 'response_curve' in [sensor] has [3, 2] after [1, 2]; allowed: readings and "
+       "loads that increase"},
+      {"[sensor]\nresponse_curve = [[1, 2], [3, 4]]\npower_law_exponent = 2\n"
+       "power_law_reference_counts = 9",
+       "s.toml:3: key 'response_curve' in [sensor] comes with power_law_exponent; allowed: one of "
+       "the two"},
+      {"[sensor]\nresponse_curve = [[1, 2]]",
+       "s.toml: the response curve has 1 readings and 1 loads; it needs 2 to 64 of each"},
+      {"[sensor]\nshear_coefficient = [1, 0]",
+       "s.toml:3: key 'shear_coefficient' in [sensor] has an element that is 0; allowed: a list of "
+       "2, each a number in [0.1, 10]"},
+      {"[sensor]\nwires = { row_ohm = 30 }",
+       "s.toml:3: key 'sensel_ohm' in [wires] is missing; allowed: resistance at full scale"},
+      {"[sensor]\nwires = { sensel_ohm = 1, tile = [8.5, 8] }",
+       "s.toml:3: key 'tile' in [wires] has a fraction; allowed: whole numbers, [rows, columns]"},
+      {"[sensor]\nwires = { sensel_ohm = 1, row_ohm = 30 }",
+       "s.toml: row_per_count is 0.11764705882352941; it must lie in [0, 0.1]"},
+      {"[surface]\nbend_spread_counts_mm = 3",
+       "s.toml:2: key 'curvature_per_mm' in [surface] is missing; allowed: a list of 3, [x, y, "
+       "xy], "
+       "each 1/mm"},
+      {"[surface]\npath = [{ time_s = 1, curvature_per_mm = [2, 0, 0] }]",
+       "s.toml:3: key 'curvature_per_mm' in path of [surface] has an element that is 2; allowed: a "
+       "list of 3, each a number in [-1, 1]"},
       {"[sensor]\nadc_bits = 8.0",
        "s.toml:3: key 'adc_bits' in [sensor] is 8; allowed: a whole number from 1 to 16"},
       {"[sensor]\nadc_bits = 17",

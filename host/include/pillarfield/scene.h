@@ -10,14 +10,40 @@
 
 #include "pillarfield/body.h"
 #include "pillarfield/contact.h"
+#include "pillarfield/sensor_effects.h"
 #include "pillarfield/skin.h"
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
 
-/// Deviations of a sensor from the model, absent by default. They apply in the order of the signal:
-/// dead zone, the skin's power law, sensitivity, tare, drift, noise, converter, dead sensels.
+/// Wires of a scanned array, as in WireCrosstalk: each row in turn is driven, all other rows and
+/// all columns are held at 0 V, and the current of each column is the reading.
+struct Wires {
+  std::uint32_t tile_rows = 64;  ///< sensels, 2..1024
+  std::uint32_t tile_cols = 64;
+  double row_ohm = 0;                  ///< resistance of a driven row
+  double column_ohm = 0;               ///< of a column
+  std::optional<double> idle_row_ohm;  ///< of a row that is not driven; unset: row_ohm
+  double sensel_ohm = 1e4;             ///< resistance of a sensel that reads full scale
+};
+
+/// Deviations of a sensor from the model, absent by default, in the order of the signal: pillars
+/// (leak, arm, shear coefficient), dead zone, leak of sensels, memory, response curve or the skin's
+/// power law, sensitivity, tare, wires, drift, noise, converter, dead sensels.
 struct SensorModel {
+  double pillar_leak_edge = 0;  ///< PillarLeak
+  double pillar_leak_corner = 0;
+  std::optional<double> pillar_arm_mm;  ///< SensorEffects::arm_mm
+  std::optional<ShearCoefficient> shear_coefficient;
+  double leak_inside = 0;  ///< SenselLeak
+  double leak_across = 0;
+  /// Largest width of the loop of a cycle from zero to hysteresis_range_counts and back, as a
+  /// fraction of that range
+  double hysteresis = 0;
+  std::optional<double> hysteresis_range_counts;  ///< unset: full scale, or 255
+  double creep_per_decade = 0;  ///< rise of a reading in ten times the time, as a fraction
+  ResponseCurve response_curve;
+  std::optional<Wires> wires;
   double dead_zone_counts = 0;    ///< load below which a sensel reads zero
   double gain_spread = 0;         ///< relative standard deviation of sensitivity, < 0.3
   double tare_counts = 0;         ///< mean reading of an unloaded sensel
@@ -26,6 +52,20 @@ struct SensorModel {
   double drift_counts_per_s = 0;  ///< standard deviation over sensels of a constant drift
   std::optional<int> adc_bits;    ///< converter, 1 to 16 bits; unset: float32, not rounded
   double dead_share = 0;          ///< fraction of sensels that always read zero, [0, 1]
+};
+
+/// Curvature of the skin at a time, 1/mm; linear in time between the keys of a path.
+struct CurvatureKey {
+  double time_s = 0;
+  double x = 0;
+  double y = 0;
+  double xy = 0;
+};
+
+/// Change of the tare with bending (Calibration::bend_x): normal random patterns.
+struct Bending {
+  double spread_counts_mm = 0;  ///< standard deviation of the patterns
+  std::vector<CurvatureKey> path;
 };
 
 /// A frame that sweeps all directions of force: phi along rows, theta down columns, one block per
@@ -42,6 +82,7 @@ struct Scene {
   std::string title;
   Skin skin;
   SensorModel sensor;
+  std::optional<Bending> bending;
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;

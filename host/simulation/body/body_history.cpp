@@ -55,6 +55,31 @@ std::int64_t pillar_of(std::int64_t cell) {
   return (cell >= 0 ? cell : cell - (kCellsPerPillar - 1)) / kCellsPerPillar;
 }
 
+/// The sum of a traction over a pillar's cells, and its first moments about the pillar's axis, in
+/// cells to the right and up.
+struct TractionMoments {
+  double sum = 0;
+  double right = 0;
+  double up = 0;
+};
+
+TractionMoments moments_over(const CellField& traction, const CellBox& pillar,
+                             const CellBox& contact) {
+  TractionMoments moments;
+  if (traction.box.empty()) return moments;
+  constexpr double kToAxis = static_cast<double>(kCellsPerPillar - 1) / 2;
+  const CellBox cells = intersection(pillar, contact);
+  for (std::int64_t row = cells.first_row; row < cells.end_row(); ++row) {
+    for (std::int64_t col = cells.first_col; col < cells.end_col(); ++col) {
+      const double value = traction.values[traction.index(row, col)];
+      moments.sum += value;
+      moments.right += value * (static_cast<double>(col - pillar.first_col) - kToAxis);
+      moments.up += value * (kToAxis - static_cast<double>(row - pillar.first_row));
+    }
+  }
+  return moments;
+}
+
 std::uint64_t last_frame_of(const Body& body, double rate_hz) {
   return static_cast<std::uint64_t>(std::ceil(body.path.back().time_s * rate_hz));
 }
@@ -241,24 +266,17 @@ BodyForces BodyHistory::on_pillars(const NormalContact& normal, const CellVector
   forces.reserve(pillars.cells());
   for (std::int64_t row = pillars.first_row; row < pillars.end_row(); ++row) {
     for (std::int64_t col = pillars.first_col; col < pillars.end_col(); ++col) {
-      const CellBox cells = intersection(
-          {row * kCellsPerPillar, col * kCellsPerPillar, kCellsPerPillar, kCellsPerPillar},
-          contact);
-      const auto force_n = [&](const CellField& traction) {
-        if (traction.box.empty()) return 0.0;
-        double sum = 0;
-        for (std::int64_t r = cells.first_row; r < cells.end_row(); ++r) {
-          for (std::int64_t c = cells.first_col; c < cells.end_col(); ++c) {
-            sum += traction.values[traction.index(r, c)];
-          }
-        }
-        return sum * traction_to_force_n_;
-      };
-      const double pressing = force_n(normal.pressure);
-      if (pressing == 0) continue;
+      const CellBox cells = {row * kCellsPerPillar, col * kCellsPerPillar, kCellsPerPillar,
+                             kCellsPerPillar};
+      const TractionMoments pressure = moments_over(normal.pressure, cells, contact);
+      if (pressure.sum == 0) continue;
+      const double to_n = traction_to_force_n_;
+      const double to_n_mm = to_n * grid_.cell_mm();
       const auto pillar =
           static_cast<std::size_t>(row) * pillar_cols_ + static_cast<std::size_t>(col);
-      forces.push_back({pillar, force_n(shear.x), force_n(shear.y), pressing});
+      forces.push_back({pillar, moments_over(shear.x, cells, contact).sum * to_n,
+                        moments_over(shear.y, cells, contact).sum * to_n, pressure.sum * to_n,
+                        pressure.right * to_n_mm, pressure.up * to_n_mm});
     }
   }
   return forces;

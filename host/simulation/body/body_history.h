@@ -17,12 +17,15 @@
 
 namespace pillarfield {
 
-/// Force of a body on one pillar, N; signs as in ForceField.
+/// Force of a body on one pillar, N, with signs as in ForceField, and the moments of its pressure,
+/// N·mm, as in PressureMoments.
 struct BodyForce {
   std::size_t pillar;  ///< row times columns plus column
   double shear_x;
   double shear_y;
   double normal;
+  double moment_x;
+  double moment_y;
 };
 using BodyForces = std::vector<BodyForce>;
 

@@ -48,6 +48,14 @@ class Footprint {
   /// Fractions of the normal load.
   [[nodiscard]] Shares pressure() const { return pressure_within(centre_, radius_mm_); }
 
+  /// First moments of the pressure of a normal load of 1.
+  [[nodiscard]] ShareMoments moments() const {
+    if (is_cylinder()) {
+      return strip_moments(grid_, box_, {centre_, direction_, radius_mm_, contact_.length_mm});
+    }
+    return disc_moments(grid_, box_, {centre_, radius_mm_}, pressure_corner_function());
+  }
+
   /// Reduction of full-sliding shear by the stick zone: concentric under a sphere (C11), at the
   /// leading edge under a roller (C20).
   [[nodiscard]] Shares stick() const {
@@ -67,6 +75,10 @@ class Footprint {
  private:
   [[nodiscard]] bool is_cylinder() const { return contact_.shape == ContactShape::cylinder; }
 
+  [[nodiscard]] CornerFunction pressure_corner_function() const {
+    return contact_.shape == ContactShape::sphere ? sphere_pressure_corner : punch_pressure_corner;
+  }
+
   [[nodiscard]] PlaneVector reach() const {
     if (!is_cylinder()) return {radius_mm_, radius_mm_};
     const double along = contact_.length_mm / 2;
@@ -78,9 +90,7 @@ class Footprint {
     if (is_cylinder()) {
       return strip_shares(grid_, box_, {centre, direction_, radius_mm, contact_.length_mm});
     }
-    Shares shares = disc_shares(
-        grid_, box_, {centre, radius_mm},
-        contact_.shape == ContactShape::sphere ? sphere_pressure_corner : punch_pressure_corner);
+    Shares shares = disc_shares(grid_, box_, {centre, radius_mm}, pressure_corner_function());
     // Rounding may make a cell at the rim negative.
     for (double& share : shares) share = std::max(0.0, share);
     return shares;
@@ -168,6 +178,20 @@ void add_contact(const Contact& contact, const ContactKey& state, double pitch_m
   const Shares tangential = tangential_shares(contact, footprint, std::move(pressure));
   add(tangential, friction_n * footprint.direction().x, forces.shear_x);
   add(tangential, friction_n * footprint.direction().y, forces.shear_y);
+}
+
+void add_pressure_moments(const Contact& contact, const ContactKey& state, double pitch_mm,
+                          std::uint32_t rows, std::uint32_t cols, PressureMoments& moments) {
+  if (!(state.load_n > 0)) return;
+  const PillarGrid grid(rows, cols, pitch_mm);
+  const Footprint footprint(contact, state, grid);
+  const PillarBox& box = footprint.box();
+  const ShareMoments shares = footprint.moments();
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const std::size_t pillar = (box.first_row + i / box.cols) * cols + box.first_col + i % box.cols;
+    moments.x[pillar] += state.load_n * shares[i].x;
+    moments.y[pillar] += state.load_n * shares[i].y;
+  }
 }
 
 }  // namespace pillarfield

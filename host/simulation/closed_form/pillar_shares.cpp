@@ -1,6 +1,8 @@
 #include "simulation/closed_form/pillar_shares.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -49,6 +51,82 @@ LinePoint on_strip(const Strip& strip, double x_mm, double y_mm) {
           dy * strip.direction.x - dx * strip.direction.y};
 }
 
+/// A rectangle of the skin, mm.
+struct Rectangle {
+  double left;
+  double bottom;
+  double right;
+  double top;
+};
+
+/// Nodes and weights of Gauss's rule on [0, 1].
+struct GaussNode {
+  double at;
+  double weight;
+};
+constexpr std::array<GaussNode, 8> kGauss = {{
+    {0.0198550717512319, 0.0506142681451881},
+    {0.1016667612931866, 0.1111905172266872},
+    {0.2372337950418355, 0.1568533229389436},
+    {0.4082826787521751, 0.1813418916891810},
+    {0.5917173212478249, 0.1813418916891810},
+    {0.7627662049581645, 0.1568533229389436},
+    {0.8983332387068134, 0.1111905172266872},
+    {0.9801449282487681, 0.0506142681451881},
+}};
+
+/// The interval [low, high] within [from, to].
+struct Clipped {
+  Clipped(double low, double high, double from, double to)
+      : begin(std::clamp(from, low, high)), end(std::clamp(to, low, high)) {}
+  double begin;
+  double end;
+};
+
+/// First moments about a cell's middle of the pressure whose integral over a rectangle is `load`,
+/// zero outside `contact`. With F(x), the load to the left of x: ∬ p (x − middle) =
+/// F(right) (right − left)/2 − ∫ F.
+template <class Load>
+PlaneVector cell_moment(const Rectangle& cell, const Rectangle& contact, const Load& load) {
+  const double whole = load(cell);
+  if (!(whole > 0)) return {0, 0};
+  const Clipped x(cell.left, cell.right, contact.left, contact.right);
+  const Clipped y(cell.bottom, cell.top, contact.bottom, contact.top);
+  PlaneVector mean = {0, 0};
+  for (const auto& [at, weight] : kGauss) {
+    mean.x += weight * load({cell.left, cell.bottom, std::lerp(x.begin, x.end, at), cell.top});
+    mean.y += weight * load({cell.left, cell.bottom, cell.right, std::lerp(y.begin, y.end, at)});
+  }
+  return {whole * (x.end - (cell.left + cell.right) / 2) - (x.end - x.begin) * mean.x,
+          whole * (y.end - (cell.bottom + cell.top) / 2) - (y.end - y.begin) * mean.y};
+}
+
+template <class Load>
+ShareMoments box_moments(const PillarGrid& grid, const PillarBox& box, const Rectangle& contact,
+                         const Load& load) {
+  ShareMoments moments;
+  moments.reserve(box.pillars());
+  for (std::uint32_t row = box.first_row; row < box.first_row + box.rows; ++row) {
+    for (std::uint32_t col = box.first_col; col < box.first_col + box.cols; ++col) {
+      const Rectangle cell = {grid.left_mm(col), grid.top_mm(row + 1), grid.left_mm(col + 1),
+                              grid.top_mm(row)};
+      moments.push_back(cell_moment(cell, contact, load));
+    }
+  }
+  return moments;
+}
+
+Rectangle around(PlaneVector centre, double x, double y) {
+  return {centre.x - x, centre.y - y, centre.x + x, centre.y + y};
+}
+
+/// The integral of a strip's pressure over a rectangle.
+double strip_share(const Strip& strip, const Rectangle& at) {
+  return line_share({on_strip(strip, at.left, at.bottom), on_strip(strip, at.right, at.bottom),
+                     on_strip(strip, at.right, at.top), on_strip(strip, at.left, at.top)},
+                    strip.half_width_mm, strip.length_mm);
+}
+
 }  // namespace
 
 Shares disc_shares(const PillarGrid& grid, const PillarBox& box, const Disc& disc,
@@ -68,6 +146,19 @@ Shares disc_shares(const PillarGrid& grid, const PillarBox& box, const Disc& dis
   return shares;
 }
 
+ShareMoments disc_moments(const PillarGrid& grid, const PillarBox& box, const Disc& disc,
+                          CornerFunction corner) {
+  const double scale = 1 / disc.radius_mm;
+  const Rectangle contact = around(disc.centre_mm, disc.radius_mm, disc.radius_mm);
+  return box_moments(grid, box, contact, [&](const Rectangle& at) {
+    const double x0 = (at.left - disc.centre_mm.x) * scale;
+    const double x1 = (at.right - disc.centre_mm.x) * scale;
+    const double y0 = (at.bottom - disc.centre_mm.y) * scale;
+    const double y1 = (at.top - disc.centre_mm.y) * scale;
+    return (corner(x1, y1) - corner(x0, y1)) - (corner(x1, y0) - corner(x0, y0));
+  });
+}
+
 Shares strip_shares(const PillarGrid& grid, const PillarBox& box, const Strip& strip) {
   Shares shares;
   shares.reserve(box.pillars());
@@ -75,14 +166,19 @@ Shares strip_shares(const PillarGrid& grid, const PillarBox& box, const Strip& s
     const double top = grid.top_mm(row);
     const double bottom = grid.top_mm(row + 1);
     for (std::uint32_t col = box.first_col; col < box.first_col + box.cols; ++col) {
-      const double left = grid.left_mm(col);
-      const double right = grid.left_mm(col + 1);
-      shares.push_back(line_share({on_strip(strip, left, bottom), on_strip(strip, right, bottom),
-                                   on_strip(strip, right, top), on_strip(strip, left, top)},
-                                  strip.half_width_mm, strip.length_mm));
+      shares.push_back(strip_share(strip, {grid.left_mm(col), bottom, grid.left_mm(col + 1), top}));
     }
   }
   return shares;
+}
+
+ShareMoments strip_moments(const PillarGrid& grid, const PillarBox& box, const Strip& strip) {
+  const PlaneVector d = {std::abs(strip.direction.x), std::abs(strip.direction.y)};
+  const double along = strip.length_mm / 2;
+  const Rectangle contact = around(strip.centre_mm, strip.half_width_mm * d.x + along * d.y,
+                                   strip.half_width_mm * d.y + along * d.x);
+  return box_moments(grid, box, contact,
+                     [&](const Rectangle& at) { return strip_share(strip, at); });
 }
 
 }  // namespace pillarfield

@@ -9,6 +9,7 @@
 #include "pillarfield/error.h"
 #include "simulation/body/body_path.h"
 #include "simulation/closed_form/direction_sweep.h"
+#include "simulation/effects/known_effects.h"
 
 namespace pillarfield {
 namespace {
@@ -19,10 +20,58 @@ void check_range(const std::string& where, std::string_view key, double value, c
               fmt::format("it must be {}", range.text()));
 }
 
+template <class Key>
+void check_times(const std::vector<Key>& path, const std::string& where) {
+  if (path.empty()) throw Error(where, "path is empty", "it needs a key at least");
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    check_range(where, "time_s", path[i].time_s, kPathTimeS);
+    if (i == 0 || path[i].time_s > path[i - 1].time_s) continue;
+    throw Error(where, fmt::format("time_s is {} after {}", path[i].time_s, path[i - 1].time_s),
+                "times must rise");
+  }
+}
+
+template <class Key>
+void check_path(const std::vector<Key>& path, const std::string& where) {
+  check_times(path, where);
+  for (const Key& key : path) {
+    check_range(where, "x_mm", key.x_mm, kPathPositionMm);
+    check_range(where, "y_mm", key.y_mm, kPathPositionMm);
+    check_range(where, "load_n", key.load_n, kPathLoadN);
+  }
+}
+
+void check_effects(const SensorModel& sensor, const Skin& skin, const std::string& where) {
+  if (sensor.hysteresis_range_counts) {
+    check_range(where, "hysteresis_range_counts", *sensor.hysteresis_range_counts,
+                kHysteresisRangeCounts);
+  }
+  if (sensor.wires) {
+    for (const auto& [key, member, range] : kWireQuantities) {
+      check_range(where, key, (*sensor.wires).*member, range);
+    }
+  }
+  if (!sensor.response_curve.empty() && skin.power_law) {
+    throw Error(where, "the sensor has a response curve and a power law", "leave one of them out");
+  }
+  check(known_effects(sensor, skin), where);
+}
+
+void check_bending(const Bending& bending, const std::string& where) {
+  check_range(where, "bend_spread_counts_mm", bending.spread_counts_mm, kBendSpread);
+  check_times(bending.path, where);
+  for (const CurvatureKey& key : bending.path) {
+    for (const double value : {key.x, key.y, key.xy}) {
+      check_range(where, "curvature_per_mm", value, kCurvaturePerMm);
+    }
+  }
+}
+
 void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string& where) {
   for (const auto& [key, member, range] : kSensorQuantities) {
     check_range(where, key, sensor.*member, range);
   }
+  check_effects(sensor, skin, where);
   if (!sensor.adc_bits) return;
   check_range(where, "adc_bits", *sensor.adc_bits, {1, kMaxAdcBits});
   const double largest = *full_scale_of(sensor);
@@ -31,20 +80,6 @@ void check_sensor(const SensorModel& sensor, const Skin& skin, const std::string
   throw Error(where, fmt::format("full_scale_counts is {}", full_scale),
               fmt::format("with adc_bits = {} it must be a whole number up to {}", *sensor.adc_bits,
                           largest));
-}
-
-template <class Key>
-void check_path(const std::vector<Key>& path, const std::string& where) {
-  if (path.empty()) throw Error(where, "path is empty", "it needs a key at least");
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    check_range(where, "time_s", path[i].time_s, kPathTimeS);
-    check_range(where, "x_mm", path[i].x_mm, kPathPositionMm);
-    check_range(where, "y_mm", path[i].y_mm, kPathPositionMm);
-    check_range(where, "load_n", path[i].load_n, kPathLoadN);
-    if (i == 0 || path[i].time_s > path[i - 1].time_s) continue;
-    throw Error(where, fmt::format("time_s is {} after {}", path[i].time_s, path[i - 1].time_s),
-                "times must rise");
-  }
 }
 
 void check_contact(const Contact& contact, const std::string& where) {
@@ -161,6 +196,7 @@ void check(const Scene& scene, const char* where) {
                 fmt::format("a scene takes {} at most", kMaxSkinSensels));
   }
   check_sensor(scene.sensor, scene.skin, where);
+  if (scene.bending) check_bending(*scene.bending, where);
   check_range(where, "rate_hz", scene.rate_hz, kRateHz);
   check_range(where, "frames", scene.frames, {1, kMaxFrames});
   if (scene.parity_tolerance_counts) {

@@ -27,7 +27,13 @@ inline constexpr std::array<Quantity<Skin>, 3> kSkinQuantities = {{
 }};
 inline constexpr Range kFullScaleCounts = {0, kMaxCounts, true};
 
-inline constexpr std::array<Quantity<SensorModel>, 7> kSensorQuantities = {{
+inline constexpr std::array<Quantity<SensorModel>, 13> kSensorQuantities = {{
+    {"pillar_leak_edge", &SensorModel::pillar_leak_edge, {-0.2, 0.2}},
+    {"pillar_leak_corner", &SensorModel::pillar_leak_corner, {-0.2, 0.2}},
+    {"leak_inside", &SensorModel::leak_inside, {-0.2, 0.2}},
+    {"leak_across", &SensorModel::leak_across, {-0.2, 0.2}},
+    {"hysteresis", &SensorModel::hysteresis, {0, 0.3}},
+    {"creep_per_decade", &SensorModel::creep_per_decade, {0, 0.3}},
     {"dead_zone_counts", &SensorModel::dead_zone_counts, {0, 1e6}},
     {"gain_spread", &SensorModel::gain_spread, {0, 0.3, false, true}},
     {"tare_counts", &SensorModel::tare_counts, {0, 1e6}},
@@ -37,6 +43,19 @@ inline constexpr std::array<Quantity<SensorModel>, 7> kSensorQuantities = {{
     {"dead_share", &SensorModel::dead_share, {0, 1}},
 }};
 inline constexpr int kMaxAdcBits = 16;
+inline constexpr Range kPillarArmMm = {1e-3, 1e3};
+inline constexpr Range kShearCoefficient = {0.1, 10};
+inline constexpr Range kHysteresisRangeCounts = {1e-3, 1e9};
+inline constexpr Range kCurveCounts = {0, 1e9, true};
+inline constexpr Range kTileSensels = {2, 1024};
+inline constexpr std::array<Quantity<Wires>, 3> kWireQuantities = {{
+    {"row_ohm", &Wires::row_ohm, {0, 1e9}},
+    {"column_ohm", &Wires::column_ohm, {0, 1e9}},
+    {"sensel_ohm", &Wires::sensel_ohm, {1e-3, 1e12}},
+}};
+inline constexpr Range kIdleRowOhm = {0, 1e9};
+inline constexpr Range kBendSpread = {0, 1e6};
+inline constexpr Range kCurvaturePerMm = {-1, 1};
 inline constexpr Range kPowerLawExponent = {kMinExponent, kMaxExponent};
 inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceCounts};
 

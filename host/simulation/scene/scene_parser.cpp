@@ -29,6 +29,25 @@ void read_quantities(TomlSection& section, const std::array<Quantity<Part>, coun
   }
 }
 
+// [surface]
+
+CurvatureKey read_curvature(TomlSection& section) {
+  const auto curvature = section.numbers("curvature_per_mm", 3, kCurvaturePerMm);
+  if (!curvature) section.fail_missing("curvature_per_mm", "a list of 3, [x, y, xy], each 1/mm");
+  return {0, (*curvature)[0], (*curvature)[1], (*curvature)[2]};
+}
+
+void read_surface(TomlSection section, Scene& scene) {
+  if (!section.is_present()) return;
+  Bending bending;
+  bending.spread_counts_mm =
+      section.number("bend_spread_counts_mm", kBendSpread).value_or(bending.spread_counts_mm);
+  bending.path =
+      read_path<CurvatureKey>(section, "path of [surface]", {"curvature_per_mm"}, read_curvature);
+  scene.bending = std::move(bending);
+  section.finish();
+}
+
 // [sensor]
 
 /// Full scale of the sensor: from the scene, else the converter's largest value.
@@ -58,8 +77,62 @@ std::optional<PowerLaw> read_power_law(TomlSection& section) {
   return PowerLaw{*exponent, *reference};
 }
 
+/// Reads the knots of a response curve.
+ResponseCurve read_response_curve(TomlSection& section) {
+  ResponseCurve curve;
+  const auto knots = section.pairs("response_curve", kCurveCounts);
+  if (!knots) return curve;
+  for (const auto& [reading, load] : *knots) {
+    if (!curve.empty() && !(reading > curve.readings.back() && load > curve.loads.back())) {
+      section.fail("response_curve",
+                   fmt::format("has [{}, {}] after [{}, {}]", reading, load, curve.readings.back(),
+                               curve.loads.back()),
+                   "readings and loads that increase");
+    }
+    curve.readings.push_back(reading);
+    curve.loads.push_back(load);
+  }
+  if (section.has("power_law_exponent")) {
+    section.fail("response_curve", "comes with power_law_exponent", "one of the two");
+  }
+  return curve;
+}
+
+std::optional<ShearCoefficient> read_shear_coefficient(TomlSection& section) {
+  constexpr std::string_view kKey = "shear_coefficient";
+  if (section.is_list(kKey)) {
+    const auto xy = *section.numbers(kKey, 2, kShearCoefficient);
+    return ShearCoefficient{xy[0], xy[1]};
+  }
+  const auto both = section.number(kKey, kShearCoefficient);
+  return both ? std::optional(ShearCoefficient{*both, *both}) : std::nullopt;
+}
+
+std::optional<Wires> read_wires(TomlSection section) {
+  if (!section.is_present()) return std::nullopt;
+  Wires wires;
+  read_quantities(section, kWireQuantities, wires);
+  if (!section.has("sensel_ohm")) section.fail_missing("sensel_ohm", "resistance at full scale");
+  wires.idle_row_ohm = section.number("idle_row_ohm", kIdleRowOhm);
+  if (const auto tile = section.numbers("tile", 2, kTileSensels)) {
+    wires.tile_rows = static_cast<std::uint32_t>((*tile)[0]);
+    wires.tile_cols = static_cast<std::uint32_t>((*tile)[1]);
+    if (wires.tile_rows != (*tile)[0] || wires.tile_cols != (*tile)[1]) {
+      section.fail("tile", "has a fraction", "whole numbers, [rows, columns]");
+    }
+  }
+  section.finish();
+  return wires;
+}
+
 void read_sensor(TomlSection section, Scene& scene) {
   read_quantities(section, kSensorQuantities, scene.sensor);
+  scene.sensor.pillar_arm_mm = section.number("pillar_arm_mm", kPillarArmMm);
+  scene.sensor.shear_coefficient = read_shear_coefficient(section);
+  scene.sensor.hysteresis_range_counts =
+      section.number("hysteresis_range_counts", kHysteresisRangeCounts);
+  scene.sensor.response_curve = read_response_curve(section);
+  scene.sensor.wires = read_wires(section.table("wires"));
   if (const auto bits = section.whole_number("adc_bits", 1, kMaxAdcBits)) {
     scene.sensor.adc_bits = static_cast<int>(*bits);
   }
@@ -302,6 +375,7 @@ Scene read_scene(TomlSection root, const std::filesystem::path& folder) {
   read_load(root, folder, scene);
   read_skin(root.table("skin"), scene);
   read_sensor(root.table("sensor"), scene);
+  read_surface(root.table("surface"), scene);
   read_time(root.table("time"), scene);
   read_solver(root.table("solver"), scene);
   root.finish();

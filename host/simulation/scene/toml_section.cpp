@@ -83,6 +83,32 @@ std::optional<std::vector<double>> TomlSection::numbers(std::string_view key, st
   return values;
 }
 
+std::optional<std::vector<std::array<double, 2>>> TomlSection::pairs(std::string_view key,
+                                                                     const Range& range) {
+  const toml::node* node = find(key);
+  if (!node) return std::nullopt;
+  const std::string allowed = fmt::format("a list of pairs, each {}", range.text());
+  const toml::array* array = node->as_array();
+  if (!array || array->empty()) fail_at(node->source(), key, describe(*node), allowed);
+  std::vector<std::array<double, 2>> values;
+  for (const toml::node& element : *array) {
+    const toml::array* pair = element.as_array();
+    const bool is_pair = pair && pair->size() == 2;
+    const auto first = is_pair ? number_in(*pair->get(0), range) : std::nullopt;
+    const auto second = is_pair ? number_in(*pair->get(1), range) : std::nullopt;
+    if (!first || !second) {
+      fail_at(element.source(), key, "has an element that is no such pair", allowed);
+    }
+    values.push_back({*first, *second});
+  }
+  return values;
+}
+
+bool TomlSection::is_list(std::string_view key) const {
+  const toml::node* node = table_ ? table_->get(key) : nullptr;
+  return node && node->is_array();
+}
+
 std::optional<std::vector<TomlSection>> TomlSection::tables(std::string_view key,
                                                             const std::string& title) {
   const toml::node* node = find(key);

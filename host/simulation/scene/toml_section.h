@@ -2,6 +2,7 @@
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -35,6 +36,9 @@ class TomlSection {
   /// A list of `count` numbers; of at least one if `count` is zero.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count,
                                              const Range& range);
+  /// A list of pairs of numbers.
+  std::optional<std::vector<std::array<double, 2>>> pairs(std::string_view key, const Range& range);
+  [[nodiscard]] bool is_list(std::string_view key) const;
   /// A list of at least one table.
   std::optional<std::vector<TomlSection>> tables(std::string_view key, const std::string& title);
 
