@@ -68,9 +68,7 @@ std::vector<float> activation_thresholds(const SolverPlan& plan) {
     const float reading = single_precision::activation_threshold(
         tare, gain, threshold, static_cast<float>(range.step), lowest);
     thresholds[i] = std::min(std::max(reading, lowest), highest);
-    if (!calibration.mask.empty() && calibration.mask[i] == 0) {
-      thresholds[i] = static_cast<float>(range.never);
-    }
+    if (!is_good(calibration, i)) thresholds[i] = static_cast<float>(range.never);
   }
   return thresholds;
 }

@@ -16,7 +16,7 @@ std::size_t tiles_along(std::size_t sensels, std::size_t tile) {
 float summed_reading(const SolverPlan& plan, const FrameView& frame, std::size_t row,
                      std::size_t col) {
   const auto& mask = plan.calibration.mask;
-  if (!mask.empty() && mask[row * frame.cols + col] == 0) return 0;
+  if (!mask.empty() && mask[row * frame.cols + col] != 1) return 0;
   const auto reading = raw_reading(frame, row, col);
   return std::abs(reading) <= static_cast<float>(kMaxCounts) ? reading : 0;
 }

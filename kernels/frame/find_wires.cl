@@ -9,7 +9,7 @@
 PF_INLINE float reading_at(global const PF_SENSEL* raw, Calibration calibration, size_t offset) {
   const float reading = (float)*raw;
 #ifdef PF_MASK
-  if (PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE)[offset] == 0) return 0.0f;
+  if (PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE)[offset] != 1) return 0.0f;
 #endif
 #ifdef PF_LARGEST_READING
   if (!(fabs(reading) <= (float)(PF_LARGEST_READING))) return 0.0f;

@@ -54,6 +54,7 @@ PF_INLINE Sensel valid_sensel(Sensel sensel) {
   const Mask none = (Mask)(0);
   sensel.missing = none;
   sensel.saturated = none;
+  sensel.absent = none;
   return sensel;
 }
 

@@ -104,7 +104,7 @@ typedef struct {
   Counts tare;
   Real gain;
   Counts dead_zone;
-  Counts good; /* zero where the sensel is masked */
+  Counts good; /* 1; 0 where the sensel is masked, 2 where the sensor has none */
 #ifndef PF_WHOLE
   Wires wires;
 #endif

@@ -32,7 +32,7 @@ static inline Real leak_source(Sensel sensel, Real threshold) {
 
 /* A missing sensel is taken to leak what its neighbour `beside` does. */
 static inline Real source_or(Sensel sensel, Real source, Real beside) {
-  return sensel.missing ? beside : source;
+  return (sensel.missing && !sensel.absent) ? beside : source;
 }
 
 /* Subtracts what an active sensel receives; an inactive one stays inactive. */
