@@ -27,12 +27,12 @@ Skin skin_of(const SkinCalibration& calibration) {
   return skin;
 }
 
-/// Combines two masks, either of which may be empty (all good).
+/// Combines two masks, either of which may be empty (all good). Absent in one: absent.
 std::vector<std::uint8_t> both_good(const std::vector<std::uint8_t>& a,
                                     std::vector<std::uint8_t> b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
-  for (std::size_t i = 0; i < b.size(); ++i) b[i] = a[i] != 0 ? b[i] : 0;
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] = a[i] == kGood || b[i] == kAbsent ? b[i] : a[i];
   return b;
 }
 
@@ -41,7 +41,7 @@ std::vector<double> corrected_noise(const Calibration& planes) {
   std::vector<double> noise;
   noise.reserve(planes.noise.size());
   for (std::size_t i = 0; i < planes.noise.size(); ++i) {
-    if (!planes.mask.empty() && planes.mask[i] == 0) continue;
+    if (!is_good(planes, i)) continue;
     const double gain = planes.gain.empty() ? 1 : planes.gain[i];
     noise.push_back(gain * planes.noise[i]);
   }

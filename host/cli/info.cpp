@@ -150,7 +150,8 @@ Json facts_of_calibration(const std::string& file) {
                 {"sensel_rows", calibration.rows},
                 {"sensel_cols", calibration.cols},
                 {"planes", plane_names(calibration.planes)},
-                {"masked", count_masked(calibration.planes)}};
+                {"masked", count_masked(calibration.planes)},
+                {"absent", count_absent(calibration.planes)}};
   const auto add = [&](const char* key, const std::optional<double>& value) {
     if (value) facts[key] = *value;
   };

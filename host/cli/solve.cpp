@@ -188,12 +188,18 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
+/// Number of pillars without any sensel, over all frames.
+std::uint64_t pillars_without_sensels(const FrameSource& source, const SolverPlan& plan) {
+  return source.frames() * count_pillars_without_sensels(plan.calibration, plan.skin);
+}
+
 /// Warns of a recording that seems to lack its tare: nearly all pillars of a real skin in contact.
 void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
                   const RegionCount& regions) {
   constexpr double kNearlyAll = 0.95;
-  if (source.has_truth() || !plan.calibration.tare.empty() || regions.all() == 0 ||
-      static_cast<double>(regions.in_contact()) < kNearlyAll * static_cast<double>(regions.all())) {
+  const auto present = static_cast<double>(regions.all() - pillars_without_sensels(source, plan));
+  if (source.has_truth() || !plan.calibration.tare.empty() || !(present > 0) ||
+      static_cast<double>(regions.in_contact()) < kNearlyAll * present) {
     return;
   }
   fmt::print(stderr,

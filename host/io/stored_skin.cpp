@@ -47,13 +47,13 @@ std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& s
                                   const std::string& place) {
   std::vector<std::uint8_t> mask(plane.size());
   for (std::size_t i = 0; i < plane.size(); ++i) {
-    if (plane[i] != 0.0f && plane[i] != 1.0f) {
+    if (plane[i] != kMissing && plane[i] != kGood && plane[i] != kAbsent) {
       throw Error(place,
                   fmt::format("calibration plane 'mask' is {} at row {}, column {}", plane[i],
                               i / skin.cols, i % skin.cols),
-                  "it must be 0 or 1");
+                  "it must be 0, 1 or 2");
     }
-    mask[i] = plane[i] == 1.0f ? 1 : 0;
+    mask[i] = static_cast<std::uint8_t>(plane[i]);
   }
   return mask;
 }

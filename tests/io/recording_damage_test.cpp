@@ -248,13 +248,13 @@ const RecordingDamage kRecordingDamages[] = {
     {"dead zone beyond any reading",
      [](hid_t f) { set_first(f, "/calibration/dead_zone", 256); },
      {"dead_zone' is 256", "row 1, column 1", "[0, 255]"}},
-    {"mask 2", [](hid_t f) { set_first(f, "/calibration/mask", 2); }, {"mask' is 2", "0 or 1"}},
+    {"mask 3", [](hid_t f) { set_first(f, "/calibration/mask", 3); }, {"mask' is 3", "0, 1 or 2"}},
     {"mask NaN",
      [](hid_t f) {
        replace(f, "/calibration/mask", H5T_IEEE_F32LE, {6, 6});
        set_first(f, "/calibration/mask", kFloatNan);
      },
-     {"mask' is nan", "row 1, column 1", "0 or 1"}},
+     {"mask' is nan", "row 1, column 1", "0, 1 or 2"}},
     {"raw of 12 bits",
      [](hid_t f) {
        const hid_t type = H5Tcopy(H5T_STD_U16LE);

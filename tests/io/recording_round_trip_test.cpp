@@ -49,7 +49,7 @@ Calibration random_calibration(const Skin& skin, SenselType type, std::mt19937& 
   if (coin()) calibration.effects.sensel_leak = {0.2, -0.01};
   if (coin()) calibration.effects.curve = {{0.5, 30, 1e9}, {0.25, 31, 1e9}};
   calibration.mask.resize(coin() ? skin.sensels() : 0);
-  for (auto& good : calibration.mask) good = coin() ? 1 : 0;
+  for (auto& good : calibration.mask) good = coin() ? kGood : coin() ? kAbsent : kMissing;
   return calibration;
 }
 
