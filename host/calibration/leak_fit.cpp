@@ -8,11 +8,11 @@ namespace {
 
 /// Sums of the edge neighbours of each sensel under its pillar, and beyond it.
 struct NeighbourSums {
-  Patch inside{};
-  Patch across{};
+  SenselPatch inside{};
+  SenselPatch across{};
 };
 
-NeighbourSums neighbour_sums(const Patch& v) {
+NeighbourSums neighbour_sums(const SenselPatch& v) {
   NeighbourSums sums;
   const auto at = [&](std::size_t row, std::size_t col) {
     return row < kPatchSide && col < kPatchSide ? v.at(row * kPatchSide + col) : 0;
@@ -32,9 +32,9 @@ NeighbourSums neighbour_sums(const Patch& v) {
   return sums;
 }
 
-Patch leak_sensels(const Patch& v, const Leaks& leaks) {
+SenselPatch leak_sensels(const SenselPatch& v, const Leaks& leaks) {
   const NeighbourSums sums = neighbour_sums(v);
-  Patch readings = v;
+  SenselPatch readings = v;
   for (std::size_t i = 0; i < readings.size(); ++i) {
     readings.at(i) += leaks[0] * sums.inside.at(i) + leaks[1] * sums.across.at(i);
   }
@@ -43,9 +43,9 @@ Patch leak_sensels(const Patch& v, const Leaks& leaks) {
 
 /// The load of the pressed pillar times `middle`, of its nearest pillars times `edge`, of the
 /// diagonal ones times `corner`.
-Patch spread(const PressedLoad& load, double middle, double edge, double corner) {
+SenselPatch spread(const PressedLoad& load, double middle, double edge, double corner) {
   constexpr std::array<std::size_t, 4> kSenselOf = {1, 0, 2, 3};  // [row, col] to 0 to 3
-  Patch v{};
+  SenselPatch v{};
   for (std::size_t row = 0; row < kPatchSide; ++row) {
     for (std::size_t col = 0; col < kPatchSide; ++col) {
       const bool middle_row = row / 2 == 1;
@@ -62,7 +62,7 @@ Patch spread(const PressedLoad& load, double middle, double edge, double corner)
 }  // namespace
 
 LeakedPatch leak_patch(const PressedLoad& load, const Leaks& leaks) {
-  const Patch v = spread(load, 1, leaks[2], leaks[3]);
+  const SenselPatch v = spread(load, 1, leaks[2], leaks[3]);
   const NeighbourSums sums = neighbour_sums(v);
   return {leak_sensels(v, leaks),
           {sums.inside, sums.across, leak_sensels(spread(load, 0, 1, 0), leaks),
@@ -82,7 +82,7 @@ PressedLoad unleak(const PressedLoad& readings, const Leaks& leaks,
   PressedLoad load = readings;
   for (int step = 0; step < kSteps; ++step) {
     if (inactive) load.at(*inactive) = 0;
-    const Patch read = leak_patch(load, leaks).readings;
+    const SenselPatch read = leak_patch(load, leaks).readings;
     for (std::size_t n = 0; n < load.size(); ++n) {
       load.at(n) += readings.at(n) - read.at(kPressedSensels.at(n));
       load.at(n) = std::max(0.0, load.at(n));

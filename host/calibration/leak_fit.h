@@ -10,7 +10,7 @@ namespace pillarfield {
 using Leaks = std::array<double, 4>;
 
 /// 6 x 6 sensels: a pressed pillar in the middle of 3 x 3.
-using Patch = std::array<double, 36>;
+using SenselPatch = std::array<double, 36>;
 inline constexpr std::size_t kPatchSide = 6;
 
 /// Sensels 1 to 4 of the pressed pillar in a patch.
@@ -21,8 +21,8 @@ using PressedLoad = std::array<double, 4>;
 
 /// What a patch reads under a load, and its derivatives by the leaks.
 struct LeakedPatch {
-  Patch readings;
-  std::array<Patch, 4> derivatives;
+  SenselPatch readings;
+  std::array<SenselPatch, 4> derivatives;
 };
 [[nodiscard]] LeakedPatch leak_patch(const PressedLoad& load, const Leaks& leaks);
 
