@@ -51,7 +51,7 @@ std::optional<std::vector<double>> NormalEquations::solve(const std::vector<bool
   return x;
 }
 
-std::vector<double> NormalEquations::solve_non_negative() const {
+std::vector<double> NormalEquations::solve_non_negative(const std::vector<bool>& allowed) const {
   std::vector<double> x(unknowns_);
   std::vector<bool> active(unknowns_);
   double scale = 0;
@@ -61,9 +61,10 @@ std::vector<double> NormalEquations::solve_non_negative() const {
     std::size_t steepest = unknowns_;
     double slope = 1e-12 * scale;
     for (std::size_t i = 0; i < unknowns_; ++i) {
+      if (active[i] || !allowed[i]) continue;
       double gradient = right_[i];
       for (std::size_t j = 0; j < unknowns_; ++j) gradient -= matrix_[i * unknowns_ + j] * x[j];
-      if (!active[i] && gradient > slope) {
+      if (gradient > slope) {
         slope = gradient;
         steepest = i;
       }

@@ -25,8 +25,9 @@ class NormalEquations {
   /// The unknowns in `active`, the others being zero.
   [[nodiscard]] std::optional<std::vector<double>> solve(const std::vector<bool>& active) const;
 
-  /// The least squares under x >= 0 (Lawson and Hanson 1974).
-  [[nodiscard]] std::vector<double> solve_non_negative() const;
+  /// The least squares under x >= 0, the unknowns outside `allowed` being zero (Lawson and Hanson
+  /// 1974).
+  [[nodiscard]] std::vector<double> solve_non_negative(const std::vector<bool>& allowed) const;
 
   /// Sum of squared residuals at `x`.
   [[nodiscard]] double squares_at(const std::vector<double>& x) const;

@@ -102,6 +102,11 @@ struct LeakCommand : StepOptions {
   std::vector<std::string> files;
 };
 
+struct MemoryCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> logs;  ///< of the pressure, one per file
+};
+
 struct FaultsCommand : StepOptions {
   std::string frames;
   FaultOptions faults;
@@ -135,6 +140,7 @@ void calibrate(const EquilibrateCommand& command);
 void calibrate(const LoadCommand& command);
 void calibrate(const ShearCommand& command);
 void calibrate(const LeakCommand& command);
+void calibrate(const MemoryCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);

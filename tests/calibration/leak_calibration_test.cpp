@@ -156,7 +156,7 @@ TEST(NonNegativeLeastSquares, LeavesOutWhatWouldBeNegative) {
   for (const auto& row : rows) equations.add(row, 2 * row[0] - row[1] + row[2]);
   const std::vector<double> free = *equations.solve({true, true, true});
   EXPECT_NEAR(free[1], -1, 1e-9);
-  const std::vector<double> x = equations.solve_non_negative();
+  const std::vector<double> x = equations.solve_non_negative({true, true, true});
   const std::vector<double> expected = *equations.solve({true, false, true});
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], expected[i], 1e-9);
   EXPECT_GE(expected[2], 0);

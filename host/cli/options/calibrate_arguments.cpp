@@ -34,10 +34,10 @@ constexpr const char* kPressedSkin =
 
 /// Throws unless `option` has one value per file.
 void require_one_each(const char* option, const std::vector<std::string>& files,
-                      const std::vector<double>& values) {
-  if (files.size() == values.size()) return;
-  throw CLI::ValidationError(option, fmt::format("{} files and {} values; give one per file",
-                                                 files.size(), values.size()));
+                      std::size_t values) {
+  if (files.size() == values) return;
+  throw CLI::ValidationError(
+      option, fmt::format("{} files and {} values; give one per file", files.size(), values));
 }
 
 void add_tare(CLI::App& parent, Work& work) {
@@ -82,7 +82,7 @@ void add_equilibrate(CLI::App& parent, Work& work) {
       "pressures or more [the better one on held-out pressures]");
   add_step(command, *options, true, kCalibration);
   command->parse_complete_callback([options = options] {
-    require_one_each("--pressure-kpa", options->files, options->pressures_kpa);
+    require_one_each("--pressure-kpa", options->files, options->pressures_kpa.size());
   });
 }
 
@@ -101,8 +101,9 @@ void add_load(CLI::App& parent, Work& work) {
                          "linear: proportional; power: power law, from at least two loads "
                          "[linear]");
   add_step(command, *options, true, kCalibration);
-  command->parse_complete_callback(
-      [options = options] { require_one_each("--load-n", options->files, options->loads_n); });
+  command->parse_complete_callback([options = options] {
+    require_one_each("--load-n", options->files, options->loads_n.size());
+  });
 }
 
 void add_shear(CLI::App& parent, Work& work) {
@@ -145,6 +146,32 @@ void add_leak(CLI::App& parent, Work& work) {
   Group(command, "Input")
       .file("TIP", options->files, "Frames in which a fine tip presses one pillar after another");
   add_step(command, *options, true, kCalibration);
+}
+
+void add_memory(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<MemoryCommand>(
+      parent, work, calibrate, "memory",
+      "Hysteresis and creep, under uniform pressure that rises, rests and falls.",
+      std::string(kIdleSkin) +
+          "  pillarfield simulate scenes/creeping_skin_pressed.toml --uncalibrated -o pressed.h5\n"
+          "  pillarfield simulate scenes/creeping_skin_cycles.toml --uncalibrated -o cycles.h5\n"
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 187.5 --calibration "
+          "tared.h5 -o equal.h5\n"
+          "  pillarfield calibrate memory cycles.h5 --pressure scenes/creeping_skin_cycles.csv "
+          "--calibration equal.h5 -o memory.h5\n");
+  Group input(command, "Input");
+  input.file("CYCLES", options->files,
+             "Frames from a rested skin on, under uniform pressure that changes");
+  input
+      .text("--pressure", options->logs, "FILE",
+            "Log of the pressure of each file, in order: lines of time (s), pressure (kPa)")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback([options = options] {
+    require_one_each("--pressure", options->files, options->logs.size());
+  });
 }
 
 void add_faults(CLI::App& parent, Work& work) {
@@ -196,6 +223,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   add_load(*steps, work);
   add_shear(*steps, work);
   add_leak(*steps, work);
+  add_memory(*steps, work);
   add_faults(*steps, work);
   add_apply(*steps, work);
   add_help(steps);
