@@ -107,6 +107,12 @@ struct MemoryCommand : StepOptions {
   std::vector<std::string> logs;  ///< of the pressure, one per file
 };
 
+struct BendingCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<double> radii_mm;  ///< one per file
+  std::vector<double> axes_deg;  ///< one per file
+};
+
 struct FaultsCommand : StepOptions {
   std::string frames;
   FaultOptions faults;
@@ -141,6 +147,7 @@ void calibrate(const LoadCommand& command);
 void calibrate(const ShearCommand& command);
 void calibrate(const LeakCommand& command);
 void calibrate(const MemoryCommand& command);
+void calibrate(const BendingCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "cli/options/shared_arguments.h"
@@ -174,6 +175,38 @@ void add_memory(CLI::App& parent, Work& work) {
   });
 }
 
+void add_bending(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<BendingCommand>(
+      parent, work, calibrate, "bending",
+      "Change of the tares with curvature, from the unloaded skin on known cylinders.",
+      std::string(kIdleSkin) +
+          "  pillarfield simulate scenes/bent_skin_x.toml --uncalibrated -o x.h5\n"
+          "  pillarfield simulate scenes/bent_skin_y.toml --uncalibrated -o y.h5\n"
+          "  pillarfield simulate scenes/bent_skin_xy.toml --uncalibrated -o xy.h5\n"
+          "  pillarfield calibrate bending x.h5 y.h5 xy.h5 --radius-mm 60,60,60 --axis-deg "
+          "90,0,45 --calibration tared.h5 -o bending.h5\n");
+  Group(command, "Input")
+      .file("BENT", options->files, "Frames of the unloaded skin, one file per cylinder");
+  Group step(command, "Bending");
+  step.number("--radius-mm", options->radii_mm, "R1,R2,...",
+              "Radius of each cylinder, in order; below zero inside of one", -1e6, 1e6)
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  step.number("--axis-deg", options->axes_deg, "A1,A2,...",
+              "Angle of each axis from +x, counter-clockwise, in order", -360, 360)
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback([options = options] {
+    require_one_each("--radius-mm", options->files, options->radii_mm.size());
+    require_one_each("--axis-deg", options->files, options->axes_deg.size());
+    if (std::ranges::find(options->radii_mm, 0) == options->radii_mm.end()) return;
+    throw CLI::ValidationError("--radius-mm", "a radius is 0");
+  });
+}
+
 void add_faults(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<FaultsCommand>(
       parent, work, calibrate, "faults",
@@ -224,6 +257,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   add_shear(*steps, work);
   add_leak(*steps, work);
   add_memory(*steps, work);
+  add_bending(*steps, work);
   add_faults(*steps, work);
   add_apply(*steps, work);
   add_help(steps);
