@@ -88,7 +88,7 @@ class Sensor {
     const auto value = [&](const std::vector<float>& plane, double otherwise) {
       return plane.empty() ? otherwise : plane[sensel];
     };
-    if (!calibration_.mask.empty() && calibration_.mask[sensel] == 0) return 0;
+    if (!is_good(calibration_, sensel)) return 0;
     const double response = std::max(0.0, model - value(calibration_.dead_zone, 0));
     return value(calibration_.tare, 0) + response / value(calibration_.gain, 1) + noise;
   }

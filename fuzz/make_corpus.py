@@ -145,12 +145,15 @@ TEKSCAN_HEADER = ["DATA_TYPE MOVIE", "VERSION Measurement 1.0", "ROWS {rows}", "
                   "SECONDS_PER_FRAME 0.5", "START_FRAME 1", "END_FRAME {frames}", "UNITS raw"]
 
 
-def tekscan(frames, line_end="\n", header=True, times=False, sums=False, trailing=""):
+def tekscan(frames, line_end="\n", header=True, times=False, sums=False, trailing="", units="raw"):
     """An export of these frames; a reading below zero marks an absent sensel."""
     lines = []
     if header:
         lines = [line.format(rows=len(frames[0]), cols=len(frames[0][0]), frames=len(frames))
                  for line in TEKSCAN_HEADER]
+        lines[-1] = f"UNITS {units}"
+        if units != "raw":
+            lines[2:2] = ["SENSEL_AREA 0.00254 cm2"] + ["NOTE a long header"] * 20
     else:
         lines = [f"ROWS {len(frames[0])}", f"COLS {len(frames[0][0])}"]
     lines.append("ASCII_DATA @@")
@@ -173,7 +176,8 @@ def tekscan_exports():
     masked[:, 3, 5] = -1
     return {"bytes": tekscan(bytes_), "words": tekscan(words, times=True),
             "crlf": tekscan(masked, "\r\n", times=True, sums=True, trailing=",,"),
-            "bare": tekscan(bytes_, header=False)}
+            "bare": tekscan(bytes_, header=False),
+            "kpa": tekscan(numpy.where(masked < 0, -1, masked / 8)[:, :, :5], units="kPa")}
 
 
 def run(program, *arguments):

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "pillarfield/calibration.h"
 #include "pillarfield/frame_statistics.h"
 #include "pillarfield/sensel_finding.h"
 
@@ -15,7 +16,7 @@ class FindingList {
   FindingList(std::vector<std::uint8_t> mask, const FrameStatistics& statistics);
 
   /// Whether the sensel is not masked, neither before nor by the step.
-  [[nodiscard]] bool good(std::size_t sensel) const { return mask_[sensel] != 0; }
+  [[nodiscard]] bool good(std::size_t sensel) const { return mask_[sensel] == kGood; }
   [[nodiscard]] std::size_t count_good() const;
 
   /// Adds a finding and masks the sensel.

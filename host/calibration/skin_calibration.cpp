@@ -27,12 +27,12 @@ Skin skin_of(const SkinCalibration& calibration) {
   return skin;
 }
 
-/// Combines two masks, either of which may be empty (all good).
+/// Combines two masks, either of which may be empty (all good). Absent in one: absent.
 std::vector<std::uint8_t> both_good(const std::vector<std::uint8_t>& a,
                                     std::vector<std::uint8_t> b) {
   if (a.empty()) return b;
   if (b.empty()) return a;
-  for (std::size_t i = 0; i < b.size(); ++i) b[i] = a[i] != 0 ? b[i] : 0;
+  for (std::size_t i = 0; i < b.size(); ++i) b[i] = a[i] == kGood || b[i] == kAbsent ? b[i] : a[i];
   return b;
 }
 
@@ -41,7 +41,7 @@ std::vector<double> corrected_noise(const Calibration& planes) {
   std::vector<double> noise;
   noise.reserve(planes.noise.size());
   for (std::size_t i = 0; i < planes.noise.size(); ++i) {
-    if (!planes.mask.empty() && planes.mask[i] == 0) continue;
+    if (!is_good(planes, i)) continue;
     const double gain = planes.gain.empty() ? 1 : planes.gain[i];
     noise.push_back(gain * planes.noise[i]);
   }
@@ -78,6 +78,9 @@ void check(const SkinCalibration& calibration, std::string_view where) {
   const Skin skin = skin_of(calibration);
   check(skin, where);
   check(calibration.planes, skin, where);
+  if (calibration.power_law && !calibration.planes.effects.curve.empty()) {
+    throw Error(where, "has a power law and a response curve", "remove one of them");
+  }
   if (!calibration.threshold_factor) return;
   const double factor = *calibration.threshold_factor;
   if (factor >= 0 && factor <= kMaxThresholdFactor) return;
@@ -99,6 +102,7 @@ void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes) 
   planes = calibration.planes;
   planes.mask = std::move(mask);
   skin.threshold_counts = calibration.threshold_counts.value_or(skin.threshold_counts);
+  if (!planes.effects.curve.empty()) skin.power_law.reset();
   // A power law applies only with the counts per newton fitted with it.
   if (!calibration.counts_per_newton) return;
   skin.counts_per_newton = *calibration.counts_per_newton;
@@ -112,8 +116,9 @@ void set_threshold(SkinCalibration& calibration, double factor) {
   }
   const double threshold = factor * quantile(noise, kQuietShare);
   const auto& law = calibration.power_law;
+  const double load = load_at(calibration.planes.effects.curve, threshold);
   calibration.threshold_factor = factor;
-  calibration.threshold_counts = law ? straightened(*law, threshold) : threshold;
+  calibration.threshold_counts = law ? straightened(*law, threshold) : load;
 }
 
 void set_power_law(SkinCalibration& calibration, const std::optional<PowerLaw>& law) {

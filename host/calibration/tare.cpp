@@ -116,7 +116,7 @@ void refuse_touched_skin(const FrameStatistics& unloaded, const std::vector<std:
     int tested = 0;
     int standing_out = 0;
     for (const std::size_t i : sensels) {
-      if ((!mask.empty() && mask[i] == 0) || unloaded.sensels()[i].readings == 0) continue;
+      if ((!mask.empty() && mask[i] != kGood) || unloaded.sensels()[i].readings == 0) continue;
       ++tested;
       standing_out += test.as_if_touched(i) ? 1 : 0;
     }

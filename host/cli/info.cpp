@@ -18,6 +18,7 @@
 #include "pillarfield/simulator.h"
 #include "pillarfield/tuning.h"
 #include "pillarfield/version.h"
+#include "skin/effect_parameters.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -66,7 +67,20 @@ std::vector<std::string> plane_names(const Calibration& calibration) {
   if (!calibration.dead_zone.empty()) names.emplace_back("dead_zone");
   if (!calibration.mask.empty()) names.emplace_back("mask");
   if (!calibration.noise.empty()) names.emplace_back("noise");
+  if (!calibration.bend_x.empty()) names.insert(names.end(), {"bend_x", "bend_y", "bend_xy"});
   return names;
+}
+
+void add_effects(Json& facts, const SensorEffects& effects) {
+  for (const EffectParameter& parameter : parameters_of(effects)) {
+    // An object, so that text names the parameter of a list once.
+    Json& value = facts["effects"][parameter.name];
+    if (parameter.list) {
+      value = parameter.values;
+    } else {
+      value = parameter.values.front();
+    }
+  }
 }
 
 void add_power_law(Json& facts, const std::optional<PowerLaw>& law) {
@@ -99,6 +113,7 @@ Json facts_of_frames(const std::string& file) {
     facts["seconds"] = source->read(source->frames() - 1, frame) - first;
   }
   facts["calibration"] = plane_names(source->calibration());
+  add_effects(facts, source->calibration().effects);
   facts["truth"] = source->has_truth();
   facts["warnings"] = source->warnings();
   return facts;
@@ -135,7 +150,8 @@ Json facts_of_calibration(const std::string& file) {
                 {"sensel_rows", calibration.rows},
                 {"sensel_cols", calibration.cols},
                 {"planes", plane_names(calibration.planes)},
-                {"masked", count_masked(calibration.planes)}};
+                {"masked", count_masked(calibration.planes)},
+                {"absent", count_absent(calibration.planes)}};
   const auto add = [&](const char* key, const std::optional<double>& value) {
     if (value) facts[key] = *value;
   };
@@ -143,6 +159,7 @@ Json facts_of_calibration(const std::string& file) {
   add("threshold_factor", calibration.threshold_factor);
   add("counts_per_newton", calibration.counts_per_newton);
   add_power_law(facts, calibration.power_law);
+  add_effects(facts, calibration.planes.effects);
   facts["history"] = Json::array();
   for (const CalibrationStep& step : calibration.history) {
     facts["history"].push_back(facts_of_step(step));

@@ -4,7 +4,10 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
+#include <vector>
 
+#include "base/quantile.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
@@ -57,14 +60,22 @@ struct SolveSummary {
   double seconds = 0;          ///< reading, solving and writing, which overlap
 };
 
-/// Seconds between frames. Throws Error where the times do not rise.
+/// Seconds between frames: the median of the first ones, so that a gap does not count. Throws Error
+/// where the times do not rise.
 double frame_interval(const SolveOptions& options, FrameSource& source) {
-  if (source.frames() >= 2) {
-    const double interval = (source.time(source.frames() - 1) - source.time(0)) /
-                            static_cast<double>(source.frames() - 1);
-    if (interval > 0) return interval;
+  constexpr std::uint64_t kMostIntervals = 100;  // The time of a frame may cost reading all of it.
+  std::vector<double> intervals;
+  const std::uint64_t frames = std::min(source.frames(), kMostIntervals + 1);
+  double before = frames > 0 ? source.time(0) : 0;
+  for (std::uint64_t index = 1; index < frames; ++index) {
+    const double time = source.time(index);
+    intervals.push_back(time - std::exchange(before, time));
   }
-  throw Error(options.input, "the times of its frames do not rise", "leave out --follow-baseline");
+  if (const double interval = intervals.empty() ? 0 : median(intervals); interval > 0) {
+    return interval;
+  }
+  throw Error(options.input, "the times of its frames do not rise",
+              "leave out --follow-baseline, and creep of the calibration");
 }
 
 /// The settings of the file, then of the command line.
@@ -177,12 +188,18 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("Wrote {}\n", printable(options.output));
 }
 
+/// Number of pillars without any sensel, over all frames.
+std::uint64_t pillars_without_sensels(const FrameSource& source, const SolverPlan& plan) {
+  return source.frames() * count_pillars_without_sensels(plan.calibration, plan.skin);
+}
+
 /// Warns of a recording that seems to lack its tare: nearly all pillars of a real skin in contact.
 void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
                   const RegionCount& regions) {
   constexpr double kNearlyAll = 0.95;
-  if (source.has_truth() || !plan.calibration.tare.empty() || regions.all() == 0 ||
-      static_cast<double>(regions.in_contact()) < kNearlyAll * static_cast<double>(regions.all())) {
+  const auto present = static_cast<double>(regions.all() - pillars_without_sensels(source, plan));
+  if (source.has_truth() || !plan.calibration.tare.empty() || !(present > 0) ||
+      static_cast<double>(regions.in_contact()) < kNearlyAll * present) {
     return;
   }
   fmt::print(stderr,

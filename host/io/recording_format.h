@@ -28,6 +28,10 @@ inline constexpr const char* kGain = "/calibration/gain";
 inline constexpr const char* kDeadZone = "/calibration/dead_zone";
 inline constexpr const char* kMask = "/calibration/mask";
 inline constexpr const char* kNoise = "/calibration/noise";
+inline constexpr const char* kBendX = "/calibration/bend_x";
+inline constexpr const char* kBendY = "/calibration/bend_y";
+inline constexpr const char* kBendXy = "/calibration/bend_xy";
+inline constexpr const char* kEffects = "/calibration/effects";
 
 inline constexpr const char* kTruth = "/truth";
 inline constexpr const char* kTruthPlanes[] = {"/truth/shear_x", "/truth/shear_y", "/truth/normal"};

@@ -11,6 +11,7 @@
 #include "io/hdf5/plane.h"
 #include "io/recording_format.h"
 #include "pillarfield/error.h"
+#include "skin/effect_parameters.h"
 
 namespace pillarfield {
 namespace {
@@ -23,7 +24,10 @@ struct FloatPlane {
 constexpr FloatPlane kFloatPlanes[] = {{recording_format::kTare, &Calibration::tare},
                                        {recording_format::kGain, &Calibration::gain},
                                        {recording_format::kDeadZone, &Calibration::dead_zone},
-                                       {recording_format::kNoise, &Calibration::noise}};
+                                       {recording_format::kNoise, &Calibration::noise},
+                                       {recording_format::kBendX, &Calibration::bend_x},
+                                       {recording_format::kBendY, &Calibration::bend_y},
+                                       {recording_format::kBendXy, &Calibration::bend_xy}};
 
 std::optional<PowerLaw> read_power_law(const hdf5::File& file, hid_t skin) {
   const auto exponent = hdf5::read_number(file, skin, recording_format::kExponent);
@@ -43,15 +47,34 @@ std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& s
                                   const std::string& place) {
   std::vector<std::uint8_t> mask(plane.size());
   for (std::size_t i = 0; i < plane.size(); ++i) {
-    if (plane[i] != 0.0f && plane[i] != 1.0f) {
+    if (plane[i] != kMissing && plane[i] != kGood && plane[i] != kAbsent) {
       throw Error(place,
                   fmt::format("calibration plane 'mask' is {} at row {}, column {}", plane[i],
                               i / skin.cols, i % skin.cols),
-                  "it must be 0 or 1");
+                  "it must be 0, 1 or 2");
     }
-    mask[i] = plane[i] == 1.0f ? 1 : 0;
+    mask[i] = static_cast<std::uint8_t>(plane[i]);
   }
   return mask;
+}
+
+void write_effects(const hdf5::File& file, const SensorEffects& effects) {
+  if (effects.empty()) return;
+  const hdf5::Handle group = hdf5::create_group(file, recording_format::kEffects);
+  for (const EffectParameter& parameter : parameters_of(effects)) {
+    if (parameter.list) {
+      hdf5::write_attribute(file, group.get(), parameter.name, parameter.values);
+    } else {
+      hdf5::write_attribute(file, group.get(), parameter.name, parameter.values.front());
+    }
+  }
+}
+
+SensorEffects read_effects(const hdf5::File& file) {
+  if (!hdf5::exists(file, recording_format::kEffects)) return {};
+  const hdf5::Handle group = hdf5::open_object(file, recording_format::kEffects);
+  return effects_of([&](const char* name) { return hdf5::read_numbers(file, group.get(), name); },
+                    fmt::format("{}: {}", file.path.string(), recording_format::kEffects));
 }
 
 }  // namespace
@@ -95,6 +118,7 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
     hdf5::write_plane(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, skin.rows, skin.cols,
                       plane.data());
   }
+  write_effects(file, calibration.effects);
   if (calibration.mask.empty()) return;
   hdf5::write_plane(file, recording_format::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows,
                     skin.cols, calibration.mask.data());
@@ -109,6 +133,7 @@ Calibration read_planes(const hdf5::File& file, const Skin& skin, std::optional<
   for (const auto& [name, member] : kFloatPlanes) calibration.*member = plane(name);
   const std::string place =
       fmt::format("{}: {}", file.path.string(), recording_format::kCalibration);
+  calibration.effects = read_effects(file);
   calibration.mask = mask_of(plane(recording_format::kMask), skin, place);
   check(calibration, skin, place, type);
   return calibration;

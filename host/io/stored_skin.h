@@ -27,11 +27,12 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);
 /// The object /skin; invalid if absent.
 [[nodiscard]] hdf5::Handle open_skin(const hdf5::File& file);
 
-/// Creates the group /calibration with the non-empty planes; no group if all are empty.
+/// Creates the group /calibration with the non-empty planes, and its group /calibration/effects if
+/// there are any; no group if the calibration is empty.
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration);
 
-/// Reads the planes in the file, one value per sensel of `skin`; `type` is that of its readings,
-/// unset if unknown. Throws Error if a plane has another size or a value is out of range.
+/// Reads the planes and effects in the file, one value per sensel of `skin`; `type` is that of its
+/// readings, unset if unknown. Throws Error if a plane has another size or a value is out of range.
 [[nodiscard]] Calibration read_planes(const hdf5::File& file, const Skin& skin,
                                       std::optional<SenselType> type = {});
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pillarfield/error.h"
+#include "skin/pillar_sensels.h"
 
 namespace pillarfield {
 namespace {
@@ -32,8 +33,26 @@ void check_plane(const std::vector<Value>& plane, const char* name, const Skin& 
 }  // namespace
 
 std::size_t count_masked(const Calibration& calibration) {
-  return static_cast<std::size_t>(
-      std::count(calibration.mask.begin(), calibration.mask.end(), std::uint8_t{0}));
+  return static_cast<std::size_t>(std::ranges::count(calibration.mask, kMissing));
+}
+
+std::size_t count_absent(const Calibration& calibration) {
+  return static_cast<std::size_t>(std::ranges::count(calibration.mask, kAbsent));
+}
+
+bool lacks_sensels(const Calibration& calibration, const Skin& skin, std::uint32_t pillar_row,
+                   std::uint32_t pillar_col) {
+  return !calibration.mask.empty() &&
+         std::ranges::all_of(pillar_sensels(skin, pillar_row, pillar_col),
+                             [&](std::size_t i) { return calibration.mask[i] == kAbsent; });
+}
+
+std::size_t count_pillars_without_sensels(const Calibration& calibration, const Skin& skin) {
+  std::size_t count = 0;
+  for_each_pillar(skin, [&](auto row, auto col, const auto&) {
+    if (lacks_sensels(calibration, skin, row, col)) ++count;
+  });
+  return count;
 }
 
 double largest_plane_counts(SenselType type) {
@@ -54,7 +73,7 @@ void check(const Calibration& calibration, const Skin& skin, std::string_view wh
   check_plane(calibration.tare, "tare", skin, where, -largest, largest);
   check_plane(calibration.gain, "gain", skin, where, kMinGain, kMaxGain);
   check_plane(calibration.dead_zone, "dead_zone", skin, where, 0, largest);
-  check_plane(calibration.mask, "mask", skin, where, 0, 1);
+  check_plane(calibration.mask, "mask", skin, where, kMissing, kAbsent);
   check_plane(calibration.noise, "noise", skin, where, 0, std::min(largest, kMaxNoiseCounts));
   check_plane(calibration.bend_x, "bend_x", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);
   check_plane(calibration.bend_y, "bend_y", skin, where, -kMaxPlaneCounts, kMaxPlaneCounts);

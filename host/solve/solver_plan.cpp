@@ -26,7 +26,7 @@ double mean_noise(const Calibration& calibration) {
   double squares = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < calibration.noise.size(); ++i) {
-    if (!calibration.mask.empty() && calibration.mask[i] == 0) continue;
+    if (!is_good(calibration, i)) continue;
     squares += double{calibration.noise[i]} * calibration.noise[i];
     ++count;
   }

@@ -30,7 +30,7 @@ PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
                                               (Real)(PF_ACTIVATION_STEP), lowest);
   const Real bounded = threshold < lowest ? lowest : (threshold < highest ? threshold : highest);
 #ifdef PF_MASK
-  return at.good == (Real)(0.0f) ? (Real)(PF_ACTIVATION_NEVER) : bounded;
+  return at.good != (Real)(1.0f) ? (Real)(PF_ACTIVATION_NEVER) : bounded;
 #else
   return bounded;
 #endif

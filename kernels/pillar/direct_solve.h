@@ -172,6 +172,15 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
 
 static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
 
+#ifndef PF_WHOLE
+static inline Real largest_reading(Pillar pillar) {
+  const Real rising = pillar.s1.reading > pillar.s3.reading ? pillar.s1.reading : pillar.s3.reading;
+  const Real falling =
+      pillar.s2.reading > pillar.s4.reading ? pillar.s2.reading : pillar.s4.reading;
+  return rising > falling ? rising : falling;
+}
+#endif
+
 /* True if the inactive fourth sensel may carry load while three are usable: its upper bound is
  * above zero, and parity predicts more than -`margin` counts for it (D9). Usable sensels are above
  * zero, so the minimum over all four decides. */
@@ -191,6 +200,7 @@ typedef struct {
   Bits usable;
   Bits saturated;
   Bits missing;
+  Bits faulty; /* missing, but not absent */
   Bits inactive;
 } State;
 
@@ -199,6 +209,7 @@ static inline State state_of(Sensel sensel) {
   state.usable = bits_of(sensel.usable);
   state.saturated = bits_of(sensel.saturated);
   state.missing = bits_of(sensel.missing);
+  state.faulty = bits_of(sensel.missing && !sensel.absent);
   state.inactive = ~(state.usable | state.saturated | state.missing);
   return state;
 }
@@ -209,8 +220,9 @@ static inline Bits one_inactive_of(State p, State q) {
 }
 
 /* The status byte, bits 0 to 6. Ambiguous: the force is one of a segment, or the region is 1 or 2
- * within `margin` counts of parity. Inconsistent: a sensel is missing, or two opposite sensels are
- * usable and the other two inactive, which contradicts the model. */
+ * within `margin` counts of parity. Inconsistent: a sensel is missing (an absent one only counts
+ * where the pillar is in contact), or two opposite sensels are usable and the other two inactive,
+ * which contradicts the model. */
 static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum sum, Counts margin) {
   const State s1 = state_of(pillar.s1);
   const State s2 = state_of(pillar.s2);
@@ -224,13 +236,15 @@ static inline Bits direct_status(Pillar pillar, Diagonals diagonals, ParitySum s
       three_usable & bits_of(fourth_may_be_loaded(pillar, diagonals, sum.point, margin));
   const Bits ambiguous = bits_of(sum.ambiguous) | one_or_two;
   const Bits saturated = s1.saturated | s2.saturated | s3.saturated | s4.saturated;
+  const Bits contact = s1.usable | s2.usable | s3.usable | s4.usable | saturated;
   const Bits missing = s1.missing | s2.missing | s3.missing | s4.missing;
+  const Bits faulty = s1.faulty | s2.faulty | s3.faulty | s4.faulty;
   const Bits contradictory =
       (rising & s2.inactive & s4.inactive) | (falling & s1.inactive & s3.inactive);
   return (s1.usable & PF_BITS(PF_STATUS_SENSEL_1)) | (s2.usable & PF_BITS(PF_STATUS_SENSEL_2)) |
          (s3.usable & PF_BITS(PF_STATUS_SENSEL_3)) | (s4.usable & PF_BITS(PF_STATUS_SENSEL_4)) |
          (ambiguous & PF_BITS(PF_STATUS_AMBIGUOUS)) | (saturated & PF_BITS(PF_STATUS_SATURATED)) |
-         ((missing | contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
+         ((faulty | (missing & contact) | contradictory) & PF_BITS(PF_STATUS_INCONSISTENT));
 }
 
 /* True if one of two opposite sensels is usable and the other inactive. */

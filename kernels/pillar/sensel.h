@@ -1,13 +1,14 @@
 /* Corrects and classifies one sensel. Each function is a stage; frame/stages.h calls those that a
  * plan names, in order (docs/derivations/direct_solve.md, section 1). */
 
-/* A reading in counts and its relation to the model's V. After `classify` at most one mask is set;
- * a sensel with none is inactive. */
+/* A reading in counts and its relation to the model's V. After `classify` at most one of
+ * usable, saturated and missing is set; a sensel with none is inactive. */
 typedef struct {
   Counts reading;
   Mask usable;    /* V is the reading, which is above the threshold */
   Mask saturated; /* V is at least the reading, which is above the threshold */
   Mask missing;   /* V is unconstrained: dead, absent, masked, or not a number; reads zero */
+  Mask absent;    /* missing because the sensor has no sensel there, which is no fault */
 } Sensel;
 
 /* A valid sensel with the reading `raw`. */
@@ -17,6 +18,7 @@ static inline Sensel raw_sensel(Counts raw) {
   sensel.usable = mask_of(PF_BITS(0));
   sensel.missing = mask_of(PF_BITS(0));
   sensel.saturated = mask_of(PF_BITS(0));
+  sensel.absent = mask_of(PF_BITS(0));
   return sensel;
 }
 
@@ -28,9 +30,10 @@ static inline Sensel reject_out_of_range(Sensel sensel, Real largest) {
 }
 #endif
 
-/* `good` is zero where the sensel is masked. */
+/* `good` is 1, 0 where the sensel is masked, 2 where the sensor has none. */
 static inline Sensel apply_mask(Sensel sensel, Counts good) {
-  sensel.missing = sensel.missing || (good == PF_COUNTS(0));
+  sensel.missing = sensel.missing || !(good == PF_COUNTS(1));
+  sensel.absent = good == PF_COUNTS(2);
   return sensel;
 }
 

@@ -425,7 +425,7 @@ TEST(Processor, RefusesPlansOutOfRange) {
   refuses([](SolverPlan& plan) { plan.calibration.tare = {1, 2}; });
   refuses([](SolverPlan& plan) { plan.calibration.gain.assign(64, 0.0F); });
   refuses([](SolverPlan& plan) { plan.calibration.dead_zone.assign(64, std::nanf("")); });
-  refuses([](SolverPlan& plan) { plan.calibration.mask.assign(64, 2); });
+  refuses([](SolverPlan& plan) { plan.calibration.mask.assign(64, 3); });
   const SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   EXPECT_THROW(Processor(test_device(), plan, {.frames_in_flight = 0}), Error);
   EXPECT_THROW(Processor(test_device(), plan, {}, {.lanes = 3}), Error);

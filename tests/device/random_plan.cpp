@@ -85,7 +85,7 @@ SolverPlan full_plan(std::uint32_t rows, std::uint32_t cols, SenselType type, st
   plan.calibration.dead_zone = random_plane<float>(random, size, 0, 4);
   plan.calibration.noise = random_plane<float>(random, size, 0.2, 3);
   for (const float share : random_plane<float>(random, size, 0, 1)) {
-    plan.calibration.mask.push_back(share < 0.9F ? 1 : 0);
+    plan.calibration.mask.push_back(share < 0.85F ? kGood : share < 0.9F ? kAbsent : kMissing);
   }
   return plan;
 }

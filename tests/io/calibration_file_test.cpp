@@ -1,5 +1,7 @@
 #include "pillarfield/calibration_file.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
@@ -7,6 +9,7 @@
 #include <limits>
 
 #include "pillarfield/recording.h"
+#include "skin/effect_parameters.h"
 #include "tests/io/sample_files.h"
 
 namespace pillarfield {
@@ -33,17 +36,40 @@ SkinCalibration full_calibration() {
     }
     return values;
   };
-  calibration.planes = {plane(-3), plane(0.5F), plane(0), std::vector<std::uint8_t>(48, 1),
-                        plane(0.3F)};
+  calibration.planes.tare = plane(-3);
+  calibration.planes.gain = plane(0.5F);
+  calibration.planes.dead_zone = plane(0);
+  calibration.planes.mask.assign(48, 1);
+  calibration.planes.noise = plane(0.3F);
   calibration.planes.mask[7] = 0;
   calibration.threshold_counts = 4.125;
   calibration.threshold_factor = 4;
   calibration.counts_per_newton = 317.4;
   calibration.power_law = {1.2, 96.5};
+  calibration.planes.bend_x = plane(-40);
+  calibration.planes.bend_y = plane(10);
+  calibration.planes.bend_xy = plane(0);
+  calibration.planes.effects = {.curve = {},
+                                .shear_coefficient = {{1.1, 0.9}},
+                                .sensel_leak = {{0.05, 0.02}},
+                                .pillar_leak = {{0.01, -0.002}},
+                                .wires = {{32, 48, 1e-4, 2e-4, 3e-5}},
+                                .memory = {{{{5, 0.02}, {20, 0.03}}, {{0.3, 0.01}}}},
+                                .arm_mm = 0.224,
+                                .residual = {{0.01, 0.4}}};
   calibration.history = {
       {"tare", {"bare.h5"}, 100, "threshold_factor = 4", "2026-01-31T12:34:56Z", "0.1.0"},
       {"equilibrate", {"a b.h5", "ü,.h5"}, 200, "", "2026-02-01T00:00:00Z", "0.2.0"}};
   return calibration;
+}
+
+/// The parameters by name, as text.
+std::string text_of(const SensorEffects& effects) {
+  std::string text;
+  for (const EffectParameter& parameter : parameters_of(effects)) {
+    text += fmt::format("{} {}\n", parameter.name, fmt::join(parameter.values, " "));
+  }
+  return text;
 }
 
 void expect_equal(const SkinCalibration& read, const SkinCalibration& written) {
@@ -54,6 +80,10 @@ void expect_equal(const SkinCalibration& read, const SkinCalibration& written) {
   EXPECT_EQ(read.planes.dead_zone, written.planes.dead_zone);
   EXPECT_EQ(read.planes.mask, written.planes.mask);
   EXPECT_EQ(read.planes.noise, written.planes.noise);
+  EXPECT_EQ(read.planes.bend_x, written.planes.bend_x);
+  EXPECT_EQ(read.planes.bend_y, written.planes.bend_y);
+  EXPECT_EQ(read.planes.bend_xy, written.planes.bend_xy);
+  EXPECT_EQ(text_of(read.planes.effects), text_of(written.planes.effects));
   EXPECT_EQ(read.threshold_counts, written.threshold_counts);
   EXPECT_EQ(read.threshold_factor, written.threshold_factor);
   EXPECT_EQ(read.counts_per_newton, written.counts_per_newton);
@@ -80,6 +110,32 @@ TEST(CalibrationFile, GivesBackWhatWasWritten) {
   expect_equal(read_calibration_file(path), full_calibration());
   EXPECT_TRUE(is_calibration_file(path));
   EXPECT_EQ(directory.names(), Names{"cal.h5"});
+}
+
+TEST(CalibrationFile, HoldsACurveInsteadOfAPowerLaw) {
+  const TemporaryDirectory directory;
+  SkinCalibration calibration = full_calibration();
+  calibration.planes.effects.curve = {{10, 20, 70}, {12, 25, 90}};
+  EXPECT_TRUE(has_all(error_of([&] { write_calibration_file(directory / "cal.h5", calibration); }),
+                      {"power law and a response curve"}));
+  calibration.power_law.reset();
+  write_calibration_file(directory / "cal.h5", calibration);
+  const SkinCalibration read = read_calibration_file(directory / "cal.h5");
+  expect_equal(read, calibration);
+  EXPECT_EQ(read.planes.effects.curve.loads, (std::vector<double>{12, 25, 90}));
+
+  Skin skin;
+  skin.rows = read.rows;
+  skin.cols = read.cols;
+  skin.power_law = {1.5, 100};
+  RecordingWriter writer(directory / "r.h5", skin, SenselType::u8, {}, {});
+  writer.finish();
+  Calibration planes = open_frames(directory / "r.h5")->calibration();
+  EXPECT_TRUE(planes.effects.empty());
+  planes.effects.arm_mm = 3;
+  apply(read, skin, planes);
+  EXPECT_EQ(text_of(planes.effects), text_of(calibration.planes.effects));
+  EXPECT_FALSE(skin.power_law);
 }
 
 TEST(CalibrationFile, MayHoldLittle) {
@@ -167,6 +223,27 @@ const Damage kDamages[] = {
     {"factor NaN",
      [](hid_t f) { set_number(f, "/skin", "threshold_factor", kNan); },
      {"threshold_factor is nan"}},
+    {"leak of one half",
+     [](hid_t f) { set_number(f, "/calibration/effects", "leak_inside", 0.5); },
+     {"leak inside a pillar is 0.5"}},
+    {"leak half there",
+     [](hid_t f) { H5Adelete_by_name(f, "/calibration/effects", "leak_across", H5P_DEFAULT); },
+     {"/calibration/effects", "no 'leak_across'"}},
+    {"half a tile",
+     [](hid_t f) { set_number(f, "/calibration/effects", "wire_tile_rows", 0.5); },
+     {"'wire_tile_rows' is 0.5"}},
+    {"arm NaN",
+     [](hid_t f) { set_number(f, "/calibration/effects", "arm_mm", kNan); },
+     {"arm of a pillar is nan"}},
+    {"one weight of two plays",
+     [](hid_t f) { set_number(f, "/calibration/effects", "play_weights", 0.5); },
+     {"'play_weights' has 1 values"}},
+    {"a curve without loads",
+     [](hid_t f) { set_number(f, "/calibration/effects", "curve_readings", 3); },
+     {"1 readings and 0 loads"}},
+    {"one bend plane",
+     [](hid_t f) { H5Ldelete(f, "/calibration/bend_y", H5P_DEFAULT); },
+     {"bend_x, bend_y and bend_xy"}},
     {"a step of text frames",
      [](hid_t f) {
        H5Ldelete(f, "/history/1", H5P_DEFAULT);

@@ -32,8 +32,9 @@ void write_full_recording(const std::filesystem::path& path) {
   skin.cols = kSize;
   skin.full_scale_counts = 250;
   const std::vector<float> ones(skin.sensels(), 1.0f);
-  const Calibration calibration = {ones, ones, ones, std::vector<std::uint8_t>(skin.sensels(), 1),
-                                   ones};
+  Calibration calibration;
+  calibration.tare = calibration.gain = calibration.dead_zone = calibration.noise = ones;
+  calibration.mask.assign(skin.sensels(), 1);
   RecordingWriter writer(path, skin, SenselType::u8, calibration, {.truth = true});
   FrameBuffer frame(SenselType::u8, kSize, kSize);
   for (std::uint64_t index = 0; index < kDamagedFrames; ++index) {
@@ -247,13 +248,13 @@ const RecordingDamage kRecordingDamages[] = {
     {"dead zone beyond any reading",
      [](hid_t f) { set_first(f, "/calibration/dead_zone", 256); },
      {"dead_zone' is 256", "row 1, column 1", "[0, 255]"}},
-    {"mask 2", [](hid_t f) { set_first(f, "/calibration/mask", 2); }, {"mask' is 2", "0 or 1"}},
+    {"mask 3", [](hid_t f) { set_first(f, "/calibration/mask", 3); }, {"mask' is 3", "0, 1 or 2"}},
     {"mask NaN",
      [](hid_t f) {
        replace(f, "/calibration/mask", H5T_IEEE_F32LE, {6, 6});
        set_first(f, "/calibration/mask", kFloatNan);
      },
-     {"mask' is nan", "row 1, column 1", "0 or 1"}},
+     {"mask' is nan", "row 1, column 1", "0, 1 or 2"}},
     {"raw of 12 bits",
      [](hid_t f) {
        const hid_t type = H5Tcopy(H5T_STD_U16LE);

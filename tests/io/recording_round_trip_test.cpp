@@ -41,8 +41,15 @@ Calibration random_calibration(const Skin& skin, SenselType type, std::mt19937& 
   calibration.gain = plane(0.01f, 100.0f);
   calibration.dead_zone = plane(0.0f, largest);
   calibration.noise = plane(0.0f, std::min(largest, 1e6f));
+  if (coin()) {
+    for (auto* bend : {&calibration.bend_x, &calibration.bend_y, &calibration.bend_xy}) {
+      bend->assign(skin.sensels(), std::uniform_real_distribution<float>(-1e9f, 1e9f)(random));
+    }
+  }
+  if (coin()) calibration.effects.sensel_leak = {0.2, -0.01};
+  if (coin()) calibration.effects.curve = {{0.5, 30, 1e9}, {0.25, 31, 1e9}};
   calibration.mask.resize(coin() ? skin.sensels() : 0);
-  for (auto& good : calibration.mask) good = coin() ? 1 : 0;
+  for (auto& good : calibration.mask) good = coin() ? kGood : coin() ? kAbsent : kMissing;
   return calibration;
 }
 
@@ -65,6 +72,16 @@ void expect_equal(const Calibration& read, const Calibration& written) {
   EXPECT_EQ(read.dead_zone, written.dead_zone);
   EXPECT_EQ(read.mask, written.mask);
   EXPECT_EQ(read.noise, written.noise);
+  EXPECT_EQ(read.bend_x, written.bend_x);
+  EXPECT_EQ(read.bend_y, written.bend_y);
+  EXPECT_EQ(read.bend_xy, written.bend_xy);
+  EXPECT_EQ(read.effects.curve.readings, written.effects.curve.readings);
+  EXPECT_EQ(read.effects.curve.loads, written.effects.curve.loads);
+  ASSERT_EQ(read.effects.sensel_leak.has_value(), written.effects.sensel_leak.has_value());
+  if (read.effects.sensel_leak) {
+    EXPECT_EQ(read.effects.sensel_leak->inside, 0.2);
+    EXPECT_EQ(read.effects.sensel_leak->across, -0.01);
+  }
 }
 
 /// Checks that a recording returns its content bit for bit.

@@ -6,7 +6,9 @@
 #include <numeric>
 #include <sstream>
 
+#include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
+#include "pillarfield/status.h"
 #include "tests/io/sample_files.h"
 
 namespace pillarfield {
@@ -160,13 +162,13 @@ TEST_F(Tekscan, TakesTheLastLineWithoutItsEnd) {
   EXPECT_EQ(readings(*open(text)), written.frames);
 }
 
-TEST_F(Tekscan, MasksSenselsThatAnyFrameLacks) {
+TEST_F(Tekscan, SenselsThatAnyFrameLacksAreAbsent) {
   Export written;
   written.frames[0][0] = -1;
   written.frames[1][0] = -1;
   written.frames[1][5] = -1;
   const auto source = open(written.text());
-  const std::vector<std::uint8_t> mask = {0, 1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1};
+  const std::vector<std::uint8_t> mask = {2, 1, 1, 1, 1, 2, 1, 1, 1, 1, 1, 1};
   EXPECT_EQ(source->calibration().mask, mask);
   written.frames[0][0] = written.frames[1][0] = written.frames[1][5] = 0;
   EXPECT_EQ(readings(*source), written.frames);
@@ -265,6 +267,91 @@ TEST_F(Tekscan, HoldsFramesToTheirRawSum) {
       has_all(refused(written.text()), {"export.asf:19", "frame 2", "386", "raw sum is 385"}));
 }
 
+TEST_F(Tekscan, TakesMinusOneAsNoSensel) {
+  std::string text = Export().text();
+  text.replace(text.find("1,2,3,4"), 1, "-1");
+  const auto source = open(text);
+  EXPECT_EQ(source->calibration().mask[0], kAbsent);
+  EXPECT_EQ(readings(*source)[0][0], 0);
+}
+
+/// Newtons on the sensels of a frame.
+std::vector<float> newtons_in(FrameSource& source, std::uint64_t index) {
+  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+  source.read(index, frame);
+  const auto values = frame.readings<float>();
+  return {values.begin(), values.end()};
+}
+
+TEST_F(Tekscan, GivesForcesInAnyUnits) {
+  // One unit on 0.25 mm², in newtons; the definitions of psi, mmHg and kilogram-force.
+  const std::map<std::string, double> newtons = {{"kPa", 0.25e-3},
+                                                 {"KPa", 0.25e-3},
+                                                 {"MPa", 0.25},
+                                                 {"PSI", 0.25 * 4.4482216152605 / 645.16},
+                                                 {"mmHg", 0.25 * 133.322e-6},
+                                                 {"N/cm^2", 0.0025},
+                                                 {"kg/cm\xc2\xb2", 0.25 * 0.0980665},
+                                                 {"N", 1},
+                                                 {"Newtons", 1},
+                                                 {"lbs", 4.4482216152605}};
+  for (const auto& [unit, force] : newtons) {
+    SCOPED_TRACE(unit);
+    Export written;
+    written.set("UNITS", "UNITS " + unit);
+    const auto source = open(written.text());
+    EXPECT_EQ(source->sensel_type(), SenselType::f32);
+    EXPECT_EQ(source->skin().counts_per_newton, 0.25);
+    EXPECT_EQ(source->skin().threshold_counts, 0);
+    const std::vector<float> read = newtons_in(*source, 1);
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      EXPECT_NEAR(read[i], written.frames[1][i] * force, 1e-5 * read[i]);
+    }
+  }
+  Export written;
+  written.set("UNITS", "UNITS kPa\nSENSEL_AREA 0.02 cm2");
+  EXPECT_NEAR(newtons_in(*open(written.text()), 1)[5], 60 * 2e-3, 1e-6);
+}
+
+/// An F-Scan insole in kPa: a long header, 60 x 21 sensels, an outline. The normal forces of its
+/// pillars are pressure times area, and all it lacks is quiet.
+TEST_F(Tekscan, ForcesOfAnInsoleArePressureTimesArea) {
+  Export written;
+  written.header.insert(written.header.begin() + 2, 200, "NOTE frames of a left foot, walking");
+  written.header.insert(written.header.begin() + 2, "Frame rate 50");
+  written.set("ROWS", "ROWS 60");
+  written.set("COLS", "COLS 21");
+  written.set("UNITS", "UNITS kPa\nSENSEL_AREA 0.258064 cm2");
+  written.cols = 21;
+  written.frame_lines = {"Frame 1, 0,, now,,,Raw Sum=,,12345"};
+  written.frames.assign(1, std::vector<int>(60 * 21));
+  double newtons = 0;
+  for (int row = 0; row < 60; ++row) {
+    for (int col = 0; col < 21; ++col) {
+      const bool inside = std::hypot((row - 30.0) / 29, (col - 9.5) / 9) < 1;
+      const int kpa = inside ? 20 + 3 * row + 5 * col : -1;
+      written.frames[0][static_cast<std::size_t>(row * 21 + col)] = kpa;
+      newtons += inside ? kpa * 1e3 * 0.258064e-4 : 0;
+    }
+  }
+  const auto source = open(written.text());
+  EXPECT_TRUE(warnings(*source, "pillars stand partly outside"));
+  SolverPlan plan;
+  plan.skin = source->skin();
+  plan.sensel_type = source->sensel_type();
+  plan.calibration = source->calibration();
+  FrameBuffer frame(plan.sensel_type, 60, 21);
+  source->read(0, frame);
+  const ForceField field = solve_on_host(plan, frame.view());
+  EXPECT_NEAR(std::accumulate(field.normal.begin(), field.normal.end(), 0.0), newtons,
+              1e-5 * newtons);
+  const auto quiet = static_cast<std::size_t>(std::ranges::count(field.status, 0));
+  EXPECT_EQ(quiet, count_pillars_without_sensels(plan.calibration, plan.skin));
+  EXPECT_GT(quiet, 50U);
+  EXPECT_EQ(quiet + static_cast<std::size_t>(std::ranges::count(field.status, status::kUsable)),
+            field.pillars());
+}
+
 struct Mistake {
   std::string name;
   std::function<void(Export&)> make;
@@ -273,8 +360,19 @@ struct Mistake {
 
 const Mistake kMistakes[] = {
     {"other units",
-     [](Export& e) { e.set("UNITS", "UNITS kPa"); },
-     {":11:", "UNITS is 'kPa'", "raw units"}},
+     [](Export& e) { e.set("UNITS", "UNITS furlongs"); },
+     {":11:", "UNITS is 'furlongs'", "kPa"}},
+    {"pressures without an area",
+     [](Export& e) {
+       e.set("UNITS", "UNITS kPa");
+       e.remove("ROW_SPACING");
+       e.remove("COL_SPACING");
+     },
+     {"area of a sensel", "SENSEL_AREA"}},
+    {"area in acres",
+     [](Export& e) { e.set("UNITS", "SENSEL_AREA 1 acre"); },
+     {":11:", "SENSEL_AREA is '1 acre'"}},
+    {"area zero", [](Export& e) { e.set("UNITS", "SENSEL_AREA 0 mm2"); }, {":11:", "above zero"}},
     {"no ROWS", [](Export& e) { e.remove("ROWS"); }, {":13:", "ROWS"}},
     {"no COLS", [](Export& e) { e.remove("COLS"); }, {":13:", "COLS"}},
     {"ROWS a word", [](Export& e) { e.set("ROWS", "ROWS three"); }, {":3:", "ROWS is 'three'"}},
@@ -344,7 +442,7 @@ TEST_F(Tekscan, NamesTheLineOfEveryMistake) {
 
 TEST_F(Tekscan, NamesTheColumnOfEveryBadCell) {
   for (const std::string cell :
-       {"", " ", "x", "-1", "1.5", "1e3", "nan", "b", "BB", "0x10", "1 2"}) {
+       {"", " ", "x", "-2", "1.5", "1e3", "nan", "b", "BB", "0x10", "1 2"}) {
     std::string text = Export().text();
     const std::size_t at = text.find("5,6,7,8");
     text.replace(at + 4, 1, cell);
@@ -407,7 +505,7 @@ TEST(RealTekscan, AgreesWithTheRawSumsOfItsSoftware) {
   }
   EXPECT_EQ(index, 309u);
   std::string masked;
-  for (const auto good : source->calibration().mask) masked += good == 0 ? 'B' : '.';
+  for (const auto good : source->calibration().mask) masked += good == kAbsent ? 'B' : '.';
   EXPECT_EQ(masked, absent);
 }
 

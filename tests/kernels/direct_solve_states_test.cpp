@@ -246,6 +246,28 @@ TYPED_TEST(DirectSolveStates, ThreeUsableReadingsRecoverAnyFourth) {
   EXPECT_LE(worst, 4);
 }
 
+/// Every pattern of sensels that the sensor does not have: no fault unless the pillar is in
+/// contact, and otherwise the force and status of missing sensels.
+TYPED_TEST(DirectSolveStates, AbsentSenselsAreNoFaultWithoutContact) {
+  using Real = RealOf<TypeParam>;
+  int contacts = 0;
+  for (const States& states : all_states()) {
+    if (std::ranges::count(states, missing) == 0) continue;
+    SCOPED_TRACE(name_of(states));
+    auto pillar = pillar_in<TypeParam>(states, {4, 3, 2, 1});
+    const auto missed = solve<TypeParam>(pillar, 50);
+    const bool contact = (missed.status & (status::kUsable | status::kSaturated)) != 0;
+    for (auto* sensel : {&pillar.s1, &pillar.s2, &pillar.s3, &pillar.s4}) {
+      if (sensel->missing) *sensel = classify(apply_mask(*sensel, Real{2}), Real{0});
+    }
+    const auto solved = solve<TypeParam>(pillar, 50);
+    EXPECT_EQ(solved.status, contact ? missed.status : 0);
+    EXPECT_EQ(solved.force.normal, missed.force.normal);
+    contacts += contact ? 1 : 0;
+  }
+  EXPECT_GT(contacts, 100);
+}
+
 TYPED_TEST(DirectSolveStates, SaturatedSenselsNeverReadLessThanFullScale) {
   const auto at = [](const States& states, const FourReadings<TypeParam>& readings) {
     return solve<TypeParam>(pillar_in<TypeParam>(states, readings), 1).sum;

@@ -86,6 +86,9 @@ TYPED_TEST(SenselStages, AMaskedSenselIsMissing) {
   using Real = RealOf<TypeParam>;
   TestFixture::expect_missing(classify(apply_mask(TypeParam::raw_sensel(9), Real{0}), Real{0}));
   TestFixture::expect_usable(classify(apply_mask(TypeParam::raw_sensel(9), Real{1}), Real{0}), 9);
+  const auto absent = classify(apply_mask(TypeParam::raw_sensel(9), Real{2}), Real{0});
+  TestFixture::expect_missing(absent);
+  EXPECT_TRUE(absent.absent);
 }
 
 TYPED_TEST(SenselStages, FullScaleAndMoreIsSaturated) {

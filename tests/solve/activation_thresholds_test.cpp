@@ -24,7 +24,9 @@ SolverPlan plan_of(SenselType type, std::uint32_t seed) {
   for (std::size_t i = 0; i < plan.skin.sensels(); ++i) {
     plan.calibration.tare.push_back(20 * share(random) - 5);
     plan.calibration.gain.push_back(0.05F + 3 * share(random));
-    plan.calibration.mask.push_back(share(random) < 0.1F ? 0 : 1);
+    plan.calibration.mask.push_back(share(random) < 0.1F    ? kMissing
+                                    : share(random) < 0.05F ? kAbsent
+                                                            : kGood);
   }
   return plan;
 }
@@ -109,7 +111,7 @@ TEST(ActivationThresholds, OfMaskedSenselsAreNeverReached) {
   const SolverPlan plan = plan_of(SenselType::u8, 6);
   const std::vector<float> levels = activation_thresholds(plan);
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    if (plan.calibration.mask[i] != 0) continue;
+    if (plan.calibration.mask[i] == kGood) continue;
     EXPECT_EQ(levels[i], 255);
   }
 }

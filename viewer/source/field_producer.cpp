@@ -10,6 +10,7 @@
 #include "pillarfield/recording.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/status.h"
 #include "viewer/source/force_file_producer.h"
 #include "viewer/source/frame_provider.h"
 #include "viewer/source/frame_rate.h"
@@ -98,6 +99,19 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
       std::move(info), simulate_frames(simulator, frames, progress), plan, std::move(processor));
 }
 
+/// Whether a recording seems to lack its tare: every pillar of its first frame is in contact.
+bool lacks_tare(FrameSource& source, const SolverPlan& plan, Processor& processor) {
+  if (source.has_truth() || !plan.calibration.tare.empty()) return false;
+  FrameBuffer frame(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+  source.read(0, frame);
+  processor.submit(frame.view());
+  const auto status = processor.receive().status;
+  const auto idle =
+      std::ranges::count(status, Region::none, [](std::uint8_t byte) { return region_of(byte); });
+  const std::size_t absent = count_pillars_without_sensels(plan.calibration, plan.skin);
+  return static_cast<std::size_t>(idle) == absent && absent < status.size();
+}
+
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                                               const ProducerOptions& options) {
   std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});
@@ -112,11 +126,17 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   plan.skin = source->skin();
   plan.sensel_type = source->sensel_type();
   plan.calibration = source->calibration();
-  plan = shown_plan(std::move(plan));
   info.rate_hz =
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
+  plan.frame_interval_s = 1 / info.rate_hz;
+  plan = shown_plan(std::move(plan));
   Processor processor = processor_for(plan, options);
   describe(info, plan, processor);
+  if (lacks_tare(*source, plan, processor)) {
+    info.warnings.emplace_back(
+        "In the first frame every pillar is in contact, and there is no tare; measure one with "
+        "'pillarfield calibrate tare'.");
+  }
   return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
                                           plan, std::move(processor));
 }

@@ -99,8 +99,11 @@ SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::strin
     plan.uncertainty = has_output(options, "uncertainty");
   }
   if (options.everything) enable_everything(plan, baseline_time_s);
-  if (!baseline_time_s) return plan;
+  const auto& memory = plan.calibration.effects.memory;
+  if (!baseline_time_s && !memory) return plan;
   const double interval_s = frame_interval_s();
+  plan.frame_interval_s = interval_s;
+  if (!baseline_time_s) return plan;
   plan.baseline_rate = baseline_rate(*baseline_time_s, interval_s);
   if (options.everything)
     plan.baseline_interval = baseline_interval_of(*baseline_time_s, interval_s);

@@ -34,7 +34,8 @@ struct PlanOptions {
 
 /// Applies the scene, the calibration and the other options, in this order, to `plan`. Messages
 /// name the frames `source`. Calls `frame_interval_s`, the seconds between frames, if the baseline
-/// is followed. Throws Error where a file cannot be read or does not fit.
+/// is followed or the sensels have a memory. Throws Error where a file cannot be read or does not
+/// fit.
 [[nodiscard]] SolverPlan plan_of(const PlanOptions& options, SolverPlan plan,
                                  const std::string& source,
                                  const std::function<double()>& frame_interval_s);

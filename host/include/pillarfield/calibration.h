@@ -11,6 +11,12 @@
 
 namespace pillarfield {
 
+/// Values of Calibration::mask. A pillar without any sensel has status 0; one that has some counts
+/// the absent ones as missing while it is in contact, and reads no contact otherwise.
+inline constexpr std::uint8_t kMissing = 0;  ///< dead or masked: a fault
+inline constexpr std::uint8_t kGood = 1;
+inline constexpr std::uint8_t kAbsent = 2;  ///< the sensor has no sensel there: no fault
+
 /// Corrections of single sensels: planes [sensel rows, cols], row by row. An empty plane needs no
 /// correction, and none is compiled into the kernel.
 ///
@@ -21,7 +27,7 @@ struct Calibration {
   std::vector<float> tare;         ///< reading of the unloaded sensel, counts, |tare| <= full scale
   std::vector<float> gain;         ///< factor on (raw − tare), [kMinGain, kMaxGain]
   std::vector<float> dead_zone;    ///< load below which a sensel reads zero, counts, >= 0
-  std::vector<std::uint8_t> mask;  ///< 1 = good, 0 = missing (dead, absent or masked)
+  std::vector<std::uint8_t> mask;  ///< kMissing, kGood or kAbsent
   std::vector<float> noise;        ///< standard deviation of the unloaded raw reading, counts, >= 0
   /// Change of the tare with the curvature of the skin, counts·mm: all three or none. The tare of a
   /// skin bent to curvatures (x, y, xy), 1/mm, is tare + bend_x·x + bend_y·y + bend_xy·xy (E8).
@@ -35,6 +41,22 @@ struct Calibration {
            bend_x.empty() && effects.empty();
   }
 };
+
+/// Whether the sensel of this index exists and is not masked.
+[[nodiscard]] inline bool is_good(const Calibration& calibration, std::size_t sensel) {
+  return calibration.mask.empty() || calibration.mask[sensel] == kGood;
+}
+
+/// Whether none of the four sensels under a pillar exists.
+[[nodiscard]] bool lacks_sensels(const Calibration& calibration, const Skin& skin,
+                                 std::uint32_t pillar_row, std::uint32_t pillar_col);
+
+/// The number of pillars none of whose four sensels exists.
+[[nodiscard]] std::size_t count_pillars_without_sensels(const Calibration& calibration,
+                                                        const Skin& skin);
+
+/// The number of sensels that the sensor does not have.
+[[nodiscard]] std::size_t count_absent(const Calibration& calibration);
 
 /// The number of sensels masked as missing.
 [[nodiscard]] std::size_t count_masked(const Calibration& calibration);
@@ -54,7 +76,7 @@ inline constexpr double kMaxPlaneCounts = 1e9;
 
 /// Throws Error, naming `where`, if a plane is neither empty nor of the skin's size, or a value is
 /// out of range: tare within ± largest_plane_counts(type), dead zone and noise from 0 to that
-/// (noise at most kMaxNoiseCounts), gain within [kMinGain, kMaxGain], mask 0 or 1.
+/// (noise at most kMaxNoiseCounts), gain within [kMinGain, kMaxGain], mask 0, 1 or 2.
 void check(const Calibration& calibration, const Skin& skin, std::string_view where,
            std::optional<SenselType> type = {});
 

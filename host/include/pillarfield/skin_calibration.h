@@ -57,12 +57,14 @@ void check(const SkinCalibration& calibration, std::string_view where);
 /// Throws Error, naming `where`, if the calibration and the skin differ in size.
 void require_fitting(const SkinCalibration& calibration, const Skin& skin, std::string_view where);
 
-/// Puts a calibration into effect: replaces all of `planes`, and the constants of `skin` that the
-/// calibration has. Sensels masked in `planes` stay masked. Both must have the same size.
+/// Puts a calibration into effect: replaces all of `planes`, effects included, and the constants of
+/// `skin` that the calibration has. Sensels masked in `planes` stay masked. Both must have the same
+/// size.
 void apply(const SkinCalibration& calibration, Skin& skin, Calibration& planes);
 
 /// Sets the threshold to `factor` times the 99th percentile of noise · gain over the good sensels,
-/// through the power law if there is one. The calibration must have a noise plane.
+/// through the power law or the response curve if there is one. The calibration must have a noise
+/// plane.
 void set_threshold(SkinCalibration& calibration, double factor);
 
 /// Replaces the power law, and adjusts the threshold so that no reading crosses it.

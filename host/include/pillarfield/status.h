@@ -13,7 +13,8 @@ inline constexpr std::uint8_t kUsable = 15;        ///< mask of the four
 inline constexpr std::uint8_t kAmbiguous = 16;     ///< the readings allow a segment of forces,
                                                    ///< or both regions 1 and 2
 inline constexpr std::uint8_t kSaturated = 32;     ///< a sensel is at full scale
-inline constexpr std::uint8_t kInconsistent = 64;  ///< a sensel is missing, or readings contradict
+inline constexpr std::uint8_t kInconsistent = 64;  ///< a sensel is missing (an absent one: and the
+                                                   ///< pillar in contact), or readings contradict
 inline constexpr std::uint8_t kFromNeighbours = 128;  ///< resolved by the friction of its contact
 
 }  // namespace pillarfield::status

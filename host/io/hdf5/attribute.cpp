@@ -11,15 +11,21 @@ namespace pillarfield::hdf5 {
 namespace {
 
 constexpr std::size_t kLongestText = 1 << 16;
+constexpr hssize_t kMostNumbers = 1 << 16;
 
-void write_scalar(const File& file, hid_t object, const char* name, hid_t stored_type,
-                  hid_t memory_type, const void* value) {
+void write(const File& file, hid_t object, const char* name, const Handle& space, hid_t stored_type,
+           hid_t memory_type, const void* values) {
   const std::string failure = fmt::format("cannot write attribute '{}'", name);
-  const Handle space = own(H5Screate(H5S_SCALAR), file.path, failure);
   const Handle attribute =
       own(H5Acreate2(object, name, stored_type, space.get(), H5P_DEFAULT, H5P_DEFAULT), file.path,
           failure);
-  require(H5Awrite(attribute.get(), memory_type, value), file.path, failure);
+  require(H5Awrite(attribute.get(), memory_type, values), file.path, failure);
+}
+
+void write_scalar(const File& file, hid_t object, const char* name, hid_t stored_type,
+                  hid_t memory_type, const void* value) {
+  const Handle space = own(H5Screate(H5S_SCALAR), file.path, "cannot make a data space");
+  write(file, object, name, space, stored_type, memory_type, value);
 }
 
 Handle text_type(const File& file, std::size_t size) {
@@ -34,9 +40,10 @@ struct Attribute {
   Handle id;
   Handle type;
   std::string failure;
+  hssize_t values = 0;
 };
 
-std::optional<Attribute> open_single(const File& file, hid_t object, const char* name) {
+std::optional<Attribute> open(const File& file, hid_t object, const char* name) {
   Attribute attribute;
   attribute.failure = fmt::format("attribute '{}' cannot be read", name);
   const htri_t found = H5Aexists(object, name);
@@ -45,7 +52,13 @@ std::optional<Attribute> open_single(const File& file, hid_t object, const char*
   attribute.id = own(H5Aopen(object, name, H5P_DEFAULT), file.path, attribute.failure);
   attribute.type = own(H5Aget_type(attribute.id.get()), file.path, attribute.failure);
   const Handle space = own(H5Aget_space(attribute.id.get()), file.path, attribute.failure);
-  if (H5Sget_simple_extent_npoints(space.get()) != 1) {
+  attribute.values = H5Sget_simple_extent_npoints(space.get());
+  return attribute;
+}
+
+std::optional<Attribute> open_single(const File& file, hid_t object, const char* name) {
+  auto attribute = open(file, object, name);
+  if (attribute && attribute->values != 1) {
     throw Error(file.path.string(), fmt::format("attribute '{}' is not a single value", name),
                 "store one value");
   }
@@ -92,6 +105,14 @@ void write_attribute(const File& file, hid_t object, const char* name, const std
   write_scalar(file, object, name, type.get(), type.get(), value.c_str());
 }
 
+void write_attribute(const File& file, hid_t object, const char* name,
+                     const std::vector<double>& values) {
+  const hsize_t extent = values.size();
+  const Handle space =
+      own(H5Screate_simple(1, &extent, nullptr), file.path, "cannot make a data space");
+  write(file, object, name, space, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values.data());
+}
+
 std::optional<double> read_number(const File& file, hid_t object, const char* name) {
   const auto attribute = open_single(file, object, name);
   if (!attribute) return std::nullopt;
@@ -99,6 +120,21 @@ std::optional<double> read_number(const File& file, hid_t object, const char* na
   double value = 0;
   require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, &value), file.path, attribute->failure);
   return value;
+}
+
+std::optional<std::vector<double>> read_numbers(const File& file, hid_t object, const char* name) {
+  const auto attribute = open(file, object, name);
+  if (!attribute) return std::nullopt;
+  require_number(file.path, fmt::format("attribute '{}'", name), attribute->type.get());
+  if (attribute->values < 1 || attribute->values > kMostNumbers) {
+    throw Error(file.path.string(),
+                fmt::format("attribute '{}' has {} values", name, attribute->values),
+                fmt::format("store 1 to {}", kMostNumbers));
+  }
+  std::vector<double> values(static_cast<std::size_t>(attribute->values));
+  require(H5Aread(attribute->id.get(), H5T_NATIVE_DOUBLE, values.data()), file.path,
+          attribute->failure);
+  return values;
 }
 
 std::optional<std::string> read_text(const File& file, hid_t object, const char* name) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "io/hdf5/file.h"
 
@@ -14,11 +15,19 @@ void write_attribute(const File& file, hid_t object, const char* name, int value
 void write_attribute(const File& file, hid_t object, const char* name, double value);
 void write_attribute(const File& file, hid_t object, const char* name, const std::string& value);
 
+/// Writes an attribute of a list of 64-bit floats.
+void write_attribute(const File& file, hid_t object, const char* name,
+                     const std::vector<double>& values);
+
 /// Reads an attribute of any standard integer, float or string type; unset if absent. Throws Error
 /// if it is not a single number or string. Call probe_file() first: a damaged string of variable
 /// length can crash HDF5.
 [[nodiscard]] std::optional<double> read_number(const File& file, hid_t object, const char* name);
 [[nodiscard]] std::optional<std::string> read_text(const File& file, hid_t object,
                                                    const char* name);
+
+/// Reads an attribute of one or several numbers, at most 65536; unset if absent.
+[[nodiscard]] std::optional<std::vector<double>> read_numbers(const File& file, hid_t object,
+                                                              const char* name);
 
 }  // namespace pillarfield::hdf5

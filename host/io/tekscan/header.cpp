@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <utility>
+#include <iterator>
 
 #include "pillarfield/error.h"
 
@@ -36,35 +35,65 @@ Number require_number(const std::string& place, std::string_view key, std::strin
   return *number;
 }
 
-double spacing_mm(const std::string& place, std::string_view key, std::string_view value) {
-  static constexpr std::array<std::pair<std::string_view, double>, 11> kMillimetres = {{
-      {"mm", 1.0},
-      {"millimeter", 1.0},
-      {"millimeters", 1.0},
-      {"milimeters", 1.0},
-      {"cm", 10.0},
-      {"centimeter", 10.0},
-      {"centimeters", 10.0},
-      {"in", 25.4},
-      {"inch", 25.4},
-      {"inches", 25.4},
-      {"\"", 25.4},
-  }};
-  const std::size_t split = std::min(value.find_first_of(" \t"), value.size());
-  const std::string unit = lower_case(trimmed(value.substr(split)));
-  const auto* const known = std::find_if(kMillimetres.begin(), kMillimetres.end(),
-                                         [&](const auto& entry) { return entry.first == unit; });
-  if (known == kMillimetres.end()) {
-    refuse(place, key, value, "its unit must be mm, cm or inches, abbreviated or in full");
+/// A unit, lower case, and its size in mm, mm², MPa or N.
+struct Unit {
+  std::string_view name;
+  double size;
+};
+
+constexpr Unit kLengths[] = {{"mm", 1},           {"millimeter", 1}, {"millimeters", 1},
+                             {"milimeters", 1},   {"cm", 10},        {"centimeter", 10},
+                             {"centimeters", 10}, {"in", 25.4},      {"inch", 25.4},
+                             {"inches", 25.4},    {"\"", 25.4}};
+constexpr Unit kAreas[] = {{"mm2", 1}, {"cm2", 100}, {"m2", 1e6}, {"in2", 645.16}};
+constexpr Unit kPressures[] = {{"kpa", 1e-3},
+                               {"mpa", 1},
+                               {"pa", 1e-6},
+                               {"psi", 6.894757293168e-3},
+                               {"mmhg", 1.33322387e-4},
+                               {"n/cm2", 1e-2},
+                               {"kg/cm2", 9.80665e-2},
+                               {"g/cm2", 9.80665e-5},
+                               {"bar", 1e-1}};
+constexpr Unit kForces[] = {{"n", 1},
+                            {"newton", 1},
+                            {"newtons", 1},
+                            {"lb", 4.4482216152605},
+                            {"lbs", 4.4482216152605},
+                            {"kg", 9.80665},
+                            {"g", 9.80665e-3}};
+
+/// A unit as it is listed: lower case, without "^", with 2 instead of "²" (UTF-8 or Latin-1).
+std::string unit_name(std::string_view text) {
+  std::string name;
+  for (const char letter : trimmed(text)) {
+    if (letter == '\xb2') name += '2';
+    if (letter != '^' && letter != '\xb2' && letter != '\xc2') name += letter;
   }
-  const double spacing = require_number(place, key, value.substr(0, split), 0.0) * known->second;
-  if (!(spacing > 0) || !std::isfinite(spacing)) refuse(place, key, value, "it must be above zero");
-  return spacing;
+  return lower_case(name);
 }
 
-void require_raw(const std::string& place, std::string_view value) {
-  if (lower_case(value) == "raw") return;
-  refuse(place, "UNITS", value, "export it again in raw units: forces are solved from counts");
+template <std::size_t N>
+std::optional<double> size_of_unit(const Unit (&units)[N], std::string_view text) {
+  const auto* const known = std::ranges::find(units, unit_name(text), &Unit::name);
+  return known == std::end(units) ? std::nullopt : std::optional(known->size);
+}
+
+/// A number above zero and its unit, as "0.127 centimeters".
+template <std::size_t N>
+double measure_in(const Unit (&units)[N], const std::string& place, std::string_view key,
+                  std::string_view value, std::string_view unit_mend) {
+  const std::size_t split = std::min(value.find_first_of(" \t"), value.size());
+  const auto unit = size_of_unit(units, value.substr(split));
+  if (!unit) refuse(place, key, value, unit_mend);
+  const double measure = require_number(place, key, value.substr(0, split), 0.0) * *unit;
+  if (!(measure > 0) || !std::isfinite(measure)) refuse(place, key, value, "it must be above zero");
+  return measure;
+}
+
+double spacing_mm(const std::string& place, std::string_view key, std::string_view value) {
+  return measure_in(kLengths, place, key, value,
+                    "its unit must be mm, cm or inches, abbreviated or in full");
 }
 
 }  // namespace
@@ -109,9 +138,27 @@ void TekscanHeader::parse_line(std::string_view line, const std::string& place) 
   } else if (key == "END_FRAME") {
     end_frame = require_number<std::uint64_t>(place, key, value, 0);
   } else if (key == "UNITS") {
-    require_raw(place, value);
     units_given = true;
+    mpa_per_unit = size_of_unit(kPressures, value);
+    newtons_per_unit = size_of_unit(kForces, value);
+    if (lower_case(value) != "raw" && !is_calibrated()) {
+      refuse(place, key, value, "it must be raw, kPa, psi, mmHg or N; export it again");
+    }
+  } else if (key == "SENSEL_AREA") {
+    sensel_area_mm2 = measure_in(kAreas, place, key, value, "its unit must be mm2, cm2, m2 or in2");
   }
+}
+
+std::optional<double> TekscanHeader::area_mm2() const {
+  if (sensel_area_mm2 || (!row_spacing_mm && !col_spacing_mm)) return sensel_area_mm2;
+  const double row_mm = row_spacing_mm ? *row_spacing_mm : *col_spacing_mm;
+  return row_mm * col_spacing_mm.value_or(row_mm);
+}
+
+std::optional<double> TekscanHeader::newtons_per_cell() const {
+  if (!mpa_per_unit) return newtons_per_unit;
+  const auto area = area_mm2();
+  return area ? std::optional(*mpa_per_unit * *area) : std::nullopt;
 }
 
 }  // namespace pillarfield

@@ -18,10 +18,22 @@ struct TekscanHeader {
   std::optional<std::uint64_t> start_frame;
   std::optional<std::uint64_t> end_frame;
   bool units_given = false;
+  std::optional<double> newtons_per_unit;  ///< of a cell in a unit of force
+  std::optional<double> mpa_per_unit;      ///< of a cell in a unit of pressure
+  std::optional<double> sensel_area_mm2;
 
   /// Parses a line "KEY value"; ignores unknown keys. Throws Error, naming `place`, if the value is
-  /// invalid or the unit is not raw.
+  /// invalid.
   void parse_line(std::string_view line, const std::string& place);
+
+  /// Whether cells are forces or pressures instead of raw counts.
+  [[nodiscard]] bool is_calibrated() const { return newtons_per_unit || mpa_per_unit; }
+
+  /// Area of a sensel: SENSEL_AREA, else the product of the spacings; unset if neither is given.
+  [[nodiscard]] std::optional<double> area_mm2() const;
+
+  /// Force on a sensel whose cell is 1; unset for raw counts and for pressures without an area.
+  [[nodiscard]] std::optional<double> newtons_per_cell() const;
 };
 
 /// Removes blanks at both ends of `text`.

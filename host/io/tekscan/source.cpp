@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -8,11 +9,12 @@
 #include "io/frame_source.h"
 #include "io/tekscan/parser.h"
 #include "pillarfield/error.h"
+#include "skin/pillar_sensels.h"
 
 namespace pillarfield {
 namespace {
 
-/// An export in raw units (docs/formats.md), read into memory as a whole.
+/// An export in any units (docs/formats.md), read into memory as a whole.
 class Tekscan final : public FileSource {
  public:
   explicit Tekscan(const std::filesystem::path& path);
@@ -23,8 +25,11 @@ class Tekscan final : public FileSource {
  private:
   void take_spacing(const TekscanHeader& header);
   void take_full_scale();
+  void take_newtons(const TekscanHeader& header);
   void take_times(TekscanExport& data);
   void take_mask(TekscanExport& data);
+  void spread_outline();
+  void spread(const std::array<std::size_t, 4>& sensels);
   void warn_of_header(const TekscanHeader& header);
 
   CompactReadings readings_;
@@ -38,9 +43,13 @@ Tekscan::Tekscan(const std::filesystem::path& path) : FileSource(path, "Tekscan 
   frames_ = data.numbers.size();
   skin_.rows = *data.header.rows;
   skin_.cols = *data.header.cols;
-  skin_.threshold_counts = data.header.noise_threshold_counts.value_or(skin_.threshold_counts);
   take_spacing(data.header);
-  take_full_scale();
+  if (data.header.is_calibrated()) {
+    take_newtons(data.header);
+  } else {
+    skin_.threshold_counts = data.header.noise_threshold_counts.value_or(skin_.threshold_counts);
+    take_full_scale();
+  }
   take_times(data);
   take_mask(data);
   warn_of_header(data.header);
@@ -80,6 +89,16 @@ void Tekscan::take_full_scale() {
       skin_.counts_per_newton));
 }
 
+/// Readings are newtons on a sensel, of which four add up to the normal force on their pillar.
+void Tekscan::take_newtons(const TekscanHeader& header) {
+  skin_.counts_per_newton = 0.25;
+  warnings_.push_back(
+      header.mpa_per_unit
+          ? fmt::format("Readings are pressures; times {:.6g} mm² they are newtons on a sensel.",
+                        header.area_mm2().value_or(0))
+          : "Readings are newtons on a sensel.");
+}
+
 void Tekscan::take_times(TekscanExport& data) {
   times_s_ = std::move(data.times_s);
   if (!times_s_.empty()) return;
@@ -93,11 +112,44 @@ void Tekscan::take_times(TekscanExport& data) {
 }
 
 void Tekscan::take_mask(TekscanExport& data) {
-  const auto absent = std::count(data.mask.begin(), data.mask.end(), std::uint8_t{0});
-  if (absent == 0) return;
-  warnings_.push_back(fmt::format("{} of {} cells have no sensel (B); they count as missing.",
-                                  absent, data.mask.size()));
   calibration_.mask = std::move(data.mask);
+  const std::size_t absent = count_absent(calibration_);
+  if (absent == 0) {
+    calibration_.mask.clear();
+    return;
+  }
+  warnings_.push_back(
+      fmt::format("{} of {} cells have no sensel.", absent, calibration_.mask.size()));
+  if (type_ == SenselType::f32) spread_outline();
+}
+
+/// Spreads the force on the present sensels of each pillar on the sensor's outline over all four:
+/// its normal force is then that of its sensels, and its shear zero.
+void Tekscan::spread_outline() {
+  std::size_t spread_pillars = 0;
+  for_each_pillar(skin_, [&](auto, auto, const auto& sensels) {
+    const auto absent = std::ranges::count_if(
+        sensels, [&](std::size_t i) { return calibration_.mask[i] == kAbsent; });
+    if (absent == 0 || absent == 4) return;
+    spread(sensels);
+    ++spread_pillars;
+  });
+  if (spread_pillars == 0) return;
+  warnings_.push_back(fmt::format(
+      "{} pillars stand partly outside the sensels; their shear is unknown and set to zero.",
+      spread_pillars));
+}
+
+void Tekscan::spread(const std::array<std::size_t, 4>& sensels) {
+  const std::span<float> newtons = readings_.newtons();
+  for (std::size_t frame = 0; frame < newtons.size(); frame += skin_.sensels()) {
+    float sum = 0;
+    for (const std::size_t i : sensels) {
+      sum += calibration_.mask[i] == kGood ? newtons[frame + i] : 0;
+    }
+    for (const std::size_t i : sensels) newtons[frame + i] = sum / 4;
+  }
+  for (const std::size_t i : sensels) calibration_.mask[i] = kGood;
 }
 
 void Tekscan::warn_of_header(const TekscanHeader& header) {

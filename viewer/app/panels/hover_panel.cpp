@@ -38,7 +38,7 @@ void hover_panel(const AppState& state) {
   const PillarValues values = values_at(*state.field, pillar);
   const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
   heading(style, format_pillar(pillar), format_place(state.field->forces, pillar, pitch_mm));
-  status_line(style, values.status, state.settings.theme);
+  status_line(style, state, pillar, values.status);
   if (state.field->raw.data != nullptr) {
     faint_text(style, ("readings 1–4: " + format_readings(values.readings)).c_str());
   }

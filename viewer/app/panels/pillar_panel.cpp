@@ -133,7 +133,7 @@ void pillar_panel(AppState& state) {
   const double pitch_mm = state.player->info().skin.pillar_pitch_mm();
   heading(style, format_pillar(pin.pillar),
           format_place(state.field->forces, pin.pillar, pitch_mm));
-  status_line(style, values.status, state.settings.theme);
+  status_line(style, state, pin.pillar, values.status);
   leave_gap(style, 4);
   draw_readings_and_direction(style, state, values, colour);
   leave_gap(style, 2);

@@ -34,9 +34,12 @@ void swatch(const PanelStyle& style, ImU32 colour) {
   ImGui::SameLine(0, static_cast<float>(7 * style.unit));
 }
 
-void status_line(const PanelStyle& style, std::uint8_t status, Theme theme) {
-  swatch(style, packed(status_colour(status, theme)));
-  ImGui::TextUnformatted(format_status(status).c_str());
+void status_line(const PanelStyle& style, const AppState& state, PillarIndex pillar,
+                 std::uint8_t status) {
+  const SourceInfo& source = state.player->info();
+  const bool absent = lacks_sensels(source.calibration, source.skin, pillar.row, pillar.col);
+  swatch(style, packed(status_colour(status, state.settings.theme)));
+  ImGui::TextUnformatted(absent ? "no sensel" : format_status(status).c_str());
 }
 
 }  // namespace pillarfield::viewer
