@@ -41,9 +41,9 @@ Pose bent(const BentPoint& at, double radius_mm) {
 }
 
 Pose on_cylinder(const Surface& surface, double x_mm, double y_mm) {
-  const double axis = surface.axis_deg * std::numbers::pi / 180;
-  const double along_x = std::sin(axis);
-  const double along_y = -std::cos(axis);
+  const double angle = (surface.axis_deg - 90) * std::numbers::pi / 180;
+  const double along_x = std::cos(angle);
+  const double along_y = std::sin(angle);
   return bent({along_x, along_y, along_x * x_mm + along_y * y_mm, along_x * y_mm - along_y * x_mm},
               surface.radius_mm);
 }

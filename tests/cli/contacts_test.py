@@ -53,7 +53,8 @@ class Contacts(CommandTest):
             return list(csv.DictReader(file))
 
     def test_forces_are_in_the_frame_of_a_curved_body(self):
-        run("simulate", SCENES / "curved_skin.toml", "-o", self.recording, "--frames", 10)
+        run("simulate", SCENES / "curved_skin.toml", "-o", self.recording, "--frames", 10,
+            "--overwrite")
         facts = run_json("info", self.recording)
         self.assertEqual((facts["surface"], facts["surface_radius_mm"]), ("cylinder", 60))
         self.solve("--contacts", self.csv)
