@@ -9,17 +9,29 @@
 #include "pillar/direct_solve.h"
 #ifndef PF_WHOLE /* The other files compute fractions. */
 #include "pillar/elementary.h"
+#include "pillar/wires.h"
+#include "pillar/curve.h"
+#include "pillar/leak.h"
+#include "pillar/memory.h"
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"
 #include "pillar/uncertainty.h"
 #endif
 #include "frame/layout.h"
 #include "frame/result_planes.h"
+#ifndef PF_WHOLE
+#include "frame/wire_sweep.h"
+#endif
 #include "frame/stages.h"
 #ifndef __cplusplus
 #include "frame/load_store.h"
+#include "frame/wire_vectors.h"
 #include "frame/calibration_planes.h"
 #include "frame/idle.h"
+#include "frame/block.h"
+#include "frame/memory_planes.h"
+#include "frame/neighbours.h"
+#include "frame/find_wires.cl"
 #include "frame/solve_frame.cl"
 #include "frame/follow_baseline.cl"
 #endif

@@ -8,6 +8,7 @@
 
 #include "base/quantile.h"
 #include "calibration/finding_list.h"
+#include "calibration/held_out.h"
 #include "calibration/response_fit.h"
 #include "pillarfield/error.h"
 #include "skin/pillar_sensels.h"
@@ -17,6 +18,9 @@ namespace {
 
 /// Largest fraction of sensels that may fail in one way before the press is refused.
 constexpr double kFailingFraction = 0.2;
+/// Largest residual of the curve on held-out pressures, relative to that of straight lines, at
+/// which it is preferred.
+constexpr double kCurveWins = 0.8;
 /// Factor from the median response beyond which a sensel is masked as unequal.
 constexpr double kUnequal = 10;
 
@@ -204,6 +208,34 @@ void require_even(double unevenness, double most, const std::string& name) {
               "press evenly, as with an inflated membrane, or allow more unevenness");
 }
 
+/// Judges the models on held-out pressures and chooses one.
+void choose_model(const EquilibrationOptions& options, const ResponseFit& fit,
+                  const std::vector<std::uint8_t>& mask, EquilibrationResult& result) {
+  const std::vector<HeldOutLevel> linear = hold_out(ResponseModel::linear, fit, mask);
+  const std::vector<HeldOutLevel> curve = hold_out(ResponseModel::curve, fit, mask);
+  result.held_out_linear = relative_residual(linear);
+  result.held_out_curve = relative_residual(curve);
+  const bool wins = result.held_out_linear && result.held_out_curve &&
+                    *result.held_out_curve < kCurveWins * *result.held_out_linear;
+  result.model = options.model.value_or(wins ? ResponseModel::curve : ResponseModel::linear);
+}
+
+ResponseFit fit_model(ResponseModel model, std::span<const UniformPress> presses,
+                      const SkinCalibration& before) {
+  if (auto fit = fit_of(model, presses, before.planes, before.planes.mask)) return *std::move(fit);
+  throw Error(presses.back().frames.name(), "the presses determine no response curve",
+              "give two or more pressures at which most sensels respond and none is at full scale, "
+              "or fit straight lines");
+}
+
+/// The common response in counts: its readings with gains of mean 1, its loads with `k`.
+ResponseCurve curve_in_counts(const ResponseFit& fit, double k) {
+  ResponseCurve curve = fit.common()->curve;
+  for (double& reading : curve.readings) reading *= k * fit.newtons_per_reading();
+  for (double& load : curve.loads) load *= k;
+  return curve;
+}
+
 /// Fills gains, and dead zones if there are several pressures; masked sensels get 1 and 0.
 void fill_planes(const std::vector<Response>& responses, double k, bool several,
                  const FindingList& found, Calibration& planes) {
@@ -226,7 +258,9 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   require_presses(before, presses);
   const FrameStatistics& last = presses.back().frames;
   const Skin& skin = last.skin();
-  const ResponseFit fit(presses, before.planes);
+  EquilibrationResult result;
+  choose_model(options, ResponseFit(presses, before.planes), before.planes.mask, result);
+  const ResponseFit fit = fit_model(result.model, presses, before);
   FindingList found(before.planes.mask, last);
   const std::size_t masked_before = skin.sensels() - found.count_good();
   const std::vector<Response> responses = fit_all(fit, skin, found);
@@ -236,19 +270,26 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   const ResponseSummary summary(responses, found);
   mask_unequal(responses, summary.median_newtons_per_count(), found);
 
-  EquilibrationResult result;
   const double k = summary.counts_per_newton();
-  result.levels = fit.levels();
+  result.levels = fit.levels().size();
   result.unevenness = unevenness_of(responses, skin, found);
   require_even(result.unevenness, options.most_unevenness, last.name());
   result.shear = shear_of(responses, skin, found);
   result.gain_spread = summary.gain_spread(k);
-  result.nonlinearity = fit.levels() > 2 ? summary.nonlinearity() : 0;
-  result.calibration = before;
-  fill_planes(responses, k, fit.levels() > 1, found, result.calibration.planes);
+  result.nonlinearity = result.levels > 2 ? summary.nonlinearity() : 0;
   result.dead_zone_counts = summary.median_dead_zone(k);
-  result.calibration.counts_per_newton = k;
-  if (before.threshold_factor) set_threshold(result.calibration, *before.threshold_factor);
+  result.calibration = before;
+  SkinCalibration& after = result.calibration;
+  fill_planes(responses, k, result.levels > 1, found, after.planes);
+  after.counts_per_newton = k;
+  after.planes.effects.curve = {};
+  if (fit.common()) {
+    set_power_law(after, std::nullopt);
+    after.planes.effects.curve = curve_in_counts(fit, k);
+  }
+  after.planes.effects.residual =
+      residual_error(hold_out(result.model, fit, found.mask_plane()), k);
+  if (before.threshold_factor) set_threshold(after, *before.threshold_factor);
   result.findings = found.findings();
   return result;
 }

@@ -44,11 +44,14 @@ FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
 
 void FaultFinder::add(const FrameView& frame) {
   statistics_.add(frame);
-  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) { predict(row, col, frame); });
+  SenselReader reader(plan_, frame);
+  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) {
+    predict(row, col, reader);
+  });
 }
 
-void FaultFinder::predict(std::size_t row, std::size_t col, const FrameView& frame) {
-  const maths::Pillar pillar = SenselReader(plan_, frame).pillar(row, col);
+void FaultFinder::predict(std::size_t row, std::size_t col, SenselReader& reader) {
+  const maths::Pillar pillar = reader.pillar(row, col);
   const std::array sensels = {pillar.s1, pillar.s2, pillar.s3, pillar.s4};
   const auto places = pillar_sensels(plan_.skin, row, col);
   for (std::size_t n = 0; n < sensels.size(); ++n) {

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "calibration/golden_section.h"
+#include "calibration/mean_frame.h"
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/status.h"
@@ -21,19 +23,6 @@ constexpr double kDifferent = 1.1;
 constexpr double kExponentAccuracy = 1e-5;
 /// Largest root-mean-square relative error of the solved loads.
 constexpr double kMostMisfit = 0.5;
-
-/// The mean frame; a sensel at full scale in any frame is at full scale.
-FrameBuffer mean_frame(const FrameStatistics& frames) {
-  const Skin& skin = frames.skin();
-  FrameBuffer mean(SenselType::f32, skin.rows, skin.cols);
-  const auto readings = mean.readings<float>();
-  for (std::size_t i = 0; i < readings.size(); ++i) {
-    const SenselStatistics& sensel = frames.sensels()[i];
-    readings[i] = static_cast<float>(sensel.saturated > 0 ? *skin.full_scale_counts : sensel.mean);
-    if (sensel.readings == 0) readings[i] = std::nanf("");
-  }
-  return mean;
-}
 
 /// The mean frame of a load, and its solution in counts (k = 1).
 class Press {
@@ -140,30 +129,6 @@ double variance_of(const std::vector<double>& values) {
   double squares = 0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   return squares / static_cast<double>(values.size());
-}
-
-/// Argument of the minimum of a unimodal function, by golden-section search.
-template <class Function>
-double least_of(Function function, double low, double high, double accuracy) {
-  const double section = (std::sqrt(5.0) - 1) / 2;
-  double left = high - section * (high - low);
-  double right = low + section * (high - low);
-  double at_left = function(left);
-  double at_right = function(right);
-  while (high - low > accuracy) {
-    if (at_left < at_right) {
-      high = std::exchange(right, left);
-      at_right = at_left;
-      left = high - section * (high - low);
-      at_left = function(left);
-    } else {
-      low = std::exchange(left, right);
-      at_left = at_right;
-      right = low + section * (high - low);
-      at_right = function(right);
-    }
-  }
-  return (low + high) / 2;
 }
 
 /// Reference reading of the power law: geometric mean over the loads of the force-weighted mean

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
+
+#include "calibration/leak_sum.h"
+#include "skin/pillar_sensels.h"
 
 namespace pillarfield {
 namespace {
@@ -11,10 +15,10 @@ constexpr double kLeastSignalToNoise = 4;
 
 constexpr double kNewtonsPerKpaMm2 = 1e-3;
 
-std::size_t count_levels(std::span<const UniformPress> presses) {
+std::vector<double> levels_of(std::span<const UniformPress> presses) {
   std::set<double> pressures;
   for (const UniformPress& press : presses) pressures.insert(press.pressure_kpa);
-  return pressures.size();
+  return {pressures.begin(), pressures.end()};
 }
 
 }  // namespace
@@ -46,35 +50,52 @@ struct ResponseFit::Sums {
 };
 
 ResponseFit::ResponseFit(std::span<const UniformPress> presses, const Calibration& planes)
-    : presses_(presses),
-      planes_(planes),
-      area_mm2_(presses.front().frames.skin().pillar_pitch_mm() *
-                presses.front().frames.skin().pillar_pitch_mm()),
-      levels_(count_levels(presses)) {}
+    : presses_(presses.begin(), presses.end()), planes_(planes), levels_(levels_of(presses)) {}
 
-double ResponseFit::response(const SenselStatistics& pressed, std::size_t sensel) const {
-  return pressed.mean - planes_.tare[sensel];
+double ResponseFit::force_n(const UniformPress& press, std::size_t sensel) const {
+  const Skin& skin = press.frames.skin();
+  const double area_mm2 = skin.pillar_pitch_mm() * skin.pillar_pitch_mm();
+  return press.pressure_kpa * area_mm2 * kNewtonsPerKpaMm2 *
+         leak_sum(planes_.effects, skin, sensel);
 }
 
-bool ResponseFit::responds(const SenselStatistics& pressed, std::size_t sensel) const {
+std::optional<double> ResponseFit::response(const UniformPress& press, std::size_t sensel) const {
+  const SenselStatistics& pressed = press.frames.sensels()[sensel];
+  if (pressed.saturated > 0 || 2 * pressed.readings <= press.frames.frames()) return std::nullopt;
   const double noise = planes_.noise.empty() ? pressed.deviation() : planes_.noise[sensel];
-  return response(pressed, sensel) > kLeastSignalToNoise * noise;
+  const double response = pressed.mean - planes_.tare[sensel];
+  return response > kLeastSignalToNoise * noise ? std::optional(response) : std::nullopt;
+}
+
+void ResponseFit::straighten(CommonResponse common, double force_n, double reading) {
+  common_ = std::move(common);
+  newtons_per_reading_ = force_n / reading;
+}
+
+/// The force under which a straight line would read what the sensel reads.
+double ResponseFit::fitted_force_n(const UniformPress& press, std::size_t sensel) const {
+  const double force = force_n(press, sensel);
+  if (!common_) return force;
+  return newtons_per_reading_ * reading_at(common_->curve, force - common_->dead_zone_n);
+}
+
+double ResponseFit::force_at(const Response& fitted, double response) const {
+  const double force = response * fitted.newtons_per_count;
+  return common_ ? common_->force_at(force / newtons_per_reading_) : force + fitted.dead_zone_n;
 }
 
 Response ResponseFit::operator()(std::size_t sensel) const {
   Sums sums;
   for (const UniformPress& press : presses_) {
-    const SenselStatistics& pressed = press.frames.sensels()[sensel];
-    if (pressed.saturated > 0) {
+    if (press.frames.sensels()[sensel].saturated > 0) {
       ++sums.saturated;
-    } else if (2 * pressed.readings > press.frames.frames() && responds(pressed, sensel)) {
-      sums.add(press.pressure_kpa * area_mm2_ * kNewtonsPerKpaMm2, response(pressed, sensel),
-               pressed.readings);
+    } else if (const auto responded = response(press, sensel)) {
+      sums.add(fitted_force_n(press, sensel), *responded, press.frames.sensels()[sensel].readings);
     }
   }
   if (sums.saturated == presses_.size()) return {.kind = Response::Kind::saturated};
   if (sums.presses == 0) return {.kind = Response::Kind::unresponsive};
-  if (levels_ == 1) return ratio(sums, sensel);
+  if (levels_.size() == 1 && !common_) return ratio(sums, sensel);
   if (sums.most_n > sums.least_n) return line(sums);
   return {.kind = sums.saturated > 0 ? Response::Kind::saturated : Response::Kind::one_level};
 }
@@ -88,13 +109,14 @@ Response ResponseFit::ratio(const Sums& sums, std::size_t sensel) const {
           .dead_zone_gain = dead_zone / mean_response};
 }
 
-/// Several pressures: least squares of y = s (n − n0) under n0 >= 0.
-Response ResponseFit::line(const Sums& sums) {
+/// Several pressures: least squares of y = s (n − n0) under n0 >= 0, or n0 = 0 for multiples of the
+/// common response.
+Response ResponseFit::line(const Sums& sums) const {
   const double mean_n = sums.n / sums.w;
   double slope = (sums.ny - sums.n * sums.y / sums.w) / (sums.nn - sums.n * mean_n);
   if (slope <= 0) return {.kind = Response::Kind::unresponsive};
   double start_n = mean_n - sums.y / sums.w / slope;
-  if (start_n < 0) {
+  if (start_n < 0 || common_) {
     slope = sums.ny / sums.nn;
     start_n = 0;
   }
@@ -104,9 +126,53 @@ Response ResponseFit::line(const Sums& sums) {
                       2 * slope * sums.ny;
   return {.kind = Response::Kind::good,
           .newtons_per_count = 1 / slope,
-          .dead_zone_n = start_n,
+          .dead_zone_n = common_ ? common_->dead_zone_n : start_n,
           .misfit = std::max(0.0, rest),
           .responded = sums.yy};
+}
+
+std::optional<LevelReadings> level_readings(const ResponseFit& fit,
+                                            const std::vector<std::uint8_t>& mask) {
+  const std::vector<UniformPress>& presses = fit.presses();
+  const Skin& skin = presses.front().frames.skin();
+  std::vector<double> sums(presses.size());
+  std::vector<double> one(presses.size());
+  std::size_t good = 0;
+  std::size_t responding = 0;
+  double leaks = 0;
+  for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
+    for (const std::size_t i : sensels) {
+      if (!mask.empty() && mask[i] == 0) continue;
+      ++good;
+      std::size_t press = 0;
+      for (; press < presses.size(); ++press) {
+        const auto response = fit.response(presses[press], i);
+        if (!response) break;
+        one[press] = *response;
+      }
+      if (press < presses.size()) continue;
+      ++responding;
+      leaks += leak_sum(fit.planes().effects, skin, i);
+      for (std::size_t p = 0; p < presses.size(); ++p) sums[p] += one[p];
+    }
+  });
+  if (2 * responding <= good) return std::nullopt;
+  LevelReadings at;
+  for (const double level : fit.levels()) {
+    double sum = 0;
+    double frames = 0;
+    for (std::size_t p = 0; p < presses.size(); ++p) {
+      if (presses[p].pressure_kpa != level) continue;
+      sum += sums[p] * presses[p].frames.frames();
+      frames += presses[p].frames.frames();
+    }
+    const double area_mm2 = skin.pillar_pitch_mm() * skin.pillar_pitch_mm();
+    const auto count = static_cast<double>(responding);
+    at.readings.push_back(sum / frames / count);
+    at.forces_n.push_back(level * area_mm2 * kNewtonsPerKpaMm2 * leaks / count);
+  }
+  const bool increase = std::ranges::is_sorted(at.readings, std::less_equal<>());
+  return increase ? std::optional(at) : std::nullopt;
 }
 
 }  // namespace pillarfield

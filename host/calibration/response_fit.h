@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "calibration/common_response.h"
 #include "pillarfield/equilibration.h"
 
 namespace pillarfield {
@@ -18,28 +21,61 @@ struct Response {
   double responded = 0;       ///< weighted sum of squared responses
 };
 
-/// Fits the response of each sensel to one or more presses.
+/// Fits the response of each sensel to one or more presses: a straight line, or after straighten()
+/// a multiple of the common response.
 class ResponseFit {
  public:
-  /// `presses` and `planes` must outlive the object; `planes` must have a tare.
+  /// `planes` must outlive the object, and have a tare.
   ResponseFit(std::span<const UniformPress> presses, const Calibration& planes);
 
-  /// Number of different pressures.
-  [[nodiscard]] std::size_t levels() const { return levels_; }
+  [[nodiscard]] const std::vector<UniformPress>& presses() const { return presses_; }
+  [[nodiscard]] const Calibration& planes() const { return planes_; }
+
+  /// The different pressures, kPa, increasing.
+  [[nodiscard]] const std::vector<double>& levels() const { return levels_; }
+
+  /// Force on the pillar of a sensel, with what leaks to the sensel from others, N.
+  [[nodiscard]] double force_n(const UniformPress& press, std::size_t sensel) const;
+
+  /// Mean reading − tare under a press; unset if the sensel does not respond or is saturated.
+  [[nodiscard]] std::optional<double> response(const UniformPress& press, std::size_t sensel) const;
+
+  /// From now on fits multiples of `common`, whose highest reading under pressure is `reading` at
+  /// `force_n`: a sensel reads common(force) · force_n / reading / newtons_per_count.
+  void straighten(CommonResponse common, double force_n, double reading);
+
+  [[nodiscard]] const std::optional<CommonResponse>& common() const { return common_; }
+
+  /// Newtons of a straight line per count of the common response.
+  [[nodiscard]] double newtons_per_reading() const { return newtons_per_reading_; }
 
   [[nodiscard]] Response operator()(std::size_t sensel) const;
 
+  /// Force at a response of a sensel whose fit is `fitted`, N.
+  [[nodiscard]] double force_at(const Response& fitted, double response) const;
+
  private:
   struct Sums;
-  [[nodiscard]] bool responds(const SenselStatistics& pressed, std::size_t sensel) const;
-  [[nodiscard]] double response(const SenselStatistics& pressed, std::size_t sensel) const;
+  [[nodiscard]] double fitted_force_n(const UniformPress& press, std::size_t sensel) const;
   [[nodiscard]] Response ratio(const Sums& sums, std::size_t sensel) const;
-  [[nodiscard]] static Response line(const Sums& sums);
+  [[nodiscard]] Response line(const Sums& sums) const;
 
-  std::span<const UniformPress> presses_;
+  std::vector<UniformPress> presses_;
   const Calibration& planes_;
-  double area_mm2_;
-  std::size_t levels_;
+  std::vector<double> levels_;
+  std::optional<CommonResponse> common_;
+  double newtons_per_reading_ = 0;
 };
+
+/// The mean readings of the sensels that respond to all presses, at each level.
+struct LevelReadings {
+  std::vector<double> forces_n;  ///< on a pillar, with leaks
+  std::vector<double> readings;
+};
+
+/// The readings of the good sensels (1 in `mask`, or an empty mask); unset if less than half of
+/// them respond to all presses or the readings do not increase with the pressure.
+[[nodiscard]] std::optional<LevelReadings> level_readings(const ResponseFit& fit,
+                                                          const std::vector<std::uint8_t>& mask);
 
 }  // namespace pillarfield

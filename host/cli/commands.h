@@ -93,6 +93,11 @@ struct LoadCommand : StepOptions {
   LoadModel model = LoadModel::linear;
 };
 
+struct ShearCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<double> shears_n;  ///< x and y for each file
+};
+
 struct FaultsCommand : StepOptions {
   std::string frames;
   FaultOptions faults;
@@ -124,6 +129,7 @@ void compare(const CompareOptions& options);
 void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);
 void calibrate(const LoadCommand& command);
+void calibrate(const ShearCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);

@@ -5,6 +5,7 @@
 
 #include "device/slot_memory.h"
 #include "solve/activation_thresholds.h"
+#include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 namespace {
@@ -39,17 +40,37 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
       return copy(plan.calibration.noise, to);
     case CalibrationPlane::mask:
       return copy(plan.calibration.mask, to);
+    case CalibrationPlane::curve:
+      return copy(curve_table(plan.calibration.effects.curve).loads, to);
+    case CalibrationPlane::state_flags:
+    case CalibrationPlane::memory:
+      return;
     case CalibrationPlane::activation:
       break;
   }
   copy_activation_thresholds(plan, to);
 }
 
+/// States of a sensel.
+std::size_t memory_states(const SolverPlan& plan) {
+  const auto& memory = plan.calibration.effects.memory;
+  return memory ? memory->plays.size() + memory->creep.size() : 0;
+}
+
+/// Values of the largest plane.
+std::size_t largest_plane(const SolverPlan& plan) {
+  const std::size_t table = plan.calibration.effects.curve.empty() ? 0 : PF_CURVE_PIECES + 1;
+  // At least as many as flags of blocks, two for each pillar row more than pillars.
+  return std::max(plan.skin.sensels(), table);
+}
+
 }  // namespace
 
 const char* macro_of(CalibrationPlane plane) {
-  static constexpr std::array kMacros = {"PF_TARE_PLANE",  "PF_GAIN_PLANE", "PF_DEAD_ZONE_PLANE",
-                                         "PF_NOISE_PLANE", "PF_MASK_PLANE", "PF_ACTIVATION_PLANE"};
+  static constexpr std::array kMacros = {
+      "PF_TARE_PLANE",  "PF_GAIN_PLANE",        "PF_DEAD_ZONE_PLANE",
+      "PF_NOISE_PLANE", "PF_MASK_PLANE",        "PF_ACTIVATION_PLANE",
+      "PF_CURVE_PLANE", "PF_STATE_FLAGS_PLANE", "PF_MEMORY_PLANE"};
   return kMacros[static_cast<std::size_t>(plane)];
 }
 
@@ -65,14 +86,19 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
   add(!calibration.mask.empty(), CalibrationPlane::mask);
   add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::activation);
+  add(!calibration.effects.curve.empty(), CalibrationPlane::curve);
+  add(memory_states(plan) > 0, CalibrationPlane::state_flags);
+  for (std::size_t i = 0; i < memory_states(plan); ++i) planes.push_back(CalibrationPlane::memory);
   return planes;
 }
 
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
                                      const SpeedPaths& paths)
-    : plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
+    : plane_bytes_(page_aligned(largest_plane(plan) * sizeof(float))) {
   const std::vector<CalibrationPlane> planes = calibration_planes(plan, paths);
   has_tare_ = std::ranges::count(planes, CalibrationPlane::tare) > 0;
+  states_ = memory_states(plan) == 0 ? 0 : memory_states(plan) + 1;
+  first_state_ = planes.size() - states_;
   if (planes.empty()) return;
   const std::size_t bytes = planes.size() * plane_bytes_;
   memory_ = allocate_large_pages(bytes);
@@ -85,6 +111,15 @@ CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPla
   const cl_mem_flags use = shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
   buffer_ = {context, CL_MEM_READ_WRITE | use, bytes, memory_.get()};
   if (!shared) memory_.reset();
+}
+
+void CalibrationMemory::clear_states() const {
+  if (states_ == 0) return;
+  const auto context = buffer_.getInfo<CL_MEM_CONTEXT>();
+  const cl::CommandQueue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
+  queue.enqueueFillBuffer(buffer_, cl_float{0}, first_state_ * plane_bytes_,
+                          states_ * plane_bytes_);
+  queue.finish();
 }
 
 }  // namespace pillarfield

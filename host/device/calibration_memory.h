@@ -8,7 +8,17 @@
 
 namespace pillarfield {
 
-enum class CalibrationPlane : std::uint8_t { tare, gain, dead_zone, noise, mask, activation };
+enum class CalibrationPlane : std::uint8_t {
+  tare,
+  gain,
+  dead_zone,
+  noise,
+  mask,
+  activation,
+  curve,        ///< a table, not a plane
+  state_flags,  ///< blocks with states; before the states
+  memory,       ///< the first state; the last planes
+};
 
 /// The macro that holds the plane's index.
 [[nodiscard]] const char* macro_of(CalibrationPlane plane);
@@ -26,12 +36,16 @@ class CalibrationMemory {
   [[nodiscard]] const cl::Buffer& buffer() const { return buffer_; }
   /// Distance between planes.
   [[nodiscard]] std::size_t plane_bytes() const { return plane_bytes_; }
+  /// Sets all states of sensels to rest; no kernel may be running.
+  void clear_states() const;
   /// True if there is a tare; it is the first plane.
   [[nodiscard]] bool has_tare() const { return has_tare_; }
 
  private:
   std::size_t plane_bytes_;
   bool has_tare_;
+  std::size_t first_state_ = 0;  ///< number of planes before the states and their flags
+  std::size_t states_ = 0;
   LargePages memory_;  ///< used if the device shares the host's memory
   cl::Buffer buffer_;
 };

@@ -13,6 +13,7 @@
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/activation_thresholds.h"
+#include "solve/sensor_corrections.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
@@ -49,6 +50,7 @@ bool is_whole(const SolverPlan& plan) {
   const auto threshold = static_cast<float>(plan.skin.threshold_counts);
   const bool corrects = !calibration.tare.empty() || !calibration.gain.empty() ||
                         !calibration.dead_zone.empty() || !calibration.mask.empty() ||
+                        !calibration.bend_x.empty() || !calibration.effects.empty() ||
                         plan.baseline_rate || plan.skin.power_law;
   const bool halves =
       threshold <= kLargestWholeThreshold && 2 * threshold == std::floor(2 * threshold);
@@ -78,6 +80,65 @@ class CountsMacro {
   bool whole_;
 };
 
+/// The values of an array as an initialiser.
+template <std::size_t count>
+std::string hex_list(const float (&values)[count]) {
+  std::string list;
+  for (const float value : values) list += (list.empty() ? "{" : ", ") + hex_float(value);
+  return list + "}";
+}
+
+void define_leak(const SenselLeak& leak, Definitions& all) {
+  const auto taps = leak_taps(leak);
+  all["PF_LEAK_SELF"] = hex_float(taps.self);
+  all["PF_LEAK_INSIDE"] = hex_float(taps.inside);
+  all["PF_LEAK_ACROSS"] = hex_float(taps.across);
+  all["PF_LEAK_BOTH_INSIDE"] = hex_float(taps.both_inside);
+  all["PF_LEAK_MIXED"] = hex_float(taps.mixed);
+  all["PF_LEAK_BOTH_ACROSS"] = hex_float(taps.both_across);
+}
+
+void define_memory(const SenselMemory& memory, double frame_interval_s, Definitions& all) {
+  const auto model = memory_model(memory, frame_interval_s);
+  all["PF_PLAYS"] = fmt::format("{}", memory.plays.size());
+  all["PF_CREEPS"] = fmt::format("{}", memory.creep.size());
+  all["PF_PLAY_WIDTHS"] = hex_list(model.play_width);
+  all["PF_PLAY_WEIGHTS"] = hex_list(model.play_weight);
+  all["PF_CREEP_RATES"] = hex_list(model.creep_rate);
+  all["PF_CREEP_WEIGHTS"] = hex_list(model.creep_weight);
+}
+
+void define_wires(const WireCrosstalk& wires, Definitions& all) {
+  all["PF_TILE_ROWS"] = fmt::format("{}", wires.tile_rows);
+  all["PF_TILE_COLS"] = fmt::format("{}", wires.tile_cols);
+  all["PF_ROW_PER_COUNT"] = hex_float(wires.row_per_count);
+  all["PF_COLUMN_PER_COUNT"] = hex_float(wires.column_per_count);
+  all["PF_IDLE_PER_COUNT"] = hex_float(wires.idle_per_count);
+}
+
+void define_residual(const ResidualError& residual, Definitions& all) {
+  all["PF_RESIDUAL_RELATIVE"] = hex_float(residual.relative);
+  all["PF_RESIDUAL_VARIANCE"] = hex_float(residual.offset_counts * residual.offset_counts);
+  all["PF_RELATIVE_MARGIN"] = hex_float(region_margin(residual.relative));
+}
+
+/// Adds the constants of a real sensor's effects.
+void define_effects(const SolverPlan& plan, Definitions& all) {
+  const SensorEffects& effects = plan.calibration.effects;
+  if (!effects.curve.empty()) {
+    all["PF_CURVE_PER_COUNT"] = hex_float(curve_table(effects.curve).per_count);
+    all["PF_POWER_LARGEST"] = hex_float(kMaxCounts);
+  }
+  if (effects.shear_coefficient) {
+    all["PF_PER_COEFFICIENT_X"] = hex_float(1 / effects.shear_coefficient->x);
+    all["PF_PER_COEFFICIENT_Y"] = hex_float(1 / effects.shear_coefficient->y);
+  }
+  if (effects.sensel_leak) define_leak(*effects.sensel_leak, all);
+  if (effects.memory) define_memory(*effects.memory, plan.frame_interval_s, all);
+  if (effects.wires) define_wires(*effects.wires, all);
+  if (effects.residual) define_residual(*effects.residual, all);
+}
+
 /// Adds the stages and constants of a plan; `whole`: in whole numbers.
 Definitions definitions(const SolverPlan& plan, bool whole) {
   const Skin& skin = plan.skin;
@@ -102,6 +163,7 @@ Definitions definitions(const SolverPlan& plan, bool whole) {
     all["PF_POWER_REFERENCE"] = hex_float(skin.power_law->reference_counts);
     all["PF_POWER_LARGEST"] = hex_float(kMaxCounts);
   }
+  define_effects(plan, all);
   if (whole) all["PF_WHOLE"] = fmt::format("{}", kUnitsPerCount);
   if (plan.uncertainty && !plan.calibration.noise.empty()) all["PF_NOISE"] = "";
   all["PF_SHEAR_SCALE"] = hex_float(scale.shear / units_per_count);
@@ -145,7 +207,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   if (possible.skip_idle) define_idle_range(plan, all);
   std::size_t place = 0;
   for (const CalibrationPlane plane : calibration_planes(plan, possible)) {
-    all[macro_of(plane)] = fmt::format("{}", place++);
+    all.emplace(macro_of(plane), fmt::format("{}", place++));
   }
   std::string source;
   for (const auto& [macro, value] : all) source += fmt::format("#define {} {}\n", macro, value);

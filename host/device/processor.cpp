@@ -90,8 +90,9 @@ struct Processor::State {
         paths(decide_paths(opened, wanted, options, tuning)),
         calibration(opened.state().context, wanted, paths),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
-    baseline.follows = wanted.baseline_rate.has_value();
-    baseline.interval = static_cast<cl_uint>(wanted.baseline_interval);
+    order.is_needed = has_memory_on_device(wanted);
+    order.follows_baseline = wanted.baseline_rate.has_value();
+    order.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
     const int lanes = tuning.lanes != 0 ? tuning.lanes : device.info().lanes;
     settings.lanes = block_lanes(lanes, skin.pillar_cols());
@@ -101,21 +102,21 @@ struct Processor::State {
     settings.shares_memory = shares_memory;
     slots.reserve(static_cast<std::size_t>(options.frames_in_flight));
     for (int i = 0; i < options.frames_in_flight; ++i) {
-      slots.push_back(
-          std::make_shared<Slot>(device.state(), wanted, settings, calibration, baseline));
+      slots.push_back(std::make_shared<Slot>(device.state(), wanted, settings, calibration, order));
     }
     if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
     warm_up();
-    baseline.rate = static_cast<float>(baseline_turn_rate(wanted));
-    baseline.frame = 0;
+    order.rate = static_cast<float>(baseline_turn_rate(wanted));
+    order.frame = 0;
   }
 
   /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
-  /// buffers at the first launch. The baseline's rate is still zero: the tare does not change.
+  /// buffers at the first launch. The rate of the tare is still zero, and sensels end at rest.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
     slots.front()->submit(frame.view());
     slots.front()->wait();
+    calibration.clear_states();
   }
 
   Device device;
@@ -124,7 +125,7 @@ struct Processor::State {
   bool shares_memory;
   SpeedPaths paths;
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
-  Baseline baseline;              ///< outlives the slots
+  FrameOrder order;               ///< outlives the slots
   std::optional<ContactStage> contacts;      ///< of the estimator `contact`
   std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
   SlotScheduler scheduler;
@@ -224,7 +225,7 @@ std::vector<float> Processor::tare() const {
     if (!state_->calibration.has_tare()) return std::vector<float>();
     std::vector<float> tare(state_->skin.sensels());
     const cl::CommandQueue queue(state_->device.state().context, state_->device.state().device);
-    if (state_->baseline.left() != nullptr) state_->baseline.left.wait();
+    if (state_->order.left() != nullptr) state_->order.left.wait();
     queue.enqueueReadBuffer(state_->calibration.buffer(), CL_TRUE, 0, tare.size() * sizeof(float),
                             tare.data());
     return tare;

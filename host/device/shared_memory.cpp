@@ -11,7 +11,7 @@ class SharedMemory final : public SlotMemory {
   SharedMemory(const cl::Context& context, const ResultLayout& layout)
       : SlotMemory(layout),
         context_(context),
-        bytes_(layout.bytes + layout.idle_flags),
+        bytes_(layout.all_bytes()),
         memory_(allocate_large_pages(bytes_)) {
     pages_ = memory_.get();
     shares_flags_ = true;

@@ -27,6 +27,29 @@ struct Launch {
 /// Arguments of kernels/frame/*.cl; those from kRate on are of follow_baseline alone.
 enum Argument : cl_uint { kRaw, kCalibration, kResults, kLayout, kRate, kFirstRow, kInterval };
 
+/// Tiles of a skin, across and down.
+cl::NDRange tiles_of(const SolverPlan& plan, const WireCrosstalk& wires) {
+  const auto tiles = [](std::size_t sensels, std::size_t tile) {
+    return (sensels + tile - 1) / tile;
+  };
+  return {tiles(2 * std::size_t{plan.skin.pillar_cols()}, wires.tile_cols),
+          tiles(2 * std::size_t{plan.skin.pillar_rows()}, wires.tile_rows)};
+}
+
+/// Floats of the rings of kernels/frame/neighbours.h.
+std::size_t ring_floats(const SolverPlan& plan, const SlotSettings& settings, std::size_t bands) {
+  if (!plan.calibration.effects.sensel_leak || settings.lanes == 1) return 0;
+  return bands * 8 * (std::size_t{plan.skin.pillar_cols()} + 2);
+}
+
+/// Floats of the vectors of kernels/frame/wire_vectors.h.
+std::size_t wire_floats(const SolverPlan& plan, const cl::NDRange& tiles) {
+  if (!plan.calibration.effects.wires) return 0;
+  const std::size_t rows = 2 * std::size_t{plan.skin.pillar_rows()};
+  const std::size_t cols = 2 * std::size_t{plan.skin.pillar_cols()};
+  return 2 * rows * tiles[0] + cols * tiles[1];
+}
+
 single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& results,
                                    const CalibrationMemory& calibration) {
   return {.row_stride = 0,
@@ -36,33 +59,42 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .plane_bytes = calibration.plane_bytes(),
           .result_bytes = results.plane_bytes,
           .status = results.status,
-          .idle = results.bytes};
+          .idle = results.bytes,
+          .ring = results.scratch_begin(),
+          .wires = results.scratch_begin()};
 }
 
 }  // namespace
 
 Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
-           const CalibrationMemory& calibration, Baseline& baseline)
+           const CalibrationMemory& calibration, FrameOrder& order)
     : rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
-      kernel_(settings.program, "solve_frame"),
-      baseline_(&baseline) {
-  const Launch launch(rows_, cols_, settings.lanes,
-                      device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
-  global_ = launch.global;
-  local_ = launch.local;
-  const ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
+      order_(&order) {
+  const Launch solve(rows_, cols_, settings.lanes,
+                     device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  global_ = solve.global;
+  local_ = solve.local;
+  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
+  if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);
+  const std::size_t ring = ring_floats(plan, settings, global_[1]);
+  results.scratch = (ring + wire_floats(plan, tiles_)) * sizeof(float);
   memory_ = settings.shares_memory ? shared_memory(device.context, results)
                                    : staged_memory(device.context, queue_, plan, results);
   layout_ = layout_of(plan, results, calibration);
-  kernel_.setArg(kCalibration, calibration.buffer());
-  kernel_.setArg(kResults, memory_->results());
-  if (!baseline.follows) return;
-  follow_ = cl::Kernel(settings.program, "follow_baseline");
-  follow_.setArg(kCalibration, calibration.buffer());
-  follow_.setArg(kResults, memory_->results());
-  follow_.setArg(kInterval, baseline.interval);
+  layout_.wires += ring * sizeof(float);
+  const auto kernel = [&](const char* name) {
+    cl::Kernel made(settings.program, name);
+    made.setArg(kCalibration, calibration.buffer());
+    made.setArg(kResults, memory_->results());
+    return made;
+  };
+  kernel_ = kernel("solve_frame");
+  if (plan.calibration.effects.wires) wires_ = kernel("find_wires");
+  if (!order.follows_baseline) return;
+  follow_ = kernel("follow_baseline");
+  follow_.setArg(kInterval, order.interval);
 }
 
 Slot::~Slot() {
@@ -78,27 +110,34 @@ void Slot::submit(const FrameView& frame) {
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   layout_.row_stride = on_device.row_stride;
-  kernel_.setArg(kRaw, frame_);
-  kernel_.setArg(kLayout, layout_);
-  if (baseline_->follows) {
+  if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
+  if (order_->is_needed) {
     launch_in_order();
   } else {
-    queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, global_, local_);
+    launch(kernel_, global_, local_);
   }
   memory_->download(queue_);
   queue_.flush();
 }
 
+void Slot::launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
+                  const std::vector<cl::Event>* after, cl::Event* done) {
+  kernel.setArg(kRaw, frame_);
+  kernel.setArg(kLayout, layout_);
+  queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, after, done);
+}
+
 void Slot::launch_in_order() {
   std::vector<cl::Event> before;
-  if (baseline_->left() != nullptr) before.push_back(baseline_->left);
-  queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, global_, local_, &before);
-  follow_.setArg(kRaw, frame_);
-  follow_.setArg(kLayout, layout_);
-  follow_.setArg(kRate, baseline_->rate);
-  follow_.setArg(kFirstRow, static_cast<cl_uint>(baseline_->frame % baseline_->interval));
-  ++baseline_->frame;
-  queue_.enqueueNDRangeKernel(follow_, cl::NullRange, global_, local_, nullptr, &baseline_->left);
+  if (order_->left() != nullptr) before.push_back(order_->left);
+  cl::Event* const left = &order_->left;
+  launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
+  if (order_->follows_baseline) {
+    follow_.setArg(kRate, order_->rate);
+    follow_.setArg(kFirstRow, static_cast<cl_uint>(order_->frame % order_->interval));
+    launch(follow_, global_, local_, nullptr, left);
+  }
+  ++order_->frame;
 }
 
 void Slot::wait() { queue_.finish(); }

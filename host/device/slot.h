@@ -10,14 +10,15 @@
 
 namespace pillarfield {
 
-/// State of the baseline. Each frame needs the tare after the frame before, so frames in flight
-/// wait for each other.
-struct Baseline {
-  bool follows = false;
-  float rate = 0;           ///< rate per update of a row
+/// What frames leave to the next one on the device: the tare of a followed baseline, and the states
+/// of sensels. Then frames in flight wait for each other.
+struct FrameOrder {
+  bool is_needed = false;
+  bool follows_baseline = false;
+  float rate = 0;           ///< rate of the tare per update of a row
   cl_uint interval = 1;     ///< frames between updates of a pillar row
   std::uint64_t frame = 0;  ///< number of frames submitted
-  cl::Event left;           ///< completion of the last frame's update; null before the first
+  cl::Event left;           ///< completion of the last frame; null before the first
 };
 
 /// Settings that all slots of a processor share.
@@ -32,7 +33,7 @@ struct SlotSettings {
 class Slot {
  public:
   Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& settings,
-       const CalibrationMemory& calibration, Baseline& baseline);
+       const CalibrationMemory& calibration, FrameOrder& order);
   ~Slot();
   Slot(Slot&&) noexcept = default;
   Slot& operator=(Slot&&) noexcept = default;
@@ -53,7 +54,10 @@ class Slot {
   [[nodiscard]] std::span<const std::byte> pages() const { return memory_->pages(); }
 
  private:
-  /// Solves the frame and updates the tare after the frame before.
+  /// Starts a kernel on the frame.
+  void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
+              const std::vector<cl::Event>* after = nullptr, cl::Event* done = nullptr);
+  /// Solves the frame after the frame before, and leaves what the next one needs.
   void launch_in_order();
 
   std::uint32_t rows_;  ///< pillars
@@ -62,8 +66,10 @@ class Slot {
   cl::NDRange local_;
   cl::CommandQueue queue_;
   cl::Kernel kernel_;
+  cl::Kernel wires_;  ///< null without crosstalk of wires
+  cl::NDRange tiles_;
   cl::Kernel follow_;  ///< null without a baseline rate
-  Baseline* baseline_;
+  FrameOrder* order_;
   cl::Buffer frame_;  ///< keeps the frame in flight alive
   single_precision::Layout layout_{};
   std::unique_ptr<SlotMemory> memory_;

@@ -32,8 +32,14 @@ struct ResultLayout {
   std::size_t status = 0;
   std::size_t bytes = 0;        ///< of the block; the flags follow
   std::size_t idle_flags = 0;   ///< number of flags
+  std::size_t scratch = 0;      ///< bytes that only the device uses, after the flags
   std::size_t flag_stride = 0;  ///< flags of a pillar row
   std::uint32_t lanes = 1;      ///< pillars of a flag
+
+  /// Offset of the scratch memory.
+  [[nodiscard]] std::size_t scratch_begin() const { return page_aligned(bytes + idle_flags); }
+  /// Bytes of everything.
+  [[nodiscard]] std::size_t all_bytes() const { return scratch_begin() + scratch; }
 };
 
 /// A frame that the kernel can read.

@@ -52,7 +52,7 @@ class StagedMemory final : public SlotMemory {
         // Drivers may map at any alignment: one page more, to begin on a boundary.
         results_on_host_(context, queue, layout.bytes + kPageSize) {
     pages_ = results_on_host_.first_page();
-    results_ = {context, CL_MEM_READ_WRITE, layout.bytes + layout.idle_flags};
+    results_ = {context, CL_MEM_READ_WRITE, layout.all_bytes()};
     if (layout.idle_flags == 0) return;
     queue.enqueueFillBuffer(results_, cl_uchar{0}, layout.bytes, layout.idle_flags);
     queue.finish();

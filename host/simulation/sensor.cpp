@@ -10,6 +10,7 @@
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/sensel_leak.h"
 #include "simulation/effects/wire_network.h"
+#include "simulation/path_place.h"
 
 namespace pillarfield {
 namespace {
@@ -96,14 +97,9 @@ void round_to(std::span<const double> signal, double full_scale, std::span<Count
 
 /// Curvature at a time: linear between keys, constant before the first and after the last.
 CurvatureKey curvature_at(const std::vector<CurvatureKey>& path, double time_s) {
-  const auto next = std::upper_bound(path.begin(), path.end(), time_s,
-                                     [](double t, const CurvatureKey& k) { return t < k.time_s; });
-  if (next == path.begin()) return path.front();
-  if (next == path.end()) return path.back();
-  const CurvatureKey& from = *(next - 1);
-  const double fraction = (time_s - from.time_s) / (next->time_s - from.time_s);
-  return {time_s, std::lerp(from.x, next->x, fraction), std::lerp(from.y, next->y, fraction),
-          std::lerp(from.xy, next->xy, fraction)};
+  const auto [from, to, fraction] = place_on(path, time_s);
+  return {time_s, std::lerp(from.x, to.x, fraction), std::lerp(from.y, to.y, fraction),
+          std::lerp(from.xy, to.xy, fraction)};
 }
 
 std::optional<PowerLaw> inverse(const std::optional<PowerLaw>& law) {

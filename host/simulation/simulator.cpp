@@ -34,6 +34,13 @@ void clear(ForceField& field) {
   std::fill(field.status.begin(), field.status.end(), std::uint8_t{0});
 }
 
+void scale(ForceField& field, double factor) {
+  if (factor == 1) return;
+  for (std::vector<float>* plane : {&field.shear_x, &field.shear_y, &field.normal}) {
+    for (float& force : *plane) force = static_cast<float>(force * factor);
+  }
+}
+
 void add_forces(const BodyForces& forces, ForceField& field, PressureMoments& moments) {
   const auto add = [](double force_n, float& to) { to = static_cast<float>(to + force_n); };
   for (const BodyForce& force : forces) {
@@ -93,8 +100,9 @@ struct Simulator::State {
   [[nodiscard]] FrameLoad load(std::uint64_t index, ForceField& truth) const {
     FrameLoad load{
         truth, pillars.needs_moments() ? PressureMoments(scene.skin.pillars()) : PressureMoments()};
-    if (std::holds_alternative<DirectionSweep>(scene.load)) {
+    if (const DirectionSweep* sweep = std::get_if<DirectionSweep>(&scene.load)) {
       truth = sweep_truth;
+      scale(truth, factor_at(*sweep, time_of(index)));
       return load;
     }
     clear(truth);

@@ -24,6 +24,20 @@ void for_each_row(const FrameView& frame, Use use) {
   rows_of(static_cast<const float*>(frame.data));
 }
 
+/// One reading of a frame, counts.
+[[nodiscard]] inline float raw_reading(const FrameView& frame, std::size_t row, std::size_t col) {
+  const std::size_t index = row * frame.row_stride + col;
+  switch (frame.type) {
+    case SenselType::u8:
+      return static_cast<const std::uint8_t*>(frame.data)[index];
+    case SenselType::u16:
+      return static_cast<const std::uint16_t*>(frame.data)[index];
+    case SenselType::f32:
+      break;
+  }
+  return static_cast<const float*>(frame.data)[index];
+}
+
 /// Throws Error at `where` unless the frame has this size and type.
 void require_frame(const FrameView& frame, const Skin& skin, SenselType type,
                    const std::string& where);

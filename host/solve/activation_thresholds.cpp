@@ -4,14 +4,17 @@
 #include <cmath>
 
 #include "solve/pillar_maths.h"
+#include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 namespace {
 
-/// The reading at which the power law reaches the threshold, reduced by 1e-4: pow() rounds
-/// differently on other devices.
-double threshold_before_power_law(const SolverPlan& plan) {
+/// The reading at which the response reaches the threshold, reduced by more than tables and pow()
+/// of other devices are off.
+double threshold_before_response(const SolverPlan& plan) {
   const double threshold = plan.skin.threshold_counts;
+  const ResponseCurve& curve = plan.calibration.effects.curve;
+  if (!curve.empty()) return reading_in(curve_table(curve), threshold) * (1 - 1e-4);
   if (!plan.skin.power_law) return threshold;
   const PowerLaw& law = *plan.skin.power_law;
   const double reading =
@@ -37,7 +40,7 @@ ActivationRange activation_range(const SolverPlan& plan) {
   const bool whole = plan.sensel_type != SenselType::f32;
   const double largest = largest_reading(plan.sensel_type);
   ActivationRange range{};
-  range.threshold = threshold_before_power_law(plan);
+  range.threshold = threshold_before_response(plan);
   range.step = whole ? 1 : 0;
   range.lowest = whole ? 0 : -kMaxCounts;
   range.highest = std::min(largest, plan.skin.full_scale_counts.value_or(largest));

@@ -56,7 +56,7 @@ typename PillarTypes<Real>::Stages pillar_stages(const PillarSensor& sensor) {
 /// Applies the stages of a sensel to a raw reading.
 template <class Real>
 auto prepare_sensel(Real raw, const PillarSensor& sensor) {
-  return correct_sensel(raw, {0, 0, static_cast<Real>(sensor.dead_zone_counts), 0},
+  return correct_sensel(raw, {0, 0, static_cast<Real>(sensor.dead_zone_counts), 0, {}},
                         pillar_stages<Real>(sensor));
 }
 

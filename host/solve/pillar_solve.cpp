@@ -17,8 +17,9 @@ namespace maths = single_precision;
 
 class PillarSolver {
  public:
-  PillarSolver(const SolverPlan& plan, const FrameView& frame, ForceField& field)
-      : sensels_(plan, frame), field_(field) {
+  PillarSolver(const SolverPlan& plan, const FrameView& frame, SensorState& state,
+               ForceField& field)
+      : sensels_(plan, frame, &state), field_(field) {
     if (!plan.uncertainty) return;
     for (auto& plane : field.uncertainty) plane.resize(field.pillars());
   }
@@ -68,7 +69,7 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
                 "give the forces of this frame");
   }
   if (plan.calibration.tare.empty()) plan.calibration.tare.resize(plan.skin.sensels());
-  const SenselReader sensel(plan, frame);
+  SenselReader sensel(plan, frame);
   const auto rate = static_cast<float>(baseline_turn_rate(plan));
   const auto interval = static_cast<std::uint64_t>(plan.baseline_interval);
   for (std::size_t row = 0; row < 2 * std::size_t{forces.rows}; ++row) {
@@ -76,14 +77,14 @@ void follow_baseline_on_host(SolverPlan& plan, const FrameView& frame, const For
     for (std::size_t col = 0; col < 2 * std::size_t{forces.cols}; ++col) {
       const bool untouched = !is_touched(forces, row / 2, col / 2);
       float& tare = plan.calibration.tare[row * frame.cols + col];
-      tare = maths::follow_tare(tare, sensel.validated(row, col), untouched, rate);
+      tare = maths::follow_tare(tare, sensel.untared(row, col), untouched, rate);
     }
   }
 }
 
-ForceField solve_pillars(const SolverPlan& plan, const FrameView& frame) {
+ForceField solve_pillars(const SolverPlan& plan, const FrameView& frame, SensorState& state) {
   ForceField field(plan.skin.pillar_rows(), plan.skin.pillar_cols());
-  PillarSolver solver(plan, frame, field);
+  PillarSolver solver(plan, frame, state, field);
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
   }

@@ -7,7 +7,8 @@
 namespace pillarfield {
 
 /// The stages of kernels/frame/stages.h that a plan names, with their constants, in the precision
-/// of `Stages`: single_precision::Stages or double_precision::Stages.
+/// of `Stages`: single_precision::Stages or double_precision::Stages. The table of the response
+/// curve, the weights of the leak and the model of the memory stay unset.
 template <class Stages>
 Stages plan_constants(const SolverPlan& plan) {
   using Real = decltype(Stages::threshold);
@@ -15,14 +16,23 @@ Stages plan_constants(const SolverPlan& plan) {
   const Skin& skin = plan.skin;
   const PowerLaw power_law = skin.power_law.value_or(PowerLaw{});
   const ForceScale scale = force_scale(skin.counts_per_newton);
+  const SensorEffects& effects = calibration.effects;
+  const ShearCoefficient coefficient = effects.shear_coefficient.value_or(ShearCoefficient{});
+  const ResidualError residual = effects.residual.value_or(ResidualError{});
   const auto real = [](double value) { return static_cast<Real>(value); };
   return {.range = plan.sensel_type == SenselType::f32,
           .mask = !calibration.mask.empty(),
           .saturation = skin.full_scale_counts.has_value(),
+          .wires = effects.wires.has_value(),
           .tare = !calibration.tare.empty(),
           .gain = !calibration.gain.empty(),
           .power_law = skin.power_law.has_value(),
+          .curve = !effects.curve.empty(),
+          .leak = effects.sensel_leak.has_value(),
+          .memory = effects.memory.has_value(),
           .dead_zone = !calibration.dead_zone.empty(),
+          .shear_coefficient = effects.shear_coefficient.has_value(),
+          .residual = effects.residual.has_value(),
           .paper = plan.estimator == Estimator::paper,
           .parity_test = plan.parity_tolerance_counts.has_value(),
           .angles = plan.angles,
@@ -35,7 +45,19 @@ Stages plan_constants(const SolverPlan& plan) {
           .segment_point = real(plan.segment_point),
           .margin = real(region_margin(plan)),
           .parity_tolerance = real(plan.parity_tolerance_counts.value_or(0)),
-          .scale = {real(scale.shear), real(scale.normal)}};
+          .scale = {real(scale.shear), real(scale.normal)},
+          .column_per_count = real(effects.wires.value_or(WireCrosstalk{}).column_per_count),
+          .curve_table = nullptr,
+          .curve_per_count = 0,
+          .leak_taps = {},
+          .memory_model = {},
+          .plays = 0,
+          .creeps = 0,
+          .per_coefficient_x = real(1 / coefficient.x),
+          .per_coefficient_y = real(1 / coefficient.y),
+          .residual_relative = real(residual.relative),
+          .residual_variance = real(residual.offset_counts * residual.offset_counts),
+          .relative_margin = real(region_margin(residual.relative))};
 }
 
 }  // namespace pillarfield

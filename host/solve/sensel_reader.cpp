@@ -1,12 +1,48 @@
 #include "solve/sensel_reader.h"
 
 #include "pillarfield/tuning.h"
+#include "skin/raw_reading.h"
+#include "solve/plan_constants.h"
 
 namespace pillarfield {
 
 namespace maths = single_precision;
 
-maths::Pillar SenselReader::pillar(std::size_t row, std::size_t col) const {
+namespace {
+
+/// The part of the neighbours of a sensel that lie in one direction: the offset to the one under
+/// the same pillar, and the opposite one.
+int inward(std::size_t at) { return at % 2 == 0 ? 1 : -1; }
+
+}  // namespace
+
+SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, SensorState* state)
+    : calibration_(plan.calibration),
+      frame_(frame),
+      curve_(curve_table(plan.calibration.effects.curve)),
+      stages_(plan_constants<maths::Stages>(plan)),
+      wires_(plan, frame),
+      state_(state),
+      noise_(static_cast<float>(reading_noise(plan))) {
+  const SensorEffects& effects = plan.calibration.effects;
+  stages_.curve_table = curve_.loads.data();
+  stages_.curve_per_count = static_cast<float>(curve_.per_count);
+  if (effects.sensel_leak) {
+    const auto taps = leak_taps(*effects.sensel_leak);
+    const auto real = [](double tap) { return static_cast<float>(tap); };
+    stages_.leak_taps = {real(taps.self),        real(taps.inside), real(taps.across),
+                         real(taps.both_inside), real(taps.mixed),  real(taps.both_across)};
+  }
+  if (!effects.memory) return;
+  stages_.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
+  stages_.plays = static_cast<int>(effects.memory->plays.size());
+  stages_.creeps = static_cast<int>(effects.memory->creep.size());
+  if (state_ == nullptr) return;
+  const std::size_t states = effects.memory->plays.size() + effects.memory->creep.size();
+  state_->values.resize(states * plan.skin.sensels());
+}
+
+maths::Pillar SenselReader::pillar(std::size_t row, std::size_t col) {
   const std::size_t top = 2 * row;
   const std::size_t left = 2 * col;
   return {sensel(top, left + 1), sensel(top, left), sensel(top + 1, left),
@@ -20,18 +56,67 @@ maths::Noise SenselReader::noise(std::size_t row, std::size_t col) const {
           sensel_noise(top + 1, left + 1)};
 }
 
-maths::Sensel SenselReader::validated(std::size_t row, std::size_t col) const {
-  return maths::validate_reading(raw(row, col), correction(row, col).good, stages_);
+maths::Sensel SenselReader::untared(std::size_t row, std::size_t col) const {
+  return maths::untared_sensel(raw_reading(frame_, row, col), correction(row, col), stages_);
 }
 
-maths::Sensel SenselReader::sensel(std::size_t row, std::size_t col) const {
-  return maths::correct_sensel(raw(row, col), correction(row, col), stages_);
+maths::Sensel SenselReader::linear(std::size_t row, std::size_t col) const {
+  return maths::linear_sensel(raw_reading(frame_, row, col), correction(row, col), stages_);
+}
+
+maths::Sensel SenselReader::sensel(std::size_t row, std::size_t col) {
+  maths::Sensel sensel = linear(row, col);
+  if (stages_.leak) sensel = without_leak(sensel, row, col);
+  if (stages_.memory) sensel = recalled(sensel, row, col);
+  return maths::active_sensel(sensel, correction(row, col), stages_);
+}
+
+/// Zero outside the pillars; rows and columns before the first are huge numbers.
+float SenselReader::leak_source(std::size_t row, std::size_t col) const {
+  if (row >= frame_.rows / 2 * 2 || col >= frame_.cols / 2 * 2) return 0;
+  const std::size_t beside = col + static_cast<std::size_t>(inward(col));
+  const maths::Sensel sensel = linear(row, col);
+  return maths::source_or(sensel, maths::leak_source(sensel, stages_.threshold),
+                          maths::leak_source(linear(row, beside), stages_.threshold));
+}
+
+maths::Sensel SenselReader::without_leak(maths::Sensel sensel, std::size_t row,
+                                         std::size_t col) const {
+  const auto in_h = static_cast<std::size_t>(inward(col));
+  const auto in_v = static_cast<std::size_t>(inward(row));
+  const auto at = [&](std::size_t down, std::size_t right) {
+    return leak_source(row + down, col + right);
+  };
+  const maths::Neighbours neighbours = {at(0, in_h),     at(in_v, 0),     at(0, -in_h),
+                                        at(-in_v, 0),    at(in_v, in_h),  at(-in_v, in_h),
+                                        at(in_v, -in_h), at(-in_v, -in_h)};
+  return maths::remove_leak(sensel, neighbours, stages_.leak_taps, stages_.threshold);
+}
+
+maths::Sensel SenselReader::recalled(maths::Sensel sensel, std::size_t row, std::size_t col) {
+  const std::size_t plane = std::size_t{frame_.rows} * frame_.cols;
+  const auto value = [&](int state) -> float& {
+    return state_->values[static_cast<std::size_t>(state) * plane + row * frame_.cols + col];
+  };
+  maths::Memory before{};
+  if (state_ != nullptr) {
+    for (int i = 0; i < stages_.plays; ++i) before.play[i] = value(i);
+    for (int i = 0; i < stages_.creeps; ++i) before.creep[i] = value(stages_.plays + i);
+  }
+  const maths::Recalled result = maths::recall(sensel, before, stages_.memory_model, stages_.plays,
+                                               stages_.creeps, stages_.threshold);
+  if (state_ != nullptr) {
+    for (int i = 0; i < stages_.plays; ++i) value(i) = result.memory.play[i];
+    for (int i = 0; i < stages_.creeps; ++i) value(stages_.plays + i) = result.memory.creep[i];
+  }
+  return result.sensel;
 }
 
 float SenselReader::sensel_noise(std::size_t row, std::size_t col) const {
   const float noise =
       calibration_.noise.empty() ? noise_ : calibration_.noise[row * frame_.cols + col];
-  return maths::corrected_noise(noise, raw(row, col), correction(row, col), stages_);
+  return maths::corrected_noise(noise, raw_reading(frame_, row, col), correction(row, col),
+                                stages_);
 }
 
 maths::Correction SenselReader::correction(std::size_t row, std::size_t col) const {
@@ -40,20 +125,7 @@ maths::Correction SenselReader::correction(std::size_t row, std::size_t col) con
     return plane.empty() ? 0.0F : static_cast<float>(plane[index]);
   };
   return {value(calibration_.tare), value(calibration_.gain), value(calibration_.dead_zone),
-          value(calibration_.mask)};
-}
-
-float SenselReader::raw(std::size_t row, std::size_t col) const {
-  const std::size_t index = row * frame_.row_stride + col;
-  switch (frame_.type) {
-    case SenselType::u8:
-      return static_cast<const std::uint8_t*>(frame_.data)[index];
-    case SenselType::u16:
-      return static_cast<const std::uint16_t*>(frame_.data)[index];
-    case SenselType::f32:
-      break;
-  }
-  return static_cast<const float*>(frame_.data)[index];
+          value(calibration_.mask), wires_.at(row, col)};
 }
 
 }  // namespace pillarfield

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "pillarfield/frame.h"
+#include "pillarfield/host_solve.h"
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/tuning.h"
 #include "solve/pillar_maths.h"
-#include "solve/plan_constants.h"
+#include "solve/sensor_corrections.h"
+#include "solve/wire_factors.h"
 
 namespace pillarfield {
 
@@ -14,32 +17,40 @@ namespace pillarfield {
 /// frame must fit each other and outlive the reader.
 class SenselReader {
  public:
-  SenselReader(const SolverPlan& plan, const FrameView& frame)
-      : calibration_(plan.calibration),
-        frame_(frame),
-        stages_(plan_constants<single_precision::Stages>(plan)),
-        noise_(static_cast<float>(reading_noise(plan))) {}
+  /// `state` is that of the sensels before the frame; null: at rest.
+  SenselReader(const SolverPlan& plan, const FrameView& frame, SensorState* state = nullptr);
+  SenselReader(const SenselReader&) = delete;
+  SenselReader& operator=(const SenselReader&) = delete;
 
-  /// The four sensels of a pillar after all stages.
-  [[nodiscard]] single_precision::Pillar pillar(std::size_t row, std::size_t col) const;
+  /// The four sensels of a pillar after all stages. Call it once for each pillar: it updates the
+  /// state.
+  [[nodiscard]] single_precision::Pillar pillar(std::size_t row, std::size_t col);
 
   /// Noise of the four sensels of a pillar after correction, counts.
   [[nodiscard]] single_precision::Noise noise(std::size_t row, std::size_t col) const;
 
-  /// A sensel before calibration: valid, missing or saturated.
-  [[nodiscard]] single_precision::Sensel validated(std::size_t row, std::size_t col) const;
+  /// A sensel before the tare: valid, missing or saturated.
+  [[nodiscard]] single_precision::Sensel untared(std::size_t row, std::size_t col) const;
 
   [[nodiscard]] const single_precision::Stages& stages() const { return stages_; }
 
  private:
   [[nodiscard]] single_precision::Correction correction(std::size_t row, std::size_t col) const;
-  [[nodiscard]] single_precision::Sensel sensel(std::size_t row, std::size_t col) const;
+  [[nodiscard]] single_precision::Sensel linear(std::size_t row, std::size_t col) const;
+  [[nodiscard]] single_precision::Sensel sensel(std::size_t row, std::size_t col);
+  [[nodiscard]] float leak_source(std::size_t row, std::size_t col) const;
+  [[nodiscard]] single_precision::Sensel without_leak(single_precision::Sensel sensel,
+                                                      std::size_t row, std::size_t col) const;
+  [[nodiscard]] single_precision::Sensel recalled(single_precision::Sensel sensel, std::size_t row,
+                                                  std::size_t col);
   [[nodiscard]] float sensel_noise(std::size_t row, std::size_t col) const;
-  [[nodiscard]] float raw(std::size_t row, std::size_t col) const;
 
   const Calibration& calibration_;
   const FrameView& frame_;
+  CurveTable curve_;
   single_precision::Stages stages_;
+  WireFactors wires_;
+  SensorState* state_;
   float noise_;  ///< of a raw reading, counts
 };
 

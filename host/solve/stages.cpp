@@ -10,6 +10,7 @@ namespace {
 using Plan = SolverPlan;
 
 constexpr bool is_always(const Plan& /*plan*/) { return true; }
+constexpr const SensorEffects& effects(const Plan& plan) { return plan.calibration.effects; }
 constexpr bool is_paper(const Plan& plan) { return plan.estimator == Estimator::paper; }
 
 /// In the order of kernels/frame/stages.h.
@@ -20,16 +21,36 @@ constexpr std::array kStages = {
     Stage{"mask", "PF_MASK", [](const Plan& plan) { return !plan.calibration.mask.empty(); }},
     Stage{"saturation", "PF_FULL_SCALE",
           [](const Plan& plan) { return plan.skin.full_scale_counts.has_value(); }},
+    // A row's crosstalk raises idle readings, so that no threshold of raw readings holds.
+    Stage{.name = "wires",
+          .macro = "PF_WIRES",
+          .is_named = [](const Plan& plan) { return effects(plan).wires.has_value(); },
+          .place = StagePlace::frame,
+          .needs_neighbours = true,
+          .may_skip_idle = false},
     Stage{"tare", "PF_TARE",
           [](const Plan& plan) { return !plan.calibration.tare.empty() || plan.baseline_rate; }},
     Stage{"gain", "PF_GAIN", [](const Plan& plan) { return !plan.calibration.gain.empty(); }},
     Stage{"power_law", "PF_POWER_EXPONENT",
           [](const Plan& plan) { return plan.skin.power_law.has_value(); }},
+    Stage{"curve", "PF_CURVE", [](const Plan& plan) { return !effects(plan).curve.empty(); }},
+    Stage{.name = "leak",
+          .macro = "PF_LEAK",
+          .is_named = [](const Plan& plan) { return effects(plan).sensel_leak.has_value(); },
+          .needs_neighbours = true},
+    Stage{.name = "memory",
+          .macro = "PF_MEMORY",
+          .is_named = [](const Plan& plan) { return effects(plan).memory.has_value(); },
+          .has_memory = true},
     Stage{"classify", "PF_THRESHOLD", is_always},
     Stage{"dead_zone", "PF_DEAD_ZONE",
           [](const Plan& plan) { return !plan.calibration.dead_zone.empty(); }},
     Stage{"direct_solve", nullptr, [](const Plan& plan) { return !is_paper(plan); }},
     Stage{"paper_solve", "PF_PAPER", is_paper},
+    Stage{"shear_coefficient", "PF_SHEAR_COEFFICIENT",
+          [](const Plan& plan) { return effects(plan).shear_coefficient.has_value(); }},
+    Stage{"residual", "PF_RESIDUAL",
+          [](const Plan& plan) { return effects(plan).residual.has_value(); }},
     Stage{"parity_test", "PF_PARITY_TOLERANCE",
           [](const Plan& plan) { return plan.parity_tolerance_counts.has_value(); }},
     Stage{"angles", "PF_ANGLES", [](const Plan& plan) { return plan.angles; }},
@@ -49,13 +70,6 @@ constexpr std::array kStages = {
           .has_memory = true},
 };
 
-static_assert(std::ranges::none_of(kStages,
-                                   [](const Stage& stage) {
-                                     return stage.place == StagePlace::pillar &&
-                                            (stage.needs_neighbours || stage.has_memory);
-                                   }),
-              "a pillar's stage reads neither its neighbours nor earlier frames");
-
 }  // namespace
 
 std::vector<Stage> stages_of(const SolverPlan& plan) {
@@ -63,6 +77,12 @@ std::vector<Stage> stages_of(const SolverPlan& plan) {
   std::ranges::copy_if(kStages, std::back_inserter(stages),
                        [&](const Stage& stage) { return stage.is_named(plan); });
   return stages;
+}
+
+bool has_memory_on_device(const SolverPlan& plan) {
+  return std::ranges::any_of(stages_of(plan), [](const Stage& stage) {
+    return stage.has_memory && stage.place != StagePlace::host;
+  });
 }
 
 bool may_skip_idle(const SolverPlan& plan) {

@@ -7,7 +7,7 @@
 namespace pillarfield {
 
 enum class StagePlace : std::uint8_t {
-  pillar,  ///< kernels/frame/stages.h: reads the sensels of one pillar in one frame
+  pillar,  ///< kernels/frame/stages.h: in solve_frame.cl
   frame,   ///< an entry point of its own in kernels/frame: reads the frame
   host,    ///< after the device: reads the frame's results
 };
@@ -27,6 +27,9 @@ struct Stage {
 
 /// The stages that a plan names, in order.
 [[nodiscard]] std::vector<Stage> stages_of(const SolverPlan& plan);
+
+/// True if frames must be solved in their order on the device.
+[[nodiscard]] bool has_memory_on_device(const SolverPlan& plan);
 
 /// True if idle blocks may be skipped under all stages of a plan.
 [[nodiscard]] bool may_skip_idle(const SolverPlan& plan);

@@ -5,6 +5,10 @@ typedef struct {
   global const uchar* planes;
   size_t plane_bytes;
   size_t stride; /* sensels of a row */
+  Stages stages;
+#ifdef PF_WIRES
+  WireVectors wires;
+#endif
 } Calibration;
 
 #define PF_PLANE_OF(calibration, type, plane) \
@@ -16,28 +20,50 @@ typedef struct {
   Correction right;
 } CorrectionPair;
 
-/* Loads the corrections of one row of sensels under PF_LANES pillars. `offset` is the index of the
- * first one in the planes. */
-PF_INLINE CorrectionPair load_corrections(Calibration calibration, size_t offset) {
-  const Correction none = {(Counts)(0), (Real)(0.0f), (Counts)(0), (Counts)(0)};
+/* The first of the sensels of one row under PF_LANES pillars: its row and column. */
+typedef struct {
+  uint row;
+  uint col;
+} Place;
+
+PF_INLINE size_t offset_of(Calibration calibration, Place place) {
+  return place.row * calibration.stride + place.col;
+}
+
+/* Loads the corrections of one row of sensels under PF_LANES pillars. */
+PF_INLINE CorrectionPair load_corrections(Calibration calibration, Place place) {
+  Correction none;
+  none.tare = (Counts)(0);
+  none.gain = (Real)(0.0f);
+  none.dead_zone = (Counts)(0);
+  none.good = (Counts)(0);
   CorrectionPair pair = {none, none};
+#ifdef PF_WIRES
+  const WiresPair wires = load_wires(calibration.wires, place.row, place.col);
+  pair.left.wires = wires.left;
+  pair.right.wires = wires.right;
+#endif
 #ifdef PF_TARE
-  const RealPair tares = load_plane(PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset);
+  const RealPair tares =
+      load_plane(PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset_of(calibration, place));
   pair.left.tare = tares.left;
   pair.right.tare = tares.right;
 #endif
 #ifdef PF_GAIN
-  const RealPair gains = load_plane(PF_PLANE_OF(calibration, float, PF_GAIN_PLANE) + offset);
+  const RealPair gains =
+      load_plane(PF_PLANE_OF(calibration, float, PF_GAIN_PLANE) + offset_of(calibration, place));
   pair.left.gain = gains.left;
   pair.right.gain = gains.right;
 #endif
 #ifdef PF_DEAD_ZONE
-  const RealPair zones = load_plane(PF_PLANE_OF(calibration, float, PF_DEAD_ZONE_PLANE) + offset);
+  const RealPair zones = load_plane(PF_PLANE_OF(calibration, float, PF_DEAD_ZONE_PLANE) +
+                                    offset_of(calibration, place));
   pair.left.dead_zone = zones.left;
   pair.right.dead_zone = zones.right;
 #endif
 #ifdef PF_MASK
-  const RealPair good = load_mask(PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset);
+  const RealPair good =
+      load_mask(PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset_of(calibration, place));
   pair.left.good = good.left;
   pair.right.good = good.right;
 #endif
@@ -49,28 +75,38 @@ typedef struct {
   Sensel right;
 } SenselPair;
 
-/* Loads and corrects one row of sensels under PF_LANES pillars. */
-PF_INLINE SenselPair read_sensels(global const PF_SENSEL* raw, Calibration calibration,
-                                  size_t offset) {
+/* Loads one row of sensels under PF_LANES pillars, and applies the stages before neighbours count.
+ */
+PF_INLINE SenselPair read_linear(global const PF_SENSEL* raw, Calibration calibration,
+                                 Place place) {
   const CountsPair readings = load_readings(raw);
-  const CorrectionPair at = load_corrections(calibration, offset);
+  const CorrectionPair at = load_corrections(calibration, place);
   SenselPair pair;
-  pair.left = correct_sensel(readings.left, at.left, 0);
-  pair.right = correct_sensel(readings.right, at.right, 0);
+  pair.left = linear_sensel(readings.left, at.left, calibration.stages);
+  pair.right = linear_sensel(readings.right, at.right, calibration.stages);
+  return pair;
+}
+
+/* Applies the stages after neighbours and earlier frames. */
+PF_INLINE SenselPair finish_sensels(SenselPair pair, Calibration calibration, Place place) {
+  const CorrectionPair at = load_corrections(calibration, place);
+  pair.left = active_sensel(pair.left, at.left, calibration.stages);
+  pair.right = active_sensel(pair.right, at.right, calibration.stages);
   return pair;
 }
 
 #ifdef PF_UNCERTAINTY
 /* Noise of one row of sensels under PF_LANES pillars after correction, counts. */
-PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration, size_t offset) {
+PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibration, Place place) {
   const CountsPair readings = load_readings(raw);
-  const CorrectionPair at = load_corrections(calibration, offset);
+  const CorrectionPair at = load_corrections(calibration, place);
   RealPair noise = {(Real)(PF_UNCERTAINTY), (Real)(PF_UNCERTAINTY)};
 #ifdef PF_NOISE
-  noise = load_plane(PF_PLANE_OF(calibration, float, PF_NOISE_PLANE) + offset);
+  noise =
+      load_plane(PF_PLANE_OF(calibration, float, PF_NOISE_PLANE) + offset_of(calibration, place));
 #endif
-  noise.left = corrected_noise(noise.left, readings.left, at.left, 0);
-  noise.right = corrected_noise(noise.right, readings.right, at.right, 0);
+  noise.left = corrected_noise(noise.left, readings.left, at.left, calibration.stages);
+  noise.right = corrected_noise(noise.right, readings.right, at.right, calibration.stages);
   return noise;
 }
 #endif
@@ -116,3 +152,22 @@ PF_INLINE Band band_of_rows(uint rows) {
 
 /* Largest number of blocks in a pillar row, whatever its first index. */
 PF_INLINE uint blocks_of_row(uint cols) { return cols / PF_LANES + 2; }
+
+/* The calibration of a frame; `results` holds what earlier entry points found. */
+PF_INLINE Calibration calibration_of(global const uchar* planes, global uchar* results,
+                                     Layout layout) {
+  Calibration calibration;
+  calibration.planes = planes;
+  calibration.plane_bytes = layout.plane_bytes;
+  calibration.stride = layout.plane_stride;
+#ifdef PF_CURVE
+  calibration.stages.curve_table = PF_PLANE_OF(calibration, float, (size_t)(PF_CURVE_PLANE));
+#else
+  calibration.stages.curve_table = 0;
+#endif
+#ifdef PF_WIRES
+  calibration.wires = wire_vectors((global float*)(results + layout.wires), 2 * (uint)layout.rows,
+                                   2 * (uint)layout.cols);
+#endif
+  return calibration;
+}

@@ -16,16 +16,17 @@ PF_INLINE Bits status_around(global const uchar* status, uint row, uint col, uin
 }
 
 /* Updates the tares and activation thresholds of one row of sensels under PF_LANES pillars; writes
- * those of `lanes`. `offset` is the index of the first sensel in the planes. */
-PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
+ * those of `lanes`. */
+PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, Place place,
                           Mask untouched, Real rate, Lanes lanes) {
   const RealPair readings = load_readings(raw);
-  const CorrectionPair at = load_corrections(calibration, offset);
+  const CorrectionPair at = load_corrections(calibration, place);
+  const size_t offset = offset_of(calibration, place);
   RealPair tares;
-  tares.left =
-      follow_tare(at.left.tare, validate_reading(readings.left, at.left.good, 0), untouched, rate);
-  tares.right = follow_tare(at.right.tare, validate_reading(readings.right, at.right.good, 0),
-                            untouched, rate);
+  tares.left = follow_tare(at.left.tare, untared_sensel(readings.left, at.left, calibration.stages),
+                           untouched, rate);
+  tares.right = follow_tare(
+      at.right.tare, untared_sensel(readings.right, at.right, calibration.stages), untouched, rate);
   store_pair(tares, (global float*)PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset, lanes);
 #ifdef PF_SKIP_IDLE
   const RealPair thresholds = {threshold_of_sensel(tares.left, at.left),
@@ -40,10 +41,9 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
  * raw, calibration, results   those of solve_frame; tares and activation thresholds are written
  * rate                        fraction of reading - tare that is added to the tare, 0..1 */
 kernel void follow_baseline(global const PF_SENSEL* restrict raw,
-                            global uchar* restrict calibration,
-                            global const uchar* restrict results, Layout layout, float rate,
-                            uint first_row, uint interval) {
-  const Calibration planes = {calibration, layout.plane_bytes, layout.plane_stride};
+                            global uchar* restrict calibration, global uchar* restrict results,
+                            Layout layout, float rate, uint first_row, uint interval) {
+  const Calibration planes = calibration_of(calibration, results, layout);
   global const uchar* const status = results + layout.status;
   const uint rows = (uint)layout.rows;
   const uint cols = (uint)layout.cols;
@@ -58,9 +58,9 @@ kernel void follow_baseline(global const PF_SENSEL* restrict raw,
       const Bits around = status_around(status, row, col, rows, cols);
       const Mask untouched = !mask_of(around & PF_BITS(PF_STATUS_PRESSED));
       for (uint side = 0; side < 2; ++side) {
-        follow_row(raw + (2 * row + side) * layout.row_stride + 2 * col, planes,
-                   (2 * row + side) * layout.plane_stride + 2 * col, untouched, (Real)(rate),
-                   lanes);
+        const Place place = {2 * row + side, 2 * col};
+        follow_row(raw + (2 * row + side) * layout.row_stride + 2 * col, planes, place, untouched,
+                   (Real)(rate), lanes);
       }
     }
   }

@@ -109,6 +109,16 @@ PF_INLINE CountsPair load_readings(global const uchar* row) {
 PF_DEFINE_LOAD(readings, PF_SENSEL, RealPair, PF_JOIN(split_, PF_SENSEL))
 #endif
 PF_DEFINE_LOAD(plane, float, RealPair, split_float)
+#if PF_LANES == 1
+PF_INLINE RealPair load_private(const float* row) {
+  const RealPair pair = {row[0], row[1]};
+  return pair;
+}
+#else
+PF_INLINE RealPair load_private(const float* row) {
+  return split_float(PF_VLOAD(0, row), PF_VLOAD(1, row));
+}
+#endif
 PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
 
 /* Prefetches the values of PF_LANES pillars in one row of sensels: PF_PREFETCH into the first cache

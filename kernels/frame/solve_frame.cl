@@ -14,10 +14,16 @@
  *   PF_TARE_PLANE, ...              whose index is this
  *   PF_POWER_EXPONENT               stage: linearises readings by a power law, with
  *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
- *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
- *   PF_SEGMENT_POINT                segment point, in (0, 1]; with
- *                                   PF_WHOLE the number n of 1 - 1 / 2^n
- *   PF_MARGIN                       margin, counts (docs/derivations/direct_solve.md, D9)
+ *   PF_WIRES                        stage: row and column crosstalk, found by find_wires.cl
+ *   PF_CURVE                        stage: linearises readings by a table; PF_CURVE_PER_COUNT
+ * pieces PF_LEAK                         stage: removes the leak between sensels (neighbours.h),
+ * with PF_LEAK_SELF, ...               the members of LeakTaps PF_MEMORY stage: removes hysteresis
+ * and creep (memory_planes.h), with PF_PLAYS, PF_CREEPS             states of a sensel, and the
+ * values of MemoryModel, in braces PF_SHEAR_COEFFICIENT            stage: PF_PER_COEFFICIENT_X and
+ * _Y are 1 / c PF_RESIDUAL                     stage: what calibration leaves, in margin and
+ * uncertainty PF_PAPER                        stage: the paper's estimator instead of the direct
+ * solve PF_SEGMENT_POINT                segment point, in (0, 1]; with PF_WHOLE the number n of 1 -
+ * 1 / 2^n PF_MARGIN                       margin, counts (docs/derivations/direct_solve.md, D9)
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
  *   PF_ANGLES                       stage: writes magnitude, theta and phi too
  *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: writes uncertainty
@@ -30,35 +36,11 @@
  * A stage without its macro is not compiled. Constants are exact (hexadecimal); with PF_WHOLE those
  * in counts are multiples of its unit. */
 
-typedef struct {
-  global const PF_SENSEL* raw;
-  size_t row_stride;
-  Calibration calibration;
-} Input;
-
-typedef struct {
-  global uchar* planes;
-  size_t plane_bytes;
-  global uchar* status;
-  global uchar* idle; /* flag of each block: its stored results are those of an idle block */
-} Output;
-
-/* A block of PF_LANES pillars: `raw` points to its upper left sensel, `offset` is that sensel's
- * index in the calibration planes, `index` the first pillar's index in the results. Results of
- * `lanes` are written. */
-typedef struct {
-  global const PF_SENSEL* raw;
-  size_t offset;
-  size_t index;
-  Lanes lanes;
-} Block;
-
 /* Noise of a block's sensels, counts; zero without PF_UNCERTAINTY. */
 PF_INLINE Noise noise_of(Block block, Input input) {
 #ifdef PF_UNCERTAINTY
-  const RealPair top = read_noise(block.raw, input.calibration, block.offset);
-  const RealPair bottom = read_noise(block.raw + input.row_stride, input.calibration,
-                                     block.offset + input.calibration.stride);
+  const RealPair top = read_noise(block.raw, input.calibration, block.top);
+  const RealPair bottom = read_noise(block.raw + input.row_stride, input.calibration, block.bottom);
   const Noise noise = {top.right, top.left, bottom.left, bottom.right};
 #else
   const Real none = (Real)(0.0f);
@@ -82,9 +64,19 @@ PF_INLINE Mask is_invalid(Sensel sensel) { return sensel.missing || sensel.satur
  * compiler drop half of the code for them. */
 PF_INLINE Solution solve_block(Block block, Input input) {
   const Calibration calibration = input.calibration;
-  const SenselPair top = read_sensels(block.raw, calibration, block.offset);
-  const SenselPair bottom =
-      read_sensels(block.raw + input.row_stride, calibration, block.offset + calibration.stride);
+  SenselPair top = read_linear(block.raw, calibration, block.top);
+  SenselPair bottom = read_linear(block.raw + input.row_stride, calibration, block.bottom);
+#ifdef PF_LEAK
+  const Surroundings around = surroundings_of(block, input);
+  top = without_leak(top, around, 0);
+  bottom = without_leak(bottom, around, 1);
+#endif
+#ifdef PF_MEMORY
+  top = recall_row(top, calibration, block.top, block.lanes);
+  bottom = recall_row(bottom, calibration, block.bottom, block.lanes);
+#endif
+  top = finish_sensels(top, calibration, block.top);
+  bottom = finish_sensels(bottom, calibration, block.bottom);
   const Pillar pillar = {top.right, top.left, bottom.left, bottom.right};
 #if PF_LANES > 1 && (defined(PF_MASK) || defined(PF_FULL_SCALE) || defined(PF_LARGEST_READING))
   const Mask invalid = is_invalid(pillar.s1) || is_invalid(pillar.s2) || is_invalid(pillar.s3) ||
@@ -92,10 +84,10 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   if (!any_lane(invalid)) {
     const Pillar valid = {valid_sensel(pillar.s1), valid_sensel(pillar.s2), valid_sensel(pillar.s3),
                           valid_sensel(pillar.s4)};
-    return solve_pillar(valid, noise_of(block, input), 0);
+    return solve_pillar(valid, noise_of(block, input), calibration.stages);
   }
 #endif
-  return solve_pillar(pillar, noise_of(block, input), 0);
+  return solve_pillar(pillar, noise_of(block, input), calibration.stages);
 }
 
 /* Writes the results of `lanes`, lane 0 at pillar `index`. */
@@ -135,8 +127,11 @@ typedef struct {
   size_t row_stride;
   size_t activation_stride;
   global uchar* idle; /* flag of the first block */
-  uint skew;          /* pillars by which the first block would begin before the row */
-  uint last_col;      /* first column of the last block */
+#ifdef PF_MEMORY
+  global uchar* has_states; /* flag of the first block */
+#endif
+  uint skew;     /* pillars by which the first block would begin before the row */
+  uint last_col; /* first column of the last block */
   uint blocks;
 } Row;
 
@@ -169,6 +164,9 @@ PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
   const bool idle =
       is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
   if (idle != was_idle) row.idle[at] = idle;
+#ifdef PF_MEMORY
+  if (row.has_states[at]) return false;
+#endif
   return idle && was_idle;
 #else
   prefetch_readings(row, sensel, false);
@@ -193,32 +191,41 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
 }
 
 /* Solves this work-item's blocks of a pillar row. */
-PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_cols) {
+PF_INLINE void solve_row(Input input, Output output, uint at_row) {
+  const uint pillar_cols = input.cols;
   const size_t first_index = (size_t)at_row * pillar_cols;
   const Calibration calibration = input.calibration;
   const size_t first_offset = 2 * at_row * calibration.stride;
   const uint skew = (uint)(first_index % PF_LANES);
-  const Row row = {input.raw + 2 * at_row * input.row_stride,
-                   activation_thresholds(calibration) + first_offset,
-                   input.row_stride,
-                   calibration.stride,
-                   output.idle + (size_t)at_row * blocks_of_row(pillar_cols),
-                   skew,
-                   pillar_cols - PF_LANES,
-                   (skew + pillar_cols + PF_LANES - 1) / PF_LANES};
+  Row row;
+  row.raw = input.raw + 2 * at_row * input.row_stride;
+  row.activation = activation_thresholds(calibration) + first_offset;
+  row.row_stride = input.row_stride;
+  row.activation_stride = calibration.stride;
+  row.idle = output.idle + (size_t)at_row * blocks_of_row(pillar_cols);
+#ifdef PF_MEMORY
+  row.has_states = state_flags(calibration, at_row, pillar_cols);
+#endif
+  row.skew = skew;
+  row.last_col = pillar_cols - PF_LANES;
+  row.blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
   const uint step = (uint)get_global_size(0);
   for (uint at = next_active(row, (uint)get_global_id(0)); at < row.blocks;
        at = next_active(row, at + step)) {
     const uint col = col_of_block(row, at);
-    const size_t offset = first_offset + 2 * col;
-    prefetch_planes(calibration, offset + 2 * calibration.stride);
-#ifdef PF_STREAM
+    const Place top = {2 * at_row, 2 * col};
+    const Place bottom = {2 * at_row + 1, 2 * col};
+    prefetch_planes(calibration, first_offset + 2 * col + 2 * calibration.stride);
+#if defined(PF_STREAM) || defined(PF_MEMORY)
     const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
-    const Block block = {row.raw + 2 * col, offset, first_index + col, lanes};
+    const Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
     store_solution(solve_block(block, input), output, block.index, block.lanes);
+#if defined(PF_MEMORY) && defined(PF_SKIP_IDLE)
+    row.has_states[at] = !is_at_rest(block, calibration);
+#endif
   }
 }
 
@@ -232,12 +239,22 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, uint pillar_co
 kernel void solve_frame(global const PF_SENSEL* restrict raw,
                         global const uchar* restrict calibration, global uchar* restrict results,
                         Layout layout) {
-  const Calibration planes = {calibration, layout.plane_bytes, layout.plane_stride};
-  const Input input = {raw, layout.row_stride, planes};
+  const Band band = band_of_rows((uint)layout.rows);
+  Input input;
+  input.raw = raw;
+  input.row_stride = layout.row_stride;
+  input.calibration = calibration_of(calibration, results, layout);
+  input.rows = (uint)layout.rows;
+  input.cols = (uint)layout.cols;
   const Output output = {results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
-  const Band band = band_of_rows((uint)layout.rows);
+#ifdef PF_LEAK
+  input.ring = ring_of((global float*)(results + layout.ring), input.cols);
+#endif
   for (uint row = band.first; row < band.end; ++row) {
-    solve_row(input, output, row, (uint)layout.cols);
+#ifdef PF_LEAK
+    fill_ring(input, row, row == band.first);
+#endif
+    solve_row(input, output, row);
   }
 }

@@ -8,11 +8,11 @@
  * - Correction of one sensel: in correct_sensel, its effect on noise in corrected_noise. A
  *   parameter per sensel is a calibration plane and a member of Correction.
  * - Quantity of one pillar: in solve_pillar. Its results are lines of result_planes.h.
- * - Stage with neighbours: an entry point of its own, since a work-item of solve_frame.cl reads
- *   only the sensels of its block. It runs before solve_frame.cl, as crosstalk between sensels
- *   would, or after it, as follow_baseline.cl does.
- * - Stage with state: a plane that a frame reads like the tare and that an entry point after
- *   solve_frame.cl updates for the next frame. Frames then wait for each other on the device.
+ * - Stage with neighbours: between linear_sensel and active_sensel if it reads the sensels next to
+ *   a pillar (neighbours.h); else an entry point of its own before solve_frame.cl (find_wires.cl)
+ * or after it (correct_forces.cl, follow_baseline.cl).
+ * - Stage with state: planes of states that solve_frame.cl updates (memory.h), or a plane that an
+ *   entry point updates for the next frame. Frames then wait for each other on the device.
  * The host's table gives the kind of each stage, and whether idle blocks may be skipped: whether
  * activation_thresholds() and threshold_of_sensel() include it. */
 
@@ -21,8 +21,21 @@
 #define PF_LARGEST_READING stages.largest
 #define PF_MASK
 #define PF_FULL_SCALE stages.full_scale
+#define PF_WIRES
+#define PF_COLUMN_PER_COUNT stages.column_per_count
 #define PF_TARE
 #define PF_GAIN
+#define PF_CURVE
+#define PF_CURVE_PER_COUNT stages.curve_per_count
+#define PF_LEAK
+#define PF_MEMORY
+#define PF_SHEAR_COEFFICIENT
+#define PF_PER_COEFFICIENT_X stages.per_coefficient_x
+#define PF_PER_COEFFICIENT_Y stages.per_coefficient_y
+#define PF_RESIDUAL
+#define PF_RESIDUAL_RELATIVE stages.residual_relative
+#define PF_RESIDUAL_VARIANCE stages.residual_variance
+#define PF_RELATIVE_MARGIN stages.relative_margin
 #define PF_POWER_EXPONENT stages.exponent
 #define PF_POWER_REFERENCE stages.reference
 #define PF_POWER_LARGEST stages.largest
@@ -42,10 +55,16 @@ typedef struct {
   bool range;
   bool mask;
   bool saturation;
+  bool wires;
   bool tare;
   bool gain;
   bool power_law;
+  bool curve;
+  bool leak;
+  bool memory;
   bool dead_zone;
+  bool shear_coefficient;
+  bool residual;
   bool paper;
   bool parity_test;
   bool angles;
@@ -59,10 +78,25 @@ typedef struct {
   Real margin;
   Real parity_tolerance;
   ForceScale scale;
+  Real column_per_count;
+  const float* curve_table; /* V, counts: PF_CURVE_PIECES + 1 values */
+  Real curve_per_count;
+  LeakTaps leak_taps;
+  MemoryModel memory_model;
+  int plays;
+  int creeps;
+  Real per_coefficient_x; /* 1 / c_x */
+  Real per_coefficient_y;
+  Real residual_relative;
+  Real residual_variance; /* counts^2 */
+  Real relative_margin;   /* of the largest reading */
 } Stages;
 #else
 #define PF_NAMED(stage) 1
-typedef int Stages; /* A program has macros instead. */
+/* A program has macros instead of constants. */
+typedef struct {
+  global const float* curve_table;
+} Stages;
 #endif
 
 /* Calibration of a sensel; members of stages that are not named are not read. */
@@ -71,6 +105,9 @@ typedef struct {
   Real gain;
   Counts dead_zone;
   Counts good; /* 1; 0 where the sensel is masked, 2 where the sensor has none */
+#ifndef PF_WHOLE
+  Wires wires;
+#endif
 } Correction;
 
 /* Classifies a raw reading as missing or saturated, before calibration. */
@@ -88,9 +125,33 @@ PF_INLINE Sensel validate_reading(Counts raw, Counts good, Stages stages) {
   return sensel;
 }
 
-/* Applies the stages of a sensel to a raw reading. */
-PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
+#ifdef PF_CURVE
+PF_INLINE CurvePlace place_on_curve(Real reading, Stages stages) {
+  return curve_place(reading, PF_CONSTANT(Real, PF_CURVE_PER_COUNT));
+}
+
+PF_INLINE Sensel linearise(Sensel sensel, Stages stages) {
+  const CurvePlace place = place_on_curve(sensel.reading, stages);
+  const Real low = look_up(stages.curve_table, place.piece);
+  const Real high = look_up(stages.curve_table + 1, place.piece);
+  return apply_curve(sensel, place, low, high, PF_CONSTANT(Real, PF_POWER_LARGEST));
+}
+#endif
+
+/* Applies the stages before the tare. */
+PF_INLINE Sensel untared_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = validate_reading(raw, at.good, stages);
+#ifdef PF_WIRES
+  if (PF_NAMED(wires)) {
+    sensel = remove_crosstalk(sensel, at.wires, PF_CONSTANT(Real, PF_COLUMN_PER_COUNT));
+  }
+#endif
+  return sensel;
+}
+
+/* Applies the stages of a sensel before its neighbours count: a valid reading is V. */
+PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
+  Sensel sensel = untared_sensel(raw, at, stages);
 #ifdef PF_TARE
   if (PF_NAMED(tare)) sensel = subtract_tare(sensel, at.tare);
 #endif
@@ -104,11 +165,24 @@ PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
                         PF_CONSTANT(Real, PF_POWER_REFERENCE), PF_CONSTANT(Real, PF_POWER_LARGEST));
   }
 #endif
+#ifdef PF_CURVE
+  if (PF_NAMED(curve)) sensel = linearise(sensel, stages);
+#endif
+  return sensel;
+}
+
+/* Decides whether a sensel with the reading V is usable, and applies the stages after that. */
+PF_INLINE Sensel active_sensel(Sensel sensel, Correction at, Stages stages) {
   sensel = classify(sensel, PF_CONSTANT(Counts, PF_THRESHOLD));
 #ifdef PF_DEAD_ZONE
   if (PF_NAMED(dead_zone)) sensel = fill_dead_zone(sensel, at.dead_zone);
 #endif
   return sensel;
+}
+
+/* Applies the stages of a sensel that need neither its neighbours nor earlier frames. */
+PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
+  return active_sensel(linear_sensel(raw, at, stages), at, stages);
 }
 
 #ifdef PF_UNCERTAINTY
@@ -130,7 +204,29 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
                                     PF_CONSTANT(Real, PF_POWER_REFERENCE));
   }
 #endif
+#ifdef PF_CURVE
+  if (PF_NAMED(curve)) {
+    Real reading = raw;
+#ifdef PF_TARE
+    if (PF_NAMED(tare)) reading = reading - at.tare;
+#endif
+#ifdef PF_GAIN
+    if (PF_NAMED(gain)) reading = reading * at.gain;
+#endif
+    const Real piece = place_on_curve(reading, stages).piece;
+    const Real rise = look_up(stages.curve_table + 1, piece) - look_up(stages.curve_table, piece);
+    noise = noise * (rise * PF_CONSTANT(Real, PF_CURVE_PER_COUNT));
+  }
+#endif
   return noise;
+}
+#endif
+
+#ifdef PF_RESIDUAL
+/* Noise of a sensel with what calibration leaves, counts (E9). */
+PF_INLINE Real with_residual(Real noise, Sensel sensel, Stages stages) {
+  const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE) * sensel.reading;
+  return sqrt(noise * noise + (PF_CONSTANT(Real, PF_RESIDUAL_VARIANCE) + relative * relative));
 }
 #endif
 
@@ -155,7 +251,13 @@ PF_INLINE Force estimate_force(Pillar pillar, Diagonals diagonals, ParitySum sum
 }
 
 PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stages stages) {
-  Bits status = direct_status(pillar, diagonals, sum, PF_CONSTANT(Counts, PF_MARGIN));
+  Counts margin = PF_CONSTANT(Counts, PF_MARGIN);
+#ifdef PF_RESIDUAL
+  if (PF_NAMED(residual)) {
+    margin = margin + PF_CONSTANT(Real, PF_RELATIVE_MARGIN) * largest_reading(pillar);
+  }
+#endif
+  Bits status = direct_status(pillar, diagonals, sum, margin);
 #ifdef PF_PARITY_TOLERANCE
   if (PF_NAMED(parity_test)) {
     const Mask contradictory = fails_parity(pillar, sum, PF_CONSTANT(Counts, PF_PARITY_TOLERANCE));
@@ -165,6 +267,28 @@ PF_INLINE Bits status_of(Pillar pillar, Diagonals diagonals, ParitySum sum, Stag
   return status;
 }
 
+#ifdef PF_SHEAR_COEFFICIENT
+/* Divides the shear of a pillar with c = 1 by the coefficients (E2). */
+PF_INLINE Force per_coefficient(Force force, Stages stages) {
+  force.shear_x = force.shear_x * PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
+  force.shear_y = force.shear_y * PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+  return force;
+}
+#endif
+
+#ifdef PF_UNCERTAINTY
+PF_INLINE ShearWeights shear_weights(Stages stages) {
+  ShearWeights weights = {PF_REAL(1.0), PF_REAL(1.0)};
+#ifdef PF_SHEAR_COEFFICIENT
+  if (PF_NAMED(shear_coefficient)) {
+    weights.x = PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
+    weights.y = PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
+  }
+#endif
+  return weights;
+}
+#endif
+
 /* Solves a pillar from corrected sensels; `noise` is their noise after correction. */
 PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
   const ForceScale scale = {PF_CONSTANT(Real, PF_SHEAR_SCALE), PF_CONSTANT(Real, PF_NORMAL_SCALE)};
@@ -172,6 +296,9 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
   const ParitySum sum = parity_sum(diagonals, PF_CONSTANT(Fraction, PF_SEGMENT_POINT));
   Solution solution;
   solution.force = estimate_force(pillar, diagonals, sum, scale, stages);
+#ifdef PF_SHEAR_COEFFICIENT
+  if (PF_NAMED(shear_coefficient)) solution.force = per_coefficient(solution.force, stages);
+#endif
   solution.status = status_of(pillar, diagonals, sum, stages);
 #if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
   if (PF_NAMED(angles) || PF_NAMED(uncertainty)) {
@@ -180,9 +307,23 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
 #endif
 #ifdef PF_UNCERTAINTY
   if (PF_NAMED(uncertainty)) {
+#ifdef PF_RESIDUAL
+    if (PF_NAMED(residual)) {
+      noise.n1 = with_residual(noise.n1, pillar.s1, stages);
+      noise.n2 = with_residual(noise.n2, pillar.s2, stages);
+      noise.n3 = with_residual(noise.n3, pillar.s3, stages);
+      noise.n4 = with_residual(noise.n4, pillar.s4, stages);
+    }
+#endif
     solution.deviations =
         force_deviations(pillar, diagonals, sum, noise, PF_CONSTANT(Real, PF_SEGMENT_POINT), scale);
-    solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale);
+#ifdef PF_SHEAR_COEFFICIENT
+    if (PF_NAMED(shear_coefficient)) {
+      solution.deviations = per_coefficient(solution.deviations, stages);
+    }
+#endif
+    solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale,
+                                           shear_weights(stages));
   }
 #endif
   return solution;

@@ -172,6 +172,15 @@ static inline Force direct_force(Diagonals diagonals, ParitySum sum, ForceScale 
 
 static inline Counts least_of(Counts a, Counts b) { return a < b ? a : b; }
 
+#ifndef PF_WHOLE
+static inline Real largest_reading(Pillar pillar) {
+  const Real rising = pillar.s1.reading > pillar.s3.reading ? pillar.s1.reading : pillar.s3.reading;
+  const Real falling =
+      pillar.s2.reading > pillar.s4.reading ? pillar.s2.reading : pillar.s4.reading;
+  return rising > falling ? rising : falling;
+}
+#endif
+
 /* True if the inactive fourth sensel may carry load while three are usable: its upper bound is
  * above zero, and parity predicts more than -`margin` counts for it (D9). Usable sensels are above
  * zero, so the minimum over all four decides. */

@@ -212,17 +212,30 @@ static inline Real most_difference(Real reading, Real sum) {
   return larger_of((reading + reading) - sum, PF_REAL(0.0));
 }
 
-static inline Real squares(Real x, Real y) { return x * x + y * y; }
+/* 1 / c_x and 1 / c_y of the shear coefficient (E2). */
+typedef struct {
+  Real x;
+  Real y;
+} ShearWeights;
+
+/* Squared shear with these differences over the diagonals, counts^2. */
+static inline Real shear_square(Real a, Real b, ShearWeights weights) {
+  const Real x = weights.x * (a - b);
+  const Real y = weights.y * (a + b);
+  return PF_REAL(0.5) * (x * x + y * y);
+}
 
 /* Squared shear of the longest force, counts^2: the force at the smallest parity sum. */
-static inline Real longest_shear(ScaledPillar e, Real a_size, Real b_size) {
+static inline Real longest_shear(ScaledPillar e, Real a_size, Real b_size, ShearWeights weights) {
   const Real a = e.a_unconstrained ? most_difference(larger_of(e.a.p, e.a.q), e.low) : a_size;
   const Real b = e.b_unconstrained ? most_difference(larger_of(e.b.p, e.b.q), e.low) : b_size;
-  return squares(a, b);
+  const Real longest = shear_square(a, b, weights);
+  const Real turned = shear_square(a, -b, weights);
+  return (e.a_unconstrained || e.b_unconstrained) ? larger_of(longest, turned) : longest;
 }
 
 /* The interval of a pillar without measured sensels, up to the bounds of its inactive ones (U8). */
-static inline DirectionInterval inactive_interval(ScaledPillar e) {
+static inline DirectionInterval inactive_interval(ScaledPillar e, ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
   const Mask may_be_loaded = e.high > zero;
   const Real pi = may_be_loaded ? PF_REAL(3.14159265358979323846) : zero;
@@ -232,13 +245,13 @@ static inline DirectionInterval inactive_interval(ScaledPillar e) {
   interval.phi_low = zero - pi;
   interval.phi_high = pi;
   interval.magnitude_low = zero;
-  interval.magnitude_high = e.newtons * sqrt(longest_shear(e, zero, zero));
+  interval.magnitude_high = e.newtons * sqrt(longest_shear(e, zero, zero, weights));
   return interval;
 }
 
 /* phi of the shear with these differences over the diagonals (M2, M5); zero without shear. */
-static inline Real phi_of(Real rising, Real falling) {
-  return angle_of(PF_REAL(0.0) - (rising + falling), falling - rising);
+static inline Real phi_of(Real rising, Real falling, ShearWeights weights) {
+  return angle_of(PF_REAL(0.0) - weights.y * (rising + falling), weights.x * (falling - rising));
 }
 
 /* An interval in the plane, counter-clockwise. */
@@ -248,10 +261,11 @@ typedef struct {
 } PhiInterval;
 
 /* The shorter interval between two directions of shear (U7). */
-static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to) {
+static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real b_to,
+                                      ShearWeights weights) {
   const Mask clockwise = a_from * b_to < b_from * a_to;
-  const Real from = phi_of(a_from, b_from);
-  const Real to = phi_of(a_to, b_to);
+  const Real from = phi_of(a_from, b_from, weights);
+  const Real to = phi_of(a_to, b_to, weights);
   PhiInterval phi;
   phi.low = clockwise ? to : from;
   phi.high = clockwise ? from : to;
@@ -260,7 +274,7 @@ static inline PhiInterval phi_between(Real a_from, Real b_from, Real a_to, Real 
 
 /* phi between the ends of a segment, or of an unconstrained diagonal at the smallest sum. */
 static inline PhiInterval phi_interval(ScaledPillar e, Real a_flat, Real b_flat, Real a_steep,
-                                       Real b_steep) {
+                                       Real b_steep, ShearWeights weights) {
   const Mask unconstrained = e.a_unconstrained || e.b_unconstrained;
   const Real a_from = e.a_unconstrained ? -most_difference(e.a.q, e.low) : a_flat;
   const Real b_from = e.b_unconstrained ? -most_difference(e.b.q, e.low) : b_flat;
@@ -268,36 +282,58 @@ static inline PhiInterval phi_interval(ScaledPillar e, Real a_flat, Real b_flat,
       e.a_unconstrained ? most_difference(e.a.p, e.low) : (unconstrained ? a_flat : a_steep);
   const Real b_to =
       e.b_unconstrained ? most_difference(e.b.p, e.low) : (unconstrained ? b_flat : b_steep);
-  return phi_between(a_from, b_from, a_to, b_to);
+  return phi_between(a_from, b_from, a_to, b_to, weights);
+}
+
+/* The difference with its sign, linear in the parity sum. */
+static inline Real difference_at(DifferenceLine line, Real sum) {
+  return signed_as(line, size_at(line, sum));
+}
+
+/* Slope of the difference over the parity sum: -1, 0 or 1. */
+static inline Real slope_of(DifferenceLine line) {
+  return line.sloped ? signed_as(line, PF_REAL(-1.0)) : PF_REAL(0.0);
 }
 
 /* The parity sum of the shortest force (U6). */
-static inline Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b) {
-  const Real factor = (a.sloped && b.sloped) ? PF_REAL(0.66666666666666666667) : PF_REAL(1.0);
-  const Real free = factor * (a.measured + b.measured);
+static inline Real shortest_sum(ScaledPillar e, DifferenceLine a, DifferenceLine b,
+                                ShearWeights weights) {
+  const Real one_half = PF_REAL(0.5);
+  const Real x = one_half * weights.x * weights.x;
+  const Real y = one_half * weights.y * weights.y;
+  const Real a_twice = signed_as(a, a.measured + a.measured);
+  const Real b_twice = signed_as(b, b.measured + b.measured);
+  const Real a_at_zero = a.sloped ? a_twice : a.level;
+  const Real b_at_zero = b.sloped ? b_twice : b.level;
+  const Real x_slope = slope_of(a) - slope_of(b);
+  const Real y_slope = slope_of(a) + slope_of(b);
+  const Real pull = x * x_slope * (a_at_zero - b_at_zero) + y * y_slope * (a_at_zero + b_at_zero);
+  const Real stiffness = x * x_slope * x_slope + y * y_slope * y_slope + PF_REAL(1.0);
+  const Real free = -pull / stiffness;
   return free < e.low ? e.low : least_of(free, e.high);
 }
 
 /* The interval of a pillar whose force is not determined. */
-static inline DirectionInterval ambiguous_interval(ScaledPillar e, Direction estimate) {
+static inline DirectionInterval ambiguous_interval(ScaledPillar e, Direction estimate,
+                                                   ShearWeights weights) {
   const Real zero = PF_REAL(0.0);
   const DifferenceLine a = difference_line(e.a);
   const DifferenceLine b = difference_line(e.b);
-  const Real a_flat = size_at(a, e.low);
-  const Real b_flat = size_at(b, e.low);
-  const Real a_steep = size_at(a, e.high);
-  const Real b_steep = size_at(b, e.high);
-  const Real least = shortest_sum(e, a, b);
-  const Real flat = longest_shear(e, a_flat, b_flat);
-  const Real shortest = squares(size_at(a, least), size_at(b, least)) + least * least;
+  const Real a_flat = difference_at(a, e.low);
+  const Real b_flat = difference_at(b, e.low);
+  const Real a_steep = difference_at(a, e.high);
+  const Real b_steep = difference_at(b, e.high);
+  const Real least = shortest_sum(e, a, b, weights);
+  const Real flat = longest_shear(e, a_flat, b_flat, weights);
+  const Real shortest =
+      shear_square(difference_at(a, least), difference_at(b, least), weights) + least * least;
 
   /* Either the parity sum begins at zero, where the force lies in the plane, or it is measured, and
    * the estimate is the steepest force. */
   const Mask from_zero = !(e.low > zero);
-  const Real slope = sqrt(from_zero ? squares(a_steep, b_steep) : flat);
+  const Real slope = sqrt(from_zero ? shear_square(a_steep, b_steep, weights) : flat);
   const Real tilt = acute_angle_of(slope, e.high);
-  const PhiInterval phi = phi_interval(e, signed_as(a, a_flat), signed_as(b, b_flat),
-                                       signed_as(a, a_steep), signed_as(b, b_steep));
+  const PhiInterval phi = phi_interval(e, a_flat, b_flat, a_steep, b_steep, weights);
   DirectionInterval interval;
   interval.theta_low = from_zero ? tilt : estimate.theta;
   interval.theta_high = from_zero ? (flat > zero ? PF_REAL(1.57079632679489661923) : zero) : tilt;
@@ -317,7 +353,7 @@ static inline DirectionInterval ambiguous_interval(ScaledPillar e, Direction est
  * where no lane needs it. */
 static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diagonals,
                                                    ParitySum sum, Direction estimate,
-                                                   ForceScale scale) {
+                                                   ForceScale scale, ShearWeights weights) {
   const Mask determined = is_determined(pillar, sum);
   const DirectionInterval point = point_interval(estimate);
   if (!any_lane(!determined)) return point;
@@ -325,7 +361,8 @@ static inline DirectionInterval direction_interval(Pillar pillar, Diagonals diag
   const Mask inactive = e.a_unconstrained && e.b_unconstrained &&
                         (e.high > PF_REAL(0.0) || !(e.largest > PF_REAL(0.0)));
   const DirectionInterval simple_interval =
-      either_interval(determined, point, inactive_interval(e));
+      either_interval(determined, point, inactive_interval(e, weights));
   if (!any_lane(!(determined || inactive))) return simple_interval;
-  return either_interval(determined || inactive, simple_interval, ambiguous_interval(e, estimate));
+  return either_interval(determined || inactive, simple_interval,
+                         ambiguous_interval(e, estimate, weights));
 }

@@ -176,6 +176,134 @@ TEST(Equilibration, TheThresholdFollowsTheGains) {
   EXPECT_GT(*after.threshold_counts, *before.threshold_counts);
 }
 
+/// The loads, counts, that the experiments press with.
+const std::vector<double> kLoads = {12, 30, 60, 100, 160};
+
+/// Equilibrates under uniform pressures of `loads`, counts of the skin.
+EquilibrationResult equilibrate_at_loads(PressedSkin& skin, const EquilibrationOptions& options,
+                                         const std::vector<double>& loads = kLoads) {
+  const SkinCalibration before = tared(skin);
+  const double k = skin.skin().counts_per_newton;
+  std::vector<FrameStatistics> frames;
+  for (const double load : loads) frames.push_back(skin.press(load / k, kFrames));
+  std::vector<UniformPress> presses;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    presses.push_back({frames[i], skin.pressure_kpa(loads[i] / k)});
+  }
+  return equilibrate(before, presses, options);
+}
+
+/// Noise of half a count, gains of 5 %, a dead zone of 5 counts and a power law of 0.9.
+PressedSkin curved_skin(double dead_zone, double exponent) {
+  SensorModel sensor = spread_sensor();
+  sensor.gain_spread = 0.05;
+  sensor.noise_counts = 0.5;
+  sensor.dead_zone_counts = dead_zone;
+  PressedSkin skin(20, 20, sensor);
+  if (exponent != 1) skin.scene().skin.power_law = {exponent, 100};
+  return skin;
+}
+
+/// RMS of the force that the calibration finds at 64 loads of 8 to 190 counts, minus the load, in
+/// counts of the skin.
+double curve_error(PressedSkin& skin, const EquilibrationResult& result) {
+  const Calibration truth = skin.truth();
+  const Calibration& found = result.calibration.planes;
+  const double k = skin.skin().counts_per_newton;
+  const double zone = truth.dead_zone.empty() ? 0 : truth.dead_zone[0];
+  double squares = 0;
+  for (int step = 0; step < 64; ++step) {
+    const double load = 8 + (190.0 - 8) * step / 63;
+    const auto& law = skin.skin().power_law;
+    double reading = std::max(0.0, load - zone);
+    if (law) reading = straightened({1 / law->exponent, law->reference_counts}, reading);
+    const double share = 1 / mean_of(truth.gain);
+    const double solved = load_at(found.effects.curve, reading * share) +
+                          (found.dead_zone.empty() ? 0 : mean_of(found.dead_zone));
+    const double error = k * solved / *result.calibration.counts_per_newton - load;
+    squares += error * error / 64;
+  }
+  return std::sqrt(squares);
+}
+
+TEST(Equilibration, FindsAResponseCurveAndADeadZone) {
+  PressedSkin skin = curved_skin(5, 0.9);
+  const EquilibrationResult result = equilibrate_at_loads(skin, {});
+  EXPECT_EQ(result.model, ResponseModel::curve);
+  EXPECT_NEAR(result.dead_zone_counts * 320 / *result.calibration.counts_per_newton, 5, 0.1);
+  EXPECT_LT(*result.held_out_curve, 0.005);
+  EXPECT_GT(*result.held_out_linear, 0.01);
+  EXPECT_LT(curve_error(skin, result), 0.1);
+  PressedSkin same = curved_skin(5, 0.9);
+  EXPECT_GT(curve_error(skin, equilibrate_at_loads(same, {.model = ResponseModel::linear})), 0.5);
+  const Calibration truth = skin.truth();
+  EXPECT_LT(
+      relative_errors(result.calibration.planes.gain, truth.gain, 1 / mean_of(truth.gain)).largest,
+      0.01);
+  ASSERT_TRUE(result.calibration.planes.effects.residual);
+  EXPECT_LT(result.calibration.planes.effects.residual->relative, 0.01);
+  EXPECT_LT(result.calibration.planes.effects.residual->offset_counts, 0.5);
+}
+
+TEST(Equilibration, FindsACurveFromThreePressures) {
+  PressedSkin skin = curved_skin(0, 0.9);
+  const EquilibrationResult result = equilibrate_at_loads(skin, {}, {20, 70, 160});
+  EXPECT_EQ(result.model, ResponseModel::curve);
+  EXPECT_LT(curve_error(skin, result), 0.3);
+}
+
+TEST(Equilibration, KeepsStraightLinesWhereACurveDoesNotWin) {
+  for (const double dead_zone : {0.0, 5.0}) {
+    PressedSkin skin = curved_skin(dead_zone, 1);
+    const EquilibrationResult result = equilibrate_at_loads(skin, {});
+    EXPECT_EQ(result.model, ResponseModel::linear);
+    EXPECT_TRUE(result.calibration.planes.effects.curve.empty());
+    EXPECT_LT(curve_error(skin, result), 0.1);
+    PressedSkin same = curved_skin(dead_zone, 1);
+    EXPECT_LT(curve_error(skin, equilibrate_at_loads(same, {.model = ResponseModel::curve})), 0.1);
+  }
+}
+
+TEST(Equilibration, TheResidualErrorIsThatOfHeldOutPressures) {
+  // The residual of gains from two pressures at a third is that of the noise of all three.
+  PressedSkin skin = curved_skin(5, 1);
+  const EquilibrationResult result = equilibrate_at_loads(skin, {});
+  const auto& residual = result.calibration.planes.effects.residual;
+  ASSERT_TRUE(residual);
+  const double noise = std::sqrt(0.25 + 1 / 12.0) / 10;
+  const double at_middle = std::hypot(residual->offset_counts, 60 * residual->relative);
+  EXPECT_GT(at_middle, noise);
+  EXPECT_LT(at_middle, 3 * noise);
+  PressedSkin few = curved_skin(5, 1);
+  EXPECT_FALSE(equilibrate_at_loads(few, {}, {60, 160}).calibration.planes.effects.residual);
+}
+
+TEST(Equilibration, ACurveNeedsPressuresToWhichSenselsRespond) {
+  PressedSkin skin = curved_skin(5, 0.9);
+  EXPECT_NE(message_of([&] {
+              (void)equilibrate_at_loads(skin, {.model = ResponseModel::curve}, {60});
+            }).find("no response curve"),
+            std::string::npos);
+}
+
+TEST(Equilibration, KnownLeaksCount) {
+  PressedSkin skin = curved_skin(0, 1);
+  SkinCalibration before = tared(skin);
+  before.planes.effects.sensel_leak = {0.05, 0.02};
+  const FrameStatistics press = skin.press(0.3, kFrames);
+  const UniformPress presses[] = {{press, skin.pressure_kpa(0.3)}};
+  const EquilibrationResult leaking = equilibrate(before, presses, {});
+  before.planes.effects.sensel_leak.reset();
+  const EquilibrationResult plain = equilibrate(before, presses, {});
+  EXPECT_NEAR(*plain.calibration.counts_per_newton / *leaking.calibration.counts_per_newton, 1.14,
+              0.005);
+  // The corner lacks two neighbours of 0.02.
+  const auto ratio = [&](std::size_t i) {
+    return leaking.calibration.planes.gain[i] / plain.calibration.planes.gain[i];
+  };
+  EXPECT_NEAR(ratio(0) / ratio(50 * 20 + 5), 1.10 / 1.14, 1e-5);
+}
+
 /// A ball on the skin: far from uniform.
 FrameStatistics ball_press(PressedSkin& skin, double radius_mm, double load_n) {
   Scene scene = skin.scene();

@@ -164,14 +164,14 @@ PillarOf<Precision> hiding_pillar(const std::array<double, 4>& readings) {
 
 template <class Precision>
 struct Ends {
-  decltype(direction_interval(PillarOf<Precision>{}, {}, {}, {}, {})) interval;
+  decltype(direction_interval(PillarOf<Precision>{}, {}, {}, {}, {}, {})) interval;
   double slack;
 
   explicit Ends(const PillarOf<Precision>& pillar)
       : slack(64 * std::numeric_limits<RealOf<Precision>>::epsilon()) {
     const auto solved = solve<Precision>(pillar, kCountsOfOneNewton);
     interval = direction_interval(pillar, solved.diagonals, solved.sum, direction_of(solved.force),
-                                  solved.scale);
+                                  solved.scale, {1, 1});
   }
 
   /// Counter-clockwise angles of phi and of phi_high from phi_low.
@@ -347,7 +347,7 @@ TYPED_TEST(DirectionIntervals, AreFiniteForAllFiniteReadings) {
       const auto pillar = pillar_in<TypeParam>(states, readings);
       const auto solved = solve<TypeParam>(pillar, kCountsOfOneNewton);
       const auto interval = direction_interval(pillar, solved.diagonals, solved.sum,
-                                               direction_of(solved.force), solved.scale);
+                                               direction_of(solved.force), solved.scale, {1, 1});
       const Real most = static_cast<Real>(1e6);
       const auto deviations =
           force_deviations(pillar, solved.diagonals, solved.sum, {most, most, most, most},

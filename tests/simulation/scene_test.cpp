@@ -378,6 +378,7 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "segment_point",
                                    "angles",
                                    "uncertainty",
+                                   "factor",
                                    "pillar_arm_mm",
                                    "shear_coefficient",
                                    "hysteresis_range_counts",

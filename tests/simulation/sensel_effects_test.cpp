@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <random>
 #include <vector>
@@ -279,6 +280,63 @@ TEST(WireNetwork, OfASceneReadsThroughItsOhms) {
   // 50 of 200 counts are 40 kΩ, and two of them are a row of 20 kΩ behind 30 Ω.
   for (const float reading : raw.readings<float>()) EXPECT_NEAR(reading, 50 / 1.0015, 1e-4);
   EXPECT_NEAR(simulator.calibration().effects.wires->row_per_count, 30 / (1e4 * 200), 1e-12);
+}
+
+/// Every stage of [sensor] and [surface], composed here in the documented order.
+TEST(SensorEffectsOfAScene, FollowTheOrderOfTheSignal) {
+  Scene scene = sensels(6, 8);
+  scene.skin.counts_per_newton = 300;
+  scene.rate_hz = 10;
+  scene.load = DirectionSweep{4, 3, 60, {0.2}, {{0, 0.5}, {0.1, 1}}};
+  SensorModel& model = scene.sensor;
+  model.pillar_leak_edge = 0.05;
+  model.pillar_leak_corner = 0.02;
+  model.shear_coefficient = {0.8, 1.2};
+  model.dead_zone_counts = 4;
+  model.leak_inside = 0.1;
+  model.leak_across = 0.06;
+  model.hysteresis = 0.1;
+  model.creep_per_decade = 0.1;
+  model.response_curve = {{20, 70}, {15, 90}};
+  model.gain_spread = 0.2;
+  model.tare_counts = 6;
+  model.wires = Wires{4, 4, 100, 80, {}, 1e4};
+  scene.bending = Bending{50, {{0, 0.02, 0, 0}}};
+  const Simulator simulator(scene);
+  const Calibration& calibration = simulator.calibration();
+  MemoryHistory memory(scene);
+  FrameBuffer raw(SenselType::f32, 6, 8);
+  ForceField truth(3, 4);
+  for (const std::uint64_t frame : {0U, 1U}) {
+    simulator.render(frame, raw, truth);
+    std::vector<double> v(48);
+    for (std::size_t sensel = 0; sensel < 48; ++sensel) {
+      const auto row = static_cast<int>(sensel / 16);
+      const auto col = static_cast<int>(sensel % 8 / 2);
+      const double up = sensel / 8 % 2 == 0 ? 1.2 : -1.2;
+      const double right = sensel % 2 == 1 ? 0.8 : -0.8;
+      for (int i = std::max(0, row - 1); i <= std::min(2, row + 1); ++i) {
+        for (int j = std::max(0, col - 1); j <= std::min(3, col + 1); ++j) {
+          const double fractions[] = {1, 0.05, 0.02};
+          const auto pillar = static_cast<std::size_t>(i * 4 + j);
+          const double shear = right * truth.shear_x[pillar] + up * truth.shear_y[pillar];
+          v[sensel] += 300 * fractions[std::abs(i - row) + std::abs(j - col)] *
+                       (truth.normal[pillar] + shear / std::numbers::sqrt2);
+        }
+      }
+      v[sensel] = std::max(0.0, std::max(0.0, v[sensel]) - 4);
+    }
+    leak_between_sensels({0.1, 0.06}, 6, 8, v);
+    memory.apply(frame, v, {});
+    for (std::size_t sensel = 0; sensel < 48; ++sensel) {
+      v[sensel] = reading_at(model.response_curve, v[sensel]) / calibration.gain[sensel] + 6 +
+                  0.02 * calibration.bend_x[sensel];
+    }
+    read_through_wires(*calibration.effects.wires, 6, 8, v);
+    for (std::size_t sensel = 0; sensel < 48; ++sensel) {
+      EXPECT_NEAR(raw.readings<float>()[sensel], v[sensel], 1e-4) << frame << " " << sensel;
+    }
+  }
 }
 
 TEST(BendingOfAScene, AddsCurvatureTimesPatternToTheTare) {

@@ -164,6 +164,21 @@ TEST(Simulator, ADirectionSweepHoldsEveryDirectionFromWhichAForceComes) {
   }
 }
 
+TEST(Simulator, ADirectionSweepFollowsItsFactor) {
+  Scene scene = sweep_scene();
+  const Rendered whole = render(Simulator(scene), 0);
+  std::get<DirectionSweep>(scene.load).path = {{0.1, 0}, {0.3, 2}, {0.5, 2}, {0.6, 0.5}};
+  const Simulator simulator(scene);
+  const std::pair<std::uint64_t, float> factors[] = {{5, 0}, {15, 0.5}, {40, 2}, {99, 0.5}};
+  for (const auto& [frame, factor] : factors) {
+    const Rendered scaled = render(simulator, frame);
+    for (std::size_t i = 0; i < scaled.truth.normal.size(); ++i) {
+      EXPECT_NEAR(scaled.truth.normal[i], factor * whole.truth.normal[i], 1e-7F);
+      EXPECT_EQ(scaled.truth.status[i] != 0, factor != 0);
+    }
+  }
+}
+
 /// Equation (2) of the paper, sensel by sensel, at the place in the frame that the design gives it.
 TEST(Simulator, ReadingsAreThePapersEquationAtTheirSensel) {
   const Simulator simulator(sweep_scene());
@@ -253,6 +268,29 @@ TEST(Simulator, RefusesScenesOutOfRange) {
       [&](Scene& s) { ball(s).path.front().x_mm = std::numeric_limits<double>::infinity(); },
       [&](Scene& s) { ball(s).motion = ContactMotion::roll; },
       [](Scene& s) { s.load = DirectionSweep{}; },
+      [](Scene& s) { s.sensor.leak_inside = 0.3; },
+      [](Scene& s) { s.sensor.creep_per_decade = kNan; },
+      [](Scene& s) { s.sensor.hysteresis_range_counts = 0; },
+      [](Scene& s) { s.sensor.pillar_arm_mm = 0; },
+      [](Scene& s) {
+        s.sensor.shear_coefficient = {1, kNan};
+      },
+      [](Scene& s) {
+        s.sensor.response_curve.readings = {1, 2};
+      },
+      [](Scene& s) { s.sensor.wires = Wires{1, 64, 0, 0, {}, 1e4}; },
+      [](Scene& s) { s.sensor.wires = Wires{64, 64, 0, 0, {}, 0}; },
+      [](Scene& s) { s.sensor.wires = Wires{64, 64, 0, 0, kNan, 1e4}; },
+      [](Scene& s) {
+        s.bending = Bending{1, {}};
+      },
+      [](Scene& s) {
+        s.bending = Bending{1, {{0, kNan, 0, 0}}};
+      },
+      [](Scene& s) {
+        s.skin.rows = s.skin.cols = 4000;
+        s.sensor.hysteresis = 0.1;
+      },
   };
   for (std::size_t i = 0; i < spoilers.size(); ++i) {
     Scene scene = noisy_scene(1);

@@ -20,6 +20,18 @@ void warn_of_shear(const EquilibrateCommand& command, double shear) {
       printable(command.files.back()), 100 * shear);
 }
 
+const char* name_of(ResponseModel model) {
+  return model == ResponseModel::curve ? "curve" : "linear";
+}
+
+void add_held_out(StepReport& report, const char* key, const std::optional<double>& residual,
+                  const char* what) {
+  if (!residual) return;
+  report.facts.push_back(
+      {key, *residual, "held out",
+       std::string("% residual of ") + what + " on pressures that the fit left out"});
+}
+
 }  // namespace
 
 void calibrate(const EquilibrateCommand& command) {
@@ -48,14 +60,19 @@ void calibrate(const EquilibrateCommand& command) {
   }
   if (result.levels > 2) {
     report.facts.push_back({"nonlinearity", result.nonlinearity, "nonlinearity",
-                            "% of the response, residual of straight lines"});
+                            "% of the response, residual of the fits"});
   }
+  report.facts.push_back({"model", name_of(result.model)});
+  add_held_out(report, "held_out_linear", result.held_out_linear, "straight lines");
+  add_held_out(report, "held_out_curve", result.held_out_curve, "a common curve");
+  report.lines.push_back(fmt::format("Model: {}", name_of(result.model)));
+  add_residual(report, calibration.planes.effects);
   warn_of_shear(command, result.shear);
-  finish_step(
-      command, calibration, "equilibrate", command.files, input.frames,
-      fmt::format("pressures_kpa = {}, most_unevenness = {}", fmt::join(command.pressures_kpa, " "),
-                  command.equilibration.most_unevenness),
-      report);
+  finish_step(command, calibration, "equilibrate", command.files, input.frames,
+              fmt::format("pressures_kpa = {}, most_unevenness = {}, model = {}",
+                          fmt::join(command.pressures_kpa, " "),
+                          command.equilibration.most_unevenness, name_of(result.model)),
+              report);
 }
 
 }  // namespace pillarfield::cli

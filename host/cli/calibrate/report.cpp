@@ -70,6 +70,15 @@ std::vector<std::string> names_of(const std::vector<std::string>& files) {
 
 }  // namespace
 
+void add_residual(StepReport& report, const SensorEffects& effects) {
+  if (!effects.residual) return;
+  const auto& [relative, offset_counts] = *effects.residual;
+  report.more.push_back({"residual_relative", relative});
+  report.more.push_back({"residual_offset_counts", offset_counts});
+  report.lines.push_back(
+      fmt::format("Left: {:.2f} % of a reading and {:.2f} counts", 100 * relative, offset_counts));
+}
+
 void finish_step(const StepOptions& options, SkinCalibration calibration, const char* name,
                  const std::vector<std::string>& files, std::uint64_t frames,
                  const std::string& parameters, const StepReport& report) {

@@ -27,6 +27,9 @@ struct StepReport {
   std::vector<std::string> lines = {};                   ///< text after the findings
 };
 
+/// Adds the residual error that a step stored.
+void add_residual(StepReport& report, const SensorEffects& effects);
+
 /// Adds the step `name` to the calibration's history, writes it and prints the report.
 void finish_step(const StepOptions& options, SkinCalibration calibration, const char* name,
                  const std::vector<std::string>& files, std::uint64_t frames,

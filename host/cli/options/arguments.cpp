@@ -14,50 +14,14 @@
 #include "cli/options/completion.h"
 #include "cli/options/help.h"
 #include "cli/options/nearest_word.h"
+#include "cli/options/shared_arguments.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
 namespace {
 
-using Work = std::function<void()>;
-
 /// Scenes store seeds as integers of TOML.
 constexpr std::uint64_t kLargestSeed = std::numeric_limits<std::int64_t>::max();
-
-// Arguments of several commands.
-
-void add_help(CLI::App* command) {
-  command->set_help_flag("-h,--help", "Print this help and exit")->group("General");
-}
-
-void add_general(CLI::App* command, PrintOptions& options, const char* json, const char* quiet) {
-  Group general(command, "General");
-  general.flag("--json", options.json, json);
-  general.flag("-q,--quiet", options.quiet, quiet);
-  add_help(command);
-}
-
-constexpr const char* kQuietWriter = "Print only errors, warnings and the output of --json";
-constexpr const char* kQuietReport = "Show no progress";
-
-void add_overwrite(CLI::App* command, Replace& replace) {
-  command
-      ->add_flag_callback(
-          "--overwrite", [&replace] { replace = Replace::anything; },
-          "Replace an existing output of any kind; inputs are never replaced")
-      ->group("Output");
-}
-
-void add_output(CLI::App* command, WriteOptions& options, const std::string& description) {
-  Group(command, "Output").text("-o,--output", options.output, "FILE", description)->required();
-  add_overwrite(command, options.replace);
-}
-
-void add_trust(CLI::App* command, ReadOptions& options) {
-  Group(command, "Input")
-      .flag("--trust-input", options.trust,
-            "Read HDF5 files without checking them first in a separate process");
-}
 
 void add_sensor(CLI::App* command, PlanOptions& plan) {
   Group input(command, "Input");
@@ -129,20 +93,6 @@ void add_device(CLI::App* command, DeviceOptions& options) {
       "--memory", options.memory,
       {{"auto", Memory::automatic}, {"shared", Memory::shared}, {"staged", Memory::staged}},
       "shared: zero copy; staged: copied to the device [auto]");
-}
-
-/// Adds a command; its options live as long as the work.
-template <class Options>
-std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Work& work,
-                                                           void (*run)(const Options&),
-                                                           const char* name,
-                                                           const char* description,
-                                                           const std::string& examples) {
-  const auto options = std::make_shared<Options>();
-  CLI::App* const command = parent.add_subcommand(name, description);
-  command->footer(examples);
-  command->callback([=, &work] { work = [=] { run(*options); }; });
-  return {command, options};
 }
 
 void add_simulate(CLI::App& parent, Work& work) {
@@ -242,145 +192,6 @@ void add_compare(CLI::App& parent, Work& work) {
   input.file("RECORDING", options->recording, "Recording that they were solved from, with truth");
   add_trust(command, options->read);
   add_general(command, *options, "Print the table as JSON", kQuietReport);
-}
-
-/// Adds the arguments of all steps.
-void add_step(CLI::App* command, StepOptions& options, bool needs_calibration, const char* output) {
-  if (needs_calibration) {
-    Group(command, "Input")
-        .text("--calibration", options.calibration, "FILE", "Calibration to extend")
-        ->required();
-  }
-  add_trust(command, options.read);
-  add_output(command, options, output);
-  add_general(command, options, "Print the summary as JSON", kQuietWriter);
-}
-
-constexpr const char* kCalibration = "Calibration (HDF5)";
-
-// Examples of several steps.
-constexpr const char* kIdleSkin =
-    "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-    "  pillarfield calibrate tare idle.h5 -o tared.h5\n";
-constexpr const char* kPressedSkin =
-    "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-    "  pillarfield simulate scenes/new_skin_pressed.toml --uncalibrated -o pressed.h5\n"
-    "  pillarfield calibrate tare idle.h5 -o tared.h5\n";
-
-/// Throws unless `option` has one value per file.
-void require_one_each(const char* option, const std::vector<std::string>& files,
-                      const std::vector<double>& values) {
-  if (files.size() == values.size()) return;
-  throw CLI::ValidationError(option, fmt::format("{} files and {} values; give one per file",
-                                                 files.size(), values.size()));
-}
-
-void add_tare(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<TareCommand>(
-      parent, work, calibrate, "tare",
-      "Tare, noise and threshold from frames of the unloaded skin.",
-      std::string(kIdleSkin) +
-          "  pillarfield calibrate tare idle.h5 -o strict.h5 --threshold-factor 6\n");
-  Group input(command, "Input");
-  input.file("UNLOADED", options->unloaded, "Frames in which nothing touches the skin");
-  input.text("--calibration", options->calibration, "FILE",
-             "Calibration whose tare is replaced [none]");
-  Group step(command, "Tare");
-  step.number("--threshold-factor", options->tare.threshold_factor, "RATIO",
-              "Threshold as a multiple of the noise of a reading [4]", 0, kMaxThresholdFactor);
-  step.flag("--preloaded", options->tare.preloaded,
-            "Accept readings that resemble a touch, as of a bent or covered skin");
-  add_step(command, *options, false, kCalibration);
-}
-
-void add_equilibrate(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<EquilibrateCommand>(
-      parent, work, calibrate, "equilibrate",
-      "Gains, and from several pressures dead zones, under uniform pressure.",
-      std::string(kPressedSkin) +
-          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
-          "tared.h5 "
-          "-o equal.h5\n");
-  Group(command, "Input")
-      .file("UNIFORM", options->files, "Frames under uniform pressure, one file per pressure");
-  Group step(command, "Equilibration");
-  step.numbers("--pressure-kpa", options->pressures_kpa, "P1,P2,...",
-               "Pressure of each file, in order");
-  step.number("--max-unevenness", options->equilibration.most_unevenness, "RATIO",
-              "Largest variation of the pressure from pillar to pillar [0.1]", 0, 1e6);
-  add_step(command, *options, true, kCalibration);
-  command->parse_complete_callback([options = options] {
-    require_one_each("--pressure-kpa", options->files, options->pressures_kpa);
-  });
-}
-
-void add_load(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<LoadCommand>(
-      parent, work, calibrate, "load", "Counts per newton, and a power law, from known loads.",
-      std::string(kPressedSkin) +
-          "  pillarfield calibrate load pressed.h5 --load-n 200 --calibration tared.h5 -o "
-          "loaded.h5\n");
-  Group(command, "Input")
-      .file("FRAMES", options->files, "Frames under a constant load, one file per load");
-  Group step(command, "Load");
-  step.numbers("--load-n", options->loads_n, "L1,L2,...", "Normal load of each file, in order");
-  step.choice<LoadModel>("--model", options->model,
-                         {{"linear", LoadModel::linear}, {"power", LoadModel::power}},
-                         "linear: proportional; power: power law, from at least two loads "
-                         "[linear]");
-  add_step(command, *options, true, kCalibration);
-  command->parse_complete_callback(
-      [options = options] { require_one_each("--load-n", options->files, options->loads_n); });
-}
-
-void add_faults(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<FaultsCommand>(
-      parent, work, calibrate, "faults",
-      "Find dead, stuck and saturated sensels by parity, and mask them.",
-      "  pillarfield simulate scenes/new_skin_idle.toml --uncalibrated -o idle.h5\n"
-      "  pillarfield simulate scenes/new_skin_rolled.toml --uncalibrated -o rolled.h5\n"
-      "  pillarfield calibrate tare idle.h5 -o tared.h5\n"
-      "  pillarfield calibrate faults rolled.h5 --calibration tared.h5 -o tested.h5\n");
-  Group(command, "Input")
-      .file("FRAMES", options->frames, "Frames in which all of the skin is pressed");
-  Group step(command, "Faults");
-  FaultOptions& faults = options->faults;
-  step.whole("--min-frames", faults.least_frames, "N",
-             "Smallest number of frames in which parity predicts a sensel [30]", 2, 1'000'000'000);
-  step.number("--still", faults.still_factor, "RATIO",
-              "Largest range of a constant reading, in multiples of its noise [10]", 1e-6, 1e6);
-  step.number("--moving", faults.moving_factor, "RATIO",
-              "Smallest deviation of a changing prediction, in multiples of its noise [5]", 1e-6,
-              1e6);
-  add_step(command, *options, true, kCalibration);
-}
-
-void add_apply(CLI::App& parent, Work& work) {
-  const auto [command, options] = add_command<ApplyCommand>(
-      parent, work, calibrate, "apply",
-      "Copy a recording with unchanged raw readings and add a calibration.",
-      std::string(kIdleSkin) + "  pillarfield calibrate apply tared.h5 idle.h5 -o calibrated.h5\n");
-  Group input(command, "Input");
-  input.file("CALIBRATION", options->calibration, "Calibration");
-  input.file("RECORDING", options->recording, "Recording or Tekscan export to copy");
-  add_step(command, *options, false, "Recording (HDF5)");
-}
-
-void add_calibrate(CLI::App& parent, Work& work) {
-  CLI::App* const steps =
-      parent.add_subcommand("calibrate", "Calibrate a skin step by step; see docs/calibration.md.");
-  steps->footer(
-      std::string(kPressedSkin) +
-      "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration tared.h5 "
-      "-o equal.h5\n"
-      "  pillarfield solve pressed.h5 --calibration equal.h5 -o forces.h5\n");
-  steps->require_subcommand(1);
-  add_tare(*steps, work);
-  add_equilibrate(*steps, work);
-  add_load(*steps, work);
-  add_faults(*steps, work);
-  add_apply(*steps, work);
-  add_help(steps);
 }
 
 void add_testbed(CLI::App& parent, Work& work) {

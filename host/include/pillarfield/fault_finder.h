@@ -13,6 +13,8 @@
 
 namespace pillarfield {
 
+class SenselReader;
+
 /// Options of FaultFinder.
 struct FaultOptions {
   std::uint32_t least_frames = 30;  ///< least number of frames in which parity predicts a sensel
@@ -64,7 +66,7 @@ class FaultFinder {
   class Classifier;
 
   [[nodiscard]] Range range_of(std::size_t sensel) const;
-  void predict(std::size_t row, std::size_t col, const FrameView& frame);
+  void predict(std::size_t row, std::size_t col, SenselReader& reader);
 
   FrameStatistics statistics_;
   SkinCalibration calibration_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
@@ -19,12 +20,23 @@ namespace pillarfield {
 ///
 /// `frame` has the plan's size and type, with any row stride; the result is [pillar rows, pillar
 /// cols] and owns its memory. The function has no state: the estimator `contact` treats each frame
-/// separately (as with FrictionKnowledge::memory off), and the tare follows the readings only
-/// through follow_baseline_on_host(). `plan.angles` has no effect.
+/// separately (as with FrictionKnowledge::memory off), sensels with a memory are at rest before it,
+/// and the tare follows the readings only through follow_baseline_on_host(). `plan.angles` has no
+/// effect.
 ///
 /// Throws Error if the plan is out of range or the frame does not fit it. Threads: any number at
 /// once.
 [[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
+
+/// Hysteresis and creep states of the sensels of a skin (SenselMemory), counts: [states, sensel
+/// rows, cols], the plays first. Empty: at rest.
+struct SensorState {
+  std::vector<float> values;
+};
+
+/// Solves one frame of a sequence: sensels are in `state` before it, which is updated.
+[[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame,
+                                       SensorState& state);
 
 /// Moves `plan.calibration.tare` towards the readings of untouched sensels, as Processor does after
 /// each frame if `plan.baseline_rate` is set. `forces` is the result of `frame`, and `index` is the

@@ -76,6 +76,12 @@ struct SurfaceMap {
   double depth_mm = 0;                     ///< height of its highest point above its lowest
 };
 
+/// Factor of all forces of a DirectionSweep at a time; linear in time between the keys of a path.
+struct FactorKey {
+  double time_s = 0;
+  double factor = 1;
+};
+
 /// A frame that sweeps all directions of force: phi along rows, theta down columns, one block per
 /// magnitude.
 struct DirectionSweep {
@@ -83,6 +89,7 @@ struct DirectionSweep {
   std::uint32_t inclinations = 31;  ///< rows of a block: theta from 0 to max_theta_deg
   double max_theta_deg = 90;
   std::vector<double> magnitudes_n = {0.3};  ///< blocks, top to bottom
+  std::vector<FactorKey> path = {{}};        ///< of magnitudes_n
 };
 
 /// A scene (docs/scenes.md): the skin, its sensor, the frames, and what touches it.

@@ -15,7 +15,8 @@ namespace pillarfield {
 ///
 /// A frame depends only on the scene, its seed and the index, so frames may be made in any order
 /// and in several threads at once. Bodies have a history: render() first solves all earlier frames
-/// not solved yet, about 0.1 s each, in one thread per body.
+/// not solved yet, about 0.1 s each, in one thread per body. Hysteresis and creep have one too:
+/// render() of a frame before the last one starts again from frame 0.
 class Simulator {
  public:
   /// Draws the sensor (sensitivities, tares, dead sensels) from the scene's seed and reads the
@@ -37,7 +38,7 @@ class Simulator {
   [[nodiscard]] double time_of(std::uint64_t index) const;
 
   /// Overwrites `raw`, [sensel rows, cols] of sensel_type(), and `truth`, [pillar rows, cols], N.
-  /// The status of `truth` has the bits of the sensels that the ideal model loads. Throws Error if
+  /// The status of `truth` has the bits of the sensels that its pillar loads. Throws Error if
   /// the contact of a body cannot be solved, or is_interrupted() becomes true meanwhile.
   void render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const;
 

@@ -3,23 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/path_place.h"
+
 namespace pillarfield {
 
 BodyKey state_at(const Body& body, double time_s) {
-  const std::vector<BodyKey>& path = body.path;
-  const auto next = std::upper_bound(path.begin(), path.end(), time_s,
-                                     [](double t, const BodyKey& k) { return t < k.time_s; });
-  if (next == path.begin() || next == path.end()) {
-    BodyKey still = next == path.begin() ? path.front() : path.back();
-    still.time_s = time_s;
-    return still;
-  }
-  const BodyKey& from = *(next - 1);
-  const double fraction = (time_s - from.time_s) / (next->time_s - from.time_s);
-  return {time_s, std::lerp(from.x_mm, next->x_mm, fraction),
-          std::lerp(from.y_mm, next->y_mm, fraction),
-          std::lerp(from.angle_deg, next->angle_deg, fraction),
-          std::lerp(from.load_n, next->load_n, fraction)};
+  const auto [from, to, fraction] = place_on(body.path, time_s);
+  return {time_s, std::lerp(from.x_mm, to.x_mm, fraction), std::lerp(from.y_mm, to.y_mm, fraction),
+          std::lerp(from.angle_deg, to.angle_deg, fraction),
+          std::lerp(from.load_n, to.load_n, fraction)};
 }
 
 double steps_of(const Body& body, double rate_hz, std::uint64_t frames) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "simulation/closed_form/pillar_shares.h"
+#include "simulation/path_place.h"
 
 namespace pillarfield {
 namespace {
@@ -130,16 +131,9 @@ Shares tangential_shares(const Contact& contact, const Footprint& footprint, Sha
 }  // namespace
 
 ContactKey state_at(const Contact& contact, double time_s) {
-  const std::vector<ContactKey>& path = contact.path;
-  const auto next = std::upper_bound(path.begin(), path.end(), time_s,
-                                     [](double t, const ContactKey& k) { return t < k.time_s; });
-  if (next == path.begin()) return path.front();
-  if (next == path.end()) return path.back();
-  const ContactKey& from = *(next - 1);
-  const double fraction = (time_s - from.time_s) / (next->time_s - from.time_s);
-  return {time_s, std::lerp(from.x_mm, next->x_mm, fraction),
-          std::lerp(from.y_mm, next->y_mm, fraction),
-          std::lerp(from.load_n, next->load_n, fraction)};
+  const auto [from, to, fraction] = place_on(contact.path, time_s);
+  return {time_s, std::lerp(from.x_mm, to.x_mm, fraction), std::lerp(from.y_mm, to.y_mm, fraction),
+          std::lerp(from.load_n, to.load_n, fraction)};
 }
 
 double contact_radius_mm(const Contact& contact, double load_n) {

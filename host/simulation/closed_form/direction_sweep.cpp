@@ -4,10 +4,17 @@
 #include <cstddef>
 #include <numbers>
 
+#include "simulation/path_place.h"
+
 namespace pillarfield {
 
 std::uint64_t pillar_rows(const DirectionSweep& sweep) {
   return std::uint64_t{sweep.inclinations} * sweep.magnitudes_n.size();
+}
+
+double factor_at(const DirectionSweep& sweep, double time_s) {
+  const auto [from, to, fraction] = place_on(sweep.path, time_s);
+  return std::lerp(from.factor, to.factor, fraction);
 }
 
 ForceField direction_sweep_forces(const DirectionSweep& sweep) {

@@ -10,6 +10,7 @@
 #include "simulation/body/body_path.h"
 #include "simulation/closed_form/direction_sweep.h"
 #include "simulation/effects/known_effects.h"
+#include "simulation/effects/memory_history.h"
 
 namespace pillarfield {
 namespace {
@@ -50,6 +51,10 @@ void check_effects(const SensorModel& sensor, const Skin& skin, const std::strin
     for (const auto& [key, member, range] : kWireQuantities) {
       check_range(where, key, (*sensor.wires).*member, range);
     }
+  }
+  if (MemoryHistory::is_needed(sensor) && skin.sensels() > kMaxMemorySensels) {
+    throw Error(where, fmt::format("the skin has {} sensels", skin.sensels()),
+                fmt::format("with hysteresis or creep it may have {}", kMaxMemorySensels));
   }
   if (!sensor.response_curve.empty() && skin.power_law) {
     throw Error(where, "the sensor has a response curve and a power law", "leave one of them out");
@@ -161,6 +166,8 @@ void check_direction_sweep(const DirectionSweep& sweep, const Skin& skin,
   for (const double magnitude : sweep.magnitudes_n) {
     check_range(where, "magnitudes_n", magnitude, kMagnitudeN);
   }
+  check_times(sweep.path, where);
+  for (const FactorKey& key : sweep.path) check_range(where, "factor", key.factor, kSweepFactor);
   if (skin.pillar_rows() == pillar_rows(sweep) && skin.pillar_cols() == sweep.directions) return;
   throw Error(
       where, fmt::format("the skin has {} x {} pillars", skin.pillar_rows(), skin.pillar_cols()),

@@ -157,8 +157,10 @@ inline constexpr Range kSegmentPoints = {0, 1, true};
 
 inline constexpr Range kMaxThetaDeg = {0, 90};
 inline constexpr Range kMagnitudeN = {0, 1e6, true};
-inline constexpr std::uint32_t kMaxPillars = kMaxSensels / 2;  ///< rows or columns
-inline constexpr std::uint64_t kMaxSkinSensels = 100'000'000;  ///< rows times columns: 40 m²
+inline constexpr Range kSweepFactor = {0, 1e3};
+inline constexpr std::uint32_t kMaxPillars = kMaxSensels / 2;   ///< rows or columns
+inline constexpr std::uint64_t kMaxMemorySensels = 10'000'000;  ///< with hysteresis or creep
+inline constexpr std::uint64_t kMaxSkinSensels = 100'000'000;   ///< rows times columns: 40 m²
 
 /// A shape or motion with its name in files.
 template <class Value>

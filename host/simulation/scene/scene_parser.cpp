@@ -292,6 +292,11 @@ void read_size(TomlSection& section, Skin& skin) {
 
 // [direction_sweep] and [skin]
 
+/// Reads the factor of a sweep, 1 unless given.
+FactorKey read_factor(TomlSection& section) {
+  return {0, section.number("factor", kSweepFactor).value_or(1)};
+}
+
 /// Reads a direction sweep and sets the skin's size: one pillar per force.
 DirectionSweep read_direction_sweep(TomlSection section, Skin& skin) {
   DirectionSweep sweep;
@@ -305,6 +310,7 @@ DirectionSweep read_direction_sweep(TomlSection section, Skin& skin) {
   if (const auto magnitudes = section.numbers("magnitudes_n", 0, kMagnitudeN)) {
     sweep.magnitudes_n = *magnitudes;
   }
+  sweep.path = read_path<FactorKey>(section, "path of [direction_sweep]", {"factor"}, read_factor);
   section.finish();
   const PillarCounts counts = {static_cast<double>(pillar_rows(sweep)),
                                static_cast<double>(sweep.directions)};

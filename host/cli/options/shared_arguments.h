@@ -1,0 +1,43 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "cli/commands.h"
+#include "cli/options/argument_group.h"
+
+// Arguments of several commands.
+namespace pillarfield::cli {
+
+using Work = std::function<void()>;
+
+inline constexpr const char* kQuietWriter = "Print only errors, warnings and the output of --json";
+inline constexpr const char* kQuietReport = "Show no progress";
+
+void add_help(CLI::App* command);
+void add_general(CLI::App* command, PrintOptions& options, const char* json, const char* quiet);
+void add_overwrite(CLI::App* command, Replace& replace);
+void add_output(CLI::App* command, WriteOptions& options, const std::string& description);
+void add_trust(CLI::App* command, ReadOptions& options);
+
+/// Adds a command; its options live as long as the work.
+template <class Options>
+std::pair<CLI::App*, std::shared_ptr<Options>> add_command(CLI::App& parent, Work& work,
+                                                           void (*run)(const Options&),
+                                                           const char* name,
+                                                           const char* description,
+                                                           const std::string& examples) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = parent.add_subcommand(name, description);
+  command->footer(examples);
+  command->callback([=, &work] { work = [=] { run(*options); }; });
+  return {command, options};
+}
+
+/// Adds `calibrate` and its steps.
+void add_calibrate(CLI::App& parent, Work& work);
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,110 @@
+#include "solve/sensor_corrections.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pillarfield {
+namespace {
+
+/// Sensels of a square patch that is large enough for the inverse of the largest leak, and the
+/// terms of its series.
+constexpr int kPatch = 32;
+constexpr int kTerms = 200;
+
+using Patch = std::vector<double>;
+
+/// Leak from the sensel at `at` to its neighbour at `to` in the same row or column: inside a
+/// pillar, which begins at even places, or across.
+double leak_between(const SenselLeak& leak, int at, int to) {
+  return std::min(at, to) % 2 == 0 ? leak.inside : leak.across;
+}
+
+/// What the sensels of a patch receive from their neighbours; the patch repeats.
+Patch received(const Patch& from, const SenselLeak& leak) {
+  Patch to(from.size());
+  const auto value = [&](int row, int col) {
+    return from[static_cast<std::size_t>((row + kPatch) % kPatch * kPatch +
+                                         (col + kPatch) % kPatch)];
+  };
+  for (int row = 0; row < kPatch; ++row) {
+    for (int col = 0; col < kPatch; ++col) {
+      double sum = 0;
+      for (const int step : {-1, 1}) {
+        sum += leak_between(leak, row + kPatch, row + kPatch + step) * value(row + step, col);
+        sum += leak_between(leak, col + kPatch, col + kPatch + step) * value(row, col + step);
+      }
+      to[static_cast<std::size_t>(row * kPatch + col)] = sum;
+    }
+  }
+  return to;
+}
+
+}  // namespace
+
+CurveTable curve_table(const ResponseCurve& curve) {
+  CurveTable table;
+  if (curve.empty()) return table;
+  table.per_count = PF_CURVE_PIECES / curve.readings.back();
+  for (int i = 0; i <= PF_CURVE_PIECES; ++i) {
+    table.loads.push_back(static_cast<float>(load_at(curve, i / table.per_count)));
+  }
+  return table;
+}
+
+double reading_in(const CurveTable& table, double load) {
+  const auto above = std::ranges::upper_bound(table.loads, load);
+  const auto high = std::clamp(above, table.loads.begin() + 1, table.loads.end() - 1);
+  const double low = *(high - 1);
+  const auto piece = static_cast<double>(high - 1 - table.loads.begin());
+  return (piece + (load - low) / (double{*high} - low)) / table.per_count;
+}
+
+double_precision::LeakTaps leak_taps(const SenselLeak& leak) {
+  // The response of the inverse to one sensel; by symmetry it is the weights of that sensel.
+  constexpr int kMiddle = kPatch / 2;
+  Patch term(static_cast<std::size_t>(kPatch) * kPatch);
+  term[static_cast<std::size_t>(kMiddle * kPatch + kMiddle)] = 1;
+  Patch inverse = term;
+  for (int i = 0; i < kTerms; ++i) {
+    term = received(term, leak);
+    for (std::size_t at = 0; at < term.size(); ++at) {
+      term[at] = -term[at];
+      inverse[at] += term[at];
+    }
+  }
+  const auto tap = [&](int down, int right) {
+    return inverse[static_cast<std::size_t>((kMiddle + down) * kPatch + kMiddle + right)];
+  };
+  // The middle is an even place: its neighbour inside the pillar is below and to the right.
+  double_precision::LeakTaps taps = {tap(0, 0), tap(0, 1),  tap(0, -1),
+                                     tap(1, 1), tap(1, -1), tap(-1, -1)};
+  const double whole = 1 / (1 + 2 * (leak.inside + leak.across));
+  const double cut = taps.self + 2 * (taps.inside + taps.across + taps.mixed) + taps.both_inside +
+                     taps.both_across;
+  taps.self += whole - cut;
+  return taps;
+}
+
+single_precision::MemoryModel memory_model(const SenselMemory& memory, double frame_interval_s) {
+  single_precision::MemoryModel model{};
+  double slope = 1;    // of the loading curve
+  double reading = 0;  // on it, at the width of the play
+  double before = 0;
+  for (std::size_t i = 0; i < memory.plays.size(); ++i) {
+    const Play& play = memory.plays[i];
+    reading += slope * (play.width_counts - before);
+    before = play.width_counts;
+    const double next = slope + play.weight;
+    model.play_width[i] = static_cast<float>(reading);
+    model.play_weight[i] = static_cast<float>(1 / next - 1 / slope);
+    slope = next;
+  }
+  for (std::size_t i = 0; i < memory.creep.size(); ++i) {
+    model.creep_rate[i] =
+        static_cast<float>(-std::expm1(-frame_interval_s / memory.creep[i].time_s));
+    model.creep_weight[i] = static_cast<float>(memory.creep[i].weight);
+  }
+  return model;
+}
+
+}  // namespace pillarfield

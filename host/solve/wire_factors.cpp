@@ -1,0 +1,71 @@
+#include "solve/wire_factors.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "skin/raw_reading.h"
+
+namespace pillarfield {
+namespace {
+
+std::size_t tiles_along(std::size_t sensels, std::size_t tile) {
+  return (sensels + tile - 1) / tile;
+}
+
+/// A raw reading for the sums; a missing sensel counts as zero.
+float summed_reading(const SolverPlan& plan, const FrameView& frame, std::size_t row,
+                     std::size_t col) {
+  const auto& mask = plan.calibration.mask;
+  if (!mask.empty() && mask[row * frame.cols + col] != 1) return 0;
+  const auto reading = raw_reading(frame, row, col);
+  return std::abs(reading) <= static_cast<float>(kMaxCounts) ? reading : 0;
+}
+
+}  // namespace
+
+WireFactors::WireFactors(const SolverPlan& plan, const FrameView& frame) {
+  if (!plan.calibration.effects.wires) return;
+  wires_ = *plan.calibration.effects.wires;
+  rows_ = 2 * std::size_t{plan.skin.pillar_rows()};
+  cols_ = 2 * std::size_t{plan.skin.pillar_cols()};
+  row_factors_.assign(rows_ * tiles_along(cols_, wires_.tile_cols), {1, 1});
+  loads_.resize(cols_ * tiles_along(rows_, wires_.tile_rows));
+  for (std::size_t row = 0; row < rows_; row += wires_.tile_rows) {
+    for (std::size_t col = 0; col < cols_; col += wires_.tile_cols)
+      find_tile(plan, frame, row, col);
+  }
+}
+
+single_precision::Wires WireFactors::at(std::size_t row, std::size_t col) const {
+  if (row >= rows_ || col >= cols_) return {};
+  const auto& [gain, idle] = row_factors_[col / wires_.tile_cols * rows_ + row];
+  return {gain, idle, loads_[row / wires_.tile_rows * cols_ + col]};
+}
+
+void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std::size_t row,
+                            std::size_t col) {
+  const single_precision::WireModel model = {static_cast<float>(wires_.row_per_count),
+                                             static_cast<float>(wires_.column_per_count),
+                                             static_cast<float>(wires_.idle_per_count)};
+  const std::size_t rows = std::min<std::size_t>(wires_.tile_rows, rows_ - row);
+  const std::size_t cols = std::min<std::size_t>(wires_.tile_cols, cols_ - col);
+  const std::size_t padded = tiles_along(wires_.tile_cols, PF_WIRE_PARTS) * PF_WIRE_PARTS;
+  std::vector<float> readings(padded);
+  std::vector<float> columns(padded);
+  for (int sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
+    std::vector<float> next(padded);
+    for (std::size_t r = row; r < row + rows; ++r) {
+      for (std::size_t c = 0; c < cols; ++c) {
+        readings[c] = summed_reading(plan, frame, r, col + c);
+      }
+      auto& factors = row_factors_[col / wires_.tile_cols * rows_ + r];
+      factors = single_precision::sweep_row(readings.data(), columns.data(), next.data(),
+                                            static_cast<int>(padded), factors, model);
+    }
+    columns = next;
+  }
+  const std::size_t first = row / wires_.tile_rows * cols_ + col;
+  std::copy_n(columns.begin(), cols, loads_.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+}  // namespace pillarfield

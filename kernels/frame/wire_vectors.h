@@ -1,0 +1,57 @@
+/* What the wires of each tile do (WireCrosstalk), found by find_wires.cl: a and the idle factor for
+ * each row of sensels and tile across, the load for each column and tile down. */
+#ifdef PF_WIRES
+
+typedef struct {
+  global float* row;    /* [tiles across, sensel rows] */
+  global float* idle;   /* [tiles across, sensel rows] */
+  global float* column; /* [tiles down, sensel columns] */
+  uint rows;            /* of sensels, an even number */
+  uint cols;
+} WireVectors;
+
+PF_INLINE uint tiles_across(uint cols) { return (cols + PF_TILE_COLS - 1) / PF_TILE_COLS; }
+
+PF_INLINE WireVectors wire_vectors(global float* memory, uint rows, uint cols) {
+  const size_t per_row = (size_t)rows * tiles_across(cols);
+  const WireVectors wires = {memory, memory + per_row, memory + 2 * per_row, rows, cols};
+  return wires;
+}
+
+typedef struct {
+  Wires left;
+  Wires right;
+} WiresPair;
+
+/* Wires of one row of sensels under PF_LANES pillars, from column `col` on. */
+PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
+  const RealPair columns =
+      load_plane(wires.column + (size_t)(row / PF_TILE_ROWS) * wires.cols + col);
+  const uint first = col / PF_TILE_COLS;
+  const uint last = (col + 2 * PF_LANES - 1) / PF_TILE_COLS;
+  WiresPair pair;
+  if (first == last) {
+    const size_t at = (size_t)first * wires.rows + row;
+    pair.left.row = pair.right.row = (Real)(wires.row[at]);
+    pair.left.idle = pair.right.idle = (Real)(wires.idle[at]);
+  } else {
+    float rows[2 * PF_LANES];
+    float idles[2 * PF_LANES];
+    for (uint i = 0; i < 2 * PF_LANES; ++i) {
+      const size_t at = (size_t)((col + i) / PF_TILE_COLS) * wires.rows + row;
+      rows[i] = wires.row[at];
+      idles[i] = wires.idle[at];
+    }
+    const RealPair row_pair = load_private(rows);
+    const RealPair idle_pair = load_private(idles);
+    pair.left.row = row_pair.left;
+    pair.right.row = row_pair.right;
+    pair.left.idle = idle_pair.left;
+    pair.right.idle = idle_pair.right;
+  }
+  pair.left.column = columns.left;
+  pair.right.column = columns.right;
+  return pair;
+}
+
+#endif

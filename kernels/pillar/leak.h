@@ -1,0 +1,48 @@
+/* Removes the leak between neighbouring sensels by the inverse of SenselLeak, cut to the 3 x 3
+ * sensels around (docs/derivations/sensor_effects.md, E3). */
+
+/* Weights of a sensel and of its eight neighbours. A neighbour is inside if it lies under the same
+ * pillar in that direction, else across. */
+typedef struct {
+  Real self;
+  Real inside;
+  Real across;
+  Real both_inside; /* diagonal neighbours */
+  Real mixed;
+  Real both_across;
+} LeakTaps;
+
+/* V of the neighbours of one sensel: first the horizontal direction, then the vertical one. */
+typedef struct {
+  Real inside_h;
+  Real inside_v;
+  Real across_h;
+  Real across_v;
+  Real both_inside;
+  Real inside_across;
+  Real across_inside;
+  Real both_across;
+} Neighbours;
+
+/* What a sensel leaks: its reading above the threshold. Below, it counts as zero, so that noise
+ * does not spread and idle sensels stay idle. */
+static inline Real leak_source(Sensel sensel, Real threshold) {
+  return (sensel.reading > threshold && !sensel.missing) ? sensel.reading : PF_REAL(0.0);
+}
+
+/* A missing sensel is taken to leak what its neighbour `beside` does. */
+static inline Real source_or(Sensel sensel, Real source, Real beside) {
+  return (sensel.missing && !sensel.absent) ? beside : source;
+}
+
+/* Subtracts what an active sensel receives; an inactive one stays inactive. */
+static inline Sensel remove_leak(Sensel sensel, Neighbours v, LeakTaps taps, Real threshold) {
+  const Real edges =
+      taps.inside * (v.inside_h + v.inside_v) + taps.across * (v.across_h + v.across_v);
+  const Real corners = taps.both_inside * v.both_inside +
+                       taps.mixed * (v.inside_across + v.across_inside) +
+                       taps.both_across * v.both_across;
+  const Real freed = taps.self * sensel.reading + (edges + corners);
+  sensel.reading = sensel.reading > threshold ? freed : sensel.reading;
+  return sensel;
+}

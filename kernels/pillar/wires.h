@@ -1,0 +1,28 @@
+/* Row and column crosstalk of a scanned array (docs/derivations/sensor_effects.md, E5). */
+
+/* Largest gain of a row; beyond it the readout is saturated. */
+#define PF_WIRE_LARGEST_GAIN PF_REAL(2.0)
+
+/* What the wires do to a sensel. */
+typedef struct {
+  Real row;    /* a: voltage that the driven row should have over what it has */
+  Real idle;   /* 1 / (1 + R_idle * conductance of the row): part of the row's conductance that
+                  loads the columns while other rows are driven */
+  Real column; /* conductance that loads the column, counts */
+} Wires;
+
+/* Conductance of a sensel, counts, from its reading. */
+static inline Real conductance(Real reading, Wires at, Real column_per_count) {
+  const Real driven = reading * at.row;
+  const Real rough = driven * (PF_REAL(1.0) + column_per_count * at.column);
+  const Real load = at.column + rough * (PF_REAL(1.0) - at.idle);
+  return driven * (PF_REAL(1.0) + column_per_count * load);
+}
+
+/* Removes the crosstalk from a raw reading; where the readout is saturated the sensel is missing.
+ */
+static inline Sensel remove_crosstalk(Sensel sensel, Wires at, Real column_per_count) {
+  sensel.missing = sensel.missing || !(at.row <= PF_WIRE_LARGEST_GAIN);
+  sensel.reading = conductance(sensel.reading, at, column_per_count);
+  return sensel;
+}

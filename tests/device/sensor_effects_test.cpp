@@ -1,0 +1,179 @@
+// The corrections of a real sensor give the bits of the host, on every path, over sequences of
+// frames whose contacts move, with and without skipping idle blocks.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "pillarfield/host_solve.h"
+#include "pillarfield/processor.h"
+#include "pillarfield/tuning.h"
+#include "random_plan.h"
+#include "same_bits.h"
+#include "test_device.h"
+
+namespace pillarfield {
+namespace {
+
+struct Path {
+  SenselType type;
+  int lanes;
+  Memory memory;
+};
+
+std::string name_of_path(const testing::TestParamInfo<Path>& path) {
+  return std::string(name_of(path.param.type)) + "_lanes" + std::to_string(path.param.lanes) +
+         (path.param.memory == Memory::shared ? "_shared" : "_staged");
+}
+
+constexpr std::uint32_t kRows = 2 * 19;
+constexpr std::uint32_t kCols = 2 * 53;
+
+ResponseCurve some_curve(SenselType type) {
+  const double unit = type == SenselType::u16 ? 16 : 1;
+  return {{20 * unit, 60 * unit, 130 * unit, 220 * unit},
+          {15 * unit, 55 * unit, 140 * unit, 270 * unit}};
+}
+
+SenselMemory some_memory() {
+  return {{{0, 0.05}, {30, 0.04}, {100, 0.03}}, {{0.05, 0.03}, {0.4, 0.02}}};
+}
+
+SensorEffects all_effects(SenselType type) {
+  SensorEffects effects;
+  effects.curve = some_curve(type);
+  effects.shear_coefficient = {0.9, 1.1};
+  effects.sensel_leak = {0.05, 0.02};
+  const double unit = type == SenselType::u16 ? 16 : 1;
+  effects.wires = {16, 24, 1e-5 / unit, 2e-5 / unit, 1.5e-5 / unit};
+  effects.memory = some_memory();
+  effects.residual = {0.02, 0.3};
+  return effects;
+}
+
+/// Two contacts that wander over a skin, noise below the threshold elsewhere, and a missing sensel.
+class Frames {
+ public:
+  Frames(SenselType type, double unit) : buffer_(type, kRows, kCols), unit_(unit) {}
+
+  FrameView frame(int index) {
+    switch (buffer_.view().type) {
+      case SenselType::u8:
+        fill(buffer_.readings<std::uint8_t>(), index);
+        break;
+      case SenselType::u16:
+        fill(buffer_.readings<std::uint16_t>(), index);
+        break;
+      case SenselType::f32:
+        fill(buffer_.readings<float>(), index);
+        buffer_.readings<float>()[777] = std::numeric_limits<float>::quiet_NaN();
+        break;
+    }
+    return buffer_.view();
+  }
+
+ private:
+  template <class Reading>
+  void fill(std::span<Reading> readings, int index) {
+    std::mt19937 random(static_cast<unsigned>(index));
+    std::uniform_real_distribution<double> noise(0, 4);
+    for (std::uint32_t row = 0; row < kRows; ++row) {
+      for (std::uint32_t col = 0; col < kCols; ++col) {
+        const double near = bump(row, col, 8 + index, 20 + 3 * index) +
+                            bump(row, col, 30 - 2 * index, 90 - 5 * index);
+        readings[row * kCols + col] = static_cast<Reading>(unit_ * (near + noise(random)));
+      }
+    }
+  }
+
+  static double bump(double row, double col, double at_row, double at_col) {
+    const double square = (row - at_row) * (row - at_row) + (col - at_col) * (col - at_col);
+    return square > 64 ? 0 : 230 * (1 - square / 64);
+  }
+
+  FrameBuffer buffer_;
+  double unit_;
+};
+
+class SensorEffectsOnDevice : public testing::TestWithParam<Path> {
+ protected:
+  void SetUp() override {
+    if (GetParam().memory == Memory::shared && !test_device().info().shares_memory) {
+      GTEST_SKIP() << "this device does not share the host's memory";
+    }
+  }
+
+  static SolverPlan plan_with(const SensorEffects& effects, bool planes) {
+    const SenselType type = GetParam().type;
+    SolverPlan plan = planes ? full_plan(kRows, kCols, type, 7) : bare_plan(kRows, kCols, type);
+    plan.skin.threshold_counts = type == SenselType::u16 ? 16 * 12 : 12;
+    plan.noise_counts = 1;
+    plan.calibration.effects = effects;
+    return plan;
+  }
+
+  static void expect_host_bits(const SolverPlan& plan, bool skip_idle) {
+    const Path& path = GetParam();
+    Processor processor(test_device(), plan, {.memory = path.memory},
+                        {.lanes = path.lanes, .paths = {.skip_idle = skip_idle}});
+    Frames frames(path.type, path.type == SenselType::u16 ? 16 : 1);
+    SensorState state;
+    for (int index = 0; index < 12; ++index) {
+      const FrameView frame = frames.frame(index % 8);
+      processor.submit(frame);
+      const ForceFieldView forces = processor.receive();
+      const ForceField expected = solve_on_host(plan, frame, state);
+      expect_same_bits(forces, expected.view());
+      if (plan.uncertainty) {
+        expect_same_bits(forces.uncertainty[Uncertainty::shear_x],
+                         expected.uncertainty[Uncertainty::shear_x], "deviation of shear_x");
+      }
+    }
+  }
+};
+
+TEST_P(SensorEffectsOnDevice, CurveHasTheBitsOfTheHost) {
+  SensorEffects effects;
+  effects.curve = some_curve(GetParam().type);
+  expect_host_bits(plan_with(effects, false), true);
+}
+
+TEST_P(SensorEffectsOnDevice, LeakHasTheBitsOfTheHost) {
+  SensorEffects effects;
+  effects.sensel_leak = {0.08, 0.03};
+  expect_host_bits(plan_with(effects, false), true);
+  expect_host_bits(plan_with(effects, true), true);
+}
+
+TEST_P(SensorEffectsOnDevice, MemoryHasTheBitsOfTheHost) {
+  SensorEffects effects;
+  effects.memory = some_memory();
+  expect_host_bits(plan_with(effects, false), true);
+  expect_host_bits(plan_with(effects, false), false);
+}
+
+TEST_P(SensorEffectsOnDevice, WiresHaveTheBitsOfTheHost) {
+  SensorEffects effects;
+  effects.wires = all_effects(GetParam().type).wires;
+  expect_host_bits(plan_with(effects, true), true);
+}
+
+TEST_P(SensorEffectsOnDevice, AllTogetherHaveTheBitsOfTheHost) {
+  SolverPlan plan = plan_with(all_effects(GetParam().type), true);
+  plan.uncertainty = true;
+  expect_host_bits(plan, true);
+}
+
+INSTANTIATE_TEST_SUITE_P(Device, SensorEffectsOnDevice,
+                         testing::Values(Path{SenselType::u8, 16, Memory::shared},
+                                         Path{SenselType::u8, 1, Memory::staged},
+                                         Path{SenselType::u16, 4, Memory::staged},
+                                         Path{SenselType::f32, 16, Memory::staged},
+                                         Path{SenselType::f32, 8, Memory::shared}),
+                         name_of_path);
+
+}  // namespace
+}  // namespace pillarfield
