@@ -175,6 +175,10 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
                region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
+  if (const auto absent = count_pillars_without_sensels(plan.calibration, plan.skin)) {
+    fmt::print("No sensel: {} of the {} pillars of a frame\n", grouped(absent),
+               grouped(plan.skin.pillars()));
+  }
   if (plan.estimator == Estimator::contact) {
     fmt::print("Resolved by the friction of their contacts: {} of {} pillars of region 3\n",
                grouped(regions.resolved), grouped(regions.of(Region::three)));

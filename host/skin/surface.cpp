@@ -133,12 +133,16 @@ void check(const Surface& surface, const PillarLayout& pillars, std::string_view
   if (surface.shape == SurfaceShape::height_map) return check_heights(surface, pillars, where);
   if (surface.shape == SurfaceShape::plane) return;
   require_range(where, "axis_deg", surface.axis_deg, -360, 360);
-  require_range(where, "radius_mm", std::abs(surface.radius_mm), kLeastRadiusMm, kMostRadiusMm);
+  const double radius_mm = std::abs(surface.radius_mm);
+  if (!(radius_mm >= kLeastRadiusMm && radius_mm <= kMostRadiusMm)) {
+    throw Error(where, fmt::format("the surface's radius_mm is {}", surface.radius_mm),
+                fmt::format("its magnitude must lie in [{}, {}]", kLeastRadiusMm, kMostRadiusMm));
+  }
   const bool sphere = surface.shape == SurfaceShape::sphere;
   const double turn = sphere ? std::numbers::pi / 2 : std::numbers::pi;
   const double arc_mm = half_arc_mm(surface, pillars);
   // A skin of exactly one turn is allowed whatever its rounding.
-  if (arc_mm <= turn * std::abs(surface.radius_mm) * (1 + 1e-9)) return;
+  if (arc_mm <= turn * radius_mm * (1 + 1e-9)) return;
   throw Error(where,
               fmt::format("the skin covers more than {} of radius {} mm",
                           sphere ? "half a sphere" : "a whole cylinder", surface.radius_mm),
