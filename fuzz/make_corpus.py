@@ -136,7 +136,32 @@ path = [
   { time_s = 0.2, position_mm = [0.5, 0.2], angle_deg = 10, load_n = 2 },
 ]
 """
+
+SCENE_OF_A_SENSOR = """title = "A real sensor"
+[skin]
+sensel_pitch_mm = 0.5
+[direction_sweep]
+directions = 4
+inclinations = 2
+path = [{ time_s = 0, factor = 0.5 }, { time_s = 1, factor = 2 }]
+[sensor]
+pillar_leak_edge = 0.01
+pillar_leak_corner = -0.003
+pillar_arm_mm = 0.5
+shear_coefficient = [0.9, 1.1]
+leak_inside = 0.05
+leak_across = 0.02
+hysteresis = 0.05
+hysteresis_range_counts = 150
+creep_per_decade = 0.05
+response_curve = [[19, 15], [75, 70]]
+wires = { tile = [4, 2], row_ohm = 40, column_ohm = 30, idle_row_ohm = 20, sensel_ohm = 10000 }
+[surface]
+bend_spread_counts_mm = 80
+path = [{ time_s = 0, curvature_per_mm = [0.01, 0, -0.02] }]
+"""
 SCENES = {"sliding": SCENE, "all": SCENE_OF_ALL, "chart": SCENE_CHART, "body": SCENE_OF_A_BODY,
+          "sensor": SCENE_OF_A_SENSOR,
           "empty": "[skin]\npillars = [1, 1]\n",
           "control": 'title = "\\u001b[2J\\n"\n[skin]\npillars = [2, 2]\n'}
 

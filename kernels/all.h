@@ -13,9 +13,11 @@
 #include "pillar/curve.h"
 #include "pillar/leak.h"
 #include "pillar/memory.h"
+#include "pillar/lean.h"
 #include "pillar/paper_solve.h"
 #include "pillar/angles.h"
 #include "pillar/uncertainty.h"
+#include "pillar/corrected_interval.h"
 #endif
 #include "frame/layout.h"
 #include "frame/result_planes.h"
@@ -33,5 +35,6 @@
 #include "frame/neighbours.h"
 #include "frame/find_wires.cl"
 #include "frame/solve_frame.cl"
+#include "frame/correct_forces.cl"
 #include "frame/follow_baseline.cl"
 #endif

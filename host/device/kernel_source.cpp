@@ -116,6 +116,13 @@ void define_wires(const WireCrosstalk& wires, Definitions& all) {
   all["PF_IDLE_PER_COUNT"] = hex_float(wires.idle_per_count);
 }
 
+void define_pillar_leak(const PillarLeak& leak, Definitions& all) {
+  const PillarTaps taps = pillar_leak_taps(leak);
+  all["PF_PILLAR_LEAK_SELF"] = hex_float(taps.self);
+  all["PF_PILLAR_LEAK_EDGE"] = hex_float(taps.edge);
+  all["PF_PILLAR_LEAK_CORNER"] = hex_float(taps.corner);
+}
+
 void define_residual(const ResidualError& residual, Definitions& all) {
   all["PF_RESIDUAL_RELATIVE"] = hex_float(residual.relative);
   all["PF_RESIDUAL_VARIANCE"] = hex_float(residual.offset_counts * residual.offset_counts);
@@ -137,6 +144,8 @@ void define_effects(const SolverPlan& plan, Definitions& all) {
   if (effects.memory) define_memory(*effects.memory, plan.frame_interval_s, all);
   if (effects.wires) define_wires(*effects.wires, all);
   if (effects.residual) define_residual(*effects.residual, all);
+  if (effects.pillar_leak) define_pillar_leak(*effects.pillar_leak, all);
+  if (effects.arm_mm) all["PF_LEAN"] = hex_float(plan.skin.pillar_pitch_mm() / *effects.arm_mm);
 }
 
 /// Adds the stages and constants of a plan; `whole`: in whole numbers.

@@ -61,7 +61,8 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .status = results.status,
           .idle = results.bytes,
           .ring = results.scratch_begin(),
-          .wires = results.scratch_begin()};
+          .wires = results.scratch_begin(),
+          .forces = results.scratch_begin()};
 }
 
 }  // namespace
@@ -79,11 +80,13 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
   if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);
   const std::size_t ring = ring_floats(plan, settings, global_[1]);
-  results.scratch = (ring + wire_floats(plan, tiles_)) * sizeof(float);
+  const std::size_t forces = plan.calibration.effects.pillar_leak ? 3 * results.plane_bytes : 0;
+  results.scratch = forces + (ring + wire_floats(plan, tiles_)) * sizeof(float);
   memory_ = settings.shares_memory ? shared_memory(device.context, results)
                                    : staged_memory(device.context, queue_, plan, results);
   layout_ = layout_of(plan, results, calibration);
-  layout_.wires += ring * sizeof(float);
+  layout_.ring += forces;
+  layout_.wires += forces + ring * sizeof(float);
   const auto kernel = [&](const char* name) {
     cl::Kernel made(settings.program, name);
     made.setArg(kCalibration, calibration.buffer());
@@ -92,6 +95,9 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   };
   kernel_ = kernel("solve_frame");
   if (plan.calibration.effects.wires) wires_ = kernel("find_wires");
+  const SensorEffects& effects = plan.calibration.effects;
+  if (effects.pillar_leak) unleak_ = kernel("remove_pillar_leak");
+  if (effects.pillar_leak || effects.arm_mm) correct_ = kernel("correct_forces");
   if (!order.follows_baseline) return;
   follow_ = kernel("follow_baseline");
   follow_.setArg(kInterval, order.interval);
@@ -111,11 +117,9 @@ void Slot::submit(const FrameView& frame) {
   frame_ = on_device.readings;
   layout_.row_stride = on_device.row_stride;
   if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
-  if (order_->is_needed) {
-    launch_in_order();
-  } else {
-    launch(kernel_, global_, local_);
-  }
+  solve();
+  if (unleak_() != nullptr) launch(unleak_, global_, local_);
+  if (correct_() != nullptr) launch(correct_, global_, local_);
   memory_->download(queue_);
   queue_.flush();
 }
@@ -127,7 +131,8 @@ void Slot::launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRan
   queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, after, done);
 }
 
-void Slot::launch_in_order() {
+void Slot::solve() {
+  if (!order_->is_needed) return launch(kernel_, global_, local_);
   std::vector<cl::Event> before;
   if (order_->left() != nullptr) before.push_back(order_->left);
   cl::Event* const left = &order_->left;

@@ -57,8 +57,8 @@ class Slot {
   /// Starts a kernel on the frame.
   void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
               const std::vector<cl::Event>* after = nullptr, cl::Event* done = nullptr);
-  /// Solves the frame after the frame before, and leaves what the next one needs.
-  void launch_in_order();
+  /// Solves the frame; after the frame before, where there is an order.
+  void solve();
 
   std::uint32_t rows_;  ///< pillars
   std::uint32_t cols_;
@@ -68,7 +68,9 @@ class Slot {
   cl::Kernel kernel_;
   cl::Kernel wires_;  ///< null without crosstalk of wires
   cl::NDRange tiles_;
-  cl::Kernel follow_;  ///< null without a baseline rate
+  cl::Kernel unleak_;   ///< null without leak between pillars
+  cl::Kernel correct_;  ///< null where no force is corrected by its neighbours
+  cl::Kernel follow_;   ///< null without a baseline rate
   FrameOrder* order_;
   cl::Buffer frame_;  ///< keeps the frame in flight alive
   single_precision::Layout layout_{};

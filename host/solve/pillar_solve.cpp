@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
@@ -15,6 +17,17 @@ namespace {
 
 namespace maths = single_precision;
 
+void store_solution(const maths::Solution& solution, std::size_t index, bool uncertainty,
+                    ForceField& field) {
+#define PF_STORE(name, unit, value) field.name[index] = solution.value;
+  PF_FORCE_PLANES(PF_STORE)
+#undef PF_STORE
+  if (!uncertainty) return;
+#define PF_STORE(name, unit, value) field.uncertainty[Uncertainty::name][index] = solution.value;
+  PF_UNCERTAINTY_PLANES(PF_STORE)
+#undef PF_STORE
+}
+
 class PillarSolver {
  public:
   PillarSolver(const SolverPlan& plan, const FrameView& frame, SensorState& state,
@@ -24,6 +37,8 @@ class PillarSolver {
     for (auto& plane : field.uncertainty) plane.resize(field.pillars());
   }
 
+  [[nodiscard]] const maths::Stages& stages() const { return sensels_.stages(); }
+
   void solve(std::size_t row, std::size_t col) {
     const bool uncertainty = sensels_.stages().uncertainty;
     const maths::Noise noise = uncertainty ? sensels_.noise(row, col) : maths::Noise{};
@@ -31,19 +46,92 @@ class PillarSolver {
         maths::solve_pillar(sensels_.pillar(row, col), noise, sensels_.stages());
     const std::size_t index = row * field_.cols + col;
     field_.status[index] = static_cast<std::uint8_t>(solution.status);
-#define PF_STORE(name, unit, value) field_.name[index] = solution.value;
-    PF_FORCE_PLANES(PF_STORE)
-#undef PF_STORE
-    if (!uncertainty) return;
-#define PF_STORE(name, unit, value) field_.uncertainty[Uncertainty::name][index] = solution.value;
-    PF_UNCERTAINTY_PLANES(PF_STORE)
-#undef PF_STORE
+    store_solution(solution, index, uncertainty, field_);
   }
 
  private:
   SenselReader sensels_;
   ForceField& field_;
 };
+
+/// Values of a plane around a pillar; zero outside.
+class PlaneView {
+ public:
+  PlaneView(std::span<const float> values, const ForceField& field)
+      : values_(values), rows_(field.rows), cols_(field.cols) {}
+
+  /// Rows and columns before the first are huge numbers.
+  [[nodiscard]] float at(std::size_t row, std::size_t col) const {
+    return row < rows_ && col < cols_ ? values_[row * cols_ + col] : 0;
+  }
+
+ private:
+  std::span<const float> values_;
+  std::size_t rows_;
+  std::size_t cols_;
+};
+
+bool is_loaded(const ForceField& field, std::size_t pillar) {
+  return (field.status[pillar] & PF_STATUS_PRESSED) != 0;
+}
+
+/// A component of the force without the leak of the pillars around, as in
+/// kernels/frame/correct_forces.cl.
+std::vector<float> unleaked(const std::vector<float>& plane, const ForceField& field,
+                            const maths::Stages& stages) {
+  const PlaneView from(plane, field);
+  std::vector<float> to(plane.size());
+  for (std::size_t row = 0; row < field.rows; ++row) {
+    for (std::size_t col = 0; col < field.cols; ++col) {
+      if (!is_loaded(field, row * field.cols + col)) continue;
+      const float edges = (from.at(row, col - 1) + from.at(row, col + 1)) +
+                          (from.at(row - 1, col) + from.at(row + 1, col));
+      const float corners = (from.at(row - 1, col - 1) + from.at(row - 1, col + 1)) +
+                            (from.at(row + 1, col - 1) + from.at(row + 1, col + 1));
+      to[row * field.cols + col] =
+          maths::pillar_without_leak(from.at(row, col), edges, corners, stages.pillar_leak_self,
+                                     stages.pillar_leak_edge, stages.pillar_leak_corner);
+    }
+  }
+  return to;
+}
+
+maths::Solution solution_at(const ForceField& field, std::size_t index, bool uncertainty) {
+  maths::Solution solution{};
+  solution.status = field.status[index];
+#define PF_LOAD(name, unit, value) solution.value = field.name[index];
+  PF_FORCE_PLANES(PF_LOAD)
+#undef PF_LOAD
+  if (!uncertainty) return solution;
+#define PF_LOAD(name, unit, value) solution.value = field.uncertainty[Uncertainty::name][index];
+  PF_UNCERTAINTY_PLANES(PF_LOAD)
+#undef PF_LOAD
+  return solution;
+}
+
+/// Corrects solved forces by those of the pillars around, as kernels/frame/correct_forces.cl.
+void correct_forces(const maths::Stages& stages, ForceField& field) {
+  if (stages.pillar_leak) {
+    for (auto* plane : {&field.shear_x, &field.shear_y, &field.normal}) {
+      *plane = unleaked(*plane, field, stages);
+    }
+  }
+  const PlaneView normal(field.normal, field);
+  for (std::size_t row = 0; row < field.rows; ++row) {
+    for (std::size_t col = 0; col < field.cols; ++col) {
+      const std::size_t index = row * field.cols + col;
+      if (!is_loaded(field, index)) continue;
+      const float own = normal.at(row, col);
+      const maths::Lean x =
+          maths::lean_between(normal.at(row, col - 1), own, normal.at(row, col + 1));
+      const maths::Lean y =
+          maths::lean_between(normal.at(row + 1, col), own, normal.at(row - 1, col));
+      const maths::Solution before = solution_at(field, index, stages.uncertainty);
+      store_solution(maths::correct_solution(before, x, y, stages), index, stages.uncertainty,
+                     field);
+    }
+  }
+}
 
 /// True if a pillar of the 3 x 3 neighbourhood is loaded.
 bool is_touched(const ForceField& forces, std::size_t row, std::size_t col) {
@@ -88,6 +176,8 @@ ForceField solve_pillars(const SolverPlan& plan, const FrameView& frame, SensorS
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) solver.solve(row, col);
   }
+  const SensorEffects& effects = plan.calibration.effects;
+  if (effects.pillar_leak || effects.arm_mm) correct_forces(solver.stages(), field);
   return field;
 }
 

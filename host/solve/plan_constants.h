@@ -3,6 +3,7 @@
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
+#include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 
@@ -19,6 +20,7 @@ Stages plan_constants(const SolverPlan& plan) {
   const SensorEffects& effects = calibration.effects;
   const ShearCoefficient coefficient = effects.shear_coefficient.value_or(ShearCoefficient{});
   const ResidualError residual = effects.residual.value_or(ResidualError{});
+  const PillarTaps pillar_taps = pillar_leak_taps(effects.pillar_leak.value_or(PillarLeak{}));
   const auto real = [](double value) { return static_cast<Real>(value); };
   return {.range = plan.sensel_type == SenselType::f32,
           .mask = !calibration.mask.empty(),
@@ -33,6 +35,8 @@ Stages plan_constants(const SolverPlan& plan) {
           .dead_zone = !calibration.dead_zone.empty(),
           .shear_coefficient = effects.shear_coefficient.has_value(),
           .residual = effects.residual.has_value(),
+          .pillar_leak = effects.pillar_leak.has_value(),
+          .arm = effects.arm_mm.has_value(),
           .paper = plan.estimator == Estimator::paper,
           .parity_test = plan.parity_tolerance_counts.has_value(),
           .angles = plan.angles,
@@ -57,7 +61,11 @@ Stages plan_constants(const SolverPlan& plan) {
           .per_coefficient_y = real(1 / coefficient.y),
           .residual_relative = real(residual.relative),
           .residual_variance = real(residual.offset_counts * residual.offset_counts),
-          .relative_margin = real(region_margin(residual.relative))};
+          .relative_margin = real(region_margin(residual.relative)),
+          .pillar_leak_self = real(pillar_taps.self),
+          .pillar_leak_edge = real(pillar_taps.edge),
+          .pillar_leak_corner = real(pillar_taps.corner),
+          .lean = real(skin.pillar_pitch_mm() / effects.arm_mm.value_or(1))};
 }
 
 }  // namespace pillarfield

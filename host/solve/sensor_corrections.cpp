@@ -9,6 +9,7 @@ namespace {
 /// Sensels of a square patch that is large enough for the inverse of the largest leak, and the
 /// terms of its series.
 constexpr int kPatch = 32;
+constexpr int kMiddle = kPatch / 2;
 constexpr int kTerms = 200;
 
 using Patch = std::vector<double>;
@@ -19,24 +20,47 @@ double leak_between(const SenselLeak& leak, int at, int to) {
   return std::min(at, to) % 2 == 0 ? leak.inside : leak.across;
 }
 
-/// What the sensels of a patch receive from their neighbours; the patch repeats.
-Patch received(const Patch& from, const SenselLeak& leak) {
-  Patch to(from.size());
-  const auto value = [&](int row, int col) {
-    return from[static_cast<std::size_t>((row + kPatch) % kPatch * kPatch +
-                                         (col + kPatch) % kPatch)];
-  };
-  for (int row = 0; row < kPatch; ++row) {
-    for (int col = 0; col < kPatch; ++col) {
-      double sum = 0;
-      for (const int step : {-1, 1}) {
-        sum += leak_between(leak, row + kPatch, row + kPatch + step) * value(row + step, col);
-        sum += leak_between(leak, col + kPatch, col + kPatch + step) * value(row, col + step);
-      }
-      to[static_cast<std::size_t>(row * kPatch + col)] = sum;
-    }
+double at(const Patch& patch, int row, int col) {
+  return patch[static_cast<std::size_t>((row + kPatch) % kPatch * kPatch +
+                                        (col + kPatch) % kPatch)];
+}
+
+/// What the place of a patch receives from the sensels beside it; the patch repeats.
+double sensel_receives(const Patch& from, int row, int col, const SenselLeak& leak) {
+  double sum = 0;
+  for (const int step : {-1, 1}) {
+    sum += leak_between(leak, row + kPatch, row + kPatch + step) * at(from, row + step, col);
+    sum += leak_between(leak, col + kPatch, col + kPatch + step) * at(from, row, col + step);
   }
-  return to;
+  return sum;
+}
+
+double pillar_receives(const Patch& from, int row, int col, const PillarLeak& leak) {
+  const double edges = at(from, row - 1, col) + at(from, row + 1, col) + at(from, row, col - 1) +
+                       at(from, row, col + 1);
+  const double corners = at(from, row - 1, col - 1) + at(from, row - 1, col + 1) +
+                         at(from, row + 1, col - 1) + at(from, row + 1, col + 1);
+  return leak.edge * edges + leak.corner * corners;
+}
+
+/// The response of the inverse of a leak to its middle, (I + K)^-1 as a series; `receives` is K. By
+/// symmetry it holds the weights with which the middle is corrected.
+template <class Receives>
+Patch inverse_of(Receives receives) {
+  Patch term(static_cast<std::size_t>(kPatch) * kPatch);
+  term[static_cast<std::size_t>(kMiddle * kPatch + kMiddle)] = 1;
+  Patch inverse = term;
+  Patch next = term;
+  for (int i = 0; i < kTerms; ++i) {
+    for (int row = 0; row < kPatch; ++row) {
+      for (int col = 0; col < kPatch; ++col) {
+        next[static_cast<std::size_t>(row * kPatch + col)] = -receives(term, row, col);
+      }
+    }
+    term = next;
+    for (std::size_t place = 0; place < term.size(); ++place) inverse[place] += term[place];
+  }
+  return inverse;
 }
 
 }  // namespace
@@ -60,20 +84,10 @@ double reading_in(const CurveTable& table, double load) {
 }
 
 double_precision::LeakTaps leak_taps(const SenselLeak& leak) {
-  // The response of the inverse to one sensel; by symmetry it is the weights of that sensel.
-  constexpr int kMiddle = kPatch / 2;
-  Patch term(static_cast<std::size_t>(kPatch) * kPatch);
-  term[static_cast<std::size_t>(kMiddle * kPatch + kMiddle)] = 1;
-  Patch inverse = term;
-  for (int i = 0; i < kTerms; ++i) {
-    term = received(term, leak);
-    for (std::size_t at = 0; at < term.size(); ++at) {
-      term[at] = -term[at];
-      inverse[at] += term[at];
-    }
-  }
+  const Patch inverse = inverse_of(
+      [&](const Patch& from, int row, int col) { return sensel_receives(from, row, col, leak); });
   const auto tap = [&](int down, int right) {
-    return inverse[static_cast<std::size_t>((kMiddle + down) * kPatch + kMiddle + right)];
+    return at(inverse, kMiddle + down, kMiddle + right);
   };
   // The middle is an even place: its neighbour inside the pillar is below and to the right.
   double_precision::LeakTaps taps = {tap(0, 0), tap(0, 1),  tap(0, -1),
@@ -82,6 +96,16 @@ double_precision::LeakTaps leak_taps(const SenselLeak& leak) {
   const double cut = taps.self + 2 * (taps.inside + taps.across + taps.mixed) + taps.both_inside +
                      taps.both_across;
   taps.self += whole - cut;
+  return taps;
+}
+
+PillarTaps pillar_leak_taps(const PillarLeak& leak) {
+  const Patch inverse = inverse_of(
+      [&](const Patch& from, int row, int col) { return pillar_receives(from, row, col, leak); });
+  PillarTaps taps = {at(inverse, kMiddle, kMiddle), at(inverse, kMiddle, kMiddle + 1),
+                     at(inverse, kMiddle + 1, kMiddle + 1)};
+  const double whole = 1 / (1 + 4 * (leak.edge + leak.corner));
+  taps.self += whole - (taps.self + 4 * (taps.edge + taps.corner));
   return taps;
 }
 

@@ -21,6 +21,14 @@ struct CurveTable {
 /// (docs/derivations/sensor_effects.md, E3).
 [[nodiscard]] double_precision::LeakTaps leak_taps(const SenselLeak& leak);
 
+/// Weights of the inverse of a leak between pillars, cut to 3 x 3 pillars likewise (E4).
+struct PillarTaps {
+  double self = 1;
+  double edge = 0;
+  double corner = 0;
+};
+[[nodiscard]] PillarTaps pillar_leak_taps(const PillarLeak& leak);
+
 /// The inverse of a sensel's memory at this interval of frames, s (E6).
 [[nodiscard]] single_precision::MemoryModel memory_model(const SenselMemory& memory,
                                                          double frame_interval_s);

@@ -20,6 +20,7 @@ typedef struct {
 } Input;
 
 typedef struct {
+  global uchar* forces; /* planes of forces: `planes`, or the scratch memory */
   global uchar* planes;
   size_t plane_bytes;
   global uchar* status;

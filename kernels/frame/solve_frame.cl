@@ -14,16 +14,22 @@
  *   PF_TARE_PLANE, ...              whose index is this
  *   PF_POWER_EXPONENT               stage: linearises readings by a power law, with
  *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
- *   PF_WIRES                        stage: row and column crosstalk, found by find_wires.cl
- *   PF_CURVE                        stage: linearises readings by a table; PF_CURVE_PER_COUNT
- * pieces PF_LEAK                         stage: removes the leak between sensels (neighbours.h),
- * with PF_LEAK_SELF, ...               the members of LeakTaps PF_MEMORY stage: removes hysteresis
- * and creep (memory_planes.h), with PF_PLAYS, PF_CREEPS             states of a sensel, and the
- * values of MemoryModel, in braces PF_SHEAR_COEFFICIENT            stage: PF_PER_COEFFICIENT_X and
- * _Y are 1 / c PF_RESIDUAL                     stage: what calibration leaves, in margin and
- * uncertainty PF_PAPER                        stage: the paper's estimator instead of the direct
- * solve PF_SEGMENT_POINT                segment point, in (0, 1]; with PF_WHOLE the number n of 1 -
- * 1 / 2^n PF_MARGIN                       margin, counts (docs/derivations/direct_solve.md, D9)
+ *   PF_WIRES                        stage: row and column crosstalk (find_wires.cl)
+ *   PF_CURVE                        stage: linearises readings by a table with
+ *   PF_CURVE_PER_COUNT              pieces of a count
+ *   PF_LEAK                         stage: removes the leak between sensels (neighbours.h);
+ *   PF_LEAK_SELF, ...               members of LeakTaps
+ *   PF_MEMORY                       stage: removes hysteresis and creep (memory_planes.h);
+ *   PF_PLAYS, PF_CREEPS             states of a sensel
+ *   PF_PLAY_WIDTHS, ...             members of MemoryModel, in braces
+ *   PF_SHEAR_COEFFICIENT            stage: divides the shear by c_x and c_y, with
+ *   PF_PER_COEFFICIENT_X, ..._Y     1 / c_x and 1 / c_y
+ *   PF_RESIDUAL                     stage: what calibration leaves; constants of stages.h
+ *   PF_PILLAR_LEAK, PF_LEAN         stages: correct_forces.cl
+ *   PF_PAPER                        stage: the paper's estimator instead of the direct solve
+ *   PF_SEGMENT_POINT                segment point, in (0, 1]; with
+ *                                   PF_WHOLE the number n of 1 - 1 / 2^n
+ *   PF_MARGIN                       margin, counts (docs/derivations/direct_solve.md, D9)
  *   PF_PARITY_TOLERANCE             counts; stage: the parity test
  *   PF_ANGLES                       stage: writes magnitude, theta and phi too
  *   PF_UNCERTAINTY                  noise of a raw reading, counts; stage: writes uncertainty
@@ -92,11 +98,12 @@ PF_INLINE Solution solve_block(Block block, Input input) {
 
 /* Writes the results of `lanes`, lane 0 at pillar `index`. */
 PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
-  global uchar* plane = output.planes;
+  global uchar* plane = output.forces;
 #define PF_STORE(name, unit, value)                                   \
   store_plane(solution.value, (global float*)(plane) + index, lanes); \
   plane += output.plane_bytes;
   PF_FORCE_PLANES(PF_STORE)
+  plane = output.planes + 3 * output.plane_bytes;
 #ifdef PF_ANGLES
   PF_ANGLE_PLANES(PF_STORE)
 #endif
@@ -246,7 +253,12 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
   input.calibration = calibration_of(calibration, results, layout);
   input.rows = (uint)layout.rows;
   input.cols = (uint)layout.cols;
-  const Output output = {results, layout.result_bytes, results + layout.status,
+#ifdef PF_PILLAR_LEAK
+  global uchar* const forces = results + layout.forces;
+#else
+  global uchar* const forces = results;
+#endif
+  const Output output = {forces, results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
 #ifdef PF_LEAK
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);

@@ -33,6 +33,8 @@
 #define PF_PER_COEFFICIENT_X stages.per_coefficient_x
 #define PF_PER_COEFFICIENT_Y stages.per_coefficient_y
 #define PF_RESIDUAL
+#define PF_PILLAR_LEAK
+#define PF_LEAN stages.lean
 #define PF_RESIDUAL_RELATIVE stages.residual_relative
 #define PF_RESIDUAL_VARIANCE stages.residual_variance
 #define PF_RELATIVE_MARGIN stages.relative_margin
@@ -65,6 +67,8 @@ typedef struct {
   bool dead_zone;
   bool shear_coefficient;
   bool residual;
+  bool pillar_leak;
+  bool arm;
   bool paper;
   bool parity_test;
   bool angles;
@@ -90,6 +94,10 @@ typedef struct {
   Real residual_relative;
   Real residual_variance; /* counts^2 */
   Real relative_margin;   /* of the largest reading */
+  Real pillar_leak_self;  /* weights of the inverse */
+  Real pillar_leak_edge;
+  Real pillar_leak_corner;
+  Real lean; /* pitch over arm */
 } Stages;
 #else
 #define PF_NAMED(stage) 1
@@ -328,3 +336,48 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
 #endif
   return solution;
 }
+
+#if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
+/* Corrects a solved pillar by what is known from the pillars around it: `x` and `y` are the lean of
+ * its pressure. Derives direction and intervals from the corrected force. Pillars without load
+ * stay.
+ */
+PF_INLINE Solution correct_solution(Solution solution, Lean x, Lean y, Stages stages) {
+  const Mask loaded = mask_of(solution.status & PF_BITS(PF_STATUS_PRESSED));
+#ifdef PF_UNCERTAINTY
+  Real moved = PF_REAL(0.0);
+#endif
+#ifdef PF_LEAN
+  if (PF_NAMED(arm)) {
+    const Real pitch_over_arm = PF_CONSTANT(Real, PF_LEAN);
+    const Real moved_x = loaded ? pitch_over_arm * x.moment : PF_REAL(0.0);
+    const Real moved_y = loaded ? pitch_over_arm * y.moment : PF_REAL(0.0);
+    solution.force.shear_x = solution.force.shear_x - moved_x;
+    solution.force.shear_y = solution.force.shear_y - moved_y;
+#ifdef PF_UNCERTAINTY
+    if (PF_NAMED(uncertainty)) {
+      moved = plain_length_2(moved_x, moved_y);
+      solution.deviations.shear_x = plain_length_2(
+          solution.deviations.shear_x, loaded ? pitch_over_arm * x.deviation : PF_REAL(0.0));
+      solution.deviations.shear_y = plain_length_2(
+          solution.deviations.shear_y, loaded ? pitch_over_arm * y.deviation : PF_REAL(0.0));
+    }
+#endif
+  }
+#endif
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  if (PF_NAMED(angles) || PF_NAMED(uncertainty)) {
+    solution.direction = direction_of(solution.force);
+  }
+#endif
+#ifdef PF_UNCERTAINTY
+  if (PF_NAMED(uncertainty)) {
+    const DirectionInterval interval =
+        corrected_interval(solution.interval, solution.force, solution.direction, solution.status,
+                           PF_CONSTANT(Real, PF_SEGMENT_POINT), moved, shear_weights(stages));
+    solution.interval = either_interval(loaded, interval, solution.interval);
+  }
+#endif
+  return solution;
+}
+#endif

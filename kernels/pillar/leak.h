@@ -46,3 +46,10 @@ static inline Sensel remove_leak(Sensel sensel, Neighbours v, LeakTaps taps, Rea
   sensel.reading = sensel.reading > threshold ? freed : sensel.reading;
   return sensel;
 }
+
+/* A component of a pillar's force without the leak between pillars (E4): `edges` and `corners` are
+ * the sums over the four nearest and the four diagonal pillars. */
+static inline Real pillar_without_leak(Real own, Real edges, Real corners, Real self, Real edge,
+                                       Real corner) {
+  return self * own + (edge * edges + corner * corners);
+}

@@ -184,11 +184,11 @@ TEST(PressureMoments, OfABodyAreThoseOfItsClosedForm) {
   }
 }
 
-/// Pressure with an even gradient, slope·x: the moment is slope · pitch⁴/12. Under a large ball at
-/// distance x from its middle the slope is −p₀ x/a² / sqrt(1 − x²/a²).
+/// Pressure with an even gradient g: the moment is g · pitch⁴/12. At (x, y) from the middle of a
+/// large ball g is −p₀ (x, y)/a² / sqrt(1 − (x² + y²)/a²).
 TEST(PillarArm, ReadsAPressureGradientAsShearTowardsTheHigherPressure) {
   Scene scene = bare_scene(41, 41);
-  Contact ball = pressed(ContactShape::sphere, 200, -60, 0);
+  Contact ball = pressed(ContactShape::sphere, 200, -60, 25);
   ball.reference_load_n = 40000;
   ball.path.front().load_n = 40000;
   scene.load = std::vector{ball};
@@ -197,12 +197,11 @@ TEST(PillarArm, ReadsAPressureGradientAsShearTowardsTheHigherPressure) {
   const EffectFrame tilted(scene);
   EXPECT_EQ(centred.truth.shear_x, tilted.truth.shear_x);
   const double p0 = 3 * 40000 / (2 * std::numbers::pi * 200 * 200);
-  const double slope = -p0 * 60 / (200.0 * 200) / std::sqrt(1 - 0.09);
-  const double shear = slope * std::pow(kPitch, 4) / 12 / 0.25;
+  const double fall = p0 / (200.0 * 200) / std::sqrt(1 - (60.0 * 60 + 25 * 25) / (200 * 200));
+  const double counts = 4 * 100 / std::numbers::sqrt2 * std::pow(kPitch, 4) / 12 / 0.25;
   const auto sum = [&](int a, int b) { return tilted.v(20, 20, a) + tilted.v(20, 20, b); };
-  EXPECT_NEAR(sum(1, 4) - sum(2, 3), 4 * 100 * shear / std::numbers::sqrt2, 2e-3);
-  EXPECT_LT(sum(1, 4), sum(2, 3));
-  EXPECT_NEAR(sum(1, 2) - sum(3, 4), 0, 1e-3);
+  EXPECT_NEAR(sum(1, 4) - sum(2, 3), -60 * fall * counts, 2e-3);
+  EXPECT_NEAR(sum(1, 2) - sum(3, 4), 25 * fall * counts, 2e-3);
   EXPECT_NEAR(sum(1, 3), centred.v(20, 20, 1) + centred.v(20, 20, 3), 1e-3);
 }
 

@@ -43,10 +43,10 @@ TEST(ResponseCurveOfAScene, IsUndoneByItsInverse) {
 
 TEST(SenselLeakOfAScene, ReachesTheNeighboursUnderAndBesideThePillar) {
   const SenselLeak leak = {0.05, 0.02};
-  std::vector<double> v(6 * 6);
+  std::vector<double> v(36);
   v[2 * 6 + 3] = 100;  // the upper right sensel of the middle pillar
   leak_between_sensels(leak, 6, 6, v);
-  std::vector<double> expected(6 * 6);
+  std::vector<double> expected(36);
   expected[2 * 6 + 3] = 100;
   expected[2 * 6 + 2] = expected[3 * 6 + 3] = 5;
   expected[2 * 6 + 4] = expected[1 * 6 + 3] = 2;
@@ -318,7 +318,7 @@ TEST(SensorEffectsOfAScene, FollowTheOrderOfTheSignal) {
       for (int i = std::max(0, row - 1); i <= std::min(2, row + 1); ++i) {
         for (int j = std::max(0, col - 1); j <= std::min(3, col + 1); ++j) {
           const double fractions[] = {1, 0.05, 0.02};
-          const auto pillar = static_cast<std::size_t>(i * 4 + j);
+          const auto pillar = static_cast<std::size_t>(i) * 4 + static_cast<std::size_t>(j);
           const double shear = right * truth.shear_x[pillar] + up * truth.shear_y[pillar];
           v[sensel] += 300 * fractions[std::abs(i - row) + std::abs(j - col)] *
                        (truth.normal[pillar] + shear / std::numbers::sqrt2);

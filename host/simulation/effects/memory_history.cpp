@@ -1,8 +1,12 @@
 #include "simulation/effects/memory_history.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
 #include "simulation/effects/known_effects.h"
 
 namespace pillarfield {
@@ -40,7 +44,10 @@ bool MemoryHistory::is_needed(const SensorModel& sensor) {
 void MemoryHistory::apply(std::uint64_t frame, std::vector<double>& v, const Signal& signal) {
   const std::scoped_lock lock(mutex_);
   if (frame + 1 < frames_) restart();
-  while (frames_ < frame) step(signal(frames_));
+  while (frames_ < frame) {
+    if (is_interrupted()) throw Error(fmt::format("frame {}", frame), "interrupted", "start again");
+    step(signal(frames_));
+  }
   if (frames_ == frame) step(v);
   v = readings_;
 }

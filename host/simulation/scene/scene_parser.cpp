@@ -233,7 +233,7 @@ void read_solver(TomlSection section, Scene& scene) {
   scene.estimator = read_name(section, "estimator", kEstimators).value_or(scene.estimator);
   if (section.text("estimator") == "field") {
     scene.warnings.emplace_back(
-        "estimator = \"field\" is now \"contact\"; the former name works in this release only");
+        R"(estimator = "field" is now "contact"; the former name works in this release only)");
   }
   scene.segment_point =
       section.number("segment_point", kSegmentPoints).value_or(scene.segment_point);

@@ -1,0 +1,150 @@
+/* Corrections of forces by those of the pillars around, after solve_frame: the leak between pillars
+ * (stage PF_PILLAR_LEAK) and off-centre pressure (stage PF_LEAN). Only loaded pillars change. */
+#if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
+
+/* Values of PF_LANES pillars of a row from column `col` on; zero outside. */
+PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
+#if PF_LANES == 1
+  return col >= 0 && (uint)col < cols ? row[col] : 0.0f;
+#else
+  if (col >= 0 && (uint)col + PF_LANES <= cols) return PF_LOAD_WHOLE(float, row + col);
+  float padded[PF_LANES];
+  for (int i = 0; i < PF_LANES; ++i) {
+    const int at = col + i;
+    padded[i] = at >= 0 && (uint)at < cols ? row[at] : 0.0f;
+  }
+  return PF_VLOAD(0, padded);
+#endif
+}
+
+/* Values of the pillars `down` rows below (1, 0 or -1) and from column `col` on; zero outside. */
+PF_INLINE Real load_near(global const float* plane, Layout layout, uint row, int down, int col) {
+  const uint at = row + (uint)down;
+  if (at >= (uint)layout.rows) return (Real)(0.0f);
+  return load_pillars(plane + (size_t)at * layout.cols, col, (uint)layout.cols);
+}
+
+PF_INLINE Mask is_loaded(global const uchar* status, Layout layout, uint row, uint col) {
+  const Bits bits = load_status(status + (size_t)row * layout.cols, (int)col, (uint)layout.cols);
+  return mask_of(bits & PF_BITS(PF_STATUS_PRESSED));
+}
+
+#endif
+
+#if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
+
+/* A block of a pillar row, as in solve_frame, and the lanes that it alone writes. */
+typedef struct {
+  uint col;
+  Lanes lanes;
+} OwnBlock;
+
+PF_INLINE uint skew_of(uint row, uint cols) { return (uint)((size_t)row * cols % PF_LANES); }
+
+PF_INLINE OwnBlock own_block(uint at, uint skew, uint cols) {
+  OwnBlock block;
+  block.col = min(max(at * PF_LANES, skew) - skew, cols - PF_LANES);
+  block.lanes = own_lanes(at * PF_LANES, skew, block.col, cols);
+  return block;
+}
+
+#endif
+
+#ifdef PF_PILLAR_LEAK
+
+/* A component of the force without the leak of the pillars around. */
+PF_INLINE Real unleaked(global const float* plane, Layout layout, uint row, int col) {
+  const Real own = load_near(plane, layout, row, 0, col);
+  const Real edges =
+      (load_near(plane, layout, row, 0, col - 1) + load_near(plane, layout, row, 0, col + 1)) +
+      (load_near(plane, layout, row, -1, col) + load_near(plane, layout, row, 1, col));
+  const Real corners =
+      (load_near(plane, layout, row, -1, col - 1) + load_near(plane, layout, row, -1, col + 1)) +
+      (load_near(plane, layout, row, 1, col - 1) + load_near(plane, layout, row, 1, col + 1));
+  return pillar_without_leak(own, edges, corners, (Real)(PF_PILLAR_LEAK_SELF),
+                             (Real)(PF_PILLAR_LEAK_EDGE), (Real)(PF_PILLAR_LEAK_CORNER));
+}
+
+/* Forces as solve_frame left them in the scratch memory, to the planes of the result. A work-item
+ * corrects blocks as in solve_frame. */
+kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
+                               global const uchar* restrict calibration,
+                               global uchar* restrict results, Layout layout) {
+  const Band band = band_of_rows((uint)layout.rows);
+  const uint cols = (uint)layout.cols;
+  const uint step = (uint)get_global_size(0);
+  for (uint row = band.first; row < band.end; ++row) {
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const uint col = block.col;
+      const Mask loaded = is_loaded(results + layout.status, layout, row, col);
+      for (uint plane = 0; plane < 3; ++plane) {
+        global const float* const solved =
+            (global const float*)(results + layout.forces + plane * layout.result_bytes);
+        global float* const to = (global float*)(results + plane * layout.result_bytes);
+        const Real force = loaded ? unleaked(solved, layout, row, (int)col) : (Real)(0.0f);
+        store_plane(force, to + (size_t)row * cols + col, block.lanes);
+      }
+    }
+  }
+}
+
+#endif
+
+#if defined(PF_PILLAR_LEAK) || defined(PF_LEAN)
+
+/* Results of PF_LANES pillars; zero where the plan does not have them. */
+PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uint row, uint col) {
+  Solution solution;
+  global const uchar* plane = results;
+#define PF_LOAD(name, unit, value)                                                  \
+  solution.value = load_near((global const float*)plane, layout, row, 0, (int)col); \
+  plane += layout.result_bytes;
+  PF_FORCE_PLANES(PF_LOAD)
+#ifdef PF_ANGLES
+  PF_ANGLE_PLANES(PF_LOAD)
+#endif
+#ifdef PF_UNCERTAINTY
+  PF_UNCERTAINTY_PLANES(PF_LOAD)
+#endif
+#undef PF_LOAD
+  solution.status =
+      load_status(results + layout.status + (size_t)row * layout.cols, (int)col, (uint)layout.cols);
+  return solution;
+}
+
+/* Subtracts the lean of the pressure from the shear, and derives the other results from the
+ * corrected forces. A work-item corrects blocks as in solve_frame. */
+kernel void correct_forces(global const PF_SENSEL* restrict raw,
+                           global const uchar* restrict calibration, global uchar* restrict results,
+                           Layout layout) {
+  const Calibration planes = calibration_of(calibration, results, layout);
+  const Band band = band_of_rows((uint)layout.rows);
+  const uint cols = (uint)layout.cols;
+  const uint step = (uint)get_global_size(0);
+  global const float* const normal = (global const float*)(results + 2 * layout.result_bytes);
+  const Output output = {results, results, layout.result_bytes, results + layout.status,
+                         results + layout.idle};
+  for (uint row = band.first; row < band.end; ++row) {
+    const uint skew = skew_of(row, cols);
+    for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
+         at_block += step) {
+      const OwnBlock block = own_block(at_block, skew, cols);
+      const uint col = block.col;
+      if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
+      const int at = (int)col;
+      const Real own = load_near(normal, layout, row, 0, at);
+      const Lean x = lean_between(load_near(normal, layout, row, 0, at - 1), own,
+                                  load_near(normal, layout, row, 0, at + 1));
+      const Lean y = lean_between(load_near(normal, layout, row, 1, at), own,
+                                  load_near(normal, layout, row, -1, at));
+      const Solution solution =
+          correct_solution(load_solution(results, layout, row, col), x, y, planes.stages);
+      store_solution(solution, output, (size_t)row * cols + col, block.lanes);
+    }
+  }
+}
+
+#endif
