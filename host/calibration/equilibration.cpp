@@ -9,6 +9,7 @@
 #include "base/quantile.h"
 #include "calibration/finding_list.h"
 #include "calibration/held_out.h"
+#include "calibration/leak_sum.h"
 #include "calibration/response_fit.h"
 #include "pillarfield/error.h"
 #include "skin/pillar_sensels.h"
@@ -126,9 +127,10 @@ class ResponseSummary {
     return responded > 0 ? std::sqrt(misfit / responded) : 0;
   }
 
-  [[nodiscard]] double median_dead_zone(double k) const {
+  /// `leaks` multiply the load, but not the dead zone, which comes before them.
+  [[nodiscard]] double median_dead_zone(double k, double leaks) const {
     std::vector<double> values;
-    for_good([&](const Response& r) { values.push_back(k * r.dead_zone_n); });
+    for_good([&](const Response& r) { values.push_back(k * r.dead_zone_n / leaks); });
     return median(values);
   }
 
@@ -237,7 +239,7 @@ ResponseCurve curve_in_counts(const ResponseFit& fit, double k) {
 }
 
 /// Fills gains, and dead zones if there are several pressures; masked sensels get 1 and 0.
-void fill_planes(const std::vector<Response>& responses, double k, bool several,
+void fill_planes(const std::vector<Response>& responses, double k, bool several, const Skin& skin,
                  const FindingList& found, Calibration& planes) {
   planes.gain.assign(responses.size(), 1);
   if (several) planes.dead_zone.assign(responses.size(), 0);
@@ -245,7 +247,9 @@ void fill_planes(const std::vector<Response>& responses, double k, bool several,
     const Response& response = responses[i];
     if (!found.good(i) || response.kind != Response::Kind::good) continue;
     planes.gain[i] = static_cast<float>(k * response.newtons_per_count - response.dead_zone_gain);
-    if (several) planes.dead_zone[i] = static_cast<float>(k * response.dead_zone_n);
+    if (!several) continue;
+    planes.dead_zone[i] =
+        static_cast<float>(k * response.dead_zone_n / leak_sum(planes.effects, skin, i));
   }
   planes.mask = found.mask_plane();
 }
@@ -277,10 +281,10 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   result.shear = shear_of(responses, skin, found);
   result.gain_spread = summary.gain_spread(k);
   result.nonlinearity = result.levels > 2 ? summary.nonlinearity() : 0;
-  result.dead_zone_counts = summary.median_dead_zone(k);
+  result.dead_zone_counts = summary.median_dead_zone(k, full_leak_sum(before.planes.effects));
   result.calibration = before;
   SkinCalibration& after = result.calibration;
-  fill_planes(responses, k, result.levels > 1, found, after.planes);
+  fill_planes(responses, k, result.levels > 1, skin, found, after.planes);
   after.counts_per_newton = k;
   after.planes.effects.curve = {};
   if (fit.common()) {

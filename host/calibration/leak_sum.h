@@ -7,21 +7,25 @@
 
 namespace pillarfield {
 
-/// What a sensel reads under a uniform load as a multiple of what it would read without the leaks
-/// of `effects`: 1 + 2 inside + 2 across, less across for each neighbour that the skin's edge
-/// lacks, times 1 + 4 edge + 4 corner of the leak between pillars.
+/// What a sensel inside the skin reads under a uniform load as a multiple of what it would read
+/// without leaks, if `missing` of its two neighbours under other pillars are beyond the skin's
+/// edge: (1 + 2 inside + (2 − missing) across) (1 + 4 edge + 4 corner).
+[[nodiscard]] inline double full_leak_sum(const SensorEffects& effects, int missing = 0) {
+  const SenselLeak sensel = effects.sensel_leak.value_or(SenselLeak{});
+  const PillarLeak pillar = effects.pillar_leak.value_or(PillarLeak{});
+  return (1 + 2 * sensel.inside + (2 - missing) * sensel.across) *
+         (1 + 4 * pillar.edge + 4 * pillar.corner);
+}
+
+/// The same for the sensel with this index. The leak between pillars counts as that of a pillar
+/// with eight neighbours.
 [[nodiscard]] inline double leak_sum(const SensorEffects& effects, const Skin& skin,
                                      std::size_t sensel) {
-  double sum = 1;
-  if (const auto& leak = effects.sensel_leak) {
-    const std::size_t row = sensel / skin.cols;
-    const std::size_t col = sensel % skin.cols;
-    const int at_row_edge = row == 0 || row + 1 == 2 * skin.pillar_rows() ? 1 : 0;
-    const int at_col_edge = col == 0 || col + 1 == 2 * skin.pillar_cols() ? 1 : 0;
-    sum += 2 * leak->inside + (2 - at_row_edge - at_col_edge) * leak->across;
-  }
-  if (const auto& leak = effects.pillar_leak) sum *= 1 + 4 * leak->edge + 4 * leak->corner;
-  return sum;
+  const std::size_t row = sensel / skin.cols;
+  const std::size_t col = sensel % skin.cols;
+  const int at_row_edge = row == 0 || row + 1 == 2 * skin.pillar_rows() ? 1 : 0;
+  const int at_col_edge = col == 0 || col + 1 == 2 * skin.pillar_cols() ? 1 : 0;
+  return full_leak_sum(effects, at_row_edge + at_col_edge);
 }
 
 }  // namespace pillarfield

@@ -16,7 +16,7 @@ struct Response {
   Kind kind = Kind::unresponsive;
   double newtons_per_count = 0;
   double dead_zone_gain = 0;  ///< dead zone over response; one pressure
-  double dead_zone_n = 0;     ///< dead zone as a force; several pressures
+  double dead_zone_n = 0;     ///< dead zone as a force with leaks; several pressures
   double misfit = 0;          ///< weighted sum of squared residuals
   double responded = 0;       ///< weighted sum of squared responses
 };

@@ -14,6 +14,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/tare.h"
+#include "pillarfield/wire_calibration.h"
 #include "testbed/testbed.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
@@ -96,6 +97,27 @@ struct LoadCommand : StepOptions {
 struct ShearCommand : StepOptions {
   std::vector<std::string> files;
   std::vector<double> shears_n;  ///< x and y for each file
+  std::vector<double> loads_n;   ///< one per file, or none
+};
+
+struct LeakCommand : StepOptions {
+  std::vector<std::string> files;
+};
+
+struct MemoryCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> logs;  ///< of the pressure, one per file
+};
+
+struct BendingCommand : StepOptions {
+  std::vector<std::string> files;
+  std::vector<double> radii_mm;  ///< one per file
+  std::vector<double> axes_deg;  ///< one per file
+};
+
+struct WiresCommand : StepOptions {
+  std::vector<std::string> files;
+  WireTile tile;
 };
 
 struct FaultsCommand : StepOptions {
@@ -130,6 +152,10 @@ void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);
 void calibrate(const LoadCommand& command);
 void calibrate(const ShearCommand& command);
+void calibrate(const LeakCommand& command);
+void calibrate(const MemoryCommand& command);
+void calibrate(const BendingCommand& command);
+void calibrate(const WiresCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);

@@ -151,6 +151,24 @@ class Chain(Calibrate):
         text = run("info", loaded).stdout
         self.assertIn("step equilibrate, sources pressed_0.2.h5 pressed_0.7.h5, frames 200", text)
 
+    def test_a_log_of_pressure_is_read_strictly(self):
+        tared, equal = self.folder / "tared.h5", self.folder / "equal.h5"
+        run("calibrate", "tare", self.unloaded(), "-o", tared)
+        pressed = self.pressed(0.5)
+        run("calibrate", "equilibrate", pressed, "--pressure-kpa", 312.5, "--calibration", tared,
+            "-o", equal)
+        log = self.folder / "log.csv"
+        step = ("calibrate", "memory", pressed, "--pressure", log, "--calibration", equal, "-o",
+                self.folder / "memory.h5")
+        for text, fault in (("", "no pressure"), ("time_s,pressure_kpa\n", "no pressure"),
+                            ("0,1\n0,2\n", "log.csv:2"), ("0,1\nx,2\n", "log.csv:2"),
+                            ("0\n", "log.csv:1"), ("0,-1\n", "log.csv:1"), ("0,nan\n", "log.csv:1"),
+                            ("t,p\n0,1,2\n", "log.csv:2"), ("0,1\n", "does not change")):
+            log.write_text(text)
+            self.assert_fails(*step, names=[fault])
+        log.unlink()
+        self.assert_fails(*step, names=["log.csv"])
+
     def test_a_power_law_is_found_and_undone(self):
         sensor = SENSOR.replace("dead_zone_counts = 3", "power_law_exponent = 1.3\n"
                                 "power_law_reference_counts = 150")

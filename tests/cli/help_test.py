@@ -11,7 +11,7 @@ import unittest
 
 from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
 
-STEPS = ["tare", "equilibrate", "load", "shear", "faults", "apply"]
+STEPS = ["wires", "tare", "equilibrate", "load", "shear", "leak", "memory", "bending", "faults", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["pace"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["testbed"], ["info"], ["completion"]]
 
@@ -122,6 +122,8 @@ class WrongCommandLines(CommandTest):
                 ("2 files and 1 values", *press, "b", "--pressure-kpa", 1),
                 ("'-3'", *load, -3), ("1 files and 2 values", *load, "1,2"),
                 ("2 files and 3 values", "calibrate", "shear", "b", *step, "--shear-n", "1,2,3"),
+                ("1 files and 2 values", "calibrate", "memory", *step, "--pressure", "a,b"),
+                ("radius is 0", "calibrate", "bending", *step, "--radius-mm", 0, "--axis-deg", 0),
                 ("cubic", *load, 1, "--model", "cubic"), ("RECORDING", "calibrate", "apply", "a"),
                 ("--threshold-factor", "calibrate", "tare", "a", "-o", "b", "--threshold-factor",
                  -1), ("SOURCE", "pace"), ("fast", "pace", "a", "--rate", "fast"),
@@ -159,7 +161,8 @@ class Numbers(CommandTest):
                   "solve": [recording, "-o", output, "--contacts", output]}
         step = [recording, "--calibration", recording, "-o", output]
         needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
-                   "load": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"]}
+                   "load": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"], "leak": step, "memory": [*step, "--pressure", "log.csv"],
+                   "wires": [recording, "-o", output], "bending": [*step, "--radius-mm", 60, "--axis-deg", 0]}
         tried = 0
         for command in COMMANDS:
             text = run(*command, "--help").stdout

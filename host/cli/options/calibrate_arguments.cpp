@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "cli/options/shared_arguments.h"
@@ -34,10 +35,10 @@ constexpr const char* kPressedSkin =
 
 /// Throws unless `option` has one value per file.
 void require_one_each(const char* option, const std::vector<std::string>& files,
-                      const std::vector<double>& values) {
-  if (files.size() == values.size()) return;
-  throw CLI::ValidationError(option, fmt::format("{} files and {} values; give one per file",
-                                                 files.size(), values.size()));
+                      std::size_t values) {
+  if (files.size() == values) return;
+  throw CLI::ValidationError(
+      option, fmt::format("{} files and {} values; give one per file", files.size(), values));
 }
 
 void add_tare(CLI::App& parent, Work& work) {
@@ -82,7 +83,7 @@ void add_equilibrate(CLI::App& parent, Work& work) {
       "pressures or more [the better one on held-out pressures]");
   add_step(command, *options, true, kCalibration);
   command->parse_complete_callback([options = options] {
-    require_one_each("--pressure-kpa", options->files, options->pressures_kpa);
+    require_one_each("--pressure-kpa", options->files, options->pressures_kpa.size());
   });
 }
 
@@ -101,8 +102,9 @@ void add_load(CLI::App& parent, Work& work) {
                          "linear: proportional; power: power law, from at least two loads "
                          "[linear]");
   add_step(command, *options, true, kCalibration);
-  command->parse_complete_callback(
-      [options = options] { require_one_each("--load-n", options->files, options->loads_n); });
+  command->parse_complete_callback([options = options] {
+    require_one_each("--load-n", options->files, options->loads_n.size());
+  });
 }
 
 void add_shear(CLI::App& parent, Work& work) {
@@ -112,24 +114,125 @@ void add_shear(CLI::App& parent, Work& work) {
           "  pillarfield simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5\n"
           "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
           "tared.h5 -o equal.h5\n"
-          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --calibration equal.h5 -o "
+          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 -o "
           "shear.h5\n");
   Group(command, "Input")
       .file("SHEARED", options->files,
             "Frames of bodies that do not slip under a tangential load, one file per load");
-  Group(command, "Load")
-      .number("--shear-n", options->shears_n, "X1,Y1,X2,Y2,...",
+  Group step(command, "Load");
+  step.number("--shear-n", options->shears_n, "X1,Y1,X2,Y2,...",
               "Tangential force on the skin of each file, in order: + right, + up", -1e6, 1e6)
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false);
+  step.number("--load-n", options->loads_n, "N1,N2,...",
+              "Normal force of each file, so that errors of the sensitivity and creep cancel "
+              "[unknown]",
+              1e-6, 1e6)
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_step(command, *options, true, kCalibration);
   command->parse_complete_callback([options = options] {
+    if (!options->loads_n.empty()) {
+      require_one_each("--load-n", options->files, options->loads_n.size());
+    }
     if (options->shears_n.size() == 2 * options->files.size()) return;
     throw CLI::ValidationError(
         "--shear-n", fmt::format("{} files and {} values; give two per file", options->files.size(),
                                  options->shears_n.size()));
   });
+}
+
+void add_leak(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<LeakCommand>(
+      parent, work, calibrate, "leak",
+      "Leaks between sensels and between pillars, from a fine tip on single pillars.",
+      std::string(kIdleSkin) +
+          "  pillarfield simulate scenes/leaking_skin_pressed.toml --uncalibrated -o pressed.h5\n"
+          "  pillarfield simulate scenes/leaking_skin_tip.toml --uncalibrated -o tip.h5\n"
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
+          "tared.h5 -o equal.h5\n"
+          "  pillarfield calibrate leak tip.h5 --calibration equal.h5 -o leak.h5\n");
+  Group(command, "Input")
+      .file("TIP", options->files, "Frames in which a fine tip presses one pillar after another");
+  add_step(command, *options, true, kCalibration);
+}
+
+void add_memory(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<MemoryCommand>(
+      parent, work, calibrate, "memory",
+      "Hysteresis and creep, under uniform pressure that rises, rests and falls.",
+      std::string(kIdleSkin) +
+          "  pillarfield simulate scenes/creeping_skin_pressed.toml --uncalibrated -o pressed.h5\n"
+          "  pillarfield simulate scenes/creeping_skin_cycles.toml --uncalibrated -o cycles.h5\n"
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 187.5 --calibration "
+          "tared.h5 -o equal.h5\n"
+          "  pillarfield calibrate memory cycles.h5 --pressure scenes/creeping_skin_cycles.csv "
+          "--calibration equal.h5 -o memory.h5\n");
+  Group input(command, "Input");
+  input.file("CYCLES", options->files,
+             "Frames from a rested skin on, under uniform pressure that changes");
+  input
+      .text("--pressure", options->logs, "FILE",
+            "Log of the pressure of each file, in order: lines of time (s), pressure (kPa)")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback([options = options] {
+    require_one_each("--pressure", options->files, options->logs.size());
+  });
+}
+
+void add_bending(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<BendingCommand>(
+      parent, work, calibrate, "bending",
+      "Change of the tares with curvature, from the unloaded skin on known cylinders.",
+      std::string(kIdleSkin) +
+          "  pillarfield simulate scenes/bent_skin_x.toml --uncalibrated -o x.h5\n"
+          "  pillarfield simulate scenes/bent_skin_y.toml --uncalibrated -o y.h5\n"
+          "  pillarfield simulate scenes/bent_skin_xy.toml --uncalibrated -o xy.h5\n"
+          "  pillarfield calibrate bending x.h5 y.h5 xy.h5 --radius-mm 60,60,60 --axis-deg "
+          "90,0,45 --calibration tared.h5 -o bending.h5\n");
+  Group(command, "Input")
+      .file("BENT", options->files, "Frames of the unloaded skin, one file per cylinder");
+  Group step(command, "Bending");
+  step.number("--radius-mm", options->radii_mm, "R1,R2,...",
+              "Radius of each cylinder, in order; below zero inside of one", -1e6, 1e6)
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  step.number("--axis-deg", options->axes_deg, "A1,A2,...",
+              "Angle of each axis from +x, counter-clockwise, in order", -360, 360)
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  add_step(command, *options, true, kCalibration);
+  command->parse_complete_callback([options = options] {
+    require_one_each("--radius-mm", options->files, options->radii_mm.size());
+    require_one_each("--axis-deg", options->files, options->axes_deg.size());
+    if (std::ranges::find(options->radii_mm, 0) == options->radii_mm.end()) return;
+    throw CLI::ValidationError("--radius-mm", "a radius is 0");
+  });
+}
+
+void add_wires(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<WiresCommand>(
+      parent, work, calibrate, "wires",
+      "Row and column crosstalk, from a body at rest while another one presses elsewhere.",
+      "  pillarfield simulate scenes/wired_skin_alone.toml --uncalibrated -o alone.h5\n"
+      "  pillarfield simulate scenes/wired_skin_row.toml --uncalibrated -o row.h5\n"
+      "  pillarfield simulate scenes/wired_skin_column.toml --uncalibrated -o column.h5\n"
+      "  pillarfield calibrate wires alone.h5 row.h5 column.h5 --tile-rows 40 --tile-cols 40 -o "
+      "wires.h5\n");
+  Group(command, "Input")
+      .file("RESTING", options->files,
+            "Frames of a body alone, then files with another one in its rows and in its columns");
+  Group step(command, "Wires");
+  step.whole("--tile-rows", options->tile.rows, "N", "Sensel rows that share wires [64]", 2, 1024);
+  step.whole("--tile-cols", options->tile.cols, "N", "Sensel columns that share wires [64]", 2,
+             1024);
+  add_step(command, *options, false, kCalibration);
 }
 
 void add_faults(CLI::App& parent, Work& work) {
@@ -176,10 +279,14 @@ void add_calibrate(CLI::App& parent, Work& work) {
       "-o equal.h5\n"
       "  pillarfield solve pressed.h5 --calibration equal.h5 -o forces.h5\n");
   steps->require_subcommand(1);
+  add_wires(*steps, work);
   add_tare(*steps, work);
   add_equilibrate(*steps, work);
   add_load(*steps, work);
   add_shear(*steps, work);
+  add_leak(*steps, work);
+  add_memory(*steps, work);
+  add_bending(*steps, work);
   add_faults(*steps, work);
   add_apply(*steps, work);
   add_help(steps);

@@ -1,0 +1,158 @@
+#include "pillarfield/bending_calibration.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "calibration/linear_readings.h"
+#include "calibration/normal_equations.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint32_t kLeastBentFrames = 5;
+constexpr std::size_t kLeastShapes = 2;
+/// Least ratio of the patterns' mean square to that of their errors.
+constexpr double kLeastSignal = 1.2;
+constexpr double kMostSaturated = 0.2;
+
+using Triple = std::array<double, 3>;
+
+Triple triple_of(const Curvature& curvature) { return {curvature.x, curvature.y, curvature.xy}; }
+
+void require_shapes(const SkinCalibration& before, std::span<const BentSkin> shapes) {
+  if (before.planes.tare.empty() || before.planes.noise.empty()) {
+    throw Error("calibration", "has no tare or no noise", "take the tare of the flat skin first");
+  }
+  if (shapes.size() < kLeastShapes) {
+    throw Error("bending", "one shape does not determine the patterns",
+                "give cylinders along x, along y and in between");
+  }
+  for (const auto& [frames, curvature] : shapes) {
+    require_fitting(before, frames.skin(), frames.name());
+    require_frames(frames, kLeastBentFrames);
+    double saturated = 0;
+    for (const SenselStatistics& sensel : frames.sensels()) saturated += sensel.saturated > 0;
+    if (saturated > kMostSaturated * static_cast<double>(frames.sensels().size())) {
+      throw Error(frames.name(), fmt::format("{} sensels are at full scale", saturated),
+                  "take the load off, or bend less");
+    }
+  }
+}
+
+/// Frames of the last tare; `otherwise` if the history does not say.
+double frames_of_tare(const SkinCalibration& calibration, double otherwise) {
+  double frames = otherwise;
+  for (const CalibrationStep& step : calibration.history) {
+    if (step.step == "tare" && step.frames > 0) frames = static_cast<double>(step.frames);
+  }
+  return frames;
+}
+
+/// The patterns as linear functions of the changes of the tare: pattern[p] = Σ weight[p][shape] ·
+/// change[shape].
+std::array<std::vector<double>, 3> weights_of(std::span<const BentSkin> shapes) {
+  NormalEquations equations(3);
+  std::vector<bool> active(3);
+  for (const BentSkin& shape : shapes) {
+    const Triple row = triple_of(shape.curvature);
+    equations.add(row, 0);
+    // cos 90° is not quite zero in floating point.
+    for (std::size_t p = 0; p < 3; ++p) active[p] = active[p] || std::abs(row.at(p)) > 1e-9;
+  }
+  const auto inverse = equations.inverse(active);
+  if (!active[0] || !active[1] || !inverse) {
+    throw Error("bending", "the shapes do not determine the patterns",
+                "give cylinders along x, along y and in between");
+  }
+  std::array<std::vector<double>, 3> weights;
+  for (std::size_t p = 0; p < 3; ++p) {
+    for (const BentSkin& shape : shapes) {
+      const Triple row = triple_of(shape.curvature);
+      double weight = 0;
+      for (std::size_t q = 0; q < 3; ++q) weight += (*inverse)[p * 3 + q] * row.at(q);
+      weights.at(p).push_back(weight);
+    }
+  }
+  return weights;
+}
+
+}  // namespace
+
+Curvature curvature_of_cylinder(double radius_mm, double axis_deg) {
+  const double angle = axis_deg * std::numbers::pi / 180;
+  const double sine = std::sin(angle);
+  const double cosine = std::cos(angle);
+  return {sine * sine / radius_mm, cosine * cosine / radius_mm, -2 * sine * cosine / radius_mm};
+}
+
+BendingResult calibrate_bending(const SkinCalibration& before, std::span<const BentSkin> shapes) {
+  require_shapes(before, shapes);
+  const std::array<std::vector<double>, 3> weights = weights_of(shapes);
+  const Calibration& planes = before.planes;
+  const std::size_t sensels = planes.tare.size();
+  std::array<std::vector<float>, 3> patterns;
+  for (auto& pattern : patterns) pattern.assign(sensels, 0);
+  BendingResult result;
+  std::vector<double> changes(shapes.size());
+  double count = 0;
+  double noise_squares = 0;
+  for (std::size_t i = 0; i < sensels; ++i) {
+    bool good = planes.mask.empty() || planes.mask[i] != 0;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      const SenselStatistics& sensel = shapes[s].frames.sensels()[i];
+      good = good && sensel.saturated == 0 && sensel.readings > 0;
+      changes[s] = sensel.mean - planes.tare[i];
+    }
+    if (!good) continue;
+    ++count;
+    noise_squares += double{planes.noise[i]} * planes.noise[i];
+    Triple fitted{};
+    for (std::size_t p = 0; p < 3; ++p) {
+      for (std::size_t s = 0; s < shapes.size(); ++s) fitted.at(p) += weights.at(p)[s] * changes[s];
+      patterns.at(p)[i] = static_cast<float>(fitted.at(p));
+      result.rms[p] += fitted.at(p) * fitted.at(p);
+    }
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      const Triple row = triple_of(shapes[s].curvature);
+      const double rest = changes[s] - fitted[0] * row[0] - fitted[1] * row[1] - fitted[2] * row[2];
+      result.residual_before += changes[s] * changes[s];
+      result.residual_after += rest * rest;
+    }
+  }
+  if (count == 0) throw Error("bending", "no sensel can be read on all shapes", "check the frames");
+  const auto shapes_of_sensels = count * static_cast<double>(shapes.size());
+  result.residual_before = std::sqrt(result.residual_before / shapes_of_sensels);
+  result.residual_after = std::sqrt(result.residual_after / shapes_of_sensels);
+  double signal = 0;
+  for (std::size_t p = 0; p < 3; ++p) {
+    // The tare's error is common to all shapes.
+    double per_frame = 0;
+    double sum = 0;
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      const double weight = weights.at(p)[s];
+      per_frame += weight * weight / shapes[s].frames.frames();
+      sum += weight;
+    }
+    per_frame += sum * sum / frames_of_tare(before, shapes[0].frames.frames());
+    const double variance = noise_squares / count * per_frame;
+    result.standard_error[p] = std::sqrt(variance);
+    result.rms[p] = std::sqrt(result.rms[p] / count);
+    if (variance > 0) signal = std::max(signal, result.rms[p] * result.rms[p] / variance);
+  }
+  result.found = signal > kLeastSignal;
+  result.calibration = before;
+  Calibration& after = result.calibration.planes;
+  after.bend_x = after.bend_y = after.bend_xy = {};
+  if (!result.found) return result;
+  after.bend_x = std::move(patterns[0]);
+  after.bend_y = std::move(patterns[1]);
+  after.bend_xy = std::move(patterns[2]);
+  return result;
+}
+
+}  // namespace pillarfield

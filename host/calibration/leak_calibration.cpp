@@ -1,0 +1,288 @@
+#include "pillarfield/leak_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "base/quantile.h"
+#include "calibration/leak_fit.h"
+#include "calibration/leak_sum.h"
+#include "calibration/linear_readings.h"
+#include "calibration/normal_equations.h"
+#include "pillarfield/error.h"
+#include "skin/pillar_sensels.h"
+
+namespace pillarfield {
+namespace {
+
+/// Least sum of a pressed pillar, in multiples of its noise.
+constexpr double kLeastPress = 100;
+/// Largest sum of a neighbour of a pressed pillar, as a fraction of that of the pillar.
+constexpr double kMostNeighbour = 0.5;
+/// Largest sum of a pillar beyond the neighbours, as a fraction, and in multiples of its noise.
+constexpr double kMostBeyond = 0.05;
+constexpr double kBeyondNoise = 6;
+/// Least surplus of a diagonal that marks an inactive sensel, as a fraction of the sum, which gains
+/// may be off by, and in multiples of the noise.
+constexpr double kLeastSurplus = 0.04;
+constexpr double kSurplusNoise = 6;
+/// A press is left out if its residual exceeds the median by this factor.
+constexpr double kOutlier = 3;
+constexpr int kFitSteps = 12;
+/// Factor on the standard error within which a leak counts as absent.
+constexpr double kLeakInsignificant = 3;
+constexpr double kMostLeak = 0.2;
+
+bool is_significant(double leak, double error) {
+  return std::abs(leak) > kLeakInsignificant * error && error > 0;
+}
+
+}  // namespace
+
+LeakFinder::LeakFinder(const Skin& skin, const SkinCalibration& calibration)
+    : skin_(skin),
+      calibration_(calibration),
+      noise_(mean_noise(calibration)),
+      sums_(skin.pillars()) {
+  require_fitting(calibration, skin, "calibration");
+  if (calibration.planes.tare.empty()) {
+    throw Error("calibration", "has no tare", "take the tare of the unloaded skin first");
+  }
+}
+
+bool LeakFinder::is_isolated(std::int64_t row, std::int64_t col) const {
+  const auto rows = static_cast<std::int64_t>(skin_.pillar_rows());
+  const auto cols = static_cast<std::int64_t>(skin_.pillar_cols());
+  const auto sum_at = [&](std::int64_t r, std::int64_t c) {
+    return r < 0 || c < 0 || r >= rows || c >= cols ? 0
+                                                    : sums_[static_cast<std::size_t>(r * cols + c)];
+  };
+  if (row < 1 || col < 1 || row + 1 >= rows || col + 1 >= cols) return false;
+  const double sum = sum_at(row, col);
+  if (!(sum > kLeastPress * 2 * noise_)) return false;
+  const double most_beyond = std::max(kMostBeyond * sum, kBeyondNoise * 2 * noise_);
+  for (std::int64_t r = row - 2; r <= row + 2; ++r) {
+    for (std::int64_t c = col - 2; c <= col + 2; ++c) {
+      if (r == row && c == col) continue;
+      const bool near = std::abs(r - row) < 2 && std::abs(c - col) < 2;
+      if (sum_at(r, c) > (near ? kMostNeighbour * sum : most_beyond)) return false;
+    }
+  }
+  return true;
+}
+
+void LeakFinder::add(const FrameView& frame) {
+  const std::vector<float> readings = linear_readings(calibration_, skin_, frame);
+  for_each_pillar(skin_, [&](std::size_t row, std::size_t col, const auto& sensels) {
+    double sum = 0;
+    for (const std::size_t i : sensels) sum += readings[i];
+    sums_[row * skin_.pillar_cols() + col] = sum;
+  });
+  for_each_pillar(skin_, [&](std::size_t row, std::size_t col, const auto&) {
+    if (presses_.size() == kMostLeakPresses ||
+        !is_isolated(static_cast<std::int64_t>(row), static_cast<std::int64_t>(col))) {
+      return;
+    }
+    Press press{static_cast<std::uint32_t>(row * skin_.pillar_cols() + col), {}};
+    for (std::size_t i = 0; i < press.readings.size(); ++i) {
+      const std::size_t at_row = 2 * (row - 1) + i / kPatchSide;
+      const std::size_t at_col = 2 * (col - 1) + i % kPatchSide;
+      press.readings.at(i) = readings[at_row * skin_.cols + at_col];
+    }
+    presses_.push_back(press);
+  });
+}
+
+/// Gauss–Newton steps on the readings of the sensels that carry no load.
+class LeakFinder::Fit {
+ public:
+  Fit(const std::vector<Press>& presses, double noise) : noise_(noise) {
+    for (const Press& press : presses) presses_.push_back(&press);
+  }
+
+  /// Estimates the leaks; inside stays zero unless a pressed pillar has an inactive sensel.
+  void estimate() {
+    for (int step = 0; step < kFitSteps; ++step) {
+      NormalEquations equations(4);
+      inactive_ = 0;
+      for (const Press* press : presses_) {
+        visit(*press, [&](const auto& row, double residual) { equations.add(row, residual); });
+      }
+      active_ = {inactive_ > 0, true, true, true};
+      const auto change = equations.solve(active_);
+      if (!change) return;
+      for (std::size_t i = 0; i < leaks_.size(); ++i) {
+        leaks_.at(i) = std::clamp(leaks_.at(i) + (*change)[i], -2 * kMostLeak, 2 * kMostLeak);
+      }
+    }
+  }
+
+  /// Leaves out the presses whose residual is far above the median; returns their number.
+  std::size_t leave_out() {
+    std::vector<double> residuals;
+    for (const Press* press : presses_) residuals.push_back(residual_of(*press));
+    std::vector<double> sorted = residuals;
+    const double most = kOutlier * median(sorted);
+    std::vector<const Press*> kept;
+    for (std::size_t i = 0; i < presses_.size(); ++i) {
+      if (residuals[i] <= most) kept.push_back(presses_[i]);
+    }
+    const std::size_t left_out = presses_.size() - kept.size();
+    presses_ = kept;
+    return left_out;
+  }
+
+  /// Standard errors: the larger one of that from all residuals and that from the scatter between
+  /// places, whose tares and gains are off together.
+  [[nodiscard]] Leaks standard_errors() {
+    NormalEquations equations(4);
+    std::map<std::uint32_t, Leaks> gradients;
+    for (const Press* press : presses_) {
+      Leaks& gradient = gradients[press->pillar];
+      visit(*press, [&](const auto& row, double residual) {
+        equations.add(row, residual);
+        for (std::size_t i = 0; i < row.size(); ++i) gradient.at(i) += row.at(i) * residual;
+      });
+    }
+    places_ = gradients.size();
+    Leaks errors{};
+    const auto inverse = equations.inverse(active_);
+    if (!inverse) return errors;
+    const double variance = equations.squares_at({0, 0, 0, 0}) / equations.equations();
+    const auto places = static_cast<double>(places_);
+    for (std::size_t i = 0; i < errors.size(); ++i) {
+      double scatter = 0;
+      for (const auto& [place, gradient] : gradients) {
+        double shift = 0;
+        for (std::size_t j = 0; j < errors.size(); ++j) {
+          shift += (*inverse)[i * 4 + j] * gradient.at(j);
+        }
+        scatter += shift * shift;
+      }
+      if (places > 1) scatter *= places / (places - 1);
+      errors.at(i) = std::sqrt(std::max(variance * (*inverse)[i * 4 + i], scatter));
+    }
+    return errors;
+  }
+
+  /// RMS over the presses of their residuals, as fractions of the pressed sensels' mean.
+  [[nodiscard]] double relative_residual() {
+    double squares = 0;
+    for (const Press* press : presses_) {
+      const double relative = residual_of(*press);
+      squares += relative * relative;
+    }
+    return std::sqrt(squares / static_cast<double>(presses_.size()));
+  }
+
+  [[nodiscard]] const Leaks& leaks() const { return leaks_; }
+  void set_leaks(const Leaks& leaks) { leaks_ = leaks; }
+  [[nodiscard]] bool inside_known() const { return active_[0]; }
+  [[nodiscard]] std::size_t places() const { return places_; }
+  [[nodiscard]] std::size_t presses() const { return presses_.size(); }
+
+ private:
+  /// Calls `use(derivatives by the leaks, residual)` for each sensel without a load.
+  template <class Use>
+  void visit(const Press& press, Use use) {
+    PressedLoad pressed{};
+    for (std::size_t n = 0; n < pressed.size(); ++n) {
+      pressed.at(n) = press.readings.at(kPressedSensels.at(n));
+    }
+    const double sum = pressed[0] + pressed[1] + pressed[2] + pressed[3];
+    const auto inactive =
+        inactive_sensel(pressed, std::max(kLeastSurplus * sum, kSurplusNoise * 2 * noise_));
+    if (inactive) ++inactive_;
+    const LeakedPatch read = leak_patch(unleak(pressed, leaks_, inactive), leaks_);
+    for (std::size_t i = 0; i < read.readings.size(); ++i) {
+      const auto* const own = std::ranges::find(kPressedSensels, i);
+      const bool loaded =
+          own != kPressedSensels.end() &&
+          own - kPressedSensels.begin() != static_cast<std::ptrdiff_t>(inactive.value_or(4));
+      if (loaded || std::isnan(press.readings.at(i))) continue;
+      Leaks row{};
+      for (std::size_t p = 0; p < row.size(); ++p) row.at(p) = read.derivatives.at(p).at(i);
+      use(row, press.readings.at(i) - read.readings.at(i));
+    }
+  }
+
+  /// RMS residual of a press over the mean reading of its pressed sensels.
+  double residual_of(const Press& press) {
+    double squares = 0;
+    double count = 0;
+    visit(press, [&](const auto&, double residual) {
+      squares += residual * residual;
+      ++count;
+    });
+    double sum = 0;
+    for (const std::size_t i : kPressedSensels) sum += press.readings.at(i);
+    return std::sqrt(squares / std::max(1.0, count)) / (sum / 4);
+  }
+
+  std::vector<const Press*> presses_;
+  double noise_;
+  Leaks leaks_{};
+  std::vector<bool> active_ = {false, true, true, true};
+  std::size_t inactive_ = 0;  ///< presses with an inactive sensel in the last pass
+  std::size_t places_ = 0;
+};
+
+LeakResult LeakFinder::result() const {
+  if (presses_.empty()) {
+    throw Error(
+        "leak", "no frame shows an isolated pressed pillar",
+        "press single pillars, two or more from the edge of the skin, with a tip finer than "
+        "a pillar, so hard that each reads 100 times its noise");
+  }
+  Fit fit(presses_, noise_);
+  LeakResult result;
+  fit.estimate();
+  result.left_out = fit.leave_out();
+  fit.estimate();
+  const Leaks errors = fit.standard_errors();
+  const Leaks leaks = fit.leaks();
+  for (const double leak : leaks) {
+    if (std::abs(leak) <= kMostLeak) continue;
+    throw Error("leak", fmt::format("a leak of {:.2g} is more than {}", leak, kMostLeak),
+                "check that the tip is finer than a pillar and presses one at a time");
+  }
+  result.presses = fit.presses();
+  result.places = fit.places();
+  result.inside_known = fit.inside_known();
+  result.leak = {{leaks[0], leaks[1]}, {leaks[2], leaks[3]}};
+  result.standard_error = {{errors[0], errors[1]}, {errors[2], errors[3]}};
+  result.residual_after = fit.relative_residual();
+  fit.set_leaks({});
+  result.residual_before = fit.relative_residual();
+  std::optional<SenselLeak> sensel;
+  std::optional<PillarLeak> pillar;
+  if (is_significant(leaks[0], errors[0]) || is_significant(leaks[1], errors[1])) {
+    sensel = result.leak.sensel;
+  }
+  if (is_significant(leaks[2], errors[2]) || is_significant(leaks[3], errors[3])) {
+    pillar = result.leak.pillar;
+  }
+  result.calibration = calibration_;
+  rescale_for_leaks(result.calibration, skin_, sensel, pillar);
+  return result;
+}
+
+void rescale_for_leaks(SkinCalibration& calibration, const Skin& skin,
+                       const std::optional<SenselLeak>& sensel,
+                       const std::optional<PillarLeak>& pillar) {
+  SensorEffects& effects = calibration.planes.effects;
+  const SensorEffects before = effects;
+  effects.sensel_leak = sensel;
+  effects.pillar_leak = pillar;
+  const double inner = full_leak_sum(effects) / full_leak_sum(before);
+  if (calibration.counts_per_newton) *calibration.counts_per_newton /= inner;
+  for (float& zone : calibration.planes.dead_zone) zone /= static_cast<float>(inner);
+  for (std::size_t i = 0; i < calibration.planes.gain.size(); ++i) {
+    const double own = leak_sum(effects, skin, i) / leak_sum(before, skin, i);
+    calibration.planes.gain[i] *= static_cast<float>(own / inner);
+  }
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,213 @@
+#include "pillarfield/memory_calibration.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/quantile.h"
+#include "calibration/leak_sum.h"
+#include "calibration/linear_readings.h"
+#include "calibration/memory_fit.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+/// Least number of frames, and least ratio of the largest to the mean load.
+constexpr std::size_t kLeastFrames = 50;
+constexpr double kLeastChange = 1.1;
+/// Ends of the pieces of a fitted curve, as fractions of the largest reading.
+constexpr double kPieceEnds[] = {1.0 / 64, 1.0 / 32, 1.0 / 16, 1.0 / 8, 1.0 / 4, 3.0 / 8,
+                                 1.0 / 2,  5.0 / 8,  3.0 / 4,  7.0 / 8, 1};
+/// A curve is fitted anew if its RMS residual is below this fraction of that of a factor.
+constexpr double kNewCurveWins = 0.5;
+/// Memory is found if it lowers the RMS residual below this fraction, and reads at least this much
+/// of the range.
+constexpr double kMemoryWins = 0.9;
+constexpr double kLeastMemory = 0.002;
+
+using Sample = MemoryFinder::Sample;
+
+void require_experiment(const std::vector<Sample>& samples) {
+  if (samples.size() < kLeastFrames) {
+    throw Error("memory", fmt::format("{} frames are too few", samples.size()),
+                fmt::format("give at least {}", kLeastFrames));
+  }
+  double sum = 0;
+  double most = 0;
+  for (const Sample& sample : samples) {
+    sum += sample.load_counts;
+    most = std::max(most, sample.load_counts);
+  }
+  if (most > kLeastChange * sum / static_cast<double>(samples.size())) return;
+  throw Error("memory", "the pressure does not change",
+              "give frames in which it rises from zero, rests and falls");
+}
+
+/// Width of the loop at X/2 in a cycle from 0 to X, over the reading at X.
+double loop_width(const SenselMemory& memory, double range) {
+  double width = 0;
+  double top = range;
+  for (const Play& play : memory.plays) {
+    const double fallen = std::min(range / 2, range - play.width_counts);
+    const double risen = std::max(0.0, range / 2 - play.width_counts);
+    width += play.weight * (fallen - risen);
+    top += play.weight * (range - play.width_counts);
+  }
+  return width / top;
+}
+
+double creep_in_last_decade(const SenselMemory& memory, double duration_s) {
+  double rise = 0;
+  for (const Creep& creep : memory.creep) {
+    rise += creep.weight *
+            (std::exp(-0.1 * duration_s / creep.time_s) - std::exp(-duration_s / creep.time_s));
+  }
+  return rise;
+}
+
+double longest_recording(const std::vector<Sample>& samples) {
+  double longest = 0;
+  double duration = 0;
+  for (const Sample& sample : samples) {
+    duration = sample.interval_s > 0 ? duration + sample.interval_s : 0;
+    longest = std::max(longest, duration);
+  }
+  return longest;
+}
+
+/// The curve of the calibration followed by c, whose pieces end at `ends`; `leaks` is the sum of
+/// leaks that readings and loads of the curve have and those of c lack.
+ResponseCurve followed_by(const SkinCalibration& calibration, const MemoryFit& fit,
+                          const std::vector<double>& ends, double leaks) {
+  const ResponseCurve& before = calibration.planes.effects.curve;
+  std::vector<double> knots = ends;
+  for (const double load : before.loads) knots.push_back(load / leaks);
+  std::ranges::sort(knots);
+  ResponseCurve curve;
+  constexpr double kLeastGap = 1.02;  // Close knots would repeat the steps of a fit.
+  double last = 0;
+  for (const double knot : knots) {
+    const double load = leaks * value_at(fit, ends, knot);
+    if (!(knot > kLeastGap * last && load > (curve.loads.empty() ? 0 : curve.loads.back()))) {
+      continue;
+    }
+    last = knot;
+    const auto& law = calibration.power_law;
+    curve.readings.push_back(
+        law ? straightened({1 / law->exponent, law->reference_counts}, leaks * knot)
+            : reading_at(before, leaks * knot));
+    curve.loads.push_back(load);
+  }
+  return curve;
+}
+
+/// The typical dead zone of a calibration whose response curve was fitted with it.
+std::optional<double> known_dead_zone(const Calibration& planes) {
+  if (planes.effects.curve.empty()) return std::nullopt;
+  std::vector<float> zones = planes.dead_zone;
+  return zones.empty() ? 0 : median(zones);
+}
+
+void store(const MemoryFit& fit, const std::vector<double>& ends, double residual,
+           SkinCalibration& calibration) {
+  Calibration& planes = calibration.planes;
+  const bool curved = ends.size() > 1;
+  // A factor on the readings goes into k, and so into all loads.
+  const double scale = curved ? 1 : fit.slopes[0];
+  if (curved) {
+    const ResponseCurve curve = followed_by(calibration, fit, ends, full_leak_sum(planes.effects));
+    set_power_law(calibration, std::nullopt);
+    planes.effects.curve = curve;
+  }
+  *calibration.counts_per_newton /= scale;
+  planes.effects.memory = fit.memory;
+  for (Play& play : planes.effects.memory->plays) play.width_counts /= scale;
+  planes.dead_zone.clear();
+  if (fit.dead_zone > 0) {
+    planes.dead_zone.assign(std::size_t{calibration.rows} * calibration.cols,
+                            static_cast<float>(fit.dead_zone / scale));
+  }
+  ResidualError& left =
+      planes.effects.residual.emplace(planes.effects.residual.value_or(ResidualError{}));
+  left.relative = std::min(1.0, std::hypot(left.relative, residual));
+  if (calibration.threshold_factor && !planes.noise.empty()) {
+    set_threshold(calibration, *calibration.threshold_factor);
+  }
+}
+
+}  // namespace
+
+MemoryFinder::MemoryFinder(const Skin& skin, const SkinCalibration& calibration)
+    : skin_(skin), calibration_(calibration) {
+  require_fitting(calibration, skin, "calibration");
+  if (calibration.planes.tare.empty() || !calibration.counts_per_newton) {
+    throw Error("calibration", "has no tare or no counts per newton",
+                "take the tare and equilibrate first");
+  }
+}
+
+void MemoryFinder::add(const FrameView& frame, double time_s, double pressure_kpa) {
+  const std::vector<float> readings = linear_readings(calibration_, skin_, frame);
+  double sum = 0;
+  std::size_t count = 0;
+  for (const float reading : readings) {
+    if (std::isnan(reading)) continue;
+    sum += reading;
+    ++count;
+  }
+  if (2 * count <= readings.size()) {
+    throw Error("memory",
+                fmt::format("{} of {} sensels can be read at {} s", count, readings.size(), time_s),
+                "press less");
+  }
+  if (!begins_ && !(time_s > time_s_)) {
+    throw Error("memory", fmt::format("the time {} s follows {} s", time_s, time_s_),
+                "times must rise within a recording");
+  }
+  const double area_mm2 = skin_.pillar_pitch_mm() * skin_.pillar_pitch_mm();
+  const double force_n = 1e-3 * pressure_kpa * area_mm2;
+  samples_.push_back(
+      {begins_ ? 0 : time_s - time_s_, *calibration_.counts_per_newton * force_n,
+       sum / static_cast<double>(count) / full_leak_sum(calibration_.planes.effects)});
+  time_s_ = time_s;
+  begins_ = false;
+}
+
+MemoryResult MemoryFinder::result() const {
+  require_experiment(samples_);
+  const double most = std::ranges::max(samples_, {}, &Sample::reading).reading;
+  const double range = std::ranges::max(samples_, {}, &Sample::load_counts).load_counts;
+  std::vector<double> ends = {most};
+  const std::optional<double> zone = known_dead_zone(calibration_.planes);
+  MemoryFit fit = fit_memory(samples_, {ends, zone});
+  std::vector<double> pieces;
+  for (const double fraction : kPieceEnds) pieces.push_back(fraction * most);
+  const MemoryFit curved = fit_memory(samples_, {pieces, zone});
+  MemoryResult result;
+  result.curved = std::sqrt(curved.squares) < kNewCurveWins * std::sqrt(fit.squares);
+  if (result.curved) {
+    ends = pieces;
+    fit = curved;
+  }
+  const MemoryFit none = fit_memory(samples_, {ends, zone, false});
+  const auto relative = [&](double squares) {
+    return std::sqrt(squares / static_cast<double>(samples_.size())) / range;
+  };
+  result.memory = fit.memory;
+  result.hysteresis = loop_width(fit.memory, range);
+  result.creep_per_decade = creep_in_last_decade(fit.memory, longest_recording(samples_));
+  result.range_counts = range;
+  result.dead_zone_counts = fit.dead_zone;
+  result.residual_before = relative(none.squares);
+  result.residual_after = relative(fit.squares);
+  result.found = result.residual_after < kMemoryWins * result.residual_before &&
+                 result.hysteresis + result.creep_per_decade > kLeastMemory;
+  result.calibration = calibration_;
+  result.calibration.planes.effects.memory.reset();
+  if (result.found) store(fit, ends, result.residual_after, result.calibration);
+  return result;
+}
+
+}  // namespace pillarfield

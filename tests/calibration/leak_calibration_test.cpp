@@ -1,0 +1,166 @@
+// Leaks between sensels and between pillars from a fine tip.
+
+#include "pillarfield/leak_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibration/normal_equations.h"
+#include "pillarfield/equilibration.h"
+#include "pillarfield/tare.h"
+#include "tests/base/message.h"
+#include "tests/calibration/pressed_skin.h"
+
+namespace pillarfield {
+namespace {
+
+using core_test::message_of;
+using core_test::PressedSkin;
+
+/// A skin with noise 0.5 and gains of 5 % that leaks.
+PressedSkin leaking_skin(const SenselLeak& sensel, const PillarLeak& pillar) {
+  SensorModel sensor;
+  sensor.tare_counts = 12;
+  sensor.gain_spread = 0.05;
+  sensor.noise_counts = 0.5;
+  sensor.leak_inside = sensel.inside;
+  sensor.leak_across = sensel.across;
+  sensor.pillar_leak_edge = pillar.edge;
+  sensor.pillar_leak_corner = pillar.corner;
+  return PressedSkin(20, 20, sensor);
+}
+
+SkinCalibration equilibrated_with_leaks(PressedSkin& skin) {
+  const SkinCalibration tared =
+      take_tare(blank_calibration(skin.skin()), skin.bare(100), {}).calibration;
+  const FrameStatistics pressed = skin.press(0.3, 100);
+  const UniformPress presses[] = {{pressed, skin.pressure_kpa(0.3)}};
+  return equilibrate(tared, presses, {}).calibration;
+}
+
+/// A tip of 0.5 N on each of 18 x 18 pillars in turn, or every `stride`-th, pulled in all
+/// directions by `friction` times its force.
+void press_places(PressedSkin& skin, double friction, int stride, LeakFinder& finder) {
+  const double pitch = skin.skin().pillar_pitch_mm();
+  const Skin& size = skin.skin();
+  FrameBuffer frame(Simulator(skin.scene()).sensel_type(), size.rows, size.cols);
+  ForceField truth(size.pillar_rows(), size.pillar_cols());
+  std::uint64_t index = 1000;
+  for (int place = 0; place < 18 * 18; place += stride) {
+    Scene scene = skin.scene();
+    Contact tip;
+    tip.shape = ContactShape::flat_punch;
+    tip.motion = ContactMotion::slide;
+    tip.friction = friction;
+    tip.direction_deg = 37 * place % 360;
+    tip.contact_radius_mm = 0.3;
+    tip.reference_load_n = 0.5;
+    tip.path = {{0, (place % 18 - 8.5) * pitch, (place / 18 - 8.5) * pitch, 0.5}};
+    scene.load = std::vector<Contact>{tip};
+    Simulator(scene).render(index++, frame, truth);
+    finder.add(frame.view());
+  }
+}
+
+LeakResult found(PressedSkin& skin, double friction, int stride = 3) {
+  LeakFinder finder(skin.skin(), equilibrated_with_leaks(skin));
+  press_places(skin, friction, stride, finder);
+  return finder.result();
+}
+
+void expect_within_errors(const LeakResult& result, const SenselLeak& sensel,
+                          const PillarLeak& pillar) {
+  const LeakEstimate& error = result.standard_error;
+  EXPECT_NEAR(result.leak.sensel.inside, sensel.inside, 4 * error.sensel.inside);
+  EXPECT_NEAR(result.leak.sensel.across, sensel.across, 4 * error.sensel.across);
+  EXPECT_NEAR(result.leak.pillar.edge, pillar.edge, 4 * error.pillar.edge);
+  EXPECT_NEAR(result.leak.pillar.corner, pillar.corner, 4 * error.pillar.corner);
+}
+
+TEST(LeakCalibration, FindsTheLeaksBetweenSensels) {
+  PressedSkin skin = leaking_skin({0.05, 0.02}, {});
+  const LeakResult result = found(skin, 2);
+  expect_within_errors(result, {0.05, 0.02}, {});
+  EXPECT_LT(result.standard_error.sensel.inside, 0.002);
+  EXPECT_LT(result.standard_error.sensel.across, 0.001);
+  EXPECT_TRUE(result.inside_known);
+  EXPECT_GT(result.residual_before, 2 * result.residual_after);
+  ASSERT_TRUE(result.calibration.planes.effects.sensel_leak);
+  EXPECT_FALSE(result.calibration.planes.effects.pillar_leak);
+  // Gains and k are those of the skin without leaks: 0.3 N on each pillar.
+  const Calibration truth = skin.truth();
+  const Calibration& planes = result.calibration.planes;
+  const double k = *result.calibration.counts_per_newton;
+  for (const std::size_t i : {std::size_t{0}, std::size_t{5}, std::size_t{820}}) {
+    EXPECT_NEAR(planes.gain[i] / k, truth.gain[i] / 320, 0.01 * truth.gain[i] / 320);
+  }
+}
+
+TEST(LeakCalibration, FindsTheLeaksBetweenPillars) {
+  PressedSkin skin = leaking_skin({0.03, 0.01}, {0.02, 0.005});
+  const LeakResult result = found(skin, 2);
+  expect_within_errors(result, {0.03, 0.01}, {0.02, 0.005});
+  EXPECT_TRUE(result.calibration.planes.effects.pillar_leak);
+  EXPECT_LT(result.standard_error.pillar.edge, 0.001);
+}
+
+TEST(LeakCalibration, WithoutAnInactiveSenselInsideIsUnknown) {
+  PressedSkin skin = leaking_skin({0.05, 0.02}, {});
+  const LeakResult result = found(skin, 0);
+  EXPECT_FALSE(result.inside_known);
+  EXPECT_EQ(result.leak.sensel.inside, 0);
+  EXPECT_NEAR(result.leak.sensel.across, 0.02 / 1.1, 0.001);
+}
+
+TEST(LeakCalibration, StoresNothingWithoutLeaks) {
+  PressedSkin skin = leaking_skin({}, {});
+  const LeakResult result = found(skin, 2);
+  expect_within_errors(result, {}, {});
+  EXPECT_FALSE(result.calibration.planes.effects.pillar_leak);
+  EXPECT_LT(std::abs(result.leak.sensel.inside), 0.002);
+}
+
+TEST(LeakCalibration, AFewPressesSayHowSureTheyAre) {
+  PressedSkin skin = leaking_skin({0.05, 0.02}, {});
+  const LeakResult many = found(skin, 2, 3);
+  PressedSkin same = leaking_skin({0.05, 0.02}, {});
+  const LeakResult few = found(same, 2, 60);
+  expect_within_errors(few, {0.05, 0.02}, {});
+  EXPECT_GT(few.standard_error.sensel.across, 2 * many.standard_error.sensel.across);
+}
+
+TEST(LeakCalibration, RefusesFramesWithoutIsolatedPillars) {
+  PressedSkin skin = leaking_skin({}, {});
+  const SkinCalibration calibration = equilibrated_with_leaks(skin);
+  LeakFinder finder(skin.skin(), calibration);
+  const auto message = [&] { return message_of([&] { (void)finder.result(); }); };
+  EXPECT_NE(message().find("no frame shows an isolated pressed pillar"), std::string::npos);
+  Scene scene = skin.scene();
+  scene.load = DirectionSweep{.directions = 20, .inclinations = 20, .magnitudes_n = {0.5}};
+  FrameBuffer frame(SenselType::f32, 40, 40);
+  ForceField truth(20, 20);
+  Simulator(scene).render(0, frame, truth);
+  finder.add(frame.view());
+  EXPECT_NE(message().find("no frame shows an isolated pressed pillar"), std::string::npos);
+  EXPECT_NE(message_of([&] {
+              LeakFinder(skin.skin(), blank_calibration(skin.skin()));
+            }).find("take the tare"),
+            std::string::npos);
+}
+
+TEST(NonNegativeLeastSquares, LeavesOutWhatWouldBeNegative) {
+  NormalEquations equations(3);
+  const double rows[][3] = {{1, 0, 1}, {0, 1, 1}, {1, 1, 0}, {1, 2, 3}};
+  // x = (2, −1, 1) solves all of them; the nearest non-negative one lacks the second.
+  for (const auto& row : rows) equations.add(row, 2 * row[0] - row[1] + row[2]);
+  const std::vector<double> free = *equations.solve({true, true, true});
+  EXPECT_NEAR(free[1], -1, 1e-9);
+  const std::vector<double> x = equations.solve_non_negative({true, true, true});
+  const std::vector<double> expected = *equations.solve({true, false, true});
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], expected[i], 1e-9);
+  EXPECT_GE(expected[2], 0);
+}
+
+}  // namespace
+}  // namespace pillarfield
