@@ -104,6 +104,7 @@ void define_memory(const SenselMemory& memory, double frame_interval_s, Definiti
   all["PF_CREEPS"] = fmt::format("{}", memory.creep.size());
   all["PF_PLAY_WIDTHS"] = hex_list(model.play_width);
   all["PF_PLAY_WEIGHTS"] = hex_list(model.play_weight);
+  all["PF_CREEP_DECAYS"] = hex_list(model.creep_decay);
   all["PF_CREEP_RATES"] = hex_list(model.creep_rate);
   all["PF_CREEP_WEIGHTS"] = hex_list(model.creep_weight);
 }
@@ -133,8 +134,9 @@ void define_residual(const ResidualError& residual, Definitions& all) {
 void define_effects(const SolverPlan& plan, Definitions& all) {
   const SensorEffects& effects = plan.calibration.effects;
   if (!effects.curve.empty()) {
-    all["PF_CURVE_PER_COUNT"] = hex_float(curve_table(effects.curve).per_count);
-    all["PF_POWER_LARGEST"] = hex_float(kMaxCounts);
+    const auto curve = curve_polynomial(effects.curve).polynomial;
+    all["PF_CURVE_COEFFICIENTS"] = hex_list(curve.terms);
+    all["PF_CURVE_PER_COUNT"] = hex_float(curve.per_count);
   }
   if (effects.shear_coefficient) {
     all["PF_PER_COEFFICIENT_X"] = hex_float(1 / effects.shear_coefficient->x);
