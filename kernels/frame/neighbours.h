@@ -37,6 +37,17 @@ PF_INLINE Ring ring_of(global float* rings, uint cols) {
   return ring;
 }
 
+/* True if no sensel of one row under PF_LANES pillars is active, as far as raw readings tell. */
+PF_INLINE bool leaks_nothing(Input input, Place place) {
+#ifdef PF_SKIP_IDLE
+  return row_is_idle(
+      input.raw + place.row * input.row_stride + place.col,
+      activation_thresholds(input.calibration) + offset_of(input.calibration, place));
+#else
+  return false;
+#endif
+}
+
 /* Writes the sources of row `row`, which may lie outside the skin (-1 and beyond the last), and of
  * its ends. */
 PF_INLINE void fill_ring_row(Input input, uint row) {
@@ -48,7 +59,7 @@ PF_INLINE void fill_ring_row(Input input, uint row) {
     const uint col = min(at, input.cols - PF_LANES);
     const Place place = {row, 2 * col};
     RealPair sources = {(Real)(0.0f), (Real)(0.0f)};
-    if (!outside) {
+    if (!outside && !leaks_nothing(input, place)) {
       sources =
           leak_sources(input.raw + row * input.row_stride + 2 * col, input.calibration, place);
     }
