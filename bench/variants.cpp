@@ -56,6 +56,37 @@ void add_baseline(SolverPlan& plan) { plan.baseline_rate = 0.01; }
 
 void add_power_law(SolverPlan& plan) { plan.skin.power_law = PowerLaw{0.8, 100}; }
 
+SensorEffects& effects(SolverPlan& plan) { return plan.calibration.effects; }
+
+void add_curve(SolverPlan& plan) { effects(plan).curve = {{30, 90, 180, 255}, {25, 80, 170, 250}}; }
+
+void add_shear_coefficient(SolverPlan& plan) { effects(plan).shear_coefficient = {0.9, 0.9}; }
+
+void add_leak(SolverPlan& plan) { effects(plan).sensel_leak = {0.05, 0.02}; }
+
+void add_memory(SolverPlan& plan) {
+  effects(plan).memory = {{{0, 0.02}, {30, 0.02}, {90, 0.02}}, {{0.3, 0.02}, {10, 0.02}}};
+}
+
+void add_wires(SolverPlan& plan) { effects(plan).wires = {64, 64, 1e-5, 1e-5, 1e-5}; }
+
+void add_pillar_leak(SolverPlan& plan) { effects(plan).pillar_leak = {0.02, 0.005}; }
+
+void add_lean(SolverPlan& plan) { effects(plan).arm_mm = 0.224; }
+
+void add_residual(SolverPlan& plan) {
+  add_uncertainty(plan);
+  effects(plan).residual = {0.02, 0.5};
+}
+
+/// All corrections of a real sensor.
+void add_sensor(SolverPlan& plan) {
+  for (const auto add : {add_tare, add_gain, add_dead_zone, add_curve, add_shear_coefficient,
+                         add_leak, add_memory, add_wires, add_lean}) {
+    add(plan);
+  }
+}
+
 void add_all(SolverPlan& plan) {
   for (const auto add :
        {add_tare, add_gain, add_mask, add_dead_zone, add_saturation, add_uncertainty, add_angles}) {
@@ -81,6 +112,15 @@ constexpr std::array kStages = {
     Stage{"baseline", add_baseline},
     Stage{"power_law", add_power_law},
     Stage{"all", add_all},
+    Stage{"curve", add_curve},
+    Stage{"shear_coefficient", add_shear_coefficient},
+    Stage{"leak", add_leak},
+    Stage{"memory", add_memory},
+    Stage{"wires", add_wires},
+    Stage{"pillar_leak", add_pillar_leak},
+    Stage{"lean", add_lean},
+    Stage{"residual", add_residual},
+    Stage{"sensor", add_sensor},
 };
 
 }  // namespace

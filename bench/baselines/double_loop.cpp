@@ -79,7 +79,7 @@ maths::Stages stages_of(const Constants& is) {
 template <Stages compiled>
 maths::Correction correction_at(const Constants& is, std::size_t at) {
   if constexpr (!compiled.calibration) return {};
-  return {is.tare[at], is.gain[at], is.dead_zone[at], static_cast<double>(is.mask[at])};
+  return {is.tare[at], is.gain[at], is.dead_zone[at], static_cast<double>(is.mask[at]), {}};
 }
 
 /// Writes a pillar's results, plane by plane.

@@ -40,14 +40,13 @@ FaultFinder::FaultFinder(std::string name, const Skin& skin, SenselType type,
   plan_.skin = skin;
   plan_.sensel_type = type;
   apply(calibration, plan_.skin, plan_.calibration);
+  plan_.calibration.effects.wires.reset();  // The frames are without their crosstalk.
 }
 
 void FaultFinder::add(const FrameView& frame) {
   statistics_.add(frame);
   SenselReader reader(plan_, frame);
-  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) {
-    predict(row, col, reader);
-  });
+  for_each_pillar(plan_.skin, [&](auto row, auto col, const auto&) { predict(row, col, reader); });
 }
 
 void FaultFinder::predict(std::size_t row, std::size_t col, SenselReader& reader) {
@@ -82,7 +81,8 @@ FaultFinder::Range FaultFinder::range_of(std::size_t sensel) const {
   const double tare = planes.tare.empty() ? 0 : planes.tare[sensel];
   const double gain = planes.gain.empty() ? 1 : planes.gain[sensel];
   const double corrected = std::max(0.0, (*skin.full_scale_counts - tare) * gain);
-  const double most = skin.power_law ? straightened(*skin.power_law, corrected) : corrected;
+  const double most = skin.power_law ? straightened(*skin.power_law, corrected)
+                                     : load_at(planes.effects.curve, corrected);
   return {least, std::max(least, most + dead_zone)};
 }
 

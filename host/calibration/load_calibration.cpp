@@ -32,6 +32,7 @@ class Press {
     plan_.skin = load.frames.skin();
     plan_.sensel_type = SenselType::f32;
     apply(calibration, plan_.skin, plan_.calibration);
+    plan_.calibration.effects.wires.reset();  // The frames are without their crosstalk.
   }
 
   [[nodiscard]] double load_n() const { return load_n_; }

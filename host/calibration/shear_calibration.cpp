@@ -45,6 +45,7 @@ ForceField solve_ideal(const KnownShear& load, const SkinCalibration& before) {
   plan.sensel_type = SenselType::f32;
   apply(before, plan.skin, plan.calibration);
   plan.calibration.effects.shear_coefficient.reset();
+  plan.calibration.effects.wires.reset();  // The frames are without their crosstalk.
   return solve_on_host(plan, mean_frame(load.frames).view());
 }
 

@@ -14,6 +14,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/tare.h"
+#include "pillarfield/wire_calibration.h"
 #include "testbed/testbed.h"
 
 /// The commands and their arguments. A command throws Error where its work fails.
@@ -113,6 +114,11 @@ struct BendingCommand : StepOptions {
   std::vector<double> axes_deg;  ///< one per file
 };
 
+struct WiresCommand : StepOptions {
+  std::vector<std::string> files;
+  WireTile tile;
+};
+
 struct FaultsCommand : StepOptions {
   std::string frames;
   FaultOptions faults;
@@ -148,6 +154,7 @@ void calibrate(const ShearCommand& command);
 void calibrate(const LeakCommand& command);
 void calibrate(const MemoryCommand& command);
 void calibrate(const BendingCommand& command);
+void calibrate(const WiresCommand& command);
 void calibrate(const FaultsCommand& command);
 void calibrate(const ApplyCommand& command);
 void run_testbed(const TestbedOptions& options);

@@ -11,7 +11,7 @@ import unittest
 
 from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
 
-STEPS = ["tare", "equilibrate", "load", "shear", "leak", "memory", "bending", "faults", "apply"]
+STEPS = ["wires", "tare", "equilibrate", "load", "shear", "leak", "memory", "bending", "faults", "apply"]
 COMMANDS = [["simulate"], ["solve"], ["pace"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["testbed"], ["info"], ["completion"]]
 
@@ -162,7 +162,7 @@ class Numbers(CommandTest):
         step = [recording, "--calibration", recording, "-o", output]
         needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
                    "load": [*step, "--load-n", 10], "shear": [*step, "--shear-n", "1,0"], "leak": step, "memory": [*step, "--pressure", "log.csv"],
-                   "bending": [*step, "--radius-mm", 60, "--axis-deg", 0]}
+                   "wires": [recording, "-o", output], "bending": [*step, "--radius-mm", 60, "--axis-deg", 0]}
         tried = 0
         for command in COMMANDS:
             text = run(*command, "--help").stdout

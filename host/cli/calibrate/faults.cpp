@@ -14,14 +14,15 @@ namespace {
 FaultResult find_faults(const FaultsCommand& command) {
   check_step_output({command.frames}, command, OutputKind::calibration);
   const std::unique_ptr<FrameSource> source = open_for_step(command.frames, command);
-  FaultFinder finder(command.frames, source->skin(), source->sensel_type(),
-                     initial_calibration(command, *source, command.frames), command.faults);
+  const SkinCalibration before = initial_calibration(command, *source, command.frames);
+  WireCorrection correct = wire_correction(*source, before);
+  FaultFinder finder(command.frames, correct.skin(), correct.type(), before, command.faults);
   FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
   Progress progress("Testing", source->frames(), command.quiet);
   for (std::uint64_t index = 0; index < source->frames(); ++index) {
     stop_if_interrupted_before(command.output);
     source->read(index, frame);
-    finder.add(frame.view());
+    finder.add(correct(frame.view()));
     progress.show(index + 1);
   }
   return finder.result();

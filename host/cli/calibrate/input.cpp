@@ -10,14 +10,14 @@ namespace pillarfield::cli {
 namespace {
 
 FrameStatistics statistics_of(FrameSource& source, const std::string& file,
-                              const StepOptions& options) {
-  FrameStatistics statistics(file, source.skin(), source.sensel_type());
+                              const StepOptions& options, WireCorrection correct) {
+  FrameStatistics statistics(file, correct.skin(), correct.type());
   FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
   Progress progress("Reading", source.frames(), options.quiet);
   for (std::uint64_t index = 0; index < source.frames(); ++index) {
     stop_if_interrupted_before(options.output);
     source.read(index, frame);
-    statistics.add(frame.view());
+    statistics.add(correct(frame.view()));
     progress.show(index + 1);
   }
   return statistics;
@@ -48,6 +48,10 @@ SkinCalibration initial_calibration(const StepOptions& options, const FrameSourc
   return calibration;
 }
 
+WireCorrection wire_correction(const FrameSource& source, const SkinCalibration& calibration) {
+  return {source.skin(), source.sensel_type(), calibration.planes.effects.wires};
+}
+
 StepInput read_input(const std::vector<std::string>& files, const StepOptions& options) {
   check_step_output(files, options, OutputKind::calibration);
   StepInput input;
@@ -56,7 +60,8 @@ StepInput read_input(const std::vector<std::string>& files, const StepOptions& o
     if (input.files.empty()) input.calibration = initial_calibration(options, *source, file);
     require_fitting(input.calibration, source->skin(), file);
     mask_missing(input.calibration, source->calibration().mask);
-    input.files.push_back(statistics_of(*source, file, options));
+    input.files.push_back(
+        statistics_of(*source, file, options, wire_correction(*source, input.calibration)));
     input.frames += source->frames();
   }
   return input;

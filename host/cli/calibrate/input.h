@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/wire_correction.h"
 #include "cli/commands.h"
 #include "pillarfield/frame_statistics.h"
 #include "pillarfield/recording.h"
@@ -23,13 +24,17 @@ std::unique_ptr<FrameSource> open_for_step(const std::string& file, const StepOp
 SkinCalibration initial_calibration(const StepOptions& options, const FrameSource& source,
                                     const std::string& file);
 
+/// What removes the crosstalk of wires that `calibration` knows from the frames of `source`.
+WireCorrection wire_correction(const FrameSource& source, const SkinCalibration& calibration);
+
 struct StepInput {
   SkinCalibration calibration;
   std::vector<FrameStatistics> files;
   std::uint64_t frames = 0;  ///< in all files
 };
 
-/// Checks the output, a calibration, and reads all frames of `files` and the calibration to extend.
+/// Checks the output, a calibration, and reads the calibration to extend and all frames of `files`,
+/// without the crosstalk of its wires.
 StepInput read_input(const std::vector<std::string>& files, const StepOptions& options);
 
 }  // namespace pillarfield::cli

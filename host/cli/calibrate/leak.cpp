@@ -18,13 +18,14 @@ LeakResult find_leak(const LeakCommand& command, std::uint64_t& frames) {
   for (const std::string& file : command.files) {
     const std::unique_ptr<FrameSource> source = open_for_step(file, command);
     const SkinCalibration calibration = initial_calibration(command, *source, file);
-    if (!finder) finder.emplace(source->skin(), calibration);
+    WireCorrection correct = wire_correction(*source, calibration);
+    if (!finder) finder.emplace(correct.skin(), calibration);
     FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
     Progress progress("Reading", source->frames(), command.quiet);
     for (std::uint64_t index = 0; index < source->frames(); ++index) {
       stop_if_interrupted_before(command.output);
       source->read(index, frame);
-      finder->add(frame.view());
+      finder->add(correct(frame.view()));
       progress.show(index + 1);
     }
     frames += source->frames();

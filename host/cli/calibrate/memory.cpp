@@ -26,14 +26,15 @@ MemoryResult find_memory(const MemoryCommand& command, std::uint64_t& frames) {
     const PressureLog pressure(command.logs[i]);
     const std::unique_ptr<FrameSource> source = open_for_step(command.files[i], command);
     const SkinCalibration before = initial_calibration(command, *source, command.files[i]);
-    if (!finder) finder.emplace(source->skin(), before);
+    WireCorrection correct = wire_correction(*source, before);
+    if (!finder) finder.emplace(correct.skin(), before);
     finder->begin();
     FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
     Progress progress("Reading", source->frames(), command.quiet);
     for (std::uint64_t index = 0; index < source->frames(); ++index) {
       stop_if_interrupted_before(command.output);
       const double time_s = source->read(index, frame);
-      finder->add(frame.view(), time_s, pressure.at(time_s));
+      finder->add(correct(frame.view()), time_s, pressure.at(time_s));
       progress.show(index + 1);
     }
     frames += source->frames();

@@ -207,6 +207,25 @@ void add_bending(CLI::App& parent, Work& work) {
   });
 }
 
+void add_wires(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<WiresCommand>(
+      parent, work, calibrate, "wires",
+      "Row and column crosstalk, from a body at rest while another one presses elsewhere.",
+      "  pillarfield simulate scenes/wired_skin_alone.toml --uncalibrated -o alone.h5\n"
+      "  pillarfield simulate scenes/wired_skin_row.toml --uncalibrated -o row.h5\n"
+      "  pillarfield simulate scenes/wired_skin_column.toml --uncalibrated -o column.h5\n"
+      "  pillarfield calibrate wires alone.h5 row.h5 column.h5 --tile-rows 40 --tile-cols 40 -o "
+      "wires.h5\n");
+  Group(command, "Input")
+      .file("RESTING", options->files,
+            "Frames of a body alone, then files with another one in its rows and in its columns");
+  Group step(command, "Wires");
+  step.whole("--tile-rows", options->tile.rows, "N", "Sensel rows that share wires [64]", 2, 1024);
+  step.whole("--tile-cols", options->tile.cols, "N", "Sensel columns that share wires [64]", 2,
+             1024);
+  add_step(command, *options, false, kCalibration);
+}
+
 void add_faults(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<FaultsCommand>(
       parent, work, calibrate, "faults",
@@ -251,6 +270,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
       "-o equal.h5\n"
       "  pillarfield solve pressed.h5 --calibration equal.h5 -o forces.h5\n");
   steps->require_subcommand(1);
+  add_wires(*steps, work);
   add_tare(*steps, work);
   add_equilibrate(*steps, work);
   add_load(*steps, work);

@@ -14,7 +14,7 @@ namespace pillarfield {
 
 /// One step of a calibration's history.
 struct CalibrationStep {
-  std::string step;                  ///< "tare", "equilibrate", "load" or "faults"
+  std::string step;                  ///< name of the command, such as "tare"
   std::vector<std::string> sources;  ///< names of the files of frames
   std::uint64_t frames = 0;          ///< total of all sources
   std::string parameters;            ///< "threshold_factor = 4, ..."

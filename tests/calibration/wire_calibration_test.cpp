@@ -1,0 +1,92 @@
+// Resistance of wires from a body that rests while another one presses elsewhere.
+
+#include "pillarfield/wire_calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/base/message.h"
+#include "tests/calibration/pressed_skin.h"
+
+namespace pillarfield {
+namespace {
+
+using core_test::message_of;
+using core_test::PressedSkin;
+
+/// 32 x 32 sensels on wires; 10 kohm at 255 counts.
+PressedSkin wired_skin(double row_ohm, double column_ohm) {
+  SensorModel sensor;
+  sensor.tare_counts = 12;
+  sensor.gain_spread = 0.05;
+  sensor.noise_counts = 0.5;
+  if (row_ohm + column_ohm > 0) {
+    sensor.wires.emplace();
+    sensor.wires->row_ohm = row_ohm;
+    sensor.wires->column_ohm = column_ohm;
+  }
+  return PressedSkin(16, 16, sensor);
+}
+
+Contact ball_at(double x_mm, double y_mm, double load_n) {
+  Contact ball;
+  ball.contact_radius_mm = 4;
+  ball.reference_load_n = load_n;
+  ball.path = {{0, x_mm, y_mm, load_n}};
+  return ball;
+}
+
+FrameStatistics under(PressedSkin& skin, std::vector<Contact> contacts) {
+  Scene scene = skin.scene();
+  scene.load = std::move(contacts);
+  return skin.statistics_of(Simulator(scene), 50);
+}
+
+std::vector<FrameStatistics> presses_of(PressedSkin& skin) {
+  const Contact rest = ball_at(-5, 5, 10);
+  return {under(skin, {rest}), under(skin, {rest, ball_at(5, 5, 15)}),
+          under(skin, {rest, ball_at(-5, -5, 15)}), under(skin, {rest, ball_at(5, -5, 15)})};
+}
+
+WireResult fitted(PressedSkin& skin) {
+  const std::vector<FrameStatistics> presses = presses_of(skin);
+  return calibrate_wires(blank_calibration(skin.skin()), presses, {64, 64});
+}
+
+TEST(WireCalibration, FindsTheResistances) {
+  PressedSkin skin = wired_skin(60, 30);
+  const WireResult result = fitted(skin);
+  const WireCrosstalk truth = *skin.truth().effects.wires;
+  EXPECT_TRUE(result.found);
+  EXPECT_NEAR(result.wires.row_per_count, truth.row_per_count, 0.05 * truth.row_per_count);
+  EXPECT_NEAR(result.wires.column_per_count, truth.column_per_count, 0.05 * truth.row_per_count);
+  EXPECT_LT(result.standard_error.row_per_count, 0.05 * truth.row_per_count);
+  EXPECT_GT(result.residual_before, 5 * result.residual_after);
+  ASSERT_TRUE(result.calibration.planes.effects.wires);
+  EXPECT_TRUE(result.calibration.planes.tare.empty());
+}
+
+TEST(WireCalibration, StoresNothingWithoutResistance) {
+  PressedSkin skin = wired_skin(0, 0);
+  const WireResult result = fitted(skin);
+  EXPECT_FALSE(result.calibration.planes.effects.wires);
+  EXPECT_LT(result.wires.row_per_count, 4 * result.standard_error.row_per_count + 1e-12);
+  EXPECT_LT(result.wires.column_per_count, 4 * result.standard_error.column_per_count + 1e-12);
+}
+
+TEST(WireCalibration, RefusesWhatDoesNotTell) {
+  PressedSkin skin = wired_skin(60, 30);
+  const std::vector<FrameStatistics> presses = presses_of(skin);
+  const SkinCalibration blank = blank_calibration(skin.skin());
+  const auto message = [&](std::span<const FrameStatistics> files, const WireTile& tile) {
+    return message_of([&] { (void)calibrate_wires(blank, files, tile); });
+  };
+  EXPECT_NE(message({presses.data(), 1}, {}).find("one file is too few"), std::string::npos);
+  EXPECT_NE(message(presses, {1, 64}).find("tile_rows is 1"), std::string::npos);
+  const std::vector<FrameStatistics> idle(2, under(skin, {}));
+  EXPECT_FALSE(message(idle, {}).empty());
+}
+
+}  // namespace
+}  // namespace pillarfield
