@@ -19,6 +19,7 @@ LEAST_COUNTS = 8  # of the largest load of a pillar that counts
 LIMIT_95 = 1.959964
 AMBIGUOUS = 16
 COMPONENTS = ("shear_x", "shear_y", "normal")
+ORDER = ("wires", "tare", "one pressure", "pressures", "leak", "memory", "shear", "arm", "bending")
 IDEAL = scenes.Effect("ideal sensor", "", ())
 
 
@@ -114,24 +115,19 @@ class Sensor:
     def experiment(self, name):
         return self.simulate(name, scenes.experiment(name, self.effect), "--uncalibrated")
 
-    def calibrate(self, step, before, *options):
-        """The calibration after a step of scenes.CALIBRATIONS."""
+    def calibrate(self, step, before):
+        """The calibration after a step of scenes.CALIBRATIONS; made at most once."""
         command, recordings, words = scenes.CALIBRATIONS[step]
-        after = f"{Path(before).stem}+{step.replace(' ', '_')}.h5"
+        after = f"{Path(before).stem}+{step}.h5".replace(" ", "_") if before else f"{step}.h5"
         if not Path(self.folder, after).exists():
             self.run("calibrate", command, *map(self.experiment, recordings), *words,
-                     "--calibration", before, "-o", after, "-q", *options)
+                     *(("--calibration", before) if before else ()), "-o", after, "-q")
         return after
 
-    def tare(self):
-        if not Path(self.folder, "tare.h5").exists():
-            self.run("calibrate", "tare", self.experiment("idle"), "-o", "tare.h5", "-q")
-        return "tare.h5"
-
     def calibrated(self, steps):
-        """The calibration after the tare and these steps."""
-        calibration = self.tare()
-        for step in steps:
+        """The calibration after these steps and the tare."""
+        calibration = None
+        for step in sorted((*steps, "tare"), key=ORDER.index):
             if step in scenes.CONSTANTS:
                 self.set_constants(calibration, scenes.CONSTANTS[step])
             else:
@@ -147,7 +143,7 @@ class Sensor:
         """Tare, and counts per newton of one known weight."""
         counts = 60
         weight = scenes.PILLARS**2 * counts / K
-        calibration = self.tare()
+        calibration = self.calibrate("tare", None)
         if not Path(self.folder, "weighed.h5").exists():
             self.run("calibrate", "load", self.experiment(f"press{counts}"), "--load-n", weight,
                      "--calibration", calibration, "-o", "weighed.h5", "-q")

@@ -37,7 +37,7 @@ EFFECTS = {
     "creep": Effect("creep 5 % a decade", "creep_per_decade = 0.05", ("one pressure", "memory")),
     "wires": Effect("wires, 50 Ω and 10 kΩ a sensel, tiles of 36 × 36",
                     "wires = { tile = [36, 36], row_ohm = 50, column_ohm = 50, "
-                    "sensel_ohm = 10000 }", ("one pressure",)),
+                    "sensel_ohm = 10000 }", ("wires", "one pressure")),
     "pillar_leak": Effect("leak between pillars, 2 % edge, 0.5 % corner",
                           "pillar_leak_edge = 0.02\npillar_leak_corner = 0.005",
                           ("one pressure", "leak")),
@@ -48,9 +48,15 @@ EFFECTS = {
 }
 TOGETHER = ("off_centre", "leak", "dead_zone", "curve", "hysteresis", "shear", "gains", "creep",
             "wires", "pillar_leak")
-EFFECTS["all"] = Effect("all of them but bending",
-                        "\n".join(EFFECTS[name].sensor for name in TOGETHER),
-                        ("pressures", "leak", "memory", "shear", "arm"))
+STEPS = ("wires", "pressures", "leak", "memory", "shear")
+
+
+def together(names):
+    return "\n".join(EFFECTS[name].sensor for name in names)
+
+
+EFFECTS["centred"] = Effect("all but bending and off-centre pressure", together(TOGETHER[1:]), STEPS)
+EFFECTS["all"] = Effect("all but bending", together(TOGETHER), (*STEPS, "arm"))
 
 
 def scene(sensor, *, contacts="", frames=1, rate_hz=100, skin=f"pillars = [{PILLARS}, {PILLARS}]",
@@ -172,6 +178,18 @@ def tips(sensor):
                                   for direction, path in zip((30, 120), paths)))
 
 
+# The places of a second body: alone, in the rows of the first one, its columns, and neither.
+OTHERS_MM = {"alone": None, "in_rows": (-5, 16), "in_columns": (-16, 5), "in_neither": (-5, 5)}
+
+
+def resting(sensor, other_mm):
+    """A ball at rest in the upper left tile, and another one of twice its load."""
+    places = [((-16, 16), 20)] + ([(other_mm, 40)] if other_mm else [])
+    return scene(sensor, frames=100, rate_hz=20, contacts="".join(
+        f'[[contact]]\nshape = "sphere"\nmotion = "press"\ncontact_radius_mm = 5\n'
+        f"position_mm = [{x}, {y}]\nload_n = {load}\n" for (x, y), load in places))
+
+
 CYLINDERS = {"bent_x": (90, 1, 0, 0), "bent_y": (0, 0, 1, 0), "bent_xy": (45, 0.5, 0.5, -1),
              "bent_yx": (135, 0.5, 0.5, 1)}
 CYLINDER_MM = 60
@@ -194,6 +212,8 @@ def experiment(name, effect):
         return cycles(effect.sensor)
     if name == "tips":
         return tips(effect.sensor)
+    if name in OTHERS_MM:
+        return resting(effect.sensor, OTHERS_MM[name])
     if name in CYLINDERS:
         return bent(effect.sensor, effect.surface, CYLINDERS[name][1:])
     return pulled(effect.sensor, PULLS_DEG[name])
@@ -206,8 +226,10 @@ def shears_n():
                     for angle in angles)
 
 
-# Step, recordings and options of the commands after `calibrate tare`.
+# Command, recordings and options of a step. `wires` comes before the tare, the others after it.
 CALIBRATIONS = {
+    "wires": ("wires", tuple(OTHERS_MM), ("--tile-rows", "36", "--tile-cols", "36")),
+    "tare": ("tare", ("idle",), ()),
     "one pressure": ("equilibrate", ("press60",), ("--pressure-kpa", f"{kilopascals(60)}")),
     "pressures": ("equilibrate", PRESSURES,
                   ("--pressure-kpa", ",".join(f"{kilopascals(int(name[5:]))}"
