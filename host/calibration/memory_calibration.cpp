@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantile.h"
 #include "calibration/leak_sum.h"
 #include "calibration/linear_readings.h"
 #include "calibration/memory_fit.h"
@@ -80,20 +81,33 @@ double longest_recording(const std::vector<Sample>& samples) {
 /// leaks that readings and loads of the curve have and those of c lack.
 ResponseCurve followed_by(const SkinCalibration& calibration, const MemoryFit& fit,
                           const std::vector<double>& ends, double leaks) {
+  const ResponseCurve& before = calibration.planes.effects.curve;
+  std::vector<double> knots = ends;
+  for (const double load : before.loads) knots.push_back(load / leaks);
+  std::ranges::sort(knots);
   ResponseCurve curve;
-  const std::vector<double> values = values_at_ends(fit, ends);
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    double reading = reading_at(calibration.planes.effects.curve, leaks * ends[i]);
-    if (const auto& law = calibration.power_law) {
-      reading = straightened({1 / law->exponent, law->reference_counts}, leaks * ends[i]);
+  constexpr double kLeastGap = 1.02;  // Close knots would repeat the steps of a fit.
+  double last = 0;
+  for (const double knot : knots) {
+    const double load = leaks * value_at(fit, ends, knot);
+    if (!(knot > kLeastGap * last && load > (curve.loads.empty() ? 0 : curve.loads.back()))) {
+      continue;
     }
-    const double load = leaks * values[i];
-    if (!curve.loads.empty() && !(load > curve.loads.back())) continue;
-    if (!(load > 0)) continue;
-    curve.readings.push_back(reading);
+    last = knot;
+    const auto& law = calibration.power_law;
+    curve.readings.push_back(
+        law ? straightened({1 / law->exponent, law->reference_counts}, leaks * knot)
+            : reading_at(before, leaks * knot));
     curve.loads.push_back(load);
   }
   return curve;
+}
+
+/// The typical dead zone of a calibration whose response curve was fitted with it.
+std::optional<double> known_dead_zone(const Calibration& planes) {
+  if (planes.effects.curve.empty()) return std::nullopt;
+  std::vector<float> zones = planes.dead_zone;
+  return zones.empty() ? 0 : median(zones);
 }
 
 void store(const MemoryFit& fit, const std::vector<double>& ends, double residual,
@@ -166,17 +180,18 @@ MemoryResult MemoryFinder::result() const {
   const double most = std::ranges::max(samples_, {}, &Sample::reading).reading;
   const double range = std::ranges::max(samples_, {}, &Sample::load_counts).load_counts;
   std::vector<double> ends = {most};
-  MemoryFit fit = fit_memory(samples_, ends, true);
+  const std::optional<double> zone = known_dead_zone(calibration_.planes);
+  MemoryFit fit = fit_memory(samples_, {ends, zone});
   std::vector<double> pieces;
   for (const double fraction : kPieceEnds) pieces.push_back(fraction * most);
-  const MemoryFit curved = fit_memory(samples_, pieces, true);
+  const MemoryFit curved = fit_memory(samples_, {pieces, zone});
   MemoryResult result;
   result.curved = std::sqrt(curved.squares) < kNewCurveWins * std::sqrt(fit.squares);
   if (result.curved) {
     ends = pieces;
     fit = curved;
   }
-  const MemoryFit none = fit_memory(samples_, ends, false);
+  const MemoryFit none = fit_memory(samples_, {ends, zone, false});
   const auto relative = [&](double squares) {
     return std::sqrt(squares / static_cast<double>(samples_.size())) / range;
   };

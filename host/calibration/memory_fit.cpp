@@ -115,9 +115,12 @@ MemoryFit fit_at(const Samples& samples, const std::vector<double>& ends, bool w
 }  // namespace
 
 MemoryFit fit_memory(const std::vector<MemoryFinder::Sample>& samples,
-                     const std::vector<double>& ends, bool with_memory) {
+                     const MemoryModelling& model) {
   const double range = range_of(samples);
-  const auto at = [&](double zone) { return fit_at(samples, ends, with_memory, zone, range); };
+  const auto at = [&](double zone) {
+    return fit_at(samples, model.ends, model.with_memory, zone, range);
+  };
+  if (model.dead_zone) return at(*model.dead_zone);
   // A coarse search first: the squares may have several minima.
   constexpr int kCoarse = 20;
   const double step = kMostZone * range / kCoarse;
@@ -136,16 +139,15 @@ MemoryFit fit_memory(const std::vector<MemoryFinder::Sample>& samples,
   return fit.squares < kZoneWins * none.squares ? fit : none;
 }
 
-std::vector<double> values_at_ends(const MemoryFit& fit, const std::vector<double>& ends) {
-  std::vector<double> values;
+double value_at(const MemoryFit& fit, const std::vector<double>& ends, double reading) {
   double value = 0;
   double begin = 0;
-  for (std::size_t i = 0; i < ends.size(); ++i) {
-    value += fit.slopes[i] * (ends[i] - begin);
-    begin = ends[i];
-    values.push_back(value);
+  for (std::size_t i = 0; i < ends.size() && reading > begin; ++i) {
+    const double end = i + 1 == ends.size() ? reading : std::min(reading, ends[i]);
+    value += fit.slopes[i] * (end - begin);
+    begin = end;
   }
-  return values;
+  return value;
 }
 
 }  // namespace pillarfield

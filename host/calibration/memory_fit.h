@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "pillarfield/memory_calibration.h"
@@ -15,13 +16,20 @@ struct MemoryFit {
   SenselMemory memory;         ///< weights above zero
 };
 
-/// Fits c, with pieces that end at `ends` (readings, increasing), the dead zone and, `with_memory`,
-/// plays of fixed widths and two creep times of a grid, all weights by non-negative least squares.
-[[nodiscard]] MemoryFit fit_memory(const std::vector<MemoryFinder::Sample>& samples,
-                                   const std::vector<double>& ends, bool with_memory);
+/// What fit_memory() fits.
+struct MemoryModelling {
+  std::vector<double> ends;         ///< of the pieces of c: readings, increasing
+  std::optional<double> dead_zone;  ///< unset: fitted
+  bool with_memory = true;
+};
 
-/// c at the end of each piece.
-[[nodiscard]] std::vector<double> values_at_ends(const MemoryFit& fit,
-                                                 const std::vector<double>& ends);
+/// Fits c, the dead zone and plays of fixed widths and two creep times of a grid, all weights by
+/// non-negative least squares.
+[[nodiscard]] MemoryFit fit_memory(const std::vector<MemoryFinder::Sample>& samples,
+                                   const MemoryModelling& model);
+
+/// c at a reading.
+[[nodiscard]] double value_at(const MemoryFit& fit, const std::vector<double>& ends,
+                              double reading);
 
 }  // namespace pillarfield
