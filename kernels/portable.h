@@ -106,19 +106,6 @@ static inline bool any_bits(Bits bits) {
 
 static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 
-/* The values of a table at whole indices. */
-static inline Real look_up(global const float* table, Real index) {
-#if PF_LANES == 1
-  return table[(int)index];
-#else
-  int at[PF_LANES];
-  float values[PF_LANES];
-  PF_JOIN(vstore, PF_LANES)(PF_JOIN(convert_int, PF_LANES)(index), 0, at);
-  for (int i = 0; i < PF_LANES; ++i) values[i] = table[at[i]];
-  return PF_JOIN(vload, PF_LANES)(0, values);
-#endif
-}
-
 /* PoCL does not inline by itself, and passes structures of lanes through memory. Other drivers
  * inline; Oclgrind lacks the attribute. */
 #ifdef POCL_DEVICE_ADDRESS_BITS
@@ -165,9 +152,6 @@ static inline Real real_of(Counts counts) { return counts; }
 static inline Bits bits_of(Mask mask) { return mask ? -1 : 0; }
 static inline Mask mask_of(Bits bits) { return bits != 0; }
 static inline bool any_lane(Mask mask) { return mask; }
-static inline Real look_up(const float* table, Real index) {
-  return static_cast<Real>(table[static_cast<int>(index)]);
-}
 
 using std::asin;
 using std::atan;

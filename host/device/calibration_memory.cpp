@@ -5,7 +5,6 @@
 
 #include "device/slot_memory.h"
 #include "solve/activation_thresholds.h"
-#include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 namespace {
@@ -40,9 +39,6 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
       return copy(plan.calibration.noise, to);
     case CalibrationPlane::mask:
       return copy(plan.calibration.mask, to);
-    case CalibrationPlane::curve:
-      return copy(curve_table(plan.calibration.effects.curve).loads, to);
-    case CalibrationPlane::state_flags:
     case CalibrationPlane::memory:
       return;
     case CalibrationPlane::activation:
@@ -51,26 +47,18 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
   copy_activation_thresholds(plan, to);
 }
 
-/// States of a sensel.
+/// States of a sensel, and the frame of its last load.
 std::size_t memory_states(const SolverPlan& plan) {
   const auto& memory = plan.calibration.effects.memory;
-  return memory ? memory->plays.size() + memory->creep.size() : 0;
-}
-
-/// Values of the largest plane.
-std::size_t largest_plane(const SolverPlan& plan) {
-  const std::size_t table = plan.calibration.effects.curve.empty() ? 0 : PF_CURVE_PIECES + 1;
-  // At least as many as flags of blocks, two for each pillar row more than pillars.
-  return std::max(plan.skin.sensels(), table);
+  return memory ? memory->plays.size() + memory->creep.size() + 1 : 0;
 }
 
 }  // namespace
 
 const char* macro_of(CalibrationPlane plane) {
-  static constexpr std::array kMacros = {
-      "PF_TARE_PLANE",  "PF_GAIN_PLANE",        "PF_DEAD_ZONE_PLANE",
-      "PF_NOISE_PLANE", "PF_MASK_PLANE",        "PF_ACTIVATION_PLANE",
-      "PF_CURVE_PLANE", "PF_STATE_FLAGS_PLANE", "PF_MEMORY_PLANE"};
+  static constexpr std::array kMacros = {"PF_TARE_PLANE",  "PF_GAIN_PLANE", "PF_DEAD_ZONE_PLANE",
+                                         "PF_NOISE_PLANE", "PF_MASK_PLANE", "PF_ACTIVATION_PLANE",
+                                         "PF_MEMORY_PLANE"};
   return kMacros[static_cast<std::size_t>(plane)];
 }
 
@@ -86,18 +74,16 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
   add(!calibration.mask.empty(), CalibrationPlane::mask);
   add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::activation);
-  add(!calibration.effects.curve.empty(), CalibrationPlane::curve);
-  add(memory_states(plan) > 0, CalibrationPlane::state_flags);
   for (std::size_t i = 0; i < memory_states(plan); ++i) planes.push_back(CalibrationPlane::memory);
   return planes;
 }
 
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
                                      const SpeedPaths& paths)
-    : plane_bytes_(page_aligned(largest_plane(plan) * sizeof(float))) {
+    : plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
   const std::vector<CalibrationPlane> planes = calibration_planes(plan, paths);
   has_tare_ = std::ranges::count(planes, CalibrationPlane::tare) > 0;
-  states_ = memory_states(plan) == 0 ? 0 : memory_states(plan) + 1;
+  states_ = memory_states(plan);
   first_state_ = planes.size() - states_;
   if (planes.empty()) return;
   const std::size_t bytes = planes.size() * plane_bytes_;

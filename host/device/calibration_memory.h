@@ -15,9 +15,7 @@ enum class CalibrationPlane : std::uint8_t {
   noise,
   mask,
   activation,
-  curve,        ///< a table, not a plane
-  state_flags,  ///< blocks with states; before the states
-  memory,       ///< the first state; the last planes
+  memory,  ///< the first state; the last planes
 };
 
 /// The macro that holds the plane's index.
@@ -44,7 +42,7 @@ class CalibrationMemory {
  private:
   std::size_t plane_bytes_;
   bool has_tare_;
-  std::size_t first_state_ = 0;  ///< number of planes before the states and their flags
+  std::size_t first_state_ = 0;  ///< number of planes before the states
   std::size_t states_ = 0;
   LargePages memory_;  ///< used if the device shares the host's memory
   cl::Buffer buffer_;

@@ -133,8 +133,9 @@ void define_residual(const ResidualError& residual, Definitions& all) {
 void define_effects(const SolverPlan& plan, Definitions& all) {
   const SensorEffects& effects = plan.calibration.effects;
   if (!effects.curve.empty()) {
-    all["PF_CURVE_PER_COUNT"] = hex_float(curve_table(effects.curve).per_count);
-    all["PF_POWER_LARGEST"] = hex_float(kMaxCounts);
+    const auto curve = curve_polynomial(effects.curve).polynomial;
+    all["PF_CURVE_COEFFICIENTS"] = hex_list(curve.terms);
+    all["PF_CURVE_PER_COUNT"] = hex_float(curve.per_count);
   }
   if (effects.shear_coefficient) {
     all["PF_PER_COEFFICIENT_X"] = hex_float(1 / effects.shear_coefficient->x);

@@ -62,6 +62,7 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .idle = results.bytes,
           .ring = results.scratch_begin(),
           .wires = results.scratch_begin(),
+          .frame = 0,
           .forces = results.scratch_begin()};
 }
 
@@ -116,6 +117,7 @@ void Slot::submit(const FrameView& frame) {
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   layout_.row_stride = on_device.row_stride;
+  layout_.frame = ++order_->frame;
   if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
   solve();
   if (unleak_() != nullptr) launch(unleak_, global_, local_);
@@ -139,10 +141,9 @@ void Slot::solve() {
   launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
   if (order_->follows_baseline) {
     follow_.setArg(kRate, order_->rate);
-    follow_.setArg(kFirstRow, static_cast<cl_uint>(order_->frame % order_->interval));
+    follow_.setArg(kFirstRow, static_cast<cl_uint>((order_->frame - 1) % order_->interval));
     launch(follow_, global_, local_, nullptr, left);
   }
-  ++order_->frame;
 }
 
 void Slot::wait() { queue_.finish(); }

@@ -14,7 +14,7 @@ namespace {
 double threshold_before_response(const SolverPlan& plan) {
   const double threshold = plan.skin.threshold_counts;
   const ResponseCurve& curve = plan.calibration.effects.curve;
-  if (!curve.empty()) return reading_in(curve_table(curve), threshold) * (1 - 1e-4);
+  if (!curve.empty()) return reading_at(curve_polynomial(curve).polynomial, threshold) * (1 - 1e-4);
   if (!plan.skin.power_law) return threshold;
   const PowerLaw& law = *plan.skin.power_law;
   const double reading =

@@ -8,8 +8,8 @@
 namespace pillarfield {
 
 /// The stages of kernels/frame/stages.h that a plan names, with their constants, in the precision
-/// of `Stages`: single_precision::Stages or double_precision::Stages. The table of the response
-/// curve, the weights of the leak and the model of the memory stay unset.
+/// of `Stages`: single_precision::Stages or double_precision::Stages. The polynomial of the
+/// response curve, the weights of the leak and the model of the memory stay unset.
 template <class Stages>
 Stages plan_constants(const SolverPlan& plan) {
   using Real = decltype(Stages::threshold);
@@ -51,12 +51,9 @@ Stages plan_constants(const SolverPlan& plan) {
           .parity_tolerance = real(plan.parity_tolerance_counts.value_or(0)),
           .scale = {real(scale.shear), real(scale.normal)},
           .column_per_count = real(effects.wires.value_or(WireCrosstalk{}).column_per_count),
-          .curve_table = nullptr,
-          .curve_per_count = 0,
+          .curve_polynomial = {},
           .leak_taps = {},
           .memory_model = {},
-          .plays = 0,
-          .creeps = 0,
           .per_coefficient_x = real(1 / coefficient.x),
           .per_coefficient_y = real(1 / coefficient.y),
           .residual_relative = real(residual.relative),

@@ -19,14 +19,12 @@ int inward(std::size_t at) { return at % 2 == 0 ? 1 : -1; }
 SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, SensorState* state)
     : calibration_(plan.calibration),
       frame_(frame),
-      curve_(curve_table(plan.calibration.effects.curve)),
       stages_(plan_constants<maths::Stages>(plan)),
       wires_(plan, frame),
       state_(state),
       noise_(static_cast<float>(reading_noise(plan))) {
   const SensorEffects& effects = plan.calibration.effects;
-  stages_.curve_table = curve_.loads.data();
-  stages_.curve_per_count = static_cast<float>(curve_.per_count);
+  stages_.curve_polynomial = curve_polynomial(effects.curve).polynomial;
   if (effects.sensel_leak) {
     const auto taps = leak_taps(*effects.sensel_leak);
     const auto real = [](double tap) { return static_cast<float>(tap); };
@@ -35,11 +33,11 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
   }
   if (!effects.memory) return;
   stages_.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
-  stages_.plays = static_cast<int>(effects.memory->plays.size());
-  stages_.creeps = static_cast<int>(effects.memory->creep.size());
   if (state_ == nullptr) return;
   const std::size_t states = effects.memory->plays.size() + effects.memory->creep.size();
   state_->values.resize(states * plan.skin.sensels());
+  state_->last_active.resize(plan.skin.sensels());
+  ++state_->frame;
 }
 
 maths::Pillar SenselReader::pillar(std::size_t row, std::size_t col) {
@@ -94,21 +92,23 @@ maths::Sensel SenselReader::without_leak(maths::Sensel sensel, std::size_t row,
 }
 
 maths::Sensel SenselReader::recalled(maths::Sensel sensel, std::size_t row, std::size_t col) {
-  const std::size_t plane = std::size_t{frame_.rows} * frame_.cols;
+  const maths::MemoryModel& model = stages_.memory_model;
+  if (state_ == nullptr) {
+    return maths::recall(sensel, maths::Memory{}, model, stages_.threshold, 0).sensel;
+  }
+  const std::size_t place = row * frame_.cols + col;
   const auto value = [&](int state) -> float& {
-    return state_->values[static_cast<std::size_t>(state) * plane + row * frame_.cols + col];
+    return state_->values[static_cast<std::size_t>(state) * state_->last_active.size() + place];
   };
   maths::Memory before{};
-  if (state_ != nullptr) {
-    for (int i = 0; i < stages_.plays; ++i) before.play[i] = value(i);
-    for (int i = 0; i < stages_.creeps; ++i) before.creep[i] = value(stages_.plays + i);
-  }
-  const maths::Recalled result = maths::recall(sensel, before, stages_.memory_model, stages_.plays,
-                                               stages_.creeps, stages_.threshold);
-  if (state_ != nullptr) {
-    for (int i = 0; i < stages_.plays; ++i) value(i) = result.memory.play[i];
-    for (int i = 0; i < stages_.creeps; ++i) value(stages_.plays + i) = result.memory.creep[i];
-  }
+  for (int i = 0; i < model.plays; ++i) before.play[i] = value(i);
+  for (int i = 0; i < model.creeps; ++i) before.creep[i] = value(model.plays + i);
+  const auto idle = static_cast<float>(state_->frame - state_->last_active[place] - 1);
+  const maths::Recalled result = maths::recall(sensel, before, model, stages_.threshold, idle);
+  if (!result.active) return result.sensel;
+  for (int i = 0; i < model.plays; ++i) value(i) = result.memory.play[i];
+  for (int i = 0; i < model.creeps; ++i) value(model.plays + i) = result.memory.creep[i];
+  state_->last_active[place] = state_->frame;
   return result.sensel;
 }
 

@@ -47,7 +47,6 @@ class SenselReader {
 
   const Calibration& calibration_;
   const FrameView& frame_;
-  CurveTable curve_;
   single_precision::Stages stages_;
   WireFactors wires_;
   SensorState* state_;

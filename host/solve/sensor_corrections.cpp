@@ -65,24 +65,6 @@ Patch inverse_of(Receives receives) {
 
 }  // namespace
 
-CurveTable curve_table(const ResponseCurve& curve) {
-  CurveTable table;
-  if (curve.empty()) return table;
-  table.per_count = PF_CURVE_PIECES / curve.readings.back();
-  for (int i = 0; i <= PF_CURVE_PIECES; ++i) {
-    table.loads.push_back(static_cast<float>(load_at(curve, i / table.per_count)));
-  }
-  return table;
-}
-
-double reading_in(const CurveTable& table, double load) {
-  const auto above = std::ranges::upper_bound(table.loads, load);
-  const auto high = std::clamp(above, table.loads.begin() + 1, table.loads.end() - 1);
-  const double low = *(high - 1);
-  const auto piece = static_cast<double>(high - 1 - table.loads.begin());
-  return (piece + (load - low) / (double{*high} - low)) / table.per_count;
-}
-
 double_precision::LeakTaps leak_taps(const SenselLeak& leak) {
   const Patch inverse = inverse_of(
       [&](const Patch& from, int row, int col) { return sensel_receives(from, row, col, leak); });
@@ -111,6 +93,8 @@ PillarTaps pillar_leak_taps(const PillarLeak& leak) {
 
 single_precision::MemoryModel memory_model(const SenselMemory& memory, double frame_interval_s) {
   single_precision::MemoryModel model{};
+  model.plays = static_cast<int>(memory.plays.size());
+  model.creeps = static_cast<int>(memory.creep.size());
   double slope = 1;    // of the loading curve
   double reading = 0;  // on it, at the width of the play
   double before = 0;

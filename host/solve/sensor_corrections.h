@@ -7,15 +7,17 @@
 
 namespace pillarfield {
 
-/// The table of a response curve: V at PF_CURVE_PIECES + 1 equidistant readings.
-struct CurveTable {
-  std::vector<float> loads;  ///< counts
-  double per_count = 0;      ///< pieces of one count
+/// The polynomial that stands in for a response curve up to kCurveReach times its last knot: the
+/// least squares with the most terms that increases everywhere (E1). Zero for an empty curve.
+struct CurveFit {
+  single_precision::CurvePolynomial polynomial{};
+  double rms_counts = 0;  ///< of its differences from the curve
 };
-[[nodiscard]] CurveTable curve_table(const ResponseCurve& curve);
+[[nodiscard]] CurveFit curve_polynomial(const ResponseCurve& curve);
+inline constexpr double kCurveReach = 1.25;
 
-/// The reading at which a table gives `load`, >= 0 counts.
-[[nodiscard]] double reading_in(const CurveTable& table, double load);
+/// The reading at which the polynomial gives `load`, >= 0 counts.
+[[nodiscard]] double reading_at(const single_precision::CurvePolynomial& curve, double load);
 
 /// The inverse of a leak, cut to 3 x 3 sensels; a uniform field keeps its exact inverse
 /// (docs/derivations/sensor_effects.md, E3).

@@ -9,6 +9,7 @@
 #include "pillarfield/tuning.h"
 #include "skin/force_scale.h"
 #include "solve/friction_limits.h"
+#include "solve/sensor_corrections.h"
 
 namespace pillarfield {
 namespace {
@@ -19,6 +20,22 @@ void check_counts(std::optional<double> value, const char* name, double high,
   if (!value || (*value >= 0 && *value <= high)) return;
   throw Error(where, fmt::format("{} is {}", name, *value),
               fmt::format("it must lie in [0, {}]", high));
+}
+
+/// Largest RMS error of the polynomial of a response curve, of the largest load.
+constexpr double kMaxCurveMisfit = 0.01;
+
+/// Throws Error if the kernel's polynomial is no good stand-in for a response curve.
+void check_curve(const ResponseCurve& curve, std::string_view where) {
+  if (curve.empty()) return;
+  const double misfit = curve_polynomial(curve).rms_counts / curve.loads.back();
+  if (misfit <= kMaxCurveMisfit) return;
+  throw Error(
+      where,
+      fmt::format("the response curve is bent too sharply: its polynomial is off by {:.2g} % "
+                  "of the largest load",
+                  100 * misfit),
+      fmt::format("give a curve that a polynomial of degree {} follows to 1 %", PF_CURVE_TERMS));
 }
 
 /// Root mean square of the noise of the sensels that are not masked.
@@ -103,6 +120,7 @@ void check(const SolverPlan& plan, std::string_view where) {
   if (plan.skin.power_law && !plan.calibration.effects.curve.empty()) {
     throw Error(where, "the skin has a power law and a response curve", "give one of the two");
   }
+  check_curve(plan.calibration.effects.curve, where);
   if (!plan.uncertainty) return;
   if (plan.estimator == Estimator::paper) {
     throw Error(where, "the paper's estimator has no uncertainty",

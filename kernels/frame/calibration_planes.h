@@ -6,6 +6,7 @@ typedef struct {
   size_t plane_bytes;
   size_t stride; /* sensels of a row */
   Stages stages;
+  uint frame; /* number of the frame, from 1 on */
 #ifdef PF_WIRES
   WireVectors wires;
 #endif
@@ -160,11 +161,8 @@ PF_INLINE Calibration calibration_of(global const uchar* planes, global uchar* r
   calibration.planes = planes;
   calibration.plane_bytes = layout.plane_bytes;
   calibration.stride = layout.plane_stride;
-#ifdef PF_CURVE
-  calibration.stages.curve_table = PF_PLANE_OF(calibration, float, (size_t)(PF_CURVE_PLANE));
-#else
-  calibration.stages.curve_table = 0;
-#endif
+  calibration.stages = 0;
+  calibration.frame = (uint)layout.frame;
 #ifdef PF_WIRES
   calibration.wires = wire_vectors((global float*)(results + layout.wires), 2 * (uint)layout.rows,
                                    2 * (uint)layout.cols);

@@ -11,5 +11,6 @@ typedef struct {
   ulong idle;         /* bytes from the first plane of results to the idle flags */
   ulong ring;         /* to the rings of neighbours.h */
   ulong wires;        /* to the vectors of find_wires.cl */
+  ulong frame;        /* number of the frame, from 1 on */
   ulong forces;       /* to the planes of forces with the leak between pillars */
 } Layout;

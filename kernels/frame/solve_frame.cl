@@ -15,8 +15,9 @@
  *   PF_POWER_EXPONENT               stage: linearises readings by a power law, with
  *   PF_POWER_REFERENCE, PF_POWER_LARGEST      counts
  *   PF_WIRES                        stage: row and column crosstalk (find_wires.cl)
- *   PF_CURVE                        stage: linearises readings by a table with
- *   PF_CURVE_PER_COUNT              pieces of a count
+ *   PF_CURVE                        stage: linearises readings by a polynomial;
+ *   PF_CURVE_COEFFICIENTS           in braces, and
+ *   PF_CURVE_PER_COUNT              members of CurvePolynomial
  *   PF_LEAK                         stage: removes the leak between sensels (neighbours.h);
  *   PF_LEAK_SELF, ...               members of LeakTaps
  *   PF_MEMORY                       stage: removes hysteresis and creep (memory_planes.h);
@@ -134,11 +135,8 @@ typedef struct {
   size_t row_stride;
   size_t activation_stride;
   global uchar* idle; /* flag of the first block */
-#ifdef PF_MEMORY
-  global uchar* has_states; /* flag of the first block */
-#endif
-  uint skew;     /* pillars by which the first block would begin before the row */
-  uint last_col; /* first column of the last block */
+  uint skew;          /* pillars by which the first block would begin before the row */
+  uint last_col;      /* first column of the last block */
   uint blocks;
 } Row;
 
@@ -171,9 +169,6 @@ PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
   const bool idle =
       is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
   if (idle != was_idle) row.idle[at] = idle;
-#ifdef PF_MEMORY
-  if (row.has_states[at]) return false;
-#endif
   return idle && was_idle;
 #else
   prefetch_readings(row, sensel, false);
@@ -210,9 +205,6 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
   row.row_stride = input.row_stride;
   row.activation_stride = calibration.stride;
   row.idle = output.idle + (size_t)at_row * blocks_of_row(pillar_cols);
-#ifdef PF_MEMORY
-  row.has_states = state_flags(calibration, at_row, pillar_cols);
-#endif
   row.skew = skew;
   row.last_col = pillar_cols - PF_LANES;
   row.blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
@@ -230,9 +222,6 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
 #endif
     const Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
     store_solution(solve_block(block, input), output, block.index, block.lanes);
-#if defined(PF_MEMORY) && defined(PF_SKIP_IDLE)
-    row.has_states[at] = !is_at_rest(block, calibration);
-#endif
   }
 }
 

@@ -26,7 +26,6 @@
 #define PF_TARE
 #define PF_GAIN
 #define PF_CURVE
-#define PF_CURVE_PER_COUNT stages.curve_per_count
 #define PF_LEAK
 #define PF_MEMORY
 #define PF_SHEAR_COEFFICIENT
@@ -83,12 +82,9 @@ typedef struct {
   Real parity_tolerance;
   ForceScale scale;
   Real column_per_count;
-  const float* curve_table; /* V, counts: PF_CURVE_PIECES + 1 values */
-  Real curve_per_count;
+  CurvePolynomial curve_polynomial;
   LeakTaps leak_taps;
   MemoryModel memory_model;
-  int plays;
-  int creeps;
   Real per_coefficient_x; /* 1 / c_x */
   Real per_coefficient_y;
   Real residual_relative;
@@ -101,10 +97,7 @@ typedef struct {
 } Stages;
 #else
 #define PF_NAMED(stage) 1
-/* A program has macros instead of constants. */
-typedef struct {
-  global const float* curve_table;
-} Stages;
+typedef int Stages; /* A program has macros instead. */
 #endif
 
 /* Calibration of a sensel; members of stages that are not named are not read. */
@@ -134,15 +127,13 @@ PF_INLINE Sensel validate_reading(Counts raw, Counts good, Stages stages) {
 }
 
 #ifdef PF_CURVE
-PF_INLINE CurvePlace place_on_curve(Real reading, Stages stages) {
-  return curve_place(reading, PF_CONSTANT(Real, PF_CURVE_PER_COUNT));
-}
-
-PF_INLINE Sensel linearise(Sensel sensel, Stages stages) {
-  const CurvePlace place = place_on_curve(sensel.reading, stages);
-  const Real low = look_up(stages.curve_table, place.piece);
-  const Real high = look_up(stages.curve_table + 1, place.piece);
-  return apply_curve(sensel, place, low, high, PF_CONSTANT(Real, PF_POWER_LARGEST));
+PF_INLINE CurvePolynomial curve_of(Stages stages) {
+#ifdef __cplusplus
+  return stages.curve_polynomial;
+#else
+  const CurvePolynomial curve = {PF_CURVE_COEFFICIENTS, PF_CURVE_PER_COUNT};
+  return curve;
+#endif
 }
 #endif
 
@@ -174,7 +165,7 @@ PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
   }
 #endif
 #ifdef PF_CURVE
-  if (PF_NAMED(curve)) sensel = linearise(sensel, stages);
+  if (PF_NAMED(curve)) sensel.reading = curve_load(sensel.reading, curve_of(stages));
 #endif
   return sensel;
 }
@@ -221,9 +212,7 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
 #ifdef PF_GAIN
     if (PF_NAMED(gain)) reading = reading * at.gain;
 #endif
-    const Real piece = place_on_curve(reading, stages).piece;
-    const Real rise = look_up(stages.curve_table + 1, piece) - look_up(stages.curve_table, piece);
-    noise = noise * (rise * PF_CONSTANT(Real, PF_CURVE_PER_COUNT));
+    noise = noise * curve_slope(reading, curve_of(stages));
   }
 #endif
   return noise;

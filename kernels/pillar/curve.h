@@ -1,32 +1,39 @@
-/* The response curve of all sensels (docs/derivations/sensor_effects.md, E1): a table of V at
- * PF_CURVE_PIECES + 1 equidistant readings from zero on. */
+/* The response curve of all sensels: V = r * P(x), where x is the reading r over that of the last
+ * knot, within [0, 1], and P a polynomial (docs/derivations/sensor_effects.md, E1). Beyond the last
+ * knot V is proportional to r. */
 
-#ifndef PF_CURVE_PIECES
-#define PF_CURVE_PIECES 1024
-#endif
+#define PF_CURVE_TERMS 7
 
-/* A reading's piece of the table. */
+/* Coefficients of P, lowest power first, and the scale of x, 1/counts. */
 typedef struct {
-  Real piece;    /* index of its lower end, a whole number */
-  Real fraction; /* position in the piece; above 1 beyond the end of the table */
-} CurvePlace;
+  float terms[PF_CURVE_TERMS];
+  float per_count;
+} CurvePolynomial;
 
-/* `per_count` is the number of pieces of one count. */
-static inline CurvePlace curve_place(Real reading, Real per_count) {
-  const Real last = PF_REAL(1.0) * (PF_CURVE_PIECES - 1);
-  const Real at = reading > PF_REAL(0.0) ? reading * per_count : PF_REAL(0.0);
-  CurvePlace place;
-  place.piece = at < last ? floor(at) : last;
-  place.fraction = at - place.piece;
-  return place;
+static inline Real curve_position(Real reading, CurvePolynomial curve) {
+  const Real x = reading * PF_CONSTANT(Real, curve.per_count);
+  const Real above = x > PF_REAL(0.0) ? x : PF_REAL(0.0);
+  return above < PF_REAL(1.0) ? above : PF_REAL(1.0);
 }
 
-/* V of a reading above zero, from both ends of its piece; `largest` counts at most. A reading of
- * zero and less stays. */
-static inline Sensel apply_curve(Sensel sensel, CurvePlace place, Real low, Real high,
-                                 Real largest) {
-  const Real load = low + place.fraction * (high - low);
-  const Real bounded = load < largest ? load : largest;
-  sensel.reading = sensel.reading > PF_REAL(0.0) ? bounded : sensel.reading;
-  return sensel;
+/* P(x). */
+static inline Real curve_factor(Real x, CurvePolynomial curve) {
+  Real sum = PF_CONSTANT(Real, curve.terms[PF_CURVE_TERMS - 1]);
+  for (int i = PF_CURVE_TERMS - 2; i >= 0; --i) sum = sum * x + PF_CONSTANT(Real, curve.terms[i]);
+  return sum;
+}
+
+/* V of a reading. */
+static inline Real curve_load(Real reading, CurvePolynomial curve) {
+  return reading * curve_factor(curve_position(reading, curve), curve);
+}
+
+/* dV/dr up to the last knot, P + x P'; the factor on small noise. */
+static inline Real curve_slope(Real reading, CurvePolynomial curve) {
+  const Real x = curve_position(reading, curve);
+  Real sum = PF_REAL(0.0);
+  for (int i = PF_CURVE_TERMS - 1; i >= 0; --i) {
+    sum = sum * x + PF_CONSTANT(Real, curve.terms[i]) * PF_CONSTANT(Real, i + 1);
+  }
+  return sum;
 }

@@ -28,10 +28,11 @@ namespace pillarfield {
 /// once.
 [[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
 
-/// Hysteresis and creep states of the sensels of a skin (SenselMemory), counts: [states, sensel
-/// rows, cols], the plays first. Empty: at rest.
+/// Hysteresis and creep of the sensels of a skin (SenselMemory) after a frame. Empty: at rest.
 struct SensorState {
-  std::vector<float> values;
+  std::vector<float> values;               ///< counts, [states, sensel rows, cols], plays first
+  std::vector<std::uint32_t> last_active;  ///< the last frame with load, [sensel rows, cols]
+  std::uint32_t frame = 0;                 ///< number of frames so far
 };
 
 /// Solves one frame of a sequence: sensels are in `state` before it, which is updated.
