@@ -29,10 +29,8 @@ class SenselsOfPlan {
   }
 
   [[nodiscard]] bool is_intact(std::uint32_t row, std::uint32_t col) const {
-    const auto& mask = calibration_.mask;
-    if (mask.empty()) return true;
     return std::ranges::all_of(pillar_sensels(skin_, row, col),
-                               [&](std::size_t at) { return mask[at] != 0; });
+                               [&](std::size_t at) { return is_good(calibration_, at); });
   }
 
  private:

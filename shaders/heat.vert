@@ -12,6 +12,6 @@ void main() {
   const uvec2 mesh = scene.grid.zw;
   const uvec2 corner = uvec2(tile % mesh.x, tile / mesh.x) + corners[uint(gl_VertexIndex) % 6u];
   sheet_mm = (vec2(corner) / vec2(mesh) - 0.5) * scene.sheet.xy;
-  const vec3 place = surface_position(sheet_mm, scene.readings.w, scene.sheet.w);
+  const vec3 place = surface_position(sheet_mm, scene.surface);
   gl_Position = scene.clip_from_world * vec4(place, 1.0);
 }

@@ -81,14 +81,15 @@ PF_CONSTANT uint kReadingsFloat = 2u;
 // Uniform data of one picture. Planes are offsets in the field's memory, in 4-byte words.
 struct Scene {
   mat4 clip_from_world;
-  vec4 sheet;           // width, height, pillar pitch, radius of the surface: mm
+  vec4 sheet;           // width, height, pillar pitch: mm; none
+  vec4 surface;         // as in surface.glsl
   uvec4 grid;           // pillar rows, pillar columns; columns and rows of the mesh
   uvec4 force;          // planes: shear_x, shear_y, normal, status
   uvec4 angles;         // planes: magnitude, theta, phi, none
   uvec4 deviation;      // planes: standard deviations of shear_x, shear_y, normal; none
   uvec4 span;           // planes: magnitude_low, magnitude_high, phi_low, phi_high
   uvec4 incline;        // planes: theta_low, theta_high; none, none
-  uvec4 readings;       // none, readings per row, 1 with readings, surface kind
+  uvec4 readings;       // none, readings per row, 1 with readings, none
   uvec4 shown;          // 1: hatch ambiguous pillars; hatch period: pixels; none, none
   vec4 range;           // low end, width; smallest force with an arrow: N per pillar; none
   vec4 viewport;        // left, top, width, height: pixels
@@ -115,7 +116,7 @@ struct Cell {
 #ifdef __cplusplus
 #undef PF_CONSTANT
 #undef PF_ARRAY
-static_assert(sizeof(Scene) == 64 + 15 * 16);
+static_assert(sizeof(Scene) == 64 + 16 * 16);
 static_assert(sizeof(Colours) == 272 * 16);
 static_assert(sizeof(Cell) == 32);
 

@@ -31,9 +31,9 @@ void main() {
   const vec2 middle = vec2(index) + 0.5 - 0.5 * vec2(scene.grid.yx);
   const vec2 sheet = vec2(middle.x, -middle.y) * scene.sheet.z;
   const vec2 shear = vec2(plane_value(scene.force.x, pillar), plane_value(scene.force.y, pillar));
-  const mat3 basis = surface_basis(sheet, scene.readings.w, scene.sheet.w);
+  const mat3 basis = surface_basis(sheet, scene.surface);
   const vec2 tail = local - scene.arrow.w * shear * scene.arrow.x;
-  const vec3 place = surface_position(sheet, scene.readings.w, scene.sheet.w) +
+  const vec3 place = surface_position(sheet, scene.surface) +
                      basis * vec3(tail, 0.02 * scene.sheet.z);
   gl_Position = scene.clip_from_world * vec4(place, 1.0);
 }

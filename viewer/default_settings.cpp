@@ -6,6 +6,7 @@
 #include "pillarfield/error.h"
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
+#include "viewer/style/surface.h"
 #include "viewer/style/ticks.h"
 
 namespace pillarfield::viewer {
@@ -62,6 +63,10 @@ void require_available(Quantity quantity, const SourceInfo& source) {
               "choose another --layer; not every file holds readings and noise");
 }
 
+Surface surface_of(const Options& options, const SourceInfo& source) {
+  return options.surface ? *options.surface : drawn_surface(source.skin.surface);
+}
+
 }  // namespace
 
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
@@ -71,7 +76,7 @@ Range range_that_fits(FieldProducer& producer, Quantity quantity) {
 View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {
   const SkinSize size = skin_size(source);
   if (options.orbit) {
-    OrbitView view = fit_orbit(size, options.surface, plot);
+    OrbitView view = fit_orbit(size, surface_of(options, source), plot);
     view.azimuth = options.azimuth.value_or(view.azimuth);
     view.elevation = options.elevation.value_or(view.elevation);
     view.target_mm = options.centre_mm.value_or(view.target_mm);
@@ -93,7 +98,7 @@ RenderSettings default_settings(const Options& options, FieldProducer& producer,
                                  : range_that_fits(producer, options.quantity);
   settings.map = options.map.value_or(default_map(info_of(options.quantity).scale));
   settings.theme = options.theme;
-  settings.surface = options.surface;
+  settings.surface = surface_of(options, source);
   settings.arrows = options.arrows;
   settings.sectors = options.sectors;
   settings.hatch = options.hatch;

@@ -100,12 +100,18 @@ void take_view(Options& options, const std::string& text) {
 }
 
 void take_surface(Options& options, const std::string& text) {
+  options.surface = Surface{};
   if (text == "plane") return;
-  require(text.rfind("cylinder:", 0) == 0,
-          fmt::format("'{}' is not a surface; choose plane or cylinder:RADIUS, in mm", text));
-  const auto radius = numbers(text.substr(9), ",", 1, "cylinder:RADIUS, in mm");
+  const std::string name = text.substr(0, text.find(':'));
+  require(
+      (name == "cylinder" || name == "sphere") && text != name,
+      fmt::format("'{}' is not a surface; choose plane, cylinder:RADIUS or sphere:RADIUS, in mm",
+                  text));
+  const auto radius =
+      numbers(text.substr(name.size() + 1), ",", 1, "cylinder:RADIUS or sphere:RADIUS, in mm");
   require(radius[0] >= 1 && radius[0] <= 1e5, "the radius must lie in [1, 100000] mm");
-  options.surface = {SurfaceKind::cylinder, radius[0]};
+  const SurfaceKind kind = name == "sphere" ? SurfaceKind::sphere : SurfaceKind::cylinder;
+  options.surface = Surface{kind, radius[0]};
 }
 
 /// The command line counts frames from 1.
@@ -157,7 +163,8 @@ void add_texts(CLI::App& app, Options& options) {
       take_range);
   add("--map", "Colours: cividis, viridis, diverging or cyclic [by layer]", take_map);
   add("--view", "top, orbit or orbit:AZIMUTH,ELEVATION in degrees [top]", take_view);
-  add("--surface", "In 3-D: plane or cylinder:RADIUS in mm [plane]", take_surface);
+  add("--surface", "In 3-D: plane, cylinder:RADIUS or sphere:RADIUS in mm [that of the source]",
+      take_surface);
   add("--frames", "Render frames FIRST:LAST, counted from 1", take_frames);
   add("--centre", "Centre of the top view, X,Y in mm [0,0]", take_centre);
   add("--zoom", "Zoom factor [1]", take_zoom);

@@ -33,7 +33,7 @@ struct Options {
   std::optional<double> elevation;  ///< rad
   double zoom = 1;
   std::optional<Vec2> centre_mm;
-  Surface surface;
+  std::optional<Surface> surface;  ///< unset: that of the source
   bool arrows = true;
   bool sectors = false;
   bool hatch = true;

@@ -14,7 +14,7 @@ HeldOutLevel compare(const ResponseFit& fit, const ResponseFit& all, double leve
   double count = 0;
   for_each_pillar(all.presses().front().frames.skin(), [&](auto, auto, const auto& sensels) {
     for (const std::size_t i : sensels) {
-      if (!mask.empty() && mask[i] == 0) continue;
+      if (!mask.empty() && mask[i] != kGood) continue;
       const Response fitted = fit(i);
       if (fitted.kind != Response::Kind::good) continue;
       for (const UniformPress& press : all.presses()) {

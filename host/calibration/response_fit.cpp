@@ -143,7 +143,7 @@ std::optional<LevelReadings> level_readings(const ResponseFit& fit,
   double leaks = 0;
   for_each_pillar(skin, [&](auto, auto, const auto& sensels) {
     for (const std::size_t i : sensels) {
-      if (!mask.empty() && mask[i] == 0) continue;
+      if (!mask.empty() && mask[i] != kGood) continue;
       ++good;
       std::size_t press = 0;
       for (; press < presses.size(); ++press) {

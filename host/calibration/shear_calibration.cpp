@@ -34,8 +34,12 @@ void require_shear_loads(std::span<const KnownShear> loads, const SkinCalibratio
   for (const KnownShear& load : loads) {
     require_fitting(before, load.frames.skin(), load.frames.name());
     require_frames(load.frames, 1);
-    if (std::isfinite(load.shear_x_n) && std::isfinite(load.shear_y_n)) continue;
-    throw Error(load.frames.name(), "its load is not finite", "give newtons");
+    if (std::isfinite(load.shear_x_n) && std::isfinite(load.shear_y_n) &&
+        (!load.normal_n || (*load.normal_n > 0 && std::isfinite(*load.normal_n)))) {
+      continue;
+    }
+    throw Error(load.frames.name(), "its load is not finite, or its normal force not above zero",
+                "give newtons");
   }
 }
 
@@ -133,9 +137,12 @@ ShearResult calibrate_shear(const SkinCalibration& before, std::span<const Known
           load.frames.name(), "has no contact",
           "check the calibration's tare and threshold, or give the frames with the load on");
     }
-    along_x.push_back({load.shear_x_n, sums.shear_x, sums.variance});
-    along_y.push_back({load.shear_y_n, sums.shear_y, sums.variance});
-    result.loads.push_back({sums.shear_x, sums.shear_y, sums.ambiguous / sums.normal});
+    const double scale = load.normal_n ? *load.normal_n / sums.normal : 1;
+    const double variance = scale * scale * sums.variance;
+    along_x.push_back({load.shear_x_n, scale * sums.shear_x, variance});
+    along_y.push_back({load.shear_y_n, scale * sums.shear_y, variance});
+    result.loads.push_back(
+        {scale * sums.shear_x, scale * sums.shear_y, sums.ambiguous / sums.normal});
   }
   const auto x = fit_axis(along_x);
   const auto y = fit_axis(along_y);

@@ -97,6 +97,7 @@ struct LoadCommand : StepOptions {
 struct ShearCommand : StepOptions {
   std::vector<std::string> files;
   std::vector<double> shears_n;  ///< x and y for each file
+  std::vector<double> loads_n;   ///< one per file, or none
 };
 
 struct LeakCommand : StepOptions {

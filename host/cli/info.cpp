@@ -89,6 +89,13 @@ void add_power_law(Json& facts, const std::optional<PowerLaw>& law) {
   facts["power_law_reference_counts"] = law->reference_counts;
 }
 
+void add_surface(Json& facts, const std::optional<Surface>& surface) {
+  if (!surface) return;
+  facts["surface"] = name_of(surface->shape);
+  if (surface->radius_mm != 0) facts["surface_radius_mm"] = surface->radius_mm;
+  if (surface->shape == SurfaceShape::cylinder) facts["surface_axis_deg"] = surface->axis_deg;
+}
+
 void add_skin(Json& facts, const Skin& skin) {
   facts["sensel_rows"] = skin.rows;
   facts["sensel_cols"] = skin.cols;
@@ -99,6 +106,7 @@ void add_skin(Json& facts, const Skin& skin) {
   facts["threshold_counts"] = skin.threshold_counts;
   if (skin.full_scale_counts) facts["full_scale_counts"] = *skin.full_scale_counts;
   add_power_law(facts, skin.power_law);
+  add_surface(facts, skin.surface);
 }
 
 Json facts_of_frames(const std::string& file) {
@@ -135,6 +143,7 @@ Json facts_of_forces(const std::string& file) {
                 {"contacts", info.contacts.has_value()},
                 {"warnings", reader.warnings()}};
   if (info.segment_point) facts["segment_point"] = *info.segment_point;
+  add_surface(facts, info.surface);
   return facts;
 }
 
@@ -188,6 +197,7 @@ Json facts_of_scene(const std::string& file) {
   }
   if (!scene.bodies.empty()) add_bodies(facts, scene);
   add_skin(facts, scene.skin);
+  if (scene.surface_map) facts["surface"] = scene.surface_map->path.string();
   facts["warnings"] = scene.warnings;
   return facts;
 }

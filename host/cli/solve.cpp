@@ -99,6 +99,7 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
+  info.surface = plan.skin.surface;
   if (!options.contacts_file.empty() && is_hdf5(options.output)) info.contacts = options.contacts;
   return info;
 }
@@ -174,6 +175,10 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
                region == Region::opposite ? "opposite" : fmt::format("region {}", name_of(region)),
                percent(regions.of(region), regions.in_contact()), meaning_of(region));
   }
+  if (const auto absent = count_pillars_without_sensels(plan.calibration, plan.skin)) {
+    fmt::print("No sensel: {} of the {} pillars of a frame\n", grouped(absent),
+               grouped(plan.skin.pillars()));
+  }
   if (plan.estimator == Estimator::contact) {
     fmt::print("Resolved by the friction of their contacts: {} of {} pillars of region 3\n",
                grouped(regions.resolved), grouped(regions.of(Region::three)));
@@ -242,6 +247,7 @@ void solve(const SolveOptions& given) {
   options.contacts.friction = plan.friction;
   options.contacts.noise_n = reading_noise_n(plan);
   options.contacts.hidden_n = hidden_normal_n(plan.skin);
+  options.contacts.surface = plan.skin.surface;
   const Device device = open_device(options.device.name);
   Processor processor(device, plan,
                       {.memory = options.device.memory,

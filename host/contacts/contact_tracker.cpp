@@ -8,6 +8,7 @@
 
 #include "contacts/contact_matching.h"
 #include "contacts/contact_measure.h"
+#include "contacts/contact_wrench.h"
 #include "contacts/estimator/friction_estimator.h"
 #include "contacts/parallel_contact_moments.h"
 #include "pillarfield/error.h"
@@ -95,6 +96,7 @@ struct ContactTracker::State {
   const FrameContacts& track(const ForceFieldView& forces, double time_s,
                              std::span<const ContactFriction> friction);
   void measure(const ForceFieldView& forces, std::span<const ContactFriction> friction);
+  void measure_wrenches(const ForceFieldView& forces);
   void identify(double time_s);
 
   double pitch_mm;
@@ -104,6 +106,7 @@ struct ContactTracker::State {
   bool any_frame = false;
   double last_time_s = 0;
   std::uint64_t next_track_id = 1;
+  std::vector<Pose> poses;  // of the pillars, if options.surface is set
   ContactLabels labels;
   FrameContacts frame;
   std::vector<Track> tracks;  // of frame.contacts
@@ -134,6 +137,21 @@ void ContactTracker::State::require_size(const ForceFieldView& forces) {
   }
   rows = forces.rows;
   cols = forces.cols;
+  if (any_frame || !options.surface) return;
+  const PillarLayout pillars = {rows, cols, pitch_mm};
+  check(*options.surface, pillars, kPlace);
+  poses = poses_of(*options.surface, pillars);
+}
+
+/// Sets the wrench of each contact and of the total.
+void ContactTracker::State::measure_wrenches(const ForceFieldView& forces) {
+  Wrench total;
+  for (std::uint32_t label = 0; label < labels.contacts(); ++label) {
+    const Wrench wrench = wrench_of(forces, labels.runs(label), poses);
+    add(total, wrench);
+    if (indices[label] != kNoContact) frame.contacts[indices[label]].quantities.wrench = wrench;
+  }
+  frame.total.wrench = total;
 }
 
 /// Measures the total and the contacts of at least minimum_pillars. Estimates the friction of each
@@ -166,6 +184,7 @@ void ContactTracker::State::measure(const ForceFieldView& forces,
     frame.contacts.push_back(contact);
   }
   frame.total = quantities_of(total, pitch_mm);
+  if (options.surface) measure_wrenches(forces);
   if (!options.friction.given || frame.total.pillars == 0) return;
   set_slip(frame.total, {*options.friction.given, kGivenFrictionSpread, FrictionSource::given},
            total);

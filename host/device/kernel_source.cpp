@@ -104,6 +104,7 @@ void define_memory(const SenselMemory& memory, double frame_interval_s, Definiti
   all["PF_CREEPS"] = fmt::format("{}", memory.creep.size());
   all["PF_PLAY_WIDTHS"] = hex_list(model.play_width);
   all["PF_PLAY_WEIGHTS"] = hex_list(model.play_weight);
+  all["PF_CREEP_DECAYS"] = hex_list(model.creep_decay);
   all["PF_CREEP_RATES"] = hex_list(model.creep_rate);
   all["PF_CREEP_WEIGHTS"] = hex_list(model.creep_weight);
 }

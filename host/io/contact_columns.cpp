@@ -43,6 +43,14 @@ const char* word_of(double value) {
   return name_of(as_word<Word>(value));
 }
 
+/// Sets a component of the wrench, which is unset where a file has no surface.
+void set_wrench(ContactQuantities& contact, double value, Vector3 Wrench::*part,
+                double Vector3::*axis) {
+  if (std::isnan(value)) return;
+  if (!contact.wrench) contact.wrench.emplace();
+  ((*contact.wrench).*part).*axis = value;
+}
+
 using Contact = TrackedContact;
 using Quantities = ContactQuantities;
 using Ended = EndedContact;
@@ -74,7 +82,7 @@ constexpr std::array<ContactColumn<Ended>, 4> kEnded = {{
      [](Ended& c, double v) { c.last_time_s = v; }},
 }};
 
-constexpr std::array<ContactColumn<Quantities>, 22> kQuantities = {{
+constexpr std::array<ContactColumn<Quantities>, 28> kQuantities = {{
     {"pillars", "", count, [](const Quantities& q) { return static_cast<double>(q.pillars); },
      [](Quantities& q, double v) { q.pillars = as_count(v); }},
     {"ambiguous", "", count, [](const Quantities& q) { return static_cast<double>(q.ambiguous); },
@@ -125,12 +133,39 @@ constexpr std::array<ContactColumn<Quantities>, 22> kQuantities = {{
      [](Quantities& q, double v) { q.slipping_share = as_number(v); }},
     {"slip_margin", "", number, [](const Quantities& q) { return q.slip_margin.value_or(kUnset); },
      [](Quantities& q, double v) { q.slip_margin = as_number(v); }},
+    {"force_x_n", "N", number,
+     [](const Quantities& q) { return q.wrench ? q.wrench->force_n.x : kUnset; },
+     [](Quantities& q, double v) { set_wrench(q, v, &Wrench::force_n, &Vector3::x); }, nullptr,
+     true},
+    {"force_y_n", "N", number,
+     [](const Quantities& q) { return q.wrench ? q.wrench->force_n.y : kUnset; },
+     [](Quantities& q, double v) { set_wrench(q, v, &Wrench::force_n, &Vector3::y); }, nullptr,
+     true},
+    {"force_z_n", "N", number,
+     [](const Quantities& q) { return q.wrench ? q.wrench->force_n.z : kUnset; },
+     [](Quantities& q, double v) { set_wrench(q, v, &Wrench::force_n, &Vector3::z); }, nullptr,
+     true},
+    {"moment_x_nmm", "N mm", number,
+     [](const Quantities& q) { return q.wrench ? q.wrench->moment_nmm.x : kUnset; },
+     [](Quantities& q, double v) { set_wrench(q, v, &Wrench::moment_nmm, &Vector3::x); }, nullptr,
+     true},
+    {"moment_y_nmm", "N mm", number,
+     [](const Quantities& q) { return q.wrench ? q.wrench->moment_nmm.y : kUnset; },
+     [](Quantities& q, double v) { set_wrench(q, v, &Wrench::moment_nmm, &Vector3::y); }, nullptr,
+     true},
+    {"moment_z_nmm", "N mm", number,
+     [](const Quantities& q) { return q.wrench ? q.wrench->moment_nmm.z : kUnset; },
+     [](Quantities& q, double v) { set_wrench(q, v, &Wrench::moment_nmm, &Vector3::z); }, nullptr,
+     true},
 }};
 
 }  // namespace
 
 std::span<const ContactColumn<TrackedContact>> identity_columns() { return kIdentity; }
-std::span<const ContactColumn<ContactQuantities>> quantity_columns() { return kQuantities; }
+std::span<const ContactColumn<ContactQuantities>> quantity_columns(bool with_wrench) {
+  constexpr std::size_t kWrench = 6;
+  return std::span(kQuantities).first(kQuantities.size() - (with_wrench ? 0 : kWrench));
+}
 std::span<const ContactColumn<EndedContact>> ended_columns() { return kEnded; }
 
 template <class Row>

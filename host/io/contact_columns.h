@@ -32,8 +32,10 @@ struct ContactColumn {
 /// The columns id, parent, number, first_time_s, age_s.
 [[nodiscard]] std::span<const ContactColumn<TrackedContact>> identity_columns();
 
-/// One column for each member of ContactQuantities.
-[[nodiscard]] std::span<const ContactColumn<ContactQuantities>> quantity_columns();
+/// One column for each member of ContactQuantities; those of its wrench come last, and only
+/// `with_wrench`.
+[[nodiscard]] std::span<const ContactColumn<ContactQuantities>> quantity_columns(
+    bool with_wrench = false);
 
 /// The columns id, merged_into, first_time_s, last_time_s.
 [[nodiscard]] std::span<const ContactColumn<EndedContact>> ended_columns();

@@ -13,6 +13,7 @@
 #include "io/hdf5/number_type.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/stored_surface.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
 #include "pillarfield/skin.h"
@@ -26,6 +27,7 @@ struct OpenForces {
 
   void read_size();
   void read_info();
+  void read_surface_of_skin();
   void count_frames();
   void require_frame(std::uint64_t index) const;
 
@@ -73,6 +75,7 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   }
   read_size();
   read_info();
+  read_surface_of_skin();
   count_frames();
 }
 
@@ -111,6 +114,11 @@ void OpenForces::read_info() {
                 "it must be above zero");
   }
   info.pillar_pitch_mm = *pitch_mm;
+}
+
+void OpenForces::read_surface_of_skin() {
+  info.surface = read_surface(file, {info.rows, info.cols, info.pillar_pitch_mm});
+  if (info.contacts) info.contacts->surface = info.surface;
 }
 
 void OpenForces::count_frames() {

@@ -13,6 +13,7 @@
 #include "io/hdf5/stored_frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
+#include "io/stored_surface.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -102,6 +103,7 @@ void Recording::take_skin() {
   take(recording_format::kThreshold, stored.threshold_counts, skin_.threshold_counts);
   skin_.full_scale_counts = stored.full_scale_counts;
   skin_.power_law = stored.power_law;
+  skin_.surface = read_surface(file_, skin_.pillar_layout());
   check(skin_, place(recording_format::kSkin).c_str());
 }
 

@@ -9,6 +9,7 @@
 #include "io/hdf5/frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
+#include "io/stored_surface.h"
 #include "pillarfield/error.h"
 #include "pillarfield/recording.h"
 
@@ -65,6 +66,7 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
   write_skin(file, {skin.sensel_pitch_mm, skin.counts_per_newton, skin.threshold_counts,
                     skin.full_scale_counts, skin.power_law});
   write_planes(file, skin, calibration);
+  if (skin.surface) write_surface(file, *skin.surface, skin.pillar_layout());
   create_datasets();
   hdf5::start_appending(file);
 }

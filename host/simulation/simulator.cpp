@@ -21,6 +21,7 @@ namespace pillarfield {
 namespace {
 
 Scene checked(Scene scene) {
+  scene.skin.surface = surface_of(scene);
   if (!scene.skin.full_scale_counts) scene.skin.full_scale_counts = full_scale_of(scene.sensor);
   check(scene, "scene");
   return scene;

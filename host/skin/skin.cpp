@@ -57,6 +57,7 @@ void check(const Skin& skin, std::string_view where) {
     check_range(where, "power_law_reference_counts", skin.power_law->reference_counts,
                 kMinReferenceCounts, kMaxReferenceCounts);
   }
+  if (skin.surface) check(*skin.surface, skin.pillar_layout(), where);
   if (!skin.full_scale_counts) return;
   check_range(where, "full_scale_counts", *skin.full_scale_counts, 0, kMaxCounts);
   if (*skin.full_scale_counts <= skin.threshold_counts) {

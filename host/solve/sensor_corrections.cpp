@@ -110,6 +110,7 @@ single_precision::MemoryModel memory_model(const SenselMemory& memory, double fr
   for (std::size_t i = 0; i < memory.creep.size(); ++i) {
     model.creep_rate[i] =
         static_cast<float>(-std::expm1(-frame_interval_s / memory.creep[i].time_s));
+    model.creep_decay[i] = static_cast<float>(frame_interval_s / memory.creep[i].time_s);
     model.creep_weight[i] = static_cast<float>(memory.creep[i].weight);
   }
   return model;

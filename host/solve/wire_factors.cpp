@@ -52,6 +52,7 @@ void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std:
   const std::size_t padded = tiles_along(wires_.tile_cols, PF_WIRE_PARTS) * PF_WIRE_PARTS;
   std::vector<float> readings(padded);
   std::vector<float> columns(padded);
+  std::vector<float> conductances(padded);
   for (int sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
     std::vector<float> next(padded);
     for (std::size_t r = row; r < row + rows; ++r) {
@@ -60,7 +61,8 @@ void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std:
       }
       auto& factors = row_factors_[col / wires_.tile_cols * rows_ + r];
       factors = single_precision::sweep_row(readings.data(), columns.data(), next.data(),
-                                            static_cast<int>(padded), factors, model);
+                                            conductances.data(), static_cast<int>(padded), factors,
+                                            model);
     }
     columns = next;
   }

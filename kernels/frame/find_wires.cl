@@ -5,16 +5,47 @@
 
 #define PF_TILE_PARTS ((PF_TILE_COLS + PF_WIRE_PARTS - 1) / PF_WIRE_PARTS * PF_WIRE_PARTS)
 
-/* A raw reading for the sums; a missing sensel counts as zero. */
-PF_INLINE float reading_at(global const PF_SENSEL* raw, Calibration calibration, size_t offset) {
-  const float reading = (float)*raw;
-#ifdef PF_MASK
-  if (PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE)[offset] != 1) return 0.0f;
-#endif
+/* Raw readings for the sums; missing sensels count as zero. */
+#define PF_DEFINE_SUMMED(name, type)                                          \
+  PF_INLINE type name(type reading, type good) {                              \
+    const type none = (type)(0.0f);                                           \
+    reading = good == (type)(1.0f) ? reading : none;                          \
+    return fabs(reading) <= (type)(PF_WIRE_LARGEST_READING) ? reading : none; \
+  }
 #ifdef PF_LARGEST_READING
-  if (!(fabs(reading) <= (float)(PF_LARGEST_READING))) return 0.0f;
+#define PF_WIRE_LARGEST_READING PF_LARGEST_READING
+#else
+#define PF_WIRE_LARGEST_READING 1e9f
 #endif
-  return reading;
+PF_DEFINE_SUMMED(summed_reading, float)
+#if PF_LANES > 1
+PF_DEFINE_SUMMED(summed_readings, Real)
+#endif
+
+/* Reads the first `cols` sensels of a tile's row. */
+PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
+                             uint cols, float* readings) {
+  uint col = 0;
+#ifdef PF_MASK
+  global const uchar* const good = PF_PLANE_OF(calibration, uchar, PF_MASK_PLANE) + offset;
+#endif
+#if PF_LANES > 1
+  for (; col + PF_LANES <= cols; col += PF_LANES) {
+    Real valid = (Real)(1.0f);
+#ifdef PF_MASK
+    valid = PF_TO_REAL(PF_LOAD_WHOLE(uchar, good + col));
+#endif
+    const Real reading = PF_TO_REAL(PF_LOAD_WHOLE(PF_SENSEL, raw + col));
+    PF_STORE_WIRES(summed_readings(reading, valid), readings + col);
+  }
+#endif
+  for (; col < cols; ++col) {
+    float valid = 1.0f;
+#ifdef PF_MASK
+    valid = (float)good[col];
+#endif
+    readings[col] = summed_reading((float)raw[col], valid);
+  }
 }
 
 /* A work-item finds the wires of one tile. */
@@ -36,18 +67,18 @@ kernel void find_wires(global const PF_SENSEL* restrict raw,
   float readings[PF_TILE_PARTS];
   float columns[PF_TILE_PARTS];
   float next[PF_TILE_PARTS];
+  float conductances[PF_TILE_PARTS];
   for (uint i = 0; i < PF_TILE_PARTS; ++i) readings[i] = columns[i] = 0.0f;
   for (uint i = 0; i < rows; ++i) row_factors[i] = idle_factors[i] = 1.0f;
   for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
     for (uint i = 0; i < PF_TILE_PARTS; ++i) next[i] = 0.0f;
     for (uint row = 0; row < rows; ++row) {
       const size_t at = first_row + row;
-      for (uint col = 0; col < cols; ++col) {
-        readings[col] = reading_at(raw + at * layout.row_stride + first_col + col, planes,
-                                   at * planes.stride + first_col + col);
-      }
+      read_tile_row(raw + at * layout.row_stride + first_col, planes,
+                    at * planes.stride + first_col, cols, readings);
       const RowWires before = {row_factors[row], idle_factors[row]};
-      const RowWires after = sweep_row(readings, columns, next, PF_TILE_PARTS, before, model);
+      const RowWires after =
+          sweep_row(readings, columns, next, conductances, PF_TILE_PARTS, before, model);
       row_factors[row] = after.row;
       idle_factors[row] = after.idle;
     }

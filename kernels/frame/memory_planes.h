@@ -4,7 +4,7 @@
 #ifdef PF_MEMORY
 
 PF_INLINE MemoryModel memory_model(void) {
-  const MemoryModel model = {PF_PLAY_WIDTHS,   PF_PLAY_WEIGHTS, PF_CREEP_RATES,
+  const MemoryModel model = {PF_PLAY_WIDTHS,   PF_PLAY_WEIGHTS, PF_CREEP_RATES, PF_CREEP_DECAYS,
                              PF_CREEP_WEIGHTS, PF_PLAYS,        PF_CREEPS};
   return model;
 }

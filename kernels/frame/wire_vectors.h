@@ -23,6 +23,18 @@ typedef struct {
   Wires right;
 } WiresPair;
 
+#if PF_LANES == 1
+#define PF_LANE_NUMBERS 0.0f
+#elif PF_LANES == 2
+#define PF_LANE_NUMBERS (Real)(0, 1)
+#elif PF_LANES == 4
+#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3)
+#elif PF_LANES == 8
+#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3, 4, 5, 6, 7)
+#else
+#define PF_LANE_NUMBERS (Real)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#endif
+
 /* Wires of one row of sensels under PF_LANES pillars, from column `col` on. */
 PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
   const RealPair columns =
@@ -34,6 +46,17 @@ PF_INLINE WiresPair load_wires(WireVectors wires, uint row, uint col) {
     const size_t at = (size_t)first * wires.rows + row;
     pair.left.row = pair.right.row = (Real)(wires.row[at]);
     pair.left.idle = pair.right.idle = (Real)(wires.idle[at]);
+  } else if (PF_TILE_COLS >= 2 * PF_LANES) {
+    /* Two tiles: lanes before and from the border on. */
+    const size_t at = (size_t)first * wires.rows + row;
+    const size_t next = at + wires.rows;
+    const Real before = (Real)((float)(last * PF_TILE_COLS - col)) - (Real)(2.0f) * PF_LANE_NUMBERS;
+    const Mask left = before > (Real)(0.0f);
+    const Mask right = before > (Real)(1.0f);
+    pair.left.row = left ? (Real)(wires.row[at]) : (Real)(wires.row[next]);
+    pair.right.row = right ? (Real)(wires.row[at]) : (Real)(wires.row[next]);
+    pair.left.idle = left ? (Real)(wires.idle[at]) : (Real)(wires.idle[next]);
+    pair.right.idle = right ? (Real)(wires.idle[at]) : (Real)(wires.idle[next]);
   } else {
     float rows[2 * PF_LANES];
     float idles[2 * PF_LANES];

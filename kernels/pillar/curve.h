@@ -10,26 +10,26 @@ typedef struct {
   float per_count;
 } CurvePolynomial;
 
-static inline Real curve_position(Real reading, CurvePolynomial curve) {
+PF_INLINE Real curve_position(Real reading, CurvePolynomial curve) {
   const Real x = reading * PF_CONSTANT(Real, curve.per_count);
   const Real above = x > PF_REAL(0.0) ? x : PF_REAL(0.0);
   return above < PF_REAL(1.0) ? above : PF_REAL(1.0);
 }
 
 /* P(x). */
-static inline Real curve_factor(Real x, CurvePolynomial curve) {
+PF_INLINE Real curve_factor(Real x, CurvePolynomial curve) {
   Real sum = PF_CONSTANT(Real, curve.terms[PF_CURVE_TERMS - 1]);
   for (int i = PF_CURVE_TERMS - 2; i >= 0; --i) sum = sum * x + PF_CONSTANT(Real, curve.terms[i]);
   return sum;
 }
 
 /* V of a reading. */
-static inline Real curve_load(Real reading, CurvePolynomial curve) {
+PF_INLINE Real curve_load(Real reading, CurvePolynomial curve) {
   return reading * curve_factor(curve_position(reading, curve), curve);
 }
 
 /* dV/dr up to the last knot, P + x P'; the factor on small noise. */
-static inline Real curve_slope(Real reading, CurvePolynomial curve) {
+PF_INLINE Real curve_slope(Real reading, CurvePolynomial curve) {
   const Real x = curve_position(reading, curve);
   Real sum = PF_REAL(0.0);
   for (int i = PF_CURVE_TERMS - 1; i >= 0; --i) {

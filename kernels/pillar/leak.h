@@ -26,17 +26,17 @@ typedef struct {
 
 /* What a sensel leaks: its reading above the threshold. Below, it counts as zero, so that noise
  * does not spread and idle sensels stay idle. */
-static inline Real leak_source(Sensel sensel, Real threshold) {
+PF_INLINE Real leak_source(Sensel sensel, Real threshold) {
   return (sensel.reading > threshold && !sensel.missing) ? sensel.reading : PF_REAL(0.0);
 }
 
 /* A missing sensel is taken to leak what its neighbour `beside` does. */
-static inline Real source_or(Sensel sensel, Real source, Real beside) {
+PF_INLINE Real source_or(Sensel sensel, Real source, Real beside) {
   return (sensel.missing && !sensel.absent) ? beside : source;
 }
 
 /* Subtracts what an active sensel receives; an inactive one stays inactive. */
-static inline Sensel remove_leak(Sensel sensel, Neighbours v, LeakTaps taps, Real threshold) {
+PF_INLINE Sensel remove_leak(Sensel sensel, Neighbours v, LeakTaps taps, Real threshold) {
   const Real edges =
       taps.inside * (v.inside_h + v.inside_v) + taps.across * (v.across_h + v.across_v);
   const Real corners = taps.both_inside * v.both_inside +
@@ -49,7 +49,7 @@ static inline Sensel remove_leak(Sensel sensel, Neighbours v, LeakTaps taps, Rea
 
 /* A component of a pillar's force without the leak between pillars (E4): `edges` and `corners` are
  * the sums over the four nearest and the four diagonal pillars. */
-static inline Real pillar_without_leak(Real own, Real edges, Real corners, Real self, Real edge,
-                                       Real corner) {
+PF_INLINE Real pillar_without_leak(Real own, Real edges, Real corners, Real self, Real edge,
+                                   Real corner) {
   return self * own + (edge * edges + corner * corners);
 }

@@ -11,7 +11,7 @@ typedef struct {
  * zero. The polynomial is exact in a pressure that varies linearly; its other coefficients are
  * least squares over bodies of six shapes on an elastic half-space, and the deviation is what they
  * leave. */
-static inline Lean lean_between(Real before, Real own, Real after) {
+PF_INLINE Lean lean_between(Real before, Real own, Real after) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
   const Real low = before > zero ? before : zero;

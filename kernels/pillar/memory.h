@@ -5,7 +5,6 @@
 
 #define PF_MAX_PLAYS 4
 #define PF_MAX_CREEPS 2
-#define PF_DECAY_BITS 24
 
 /* The states of a sensel after the frame that it was last active in, counts. */
 typedef struct {
@@ -18,31 +17,25 @@ typedef struct {
 typedef struct {
   float play_width[PF_MAX_PLAYS];
   float play_weight[PF_MAX_PLAYS];
-  float creep_rate[PF_MAX_CREEPS]; /* part of the way to V in one frame */
+  float creep_rate[PF_MAX_CREEPS];  /* part of the way to V in one frame */
+  float creep_decay[PF_MAX_CREEPS]; /* frame interval over the time of the creep */
   float creep_weight[PF_MAX_CREEPS];
   int plays;
   int creeps;
 } MemoryModel;
 
-/* (1 - rate)^frames, for a whole number of frames; zero from 2^24 on. */
-static inline Real decay_over(Real frames, float rate) {
-  const Real zero = PF_REAL(0.0);
-  const Real one_half = PF_REAL(0.5);
-  Real decay = PF_REAL(1.0);
-  Real factor = PF_REAL(1.0) - PF_CONSTANT(Real, rate);
-  Real left = frames;
-  for (int bit = 0; bit < PF_DECAY_BITS; ++bit) {
-    const Real lower = floor(left * one_half);
-    decay = left > lower + lower ? decay * factor : decay;
-    factor = factor * factor;
-    left = lower;
-  }
-  return left > zero ? zero : decay;
+/* exp(-x) for x >= 0, to 1e-7 up to x = 2 and to 3e-3 of it up to x = 32; zero beyond. */
+PF_INLINE Real decay_of(Real x) {
+  const Real y = x * PF_REAL(0.00390625); /* 1 / 256 */
+  const Real cubic = PF_REAL(0.5) - y * PF_REAL(0.16666666666666666667);
+  Real decay = PF_REAL(1.0) - y * (PF_REAL(1.0) - y * cubic);
+  for (int i = 0; i < 8; ++i) decay = decay * decay;
+  return x < PF_REAL(32.0) ? decay : PF_REAL(0.0);
 }
 
 /* The one-sided play operator: the state stays between reading - width and the reading, and above
  * zero. */
-static inline Real play_after(Real before, Real reading, Real width) {
+PF_INLINE Real play_after(Real before, Real reading, Real width) {
   const Real lower = reading - width;
   const Real held = before < reading ? before : reading;
   const Real raised = held > lower ? held : lower;
@@ -50,13 +43,13 @@ static inline Real play_after(Real before, Real reading, Real width) {
 }
 
 /* States after `idle` frames without load. */
-static inline Memory rested(Memory before, MemoryModel model, Real idle) {
+PF_INLINE Memory rested(Memory before, MemoryModel model, Real idle) {
   const Real zero = PF_REAL(0.0);
   const Mask rests = idle > zero;
   if (!any_lane(rests)) return before;
   for (int i = 0; i < model.plays; ++i) before.play[i] = rests ? zero : before.play[i];
   for (int i = 0; i < model.creeps; ++i) {
-    before.creep[i] = before.creep[i] * decay_over(idle, model.creep_rate[i]);
+    before.creep[i] = before.creep[i] * decay_of(idle * PF_CONSTANT(Real, model.creep_decay[i]));
   }
   return before;
 }
@@ -71,8 +64,8 @@ typedef struct {
 
 /* Removes hysteresis and creep from a sensel that was last active `idle` frames before the last
  * one. */
-static inline Recalled recall(Sensel sensel, Memory stored, MemoryModel model, Real threshold,
-                              Real idle) {
+PF_INLINE Recalled recall(Sensel sensel, Memory stored, MemoryModel model, Real threshold,
+                          Real idle) {
   const Real zero = PF_REAL(0.0);
   const Memory before = rested(stored, model, idle);
   Recalled result;

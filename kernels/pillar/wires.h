@@ -12,7 +12,7 @@ typedef struct {
 } Wires;
 
 /* Conductance of a sensel, counts, from its reading. */
-static inline Real conductance(Real reading, Wires at, Real column_per_count) {
+PF_INLINE Real conductance(Real reading, Wires at, Real column_per_count) {
   const Real driven = reading * at.row;
   const Real rough = driven * (PF_REAL(1.0) + column_per_count * at.column);
   const Real load = at.column + rough * (PF_REAL(1.0) - at.idle);
@@ -21,7 +21,7 @@ static inline Real conductance(Real reading, Wires at, Real column_per_count) {
 
 /* Removes the crosstalk from a raw reading; where the readout is saturated the sensel is missing.
  */
-static inline Sensel remove_crosstalk(Sensel sensel, Wires at, Real column_per_count) {
+PF_INLINE Sensel remove_crosstalk(Sensel sensel, Wires at, Real column_per_count) {
   sensel.missing = sensel.missing || !(at.row <= PF_WIRE_LARGEST_GAIN);
   sensel.reading = conductance(sensel.reading, at, column_per_count);
   return sensel;

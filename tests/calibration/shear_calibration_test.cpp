@@ -85,6 +85,17 @@ TEST(ShearCalibration, StoresNothingForTheIdealPillar) {
   EXPECT_NEAR(result.coefficient.y, 1, 3 * result.standard_error.y);
 }
 
+TEST(ShearCalibration, AKnownNormalForceCancelsAnErrorOfTheSensitivity) {
+  PressedSkin skin = noisy_skin();
+  SkinCalibration before = equilibrated(skin);
+  *before.counts_per_newton *= 1.07;
+  const FrameStatistics up = pulled(skin, 90, 1.2);
+  const KnownShear alone[] = {{up, 0, kLoadN * kFriction}};
+  EXPECT_NEAR(calibrate_shear(before, alone).coefficient.y, 1.2 / 1.07, 0.02);
+  const KnownShear with_normal[] = {{up, 0, kLoadN * kFriction, kLoadN}};
+  EXPECT_NEAR(calibrate_shear(before, with_normal).coefficient.y, 1.2, 0.02);
+}
+
 TEST(ShearCalibration, OneAxisServesForBoth) {
   PressedSkin skin = noisy_skin();
   const SkinCalibration before = equilibrated(skin);

@@ -52,6 +52,27 @@ class Contacts(CommandTest):
         with open(self.csv, newline="", encoding="utf-8") as file:
             return list(csv.DictReader(file))
 
+    def test_forces_are_in_the_frame_of_a_curved_body(self):
+        run("simulate", SCENES / "curved_skin.toml", "-o", self.recording, "--frames", 10,
+            "--overwrite")
+        facts = run_json("info", self.recording)
+        self.assertEqual((facts["surface"], facts["surface_radius_mm"]), ("cylinder", 60))
+        self.solve("--contacts", self.csv)
+        with h5py.File(self.forces) as file:
+            shear_x, shear_y, normal = (file[f"force/{plane}"][:].astype("f8")
+                                        for plane in ("shear_x", "shear_y", "normal"))
+            pitch = file.attrs["pillar_pitch_mm"]
+            self.assertEqual(dict(file["surface"].attrs)["radius_mm"], 60)
+        cols = normal.shape[2]
+        angle = (np.arange(cols) - (cols - 1) / 2) * pitch / 60
+        force = [(shear_x * np.cos(angle) - normal * np.sin(angle)).sum(axis=(1, 2)),
+                 shear_y.sum(axis=(1, 2)),
+                 (-shear_x * np.sin(angle) - normal * np.cos(angle)).sum(axis=(1, 2))]
+        rows = [row for row in self.rows() if row["row"] == "patch"]
+        read = np.array([[float(row[f"force_{axis}_n"]) for row in rows] for axis in "xyz"])
+        np.testing.assert_allclose(read, force, rtol=1e-6, atol=1e-6)
+        self.assertGreater(np.abs(read[0]).max(), 0.3 * np.abs(read[2]).max())
+
     def test_forces_add_up_to_the_loads(self):
         solved = self.solve("--contacts", self.csv)
         self.assertEqual((solved["contacts"], solved["contacts_at_once"]), (3, 3))

@@ -71,15 +71,15 @@ void write_forces(const std::filesystem::path& path, std::uint64_t frames) {
 TEST(ContactColumns, HaveNamesOfTheirOwn) {
   std::set<std::string> names;
   for (const auto& column : identity_columns()) EXPECT_TRUE(names.insert(column.name).second);
-  for (const auto& column : quantity_columns()) EXPECT_TRUE(names.insert(column.name).second);
-  EXPECT_EQ(names.size(), 27);
+  for (const auto& column : quantity_columns(true)) EXPECT_TRUE(names.insert(column.name).second);
+  EXPECT_EQ(names.size(), 33);
 }
 
 TEST(ContactColumns, SetWhatTheyGet) {
   ContactQuantities expected = io_test::sample_quantities(3);
   ContactQuantities set;
-  for (const auto& column : quantity_columns()) column.set(set, column.get(expected));
-  EXPECT_EQ(cells_of(quantity_columns(), set), cells_of(quantity_columns(), expected));
+  for (const auto& column : quantity_columns(true)) column.set(set, column.get(expected));
+  EXPECT_EQ(cells_of(quantity_columns(true), set), cells_of(quantity_columns(true), expected));
 }
 
 /// Damaged files hold any value.
@@ -90,11 +90,37 @@ TEST(ContactColumns, TakeAnyNumber) {
     ContactQuantities quantities;
     TrackedContact contact;
     EndedContact ended;
-    for (const auto& column : quantity_columns()) column.set(quantities, value);
+    for (const auto& column : quantity_columns(true)) column.set(quantities, value);
     for (const auto& column : identity_columns()) column.set(contact, value);
     for (const auto& column : ended_columns()) column.set(ended, value);
-    EXPECT_FALSE(cells_of(quantity_columns(), quantities).empty());
+    EXPECT_FALSE(cells_of(quantity_columns(true), quantities).empty());
     EXPECT_FALSE(cells_of(identity_columns(), contact).empty());
+  }
+}
+
+/// Files of a skin with a surface hold forces and moments in the body's frame; others do not.
+TEST(ContactFiles, HoldTheWrenchWhereTheSkinHasASurface) {
+  const TemporaryDirectory directory;
+  Surface surface;
+  surface.shape = SurfaceShape::cylinder;
+  surface.radius_mm = 60;
+  surface.axis_deg = 30;
+  for (const bool curved : {false, true}) {
+    ForceFileInfo info = force_info();
+    if (curved) info.contacts->surface = info.surface = surface;
+    const auto path = directory / (curved ? "curved.h5" : "flat.h5");
+    const auto sink = create_force_sink(path, info);
+    for (std::uint64_t index = 0; index < 6; ++index) append(*sink, index);
+    sink->finish();
+    const ForceFileReader reader(path);
+    ASSERT_EQ(reader.info().surface.has_value(), curved);
+    ASSERT_EQ(reader.info().contacts->surface.has_value(), curved);
+    const ContactQuantities read = reader.read_contacts(3).contacts.at(0).quantities;
+    const ContactQuantities written = sample_contacts(3).contacts.at(0).quantities;
+    ASSERT_EQ(read.wrench.has_value(), curved);
+    if (!curved) continue;
+    EXPECT_EQ(reader.info().surface->axis_deg, 30);
+    EXPECT_EQ(cells_of(quantity_columns(true), read), cells_of(quantity_columns(true), written));
   }
 }
 

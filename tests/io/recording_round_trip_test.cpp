@@ -53,7 +53,27 @@ Calibration random_calibration(const Skin& skin, SenselType type, std::mt19937& 
   return calibration;
 }
 
+/// A surface of each shape in turn; unset for every fifth.
+std::optional<Surface> surface_number(int number, const Skin& skin) {
+  if (number % 5 == 4) return std::nullopt;
+  Surface surface;
+  surface.shape = static_cast<SurfaceShape>(number % 5);
+  if (surface.shape == SurfaceShape::cylinder || surface.shape == SurfaceShape::sphere) {
+    surface.radius_mm = -77.5;
+    surface.axis_deg = 12.25;
+  }
+  if (surface.shape == SurfaceShape::height_map) surface.heights_mm.assign(skin.pillars(), -1.5F);
+  return surface;
+}
+
 void expect_equal(const Skin& read, const Skin& written) {
+  ASSERT_EQ(read.surface.has_value(), written.surface.has_value());
+  if (read.surface) {
+    EXPECT_EQ(read.surface->shape, written.surface->shape);
+    EXPECT_EQ(read.surface->radius_mm, written.surface->radius_mm);
+    EXPECT_EQ(read.surface->axis_deg, written.surface->axis_deg);
+    EXPECT_EQ(read.surface->heights_mm, written.surface->heights_mm);
+  }
   EXPECT_EQ(read.rows, written.rows);
   EXPECT_EQ(read.cols, written.cols);
   EXPECT_EQ(read.sensel_pitch_mm, written.sensel_pitch_mm);
@@ -134,6 +154,7 @@ TEST(RecordingRoundTrip, KeepsEverythingOfAnySizeAndType) {
       skin.threshold_counts = pick(0, 20) / 3.0;
       if (trial % 2 == 0) skin.full_scale_counts = 200 + pick(0, 10) / 3.0;
       if (trial % 3 == 0) skin.power_law = {1 + pick(0, 10) / 7.0, 50 + pick(0, 10) / 3.0};
+      skin.surface = surface_number(trial, skin);
       SCOPED_TRACE(testing::Message() << skin.rows << " x " << skin.cols << " " << name_of(type));
       expect_round_trip(skin, type, random_calibration(skin, type, random), trial % 3 == 0,
                         trial == 1 ? 0 : pick(1, 20));

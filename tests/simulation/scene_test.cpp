@@ -236,6 +236,48 @@ TEST(Scene, ADirectionSweepSetsTheSizeOfTheSkin) {
   EXPECT_EQ(std::get<DirectionSweep>(scene.load).max_theta_deg, 60);
 }
 
+/// A shape sets the skin's surface and, for bending, its curvature.
+TEST(SceneSurface, GivesTheSkinAShapeAndItsCurvature) {
+  const std::string skin = "skin.pillars = [20, 20]\n[surface]\n";
+  const auto scene = [&](const std::string& keys) { return parse_scene(skin + keys, "s.toml"); };
+  EXPECT_FALSE(scene("").skin.surface);
+  const std::string cylinder = "shape = \"cylinder\"\nradius_mm = 60\naxis_deg = 30\n";
+  const Scene unbent = scene(cylinder);
+  EXPECT_EQ(unbent.skin.surface.value().radius_mm, 60);
+  EXPECT_EQ(unbent.skin.surface.value().axis_deg, 30);
+  EXPECT_FALSE(unbent.bending);
+  const CurvatureKey bent =
+      scene(cylinder + "bend_spread_counts_mm = 100\n").bending.value().path.at(0);
+  EXPECT_NEAR(bent.x, 0.25 / 60, 1e-12);
+  EXPECT_NEAR(bent.y, 0.75 / 60, 1e-12);
+  EXPECT_NEAR(bent.xy, -std::sqrt(3) / 2 / 60, 1e-12);
+  EXPECT_EQ(scene(cylinder + "bend_spread_counts_mm = 100\ncurvature_per_mm = [0, 0, 0]\n")
+                .bending.value()
+                .path.at(0)
+                .x,
+            0);
+}
+
+/// Heights of a map are sampled at the pillars: key.png, 28 x 12 mm, on a skin of about 25 x 10 mm.
+TEST(SceneSurface, SamplesAHeightMapAtThePillars) {
+  const auto scene = [](const std::string& size) {
+    return parse_scene(
+        "skin.pillars = [8, 20]\n[surface]\nshape = \"height_map\"\nheight_map = "
+        "\"key.png\"\nheight_map_size_mm = " +
+            size + "\nheight_map_depth_mm = 1.5\n",
+        std::string(PILLARFIELD_SCENES) + "/s.toml");
+  };
+  const Simulator simulator(scene("[28, 12]"));
+  const Surface surface = simulator.scene().skin.surface.value();
+  EXPECT_EQ(surface.shape, SurfaceShape::height_map);
+  ASSERT_EQ(surface.heights_mm.size(), 160U);
+  const auto [low, high] = std::ranges::minmax(surface.heights_mm);
+  EXPECT_GE(low, 0);
+  EXPECT_LE(high, 1.5);
+  EXPECT_GT(high - low, 1);
+  EXPECT_THROW(Simulator(scene("[20, 12]")), Error);
+}
+
 TEST(ShippedScenes, AreTheOnesOfTheDocumentation) {
   const std::string page = text_of(PILLARFIELD_SCENES_PAGE);
   const auto scenes = shipped_scenes();

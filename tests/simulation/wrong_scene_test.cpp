@@ -88,6 +88,24 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
        "s.toml:2: key 'curvature_per_mm' in [surface] is missing; allowed: a list of 3, [x, y, "
        "xy], "
        "each 1/mm"},
+      {"[surface]\nshape = \"torus\"",
+       "s.toml:3: key 'shape' in [surface] is \"torus\"; allowed: \"plane\", \"cylinder\", "
+       "\"sphere\", \"height_map\""},
+      {"[surface]\nshape = \"sphere\"",
+       "s.toml:2: key 'radius_mm' in [surface] is missing; allowed: a number in [-1000000, "
+       "1000000]"},
+      {"[surface]\nshape = \"cylinder\"\nradius_mm = 0.5",
+       "s.toml: the surface's radius_mm is 0.5; its magnitude must lie in [1, 1000000]"},
+      {"[surface]\nshape = \"cylinder\"\nradius_mm = 3",
+       "s.toml: the skin covers more than a whole cylinder of radius 3 mm; give a radius of at "
+       "least "
+       "3.02 mm"},
+      {"[surface]\nshape = \"plane\"\nradius_mm = 3",
+       "s.toml:4: key 'radius_mm' in [surface] is unknown here; allowed: shape, "
+       "bend_spread_counts_mm"},
+      {"[surface]\nshape = \"height_map\"\nheight_map = \"a.bmp\"",
+       "s.toml:4: key 'height_map' in [surface] is \"a.bmp\"; allowed: the path of a .npy or .png "
+       "file, from the scene's folder"},
       {"[surface]\npath = [{ time_s = 1, curvature_per_mm = [2, 0, 0] }]",
        "s.toml:3: key 'curvature_per_mm' in path of [surface] has an element that is 2; allowed: a "
        "list of 3, each a number in [-1, 1]"},

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "viewer/style/surface.h"
+
 namespace pillarfield::viewer {
 namespace {
 
@@ -96,8 +98,9 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
 
   shader::Scene scene;
   scene.clip_from_world = clip_from_world(settings.view, surface, size, plot);
-  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch),
-                 narrow(surface.radius_mm)};
+  scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch), 0};
+  const auto [along_x, along_y, radius_mm, kind] = shader_surface(surface);
+  scene.surface = {along_x, along_y, radius_mm, kind};
   scene.grid = {field.forces.rows, field.forces.cols, mesh, 1};
   scene.force = {plane_of(field, field.forces.shear_x), plane_of(field, field.forces.shear_y),
                  plane_of(field, field.forces.normal), plane_of(field, field.forces.status)};
@@ -109,7 +112,7 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
                 plane(Uncertainty::phi_low), plane(Uncertainty::phi_high)};
   scene.incline = {plane(Uncertainty::theta_low), plane(Uncertainty::theta_high), 0, 0};
   scene.readings = {0, static_cast<uint>(field.raw.row_stride), field.raw.data != nullptr ? 1u : 0u,
-                    static_cast<uint>(surface.kind)};
+                    0};
   const double hatch = std::max(std::round(5 * settings.scale), 4.0);
   scene.shown = {settings.hatch ? 1u : 0u, static_cast<uint>(hatch), 0, 0};
   scene.range = {settings.range.low, settings.range.high - settings.range.low,

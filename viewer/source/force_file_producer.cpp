@@ -33,6 +33,8 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   info.skin.rows = 2 * file.rows;
   info.skin.cols = 2 * file.cols;
   info.skin.sensel_pitch_mm = file.pillar_pitch_mm / 2;
+  info.skin.surface = file.surface;
+  info.contacts.surface = file.surface;
   info.frames = reader.frames();
   info.has_angles = true;
   info.has_uncertainty = file.uncertainty;

@@ -5,33 +5,24 @@
 #include <cmath>
 #include <numbers>
 
+#include "pillarfield/surface.h"
 #include "viewer/style/vectors.h"
 
 namespace pillarfield::viewer {
 namespace {
 
 bool is_curved(const Surface& surface) {
-  return surface.kind == SurfaceKind::cylinder && surface.radius_mm >= kLeastRadiusMm;
+  return surface.kind != SurfaceKind::plane && std::abs(surface.radius_mm) >= kLeastRadiusMm;
+}
+
+/// Unit vector of the bent direction of a cylinder.
+Vec2 bent_direction(const Surface& surface) {
+  const double angle = (surface.axis_deg - 90) * std::numbers::pi / 180;
+  return {std::cos(angle), std::sin(angle)};
 }
 
 bool is_on(const SkinSize& skin, Vec2 point) {
   return std::abs(point.x) <= skin.width_mm / 2 && std::abs(point.y) <= skin.height_mm / 2;
-}
-
-SurfaceFrame on_plane(Vec2 point) {
-  return {{point.x, point.y, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-}
-
-SurfaceFrame on_cylinder(double radius, Vec2 point) {
-  const double angle = point.x / radius;
-  const double sine = std::sin(angle);
-  const double cosine = std::cos(angle);
-  const double half = std::sin(angle / 2);
-  // cos(angle) - 1 would cancel at a large radius.
-  return {{radius * sine, point.y, -2 * radius * half * half},
-          {cosine, 0, -sine},
-          {0, 1, 0},
-          {sine, 0, cosine}};
 }
 
 std::optional<Vec2> hit_on_plane(const Ray& ray, const SkinSize& skin) {
@@ -42,50 +33,123 @@ std::optional<Vec2> hit_on_plane(const Ray& ray, const SkinSize& skin) {
   return is_on(skin, point) ? std::optional(point) : std::nullopt;
 }
 
-/// Ray parameters of the intersections with the whole cylinder, ascending; NaN for none.
-std::array<double, 2> cylinder_hits(const Ray& ray, double radius) {
-  // In the plane normal to the axis, with the axis as origin.
-  const double x = ray.origin.x;
-  const double z = ray.origin.z + radius;
-  const double across = std::hypot(ray.direction.x, ray.direction.z);
-  const double dx = ray.direction.x / across;
-  const double dz = ray.direction.z / across;
-  const double to_foot = -(x * dx + z * dz);
-  const double from_axis = x * dz - z * dx;
-  const double half_chord = std::sqrt((radius - from_axis) * (radius + from_axis));
-  return {(to_foot - half_chord) / across, (to_foot + half_chord) / across};
+/// Ray parameters of the intersections with a circle or sphere of `radius` about the origin,
+/// ascending; NaN for none.
+std::array<double, 2> hits(Vec3 origin, Vec3 direction, double radius) {
+  const double speed = length(direction);
+  const double to_foot = -dot(origin, direction) / speed;
+  const Vec3 foot = origin + (to_foot / speed) * direction;
+  const double from_middle = length(foot);
+  const double half_chord = std::sqrt((radius - from_middle) * (radius + from_middle));
+  return {(to_foot - half_chord) / speed, (to_foot + half_chord) / speed};
 }
 
-std::optional<Vec2> hit_on_cylinder(const Ray& ray, double radius, const SkinSize& skin) {
-  for (const double way : cylinder_hits(ray, radius)) {
+/// The point of the sheet that lies at a point of the cylinder.
+Vec2 on_sheet_of_cylinder(const Surface& surface, Vec3 place) {
+  const Vec2 along = bent_direction(surface);
+  const double radius = surface.radius_mm;
+  const double arc = radius * std::atan2((along.x * place.x + along.y * place.y) / radius,
+                                         (place.z + radius) / radius);
+  const double across = along.x * place.y - along.y * place.x;
+  return {arc * along.x - across * along.y, arc * along.y + across * along.x};
+}
+
+Vec2 on_sheet_of_sphere(double radius, Vec3 place) {
+  const double away = std::hypot(place.x, place.y);
+  if (away == 0) return {};
+  const double arc = std::abs(radius) * std::atan2(away / std::abs(radius), 1 + place.z / radius);
+  return {arc * place.x / away, arc * place.y / away};
+}
+
+std::optional<Vec2> hit_on_curve(const Ray& ray, const Surface& surface, const SkinSize& skin) {
+  const bool sphere = surface.kind == SurfaceKind::sphere;
+  const Vec2 along = bent_direction(surface);
+  // A cylinder is hit in the plane across its axis.
+  const auto flat = [&](Vec3 vector) {
+    return sphere ? vector : Vec3{along.x * vector.x + along.y * vector.y, 0, vector.z};
+  };
+  const Vec3 from_middle = flat(ray.origin) + Vec3{0, 0, surface.radius_mm};
+  for (const double way : hits(from_middle, flat(ray.direction), std::abs(surface.radius_mm))) {
     if (!(way > 0)) continue;
     const Vec3 place = ray.origin + way * ray.direction;
-    const Vec2 point{radius * std::atan2(place.x, place.z + radius), place.y};
+    const Vec2 point = sphere ? on_sheet_of_sphere(surface.radius_mm, place)
+                              : on_sheet_of_cylinder(surface, place);
     if (is_on(skin, point)) return point;
   }
   return std::nullopt;
 }
 
+Vec3 to_view(const Vector3& vector) { return {vector.x, vector.y, vector.z}; }
+
+/// Half sizes of the skin seen from above, and its depth.
+Vec3 extent_of(const SkinSize& skin, const Surface& surface) {
+  const double width = skin.width_mm / 2;
+  const double height = skin.height_mm / 2;
+  const double radius = std::abs(surface.radius_mm);
+  const auto depth = [&](double arc) {
+    return radius * (1 - std::cos(std::min(arc / radius, std::numbers::pi)));
+  };
+  if (surface.kind == SurfaceKind::sphere) {
+    return {std::min(width, radius), std::min(height, radius), depth(std::hypot(width, height))};
+  }
+  const Vec2 along = bent_direction(surface);
+  const double x = std::abs(along.x);
+  const double y = std::abs(along.y);
+  const double arc = x * width + y * height;
+  const double away = radius * std::sin(std::min(arc / radius, std::numbers::pi / 2));
+  const double across = y * width + x * height;
+  return {x * away + y * across, y * away + x * across, depth(arc)};
+}
+
 }  // namespace
 
 SurfaceFrame frame_at(const Surface& surface, Vec2 point_mm) {
-  return is_curved(surface) ? on_cylinder(surface.radius_mm, point_mm) : on_plane(point_mm);
+  pillarfield::Surface curve;
+  if (is_curved(surface)) {
+    curve.shape =
+        surface.kind == SurfaceKind::sphere ? SurfaceShape::sphere : SurfaceShape::cylinder;
+    curve.radius_mm = surface.radius_mm;
+    curve.axis_deg = surface.axis_deg;
+  }
+  const Pose pose = pose_at(curve, point_mm.x, point_mm.y);
+  return {to_view(pose.position_mm), to_view(pose.tangent_x), to_view(pose.tangent_y),
+          to_view(pose.normal)};
+}
+
+Surface drawn_surface(const std::optional<pillarfield::Surface>& surface) {
+  if (!surface) return {};
+  switch (surface->shape) {
+    case SurfaceShape::cylinder:
+      return {SurfaceKind::cylinder, surface->radius_mm, surface->axis_deg};
+    case SurfaceShape::sphere:
+      return {SurfaceKind::sphere, surface->radius_mm};
+    case SurfaceShape::plane:
+    case SurfaceShape::height_map:
+      break;
+  }
+  return {};
+}
+
+std::array<float, 4> shader_surface(const Surface& surface) {
+  if (!is_curved(surface)) return {};
+  const Vec2 along = bent_direction(surface);
+  return {static_cast<float>(along.x), static_cast<float>(along.y),
+          static_cast<float>(surface.radius_mm), static_cast<float>(surface.kind)};
 }
 
 std::optional<Vec2> first_hit(const Ray& ray, const Surface& surface, const SkinSize& skin) {
-  return is_curved(surface) ? hit_on_cylinder(ray, surface.radius_mm, skin)
-                            : hit_on_plane(ray, skin);
+  return is_curved(surface) ? hit_on_curve(ray, surface, skin) : hit_on_plane(ray, skin);
 }
 
 Box box_about(const SkinSize& skin, const Surface& surface) {
-  double half_width = skin.width_mm / 2;
-  double depth = 0;
-  if (is_curved(surface)) {
-    const double angle = std::min(half_width / surface.radius_mm, std::numbers::pi);
-    half_width = surface.radius_mm * std::sin(std::min(angle, std::numbers::pi / 2));
-    depth = surface.radius_mm * (1 - std::cos(angle));
+  if (!is_curved(surface)) {
+    return {{-skin.width_mm / 2, -skin.height_mm / 2, 0},
+            {skin.width_mm / 2, skin.height_mm / 2, 0}};
   }
-  return {{-half_width, -skin.height_mm / 2, -depth}, {half_width, skin.height_mm / 2, 0}};
+  const Vec3 extent = extent_of(skin, surface);
+  const bool convex = surface.radius_mm > 0;
+  return {{-extent.x, -extent.y, convex ? -extent.z : 0},
+          {extent.x, extent.y, convex ? 0 : extent.z}};
 }
 
 }  // namespace pillarfield::viewer

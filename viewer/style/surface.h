@@ -1,11 +1,19 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
+#include "pillarfield/surface.h"
 #include "viewer/style/view.h"
 
 /// Intersections and extents of surfaces.
 namespace pillarfield::viewer {
+
+/// How the viewer draws a skin's surface: a height map as a plane.
+[[nodiscard]] Surface drawn_surface(const std::optional<pillarfield::Surface>& surface);
+
+/// The surface as the shaders take it (shaders/surface.glsl).
+[[nodiscard]] std::array<float, 4> shader_surface(const Surface& surface);
 
 /// The points origin + t * direction, t > 0.
 struct Ray {

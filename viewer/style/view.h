@@ -23,13 +23,14 @@ struct SkinSize {
   double width_mm = 0, height_mm = 0;
 };
 
-/// The surface under the skin, an isometric map of the sheet to space. The middle of the sheet is
-/// the origin and its normal there is z. shaders/surface.glsl holds the GLSL version.
-enum class SurfaceKind : std::uint32_t { plane, cylinder };
+/// The surface that the skin is drawn on: pillarfield::Surface without height maps. The middle of
+/// the sheet is the origin and its normal there is z. shaders/surface.glsl holds the GLSL version.
+enum class SurfaceKind : std::uint32_t { plane, cylinder, sphere };
 struct Surface {
   SurfaceKind kind = SurfaceKind::plane;
-  double radius_mm = 0;  ///< of the cylinder with axis y and crest at x = 0; a plane below
-                         ///< kLeastRadiusMm
+  /// Of a cylinder or sphere, negative with the skin inside; a plane below kLeastRadiusMm.
+  double radius_mm = 0;
+  double axis_deg = 90;  ///< direction of a cylinder's axis, from +x towards +y
   friend bool operator==(const Surface&, const Surface&) = default;
 };
 inline constexpr double kLeastRadiusMm = 1e-3;

@@ -29,6 +29,7 @@ void calibrate(const ShearCommand& command) {
   std::vector<KnownShear> known;
   for (std::size_t i = 0; i < input.files.size(); ++i) {
     known.push_back({input.files[i], command.shears_n[2 * i], command.shears_n[2 * i + 1]});
+    if (!command.loads_n.empty()) known.back().normal_n = command.loads_n[i];
   }
   const ShearResult result = calibrate_shear(input.calibration, known);
   const auto& [x, y] = result.coefficient;
@@ -58,8 +59,8 @@ void calibrate(const ShearCommand& command) {
   report.more.push_back({"loads", loads});
   warn_of_ambiguous(command, result);
   finish_step(command, result.calibration, "shear", command.files, input.frames,
-              fmt::format("shears_n = {}, standard_error = {:.3g} {:.3g}",
-                          fmt::join(command.shears_n, " "), error_x, error_y),
+              fmt::format("shears_n = {}, loads_n = {}, standard_error = {:.3g} {:.3g}",
+                          fmt::join(command.shears_n, " "), fmt::join(command.loads_n, " "), error_x, error_y),
               report);
 }
 

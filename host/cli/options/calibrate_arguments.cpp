@@ -114,19 +114,28 @@ void add_shear(CLI::App& parent, Work& work) {
           "  pillarfield simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5\n"
           "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
           "tared.h5 -o equal.h5\n"
-          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --calibration equal.h5 -o "
+          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 -o "
           "shear.h5\n");
   Group(command, "Input")
       .file("SHEARED", options->files,
             "Frames of bodies that do not slip under a tangential load, one file per load");
-  Group(command, "Load")
-      .number("--shear-n", options->shears_n, "X1,Y1,X2,Y2,...",
+  Group step(command, "Load");
+  step.number("--shear-n", options->shears_n, "X1,Y1,X2,Y2,...",
               "Tangential force on the skin of each file, in order: + right, + up", -1e6, 1e6)
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false);
+  step.number("--load-n", options->loads_n, "N1,N2,...",
+              "Normal force of each file, so that errors of the sensitivity and creep cancel "
+              "[unknown]",
+              1e-6, 1e6)
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_step(command, *options, true, kCalibration);
   command->parse_complete_callback([options = options] {
+    if (!options->loads_n.empty()) {
+      require_one_each("--load-n", options->files, options->loads_n.size());
+    }
     if (options->shears_n.size() == 2 * options->files.size()) return;
     throw CLI::ValidationError(
         "--shear-n", fmt::format("{} files and {} values; give two per file", options->files.size(),

@@ -32,6 +32,7 @@ std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
   plan.skin.threshold_counts = scene.skin.threshold_counts;
   plan.skin.full_scale_counts = scene.skin.full_scale_counts;
   plan.skin.power_law = scene.skin.power_law;
+  if (const auto surface = surface_of(scene)) plan.skin.surface = surface;
   set_solver(plan, scene);
   return scene.baseline_time_s;
 }

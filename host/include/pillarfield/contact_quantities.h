@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "pillarfield/friction.h"
+#include "pillarfield/surface.h"
 
 namespace pillarfield {
 
@@ -23,6 +24,12 @@ enum class SlipState : std::uint8_t {
 
 /// "unknown", "sticking", "partial", "sliding".
 [[nodiscard]] const char* name_of(SlipState state);
+
+/// Force on the skin and its moment about the origin, in the body's frame (surface.h).
+struct Wrench {
+  Vector3 force_n;
+  Vector3 moment_nmm;
+};
 
 /// Force, torque, place, friction and slip of a contact (docs/contacts_found.md). Forces are sums
 /// over its pillars, with the signs of ForceFieldView.
@@ -48,6 +55,8 @@ struct ContactQuantities {
   double peak_n = 0;             ///< the largest normal force of a pillar
   PatchPlace peak;               ///< its position; the first, row by row, if several are equal
   double mean_pressure_kpa = 0;  ///< normal_n over area_mm2
+  /// Sum over the pillars on their poses; set with ContactOptions::surface.
+  std::optional<Wrench> wrench;
 
   /// Friction coefficient. Set if it was given, or if the posterior's logarithm has a standard
   /// deviation of at most 0.02 and the contact cannot be a flat face that sticks

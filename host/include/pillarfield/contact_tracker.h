@@ -50,6 +50,8 @@ struct ContactOptions {
   /// Normal force that an inactive sensel may hide below the threshold, N, 0 to 1e6:
   /// hidden_normal_n().
   double hidden_n = 0;
+  /// Surface of the skin, for ContactQuantities::wrench; it must fit the pillars. Unset: no wrench.
+  std::optional<Surface> surface = {};
   double reach_mm = 10;  ///< how far a contact may move between frames, 0 to 1000
   /// Threads that measure a frame's contacts, 0 to 1024; 0: one per hardware thread. The result
   /// does not depend on it. They start at the first frame of more than 4000 loaded pillars and

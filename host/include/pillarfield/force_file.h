@@ -29,6 +29,7 @@ struct ForceFileInfo {
       {};  ///< holds contacts, found with these options; HDF5 only
   /// SolverPlan::segment_point; HDF5 only. Unset: not stated.
   std::optional<double> segment_point = {};
+  std::optional<Surface> surface = {};  ///< of the skin; HDF5 only
 };
 
 /// Creates a sink in the format of the extension of `path` (docs/formats.md; endings_of() lists

@@ -68,6 +68,7 @@
 #include "pillarfield/skin.h"
 #include "pillarfield/solver_plan.h"
 #include "pillarfield/status.h"
+#include "pillarfield/surface.h"
 #include "pillarfield/version.h"
 
 // Contacts.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -68,6 +69,13 @@ struct Bending {
   std::vector<CurvatureKey> path;
 };
 
+/// Height map of the surface under the skin.
+struct SurfaceMap {
+  std::filesystem::path path;              ///< .npy or .png, as Body::height_map
+  std::array<double, 2> size_mm = {0, 0};  ///< along x and y; it must cover the skin
+  double depth_mm = 0;                     ///< height of its highest point above its lowest
+};
+
 /// Factor of all forces of a DirectionSweep at a time; linear in time between the keys of a path.
 struct FactorKey {
   double time_s = 0;
@@ -90,6 +98,7 @@ struct Scene {
   Skin skin;
   SensorModel sensor;
   std::optional<Bending> bending;
+  std::optional<SurfaceMap> surface_map;  ///< in place of skin.surface: surface_of()
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
@@ -109,6 +118,10 @@ struct Scene {
 /// Sets the solver's options, and the noise of the sensor if any, as the scene says. The skin and
 /// the calibration of the plan stay.
 void set_solver(SolverPlan& plan, const Scene& scene);
+
+/// The surface under the skin; reads its height map and samples it at the pillars. Throws Error if
+/// the map is unreadable or does not cover the skin.
+[[nodiscard]] std::optional<Surface> surface_of(const Scene& scene);
 
 /// Reads a scene from a TOML file. Throws Error with file, line, key and the allowed values. Paths
 /// of height maps are resolved relative to the file; the maps are not opened.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,9 @@ struct KnownShear {
   const FrameStatistics& frames;
   double shear_x_n;  ///< + right
   double shear_y_n;  ///< + up
+  /// Total normal force. If set, the solved shear is scaled by it over the solved normal force, so
+  /// that errors of k and creep, which both share, cancel.
+  std::optional<double> normal_n = {};
 };
 
 /// The sums of one tangential load.

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string_view>
 
+#include "pillarfield/surface.h"
+
 namespace pillarfield {
 
 /// Data type of a sensel reading.
@@ -40,12 +42,16 @@ struct Skin {
   double threshold_counts = 0;              ///< a sensel is usable if its reading is above
   std::optional<double> full_scale_counts;  ///< a reading is saturated from here on
   std::optional<PowerLaw> power_law;        ///< unset: readings are proportional to force
+  std::optional<Surface> surface;           ///< unset: unknown; forces stay in the skin's own axes
 
   [[nodiscard]] std::uint32_t pillar_rows() const { return rows / 2; }
   [[nodiscard]] std::uint32_t pillar_cols() const { return cols / 2; }
   [[nodiscard]] std::size_t sensels() const { return std::size_t{rows} * cols; }
   [[nodiscard]] std::size_t pillars() const { return std::size_t{pillar_rows()} * pillar_cols(); }
   [[nodiscard]] double pillar_pitch_mm() const { return 2 * sensel_pitch_mm; }
+  [[nodiscard]] PillarLayout pillar_layout() const {
+    return {pillar_rows(), pillar_cols(), pillar_pitch_mm()};
+  }
 };
 
 /// Limits that keep every result within single precision.

@@ -70,6 +70,7 @@ void Hdf5Table::close() {
 }
 
 ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& options) {
+  columns_ = quantity_columns(options.surface.has_value());
   contacts_ = {file, force_format::kContacts};
   const hdf5::Handle group =
       hdf5::own(H5Gopen2(file.id.get(), force_format::kContacts, H5P_DEFAULT), file.path,
@@ -82,12 +83,12 @@ ContactTables::ContactTables(const hdf5::File& file, const ContactOptions& optio
   }
   contacts_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
   add_columns(file, identity_columns(), contacts_);
-  add_columns(file, quantity_columns(), contacts_);
+  add_columns(file, columns_, contacts_);
 
   patch_ = {file, force_format::kPatch};
   for (const char* name : force_format::kPatchRows)
     patch_.add_column(file, name, H5T_STD_U64LE, "");
-  add_columns(file, quantity_columns(), patch_);
+  add_columns(file, columns_, patch_);
 
   ended_ = {file, force_format::kEnded};
   ended_.add_column(file, force_format::kFrameColumn, H5T_STD_U64LE, "");
@@ -100,11 +101,11 @@ void ContactTables::append(const FrameContacts& frame) {
   patch_.put(static_cast<double>(frame.contacts.size()));
   patch_.put(static_cast<double>(ended_.rows()));
   patch_.put(static_cast<double>(frame.ended.size()));
-  put_row(quantity_columns(), frame.total, patch_);
+  put_row(columns_, frame.total, patch_);
   for (const TrackedContact& contact : frame.contacts) {
     contacts_.put(index);
     put_row(identity_columns(), contact, contacts_);
-    put_row(quantity_columns(), contact.quantities, contacts_);
+    put_row(columns_, contact.quantities, contacts_);
   }
   for (const EndedContact& contact : frame.ended) {
     ended_.put(index);

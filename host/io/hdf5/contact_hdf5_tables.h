@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/contact_columns.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
 #include "pillarfield/contact_tracker.h"
@@ -54,6 +55,7 @@ class ContactTables {
   void close();
 
  private:
+  std::span<const ContactColumn<ContactQuantities>> columns_;
   Hdf5Table contacts_;
   Hdf5Table patch_;
   Hdf5Table ended_;

@@ -97,6 +97,8 @@ void Tekscan::take_newtons(const TekscanHeader& header) {
           ? fmt::format("Readings are pressures; times {:.6g} mm² they are newtons on a sensel.",
                         header.area_mm2().value_or(0))
           : "Readings are newtons on a sensel.");
+  warnings_.emplace_back(
+      "Shear is that of pillars on the sensor; without pillars it has no meaning.");
 }
 
 void Tekscan::take_times(TekscanExport& data) {

@@ -25,20 +25,23 @@ class ContactCsvSink final : public ForceSink {
 
   std::filesystem::path path_;
   TextPart file_;
+  std::span<const ContactColumn<ContactQuantities>> columns_;
   std::string frame_cells_;  // "frame,time,", shared by all lines of a frame
   std::uint64_t frames_ = 0;
 };
 
-ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, const ForceFileInfo& /*info*/,
+ContactCsvSink::ContactCsvSink(const std::filesystem::path& path, const ForceFileInfo& info,
                                Replace replace)
-    : path_(path), file_(path, OutputKind::contacts, replace) {
+    : path_(path),
+      file_(path, OutputKind::contacts, replace),
+      columns_(quantity_columns(info.contacts && info.contacts->surface)) {
   file_.write(kContactCsvHead);
-  for (const auto& column : quantity_columns()) file_.write(fmt::format(",{}", column.name));
+  for (const auto& column : columns_) file_.write(fmt::format(",{}", column.name));
   file_.write("\n");
 }
 
 void ContactCsvSink::add_quantities(const ContactQuantities& quantities) {
-  for (const auto& column : quantity_columns()) {
+  for (const auto& column : columns_) {
     file_.write(fmt::format(",{}", text_of(column, quantities, "")));
   }
   file_.write("\n");
@@ -55,7 +58,7 @@ void ContactCsvSink::add_ended(const EndedContact& contact) {
   const std::string merged = contact.merged_into ? fmt::format("{}", *contact.merged_into) : "";
   file_.write(fmt::format("ended,{}{},,{},{},{}", frame_cells_, contact.track_id, merged,
                           contact.first_time_s, contact.last_time_s - contact.first_time_s));
-  file_.write(std::string(quantity_columns().size(), ',') + "\n");
+  file_.write(std::string(columns_.size(), ',') + "\n");
 }
 
 void ContactCsvSink::append(const SolvedFrame& frame) {

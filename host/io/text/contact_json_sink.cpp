@@ -58,11 +58,14 @@ class JsonSink final : public ForceSink {
  private:
   std::filesystem::path path_;
   TextPart file_;
+  std::span<const ContactColumn<ContactQuantities>> columns_;
   std::uint64_t frames_ = 0;
 };
 
 JsonSink::JsonSink(const std::filesystem::path& path, const ForceFileInfo& info, Replace replace)
-    : path_(path), file_(path, OutputKind::contacts, replace) {
+    : path_(path),
+      file_(path, OutputKind::contacts, replace),
+      columns_(quantity_columns(info.contacts && info.contacts->surface)) {
   const ContactOptions& options = info.contacts.value();
   const auto& friction = options.friction.given;
   file_.write(fmt::format(
@@ -78,11 +81,11 @@ void JsonSink::append(const SolvedFrame& frame) {
   const FrameContacts& found = contacts_of(frame, path_.string());
   file_.write(fmt::format("{}\n{{\"frame\":{},\"time_s\":{},\"patch\":{{{}}},\"contacts\":[",
                           frames_ == 0 ? "" : ",", frames_, frame.time_s,
-                          members_of(quantity_columns(), found.total)));
+                          members_of(columns_, found.total)));
   const char* separator = "";
   for (const TrackedContact& contact : found.contacts) {
     file_.write(fmt::format("{}{{{},{}}}", separator, members_of(identity_columns(), contact),
-                            members_of(quantity_columns(), contact.quantities)));
+                            members_of(columns_, contact.quantities)));
     separator = ",";
   }
   file_.write("],\"ended\":[");

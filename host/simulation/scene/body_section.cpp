@@ -44,13 +44,7 @@ void read_sizes(TomlSection& section, std::string_view key, std::array<double, c
 }
 
 void read_height_map_keys(TomlSection& section, const std::filesystem::path& folder, Body& body) {
-  constexpr std::string_view kAllowed = "the path of a .npy or .png file, from the scene's folder";
-  const auto path = section.text("height_map");
-  if (!path) section.fail_missing("height_map", kAllowed);
-  if (!path->ends_with(".npy") && !path->ends_with(".png")) {
-    section.fail("height_map", fmt::format("is \"{:.40}\"", *path), kAllowed);
-  }
-  body.height_map = folder / *path;
+  body.height_map = read_height_map_path(section, folder);
   read_sizes(section, "height_map_size_mm", body.height_map_size_mm);
 }
 
@@ -88,6 +82,17 @@ BodyKey read_body_key(TomlSection& section) {
 }
 
 }  // namespace
+
+std::filesystem::path read_height_map_path(TomlSection& section,
+                                           const std::filesystem::path& folder) {
+  constexpr std::string_view kAllowed = "the path of a .npy or .png file, from the scene's folder";
+  const auto path = section.text("height_map");
+  if (!path) section.fail_missing("height_map", kAllowed);
+  if (!path->ends_with(".npy") && !path->ends_with(".png")) {
+    section.fail("height_map", fmt::format("is \"{:.40}\"", *path), kAllowed);
+  }
+  return folder / *path;
+}
 
 Body read_body(TomlSection& section, const std::filesystem::path& folder) {
   Body body;

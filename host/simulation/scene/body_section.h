@@ -11,4 +11,8 @@ namespace pillarfield {
 /// Throws Error.
 [[nodiscard]] Body read_body(TomlSection& section, const std::filesystem::path& folder);
 
+/// Reads the key `height_map`: a .npy or .png file, relative to `folder`. Throws Error.
+[[nodiscard]] std::filesystem::path read_height_map_path(TomlSection& section,
+                                                         const std::filesystem::path& folder);
+
 }  // namespace pillarfield

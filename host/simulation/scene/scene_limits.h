@@ -56,6 +56,8 @@ inline constexpr std::array<Quantity<Wires>, 3> kWireQuantities = {{
 inline constexpr Range kIdleRowOhm = {0, 1e9};
 inline constexpr Range kBendSpread = {0, 1e6};
 inline constexpr Range kCurvaturePerMm = {-1, 1};
+inline constexpr Range kSurfaceRadiusMm = {-1e6, 1e6};
+inline constexpr Range kSurfaceAxisDeg = {-360, 360};
 inline constexpr Range kPowerLawExponent = {kMinExponent, kMaxExponent};
 inline constexpr Range kPowerLawReference = {kMinReferenceCounts, kMaxReferenceCounts};
 
@@ -186,6 +188,13 @@ inline constexpr std::array<Named<BodyShape>, 5> kBodyShapes = {{
     {"cylinder", BodyShape::cylinder},
     {"punch", BodyShape::punch},
     {"height_map", BodyShape::height_map},
+}};
+
+inline constexpr std::array<Named<SurfaceShape>, 4> kSurfaceShapes = {{
+    {"plane", SurfaceShape::plane},
+    {"cylinder", SurfaceShape::cylinder},
+    {"sphere", SurfaceShape::sphere},
+    {"height_map", SurfaceShape::height_map},
 }};
 
 inline constexpr std::array<Named<Estimator>, 4> kEstimators = {{

@@ -71,7 +71,7 @@ const std::vector<GoldenPicture>& golden_pictures() {
               o.orbit = true;
               o.azimuth = -0.8;
               o.elevation = 0.5;
-              o.surface = {SurfaceKind::cylinder, 25};
+              o.surface = Surface{SurfaceKind::cylinder, 25};
             })},
       {"spin_phi", "spin", 0, look_at(Quantity::phi)},
       {"spin_theta_light", "spin", 0,

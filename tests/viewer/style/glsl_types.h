@@ -9,6 +9,11 @@ using uint = unsigned;  // NOLINT(readability-identifier-naming): GLSL's name, a
 
 struct vec2 {  // NOLINT(readability-identifier-naming)
   float x, y;
+  vec2(float first, float second) : x(first), y(second) {}
+};
+
+struct vec4 {  // NOLINT(readability-identifier-naming)
+  float x, y, z, w;
 };
 
 struct vec3 {  // NOLINT(readability-identifier-naming)
@@ -23,5 +28,6 @@ struct mat3 {  // NOLINT(readability-identifier-naming)
 
 using std::cos;
 using std::sin;
+using std::sqrt;
 
 }  // namespace glsl

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "glsl_types.h"
 #include "viewer/style/vectors.h"
@@ -18,7 +19,20 @@ namespace {
 
 Surface cylinder(double radius_mm) { return {SurfaceKind::cylinder, radius_mm}; }
 
-const Surface kSurfaces[] = {{}, cylinder(3), cylinder(40), cylinder(5000)};
+/// Surfaces that keep lengths.
+const Surface kSheets[] = {{},
+                           cylinder(3),
+                           cylinder(40),
+                           cylinder(5000),
+                           {SurfaceKind::cylinder, -50, 30},
+                           {SurfaceKind::cylinder, 70, -120}};
+const Surface kSpheres[] = {{SurfaceKind::sphere, 120}, {SurfaceKind::sphere, -3000}};
+
+std::vector<Surface> all_surfaces() {
+  std::vector<Surface> all(std::begin(kSheets), std::end(kSheets));
+  all.insert(all.end(), std::begin(kSpheres), std::end(kSpheres));
+  return all;
+}
 
 Vec2 random_point(std::mt19937& random) {
   std::uniform_real_distribution<double> place(-120, 120);
@@ -28,7 +42,7 @@ Vec2 random_point(std::mt19937& random) {
 
 TEST(Surface, FramesAreOrthonormalAndRightHanded) {
   std::mt19937 random(1);
-  for (const Surface& surface : kSurfaces) {
+  for (const Surface& surface : all_surfaces()) {
     for (int i = 0; i < 200; ++i) {
       const auto [position, x, y, n] = frame_at(surface, random_point(random));
       EXPECT_NEAR(dot(x, x), 1, 1e-14);
@@ -46,7 +60,7 @@ TEST(Surface, FramesAreOrthonormalAndRightHanded) {
 TEST(Surface, TangentsAreTheDerivativesSoThatLengthsAreKept) {
   std::mt19937 random(2);
   constexpr double kStep = 1e-5;
-  for (const Surface& surface : kSurfaces) {
+  for (const Surface& surface : kSheets) {
     for (int i = 0; i < 200; ++i) {
       const Vec2 at = random_point(random);
       const SurfaceFrame frame = frame_at(surface, at);
@@ -78,7 +92,7 @@ TEST(Surface, AHugeCylinderIsNearlyAPlaneWithAHeightToItsLastDigit) {
 }
 
 TEST(Surface, ACylinderWithoutRadiusIsAPlane) {
-  for (const double radius : {0.0, -5.0, 1e-9, std::nan("")}) {
+  for (const double radius : {0.0, -1e-9, 1e-9, std::nan("")}) {
     const SurfaceFrame frame = frame_at(cylinder(radius), {100, 20});
     EXPECT_EQ(length(frame.position - Vec3{100, 20, 0}), 0);
     EXPECT_EQ(frame.normal.z, 1);
@@ -87,18 +101,18 @@ TEST(Surface, ACylinderWithoutRadiusIsAPlane) {
 
 TEST(SurfaceShader, IsTheSameFunctionInSinglePrecision) {
   std::mt19937 random(3);
-  for (const Surface& surface : kSurfaces) {
+  for (const Surface& surface : all_surfaces()) {
     for (int i = 0; i < 500; ++i) {
       const Vec2 at = random_point(random);
       const SurfaceFrame frame = frame_at(surface, at);
       const glsl::vec2 sheet{static_cast<float>(at.x), static_cast<float>(at.y)};
-      const auto kind = static_cast<unsigned>(surface.kind);
-      const auto radius = static_cast<float>(surface.radius_mm);
+      const auto [x, y, radius, kind] = shader_surface(surface);
+      const glsl::vec4 bent{x, y, radius, kind};
       const auto distance = [](glsl::vec3 single, Vec3 exact) {
         return length(Vec3{single.x, single.y, single.z} - exact);
       };
-      EXPECT_LT(distance(glsl::surface_position(sheet, kind, radius), frame.position), 3e-5);
-      const auto basis = glsl::surface_basis(sheet, kind, radius);
+      EXPECT_LT(distance(glsl::surface_position(sheet, bent), frame.position), 5e-5);
+      const auto basis = glsl::surface_basis(sheet, bent);
       EXPECT_LT(distance(basis.first, frame.tangent_x), 1e-5);
       EXPECT_LT(distance(basis.second, frame.tangent_y), 1e-5);
       EXPECT_LT(distance(basis.third, frame.normal), 1e-5);
@@ -106,12 +120,36 @@ TEST(SurfaceShader, IsTheSameFunctionInSinglePrecision) {
   }
 }
 
-TEST(SurfaceShader, IsSafeWithoutARadius) {
-  for (const float radius : {0.0F, -1.0F, 1e-20F, std::nanf("")}) {
-    const auto position = glsl::surface_position({30, 4}, 1U, radius);
-    EXPECT_EQ(position.x, 30);
-    EXPECT_EQ(position.z, 0);
-    EXPECT_EQ(glsl::surface_basis({30, 4}, 1U, radius).third.z, 1);
+TEST(SurfaceShader, TakesASurfaceWithoutARadiusAsAPlane) {
+  for (const double radius : {0.0, -1e-4, 1e-20, std::nan("")}) {
+    EXPECT_EQ(shader_surface(cylinder(radius))[3], 0);
+  }
+}
+
+/// The ray from outside or inside through a point hits that point.
+TEST(FirstHit, FindsThePointOfEverySurface) {
+  std::mt19937 random(4);
+  const SkinSize skin{90, 60};
+  for (const Surface& surface : all_surfaces()) {
+    if (surface.radius_mm == 3) continue;  // The sheet winds around it.
+    std::uniform_real_distribution<double> share(-0.499, 0.499);
+    for (int i = 0; i < 200; ++i) {
+      const double x = share(random) * skin.width_mm;
+      const Vec2 point{x, share(random) * skin.height_mm};
+      const SurfaceFrame frame = frame_at(surface, point);
+      for (const double side : {-1.0, 1.0}) {
+        const Ray ray{frame.position + side * 5 * frame.normal, (-side) * frame.normal};
+        const auto hit = first_hit(ray, surface, skin);
+        ASSERT_TRUE(hit.has_value());
+        EXPECT_NEAR(hit->x, point.x, 1e-9);
+        EXPECT_NEAR(hit->y, point.y, 1e-9);
+      }
+      const Box box = box_about(skin, surface);
+      for (const auto axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+        EXPECT_GE(frame.position.*axis, box.low.*axis - 1e-9);
+        EXPECT_LE(frame.position.*axis, box.high.*axis + 1e-9);
+      }
+    }
   }
 }
 

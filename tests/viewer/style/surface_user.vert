@@ -7,6 +7,7 @@ layout(location = 0) in vec2 sheet;
 layout(location = 0) out vec3 normal;
 
 void main() {
-  gl_Position = vec4(surface_position(sheet, PF_SURFACE_CYLINDER, 30.0), 1.0);
-  normal = surface_basis(sheet, PF_SURFACE_CYLINDER, 30.0)[2];
+  const vec4 surface = vec4(1.0, 0.0, 30.0, PF_SURFACE_CYLINDER);
+  gl_Position = vec4(surface_position(sheet, surface), 1.0);
+  normal = surface_basis(sheet, surface)[2];
 }

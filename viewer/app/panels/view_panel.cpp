@@ -135,17 +135,17 @@ void choose_view(const Command& command) {
 }
 
 void choose_surface(const Command& command) {
-  constexpr std::array<const char*, 2> kSurfaces{"Plane", "Cylinder"};
+  constexpr std::array<const char*, 3> kSurfaces{"Plane", "Cylinder", "Sphere"};
   Surface surface = command.state.settings.surface;
-  int chosen = surface.kind == SurfaceKind::cylinder ? 1 : 0;
+  int chosen = static_cast<int>(surface.kind);
   labelled("Surface");
   const double width = command.place.skin().width_mm;
   if (toggle_group("surface", kSurfaces, chosen)) {
-    surface.kind = chosen == 1 ? SurfaceKind::cylinder : SurfaceKind::plane;
-    if (surface.radius_mm <= 0) surface.radius_mm = 0.5 * width;
+    surface.kind = static_cast<SurfaceKind>(chosen);
+    if (surface.radius_mm == 0) surface.radius_mm = 0.5 * width;
     set_surface(command.state, command.place, surface);
   }
-  if (surface.kind != SurfaceKind::cylinder) return;
+  if (surface.kind == SurfaceKind::plane) return;
   labelled("Radius");
   auto radius = static_cast<float>(surface.radius_mm);
   // The smallest radius lets the sheet close around the cylinder.

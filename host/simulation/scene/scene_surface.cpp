@@ -1,0 +1,38 @@
+#include <cmath>
+
+#include "pillarfield/error.h"
+#include "pillarfield/scene.h"
+#include "simulation/body/body_surface.h"
+
+namespace pillarfield {
+namespace {
+
+/// The relief that a body of this height map has; its depth below the highest point.
+std::unique_ptr<Relief> relief_of(const SurfaceMap& map) {
+  Body body;
+  body.shape = BodyShape::height_map;
+  body.height_map = map.path;
+  body.height_map_size_mm = map.size_mm;
+  body.height_map_depth_mm = map.depth_mm;
+  return make_relief(body);
+}
+
+}  // namespace
+
+std::optional<Surface> surface_of(const Scene& scene) {
+  if (!scene.surface_map) return scene.skin.surface;
+  const SurfaceMap& map = *scene.surface_map;
+  const auto relief = relief_of(map);
+  Surface surface;
+  surface.shape = SurfaceShape::height_map;
+  for (const Pose& pillar : poses_of({}, scene.skin.pillar_layout())) {
+    const double depth_mm = relief->height_mm(pillar.position_mm.x, pillar.position_mm.y);
+    if (!std::isfinite(depth_mm)) {
+      throw Error(map.path.string(), "does not cover the skin", "give a larger height_map_size_mm");
+    }
+    surface.heights_mm.push_back(static_cast<float>(map.depth_mm - depth_mm));
+  }
+  return surface;
+}
+
+}  // namespace pillarfield
