@@ -5,6 +5,7 @@ import concurrent.futures
 import json
 import subprocess
 import sys
+import zlib
 from pathlib import Path
 
 import h5py
@@ -110,7 +111,16 @@ class Sensor:
         if not Path(self.folder, recording).exists():
             Path(self.folder, f"{name}.toml").write_text(text, encoding="utf-8")
             self.run("simulate", f"{name}.toml", "-o", recording, "-q", *options)
+            self.add_noise(recording)
         return recording
+
+    def add_noise(self, recording):
+        """Noise of its own for each recording: a scene's noise is that of its seed, equal in all
+        recordings of one skin, so that a tare would remove it."""
+        random = numpy.random.default_rng(zlib.crc32(f"{self.folder.name}/{recording}".encode()))
+        with h5py.File(Path(self.folder, recording), "r+") as file:
+            raw = file["frames/raw"]
+            raw[...] = raw[:] + random.normal(0, scenes.NOISE_COUNTS, raw.shape)
 
     def experiment(self, name):
         return self.simulate(name, scenes.experiment(name, self.effect), "--uncalibrated")

@@ -67,7 +67,6 @@ threshold_counts = {4 * NOISE_COUNTS}
 modulus_kpa = {modulus_kpa}
 counts_per_newton = {COUNTS_PER_NEWTON}
 [sensor]
-noise_counts = {NOISE_COUNTS}
 {sensor}
 [time]
 rate_hz = {rate_hz}
