@@ -20,7 +20,8 @@ Stages plan_constants(const SolverPlan& plan) {
   const SensorEffects& effects = calibration.effects;
   const ShearCoefficient coefficient = effects.shear_coefficient.value_or(ShearCoefficient{});
   const ResidualError residual = effects.residual.value_or(ResidualError{});
-  const PillarTaps pillar_taps = pillar_leak_taps(effects.pillar_leak.value_or(PillarLeak{}));
+  const PillarTaps pillar_taps =
+      effects.pillar_leak ? pillar_leak_taps(*effects.pillar_leak) : PillarTaps{};
   const auto real = [](double value) { return static_cast<Real>(value); };
   return {.range = plan.sensel_type == SenselType::f32,
           .mask = !calibration.mask.empty(),

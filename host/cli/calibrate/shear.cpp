@@ -60,7 +60,8 @@ void calibrate(const ShearCommand& command) {
   warn_of_ambiguous(command, result);
   finish_step(command, result.calibration, "shear", command.files, input.frames,
               fmt::format("shears_n = {}, loads_n = {}, standard_error = {:.3g} {:.3g}",
-                          fmt::join(command.shears_n, " "), fmt::join(command.loads_n, " "), error_x, error_y),
+                          fmt::join(command.shears_n, " "), fmt::join(command.loads_n, " "),
+                          error_x, error_y),
               report);
 }
 

@@ -114,7 +114,8 @@ void add_shear(CLI::App& parent, Work& work) {
           "  pillarfield simulate scenes/new_skin_sheared.toml --uncalibrated -o sheared.h5\n"
           "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
           "tared.h5 -o equal.h5\n"
-          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration equal.h5 -o "
+          "  pillarfield calibrate shear sheared.h5 --shear-n 50,0 --load-n 200 --calibration "
+          "equal.h5 -o "
           "shear.h5\n");
   Group(command, "Input")
       .file("SHEARED", options->files,

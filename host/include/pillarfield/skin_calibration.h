@@ -23,8 +23,8 @@ struct CalibrationStep {
 };
 
 /// The calibration of one skin (docs/calibration.md): its planes and measured constants. Each step,
-/// take_tare(), equilibrate(), calibrate_load() and FaultFinder, takes one and returns a better
-/// one. Constants are unset until a step measures them.
+/// such as take_tare() or FaultFinder, takes one and returns a better one. Constants are unset
+/// until a step measures them.
 struct SkinCalibration {
   std::uint32_t rows = 0;  ///< sensel rows
   std::uint32_t cols = 0;  ///< sensel columns
