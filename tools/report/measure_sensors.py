@@ -177,14 +177,14 @@ class Sensor:
     def score(self, *options, **more):
         return added(list(self.solve(*options, **more)))
 
-    def score_of(self, calibration):
-        """As calibrated by the commands, whose noise counts, with the ambiguous pillars of all
-        estimators."""
-        words = ("--calibration", calibration)
-        result = self.score(*words, noise=False)
+    def score_calibrated(self, calibration):
+        """By the calibration's own noise, with the ambiguous pillars of other estimators too."""
+        options = {"noise": False}
+        by_body = list(self.solve("--calibration", calibration, **options))
+        result = added(by_body) | {"bodies": dict(zip(scenes.BODIES, by_body))}
         for estimator in ("contact", "paper"):
-            of_estimator = self.score(*words, noise=False, estimator=estimator)
-            result[f"ambiguous_{estimator}"] = of_estimator["ambiguous"]
+            other = self.score("--calibration", calibration, estimator=estimator, **options)
+            result[f"ambiguous_{estimator}"] = other["ambiguous"]
         return result
 
 
@@ -209,7 +209,7 @@ def measure_ideal(program, folder, stiffness):
     for effect in scenes.EFFECTS.values():
         steps = tuple(step for step in effect.steps if step not in scenes.CONSTANTS)
         if steps not in absent:
-            absent[steps] = sensor.score_of(sensor.calibrated(steps))
+            absent[steps] = sensor.score_calibrated(sensor.calibrated(steps))
     result["absent"] = {name: absent[tuple(step for step in effect.steps
                                            if step not in scenes.CONSTANTS)]
                         for name, effect in scenes.EFFECTS.items()}
@@ -218,9 +218,10 @@ def measure_ideal(program, folder, stiffness):
 
 def measure_effect(program, folder, stiffness, effect):
     sensor = Sensor(program, folder, effect, stiffness)
-    return {"ignored": sensor.score("--calibration", sensor.taken_for_ideal()),
+    ignored = list(sensor.solve("--calibration", sensor.taken_for_ideal()))
+    return {"ignored": added(ignored) | {"bodies": dict(zip(scenes.BODIES, ignored))},
             "exact": sensor.score(),
-            "calibrated": sensor.score_of(sensor.calibrated(effect.steps))}
+            "calibrated": sensor.score_calibrated(sensor.calibrated(effect.steps))}
 
 
 def main(program, folder):
