@@ -34,6 +34,7 @@
 #include "frame/memory_planes.h"
 #include "frame/neighbours.h"
 #include "frame/find_wires.cl"
+#include "frame/bend_tare.cl"
 #include "frame/solve_frame.cl"
 #include "frame/correct_forces.cl"
 #include "frame/follow_baseline.cl"

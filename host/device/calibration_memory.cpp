@@ -39,6 +39,12 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
       return copy(plan.calibration.noise, to);
     case CalibrationPlane::mask:
       return copy(plan.calibration.mask, to);
+    case CalibrationPlane::bend_x:
+      return copy(plan.calibration.bend_x, to);
+    case CalibrationPlane::bend_y:
+      return copy(plan.calibration.bend_y, to);
+    case CalibrationPlane::bend_xy:
+      return copy(plan.calibration.bend_xy, to);
     case CalibrationPlane::memory:
       return;
     case CalibrationPlane::activation:
@@ -56,9 +62,10 @@ std::size_t memory_states(const SolverPlan& plan) {
 }  // namespace
 
 const char* macro_of(CalibrationPlane plane) {
-  static constexpr std::array kMacros = {"PF_TARE_PLANE",  "PF_GAIN_PLANE", "PF_DEAD_ZONE_PLANE",
-                                         "PF_NOISE_PLANE", "PF_MASK_PLANE", "PF_ACTIVATION_PLANE",
-                                         "PF_MEMORY_PLANE"};
+  static constexpr std::array kMacros = {
+      "PF_TARE_PLANE",    "PF_GAIN_PLANE",       "PF_DEAD_ZONE_PLANE", "PF_NOISE_PLANE",
+      "PF_MASK_PLANE",    "PF_ACTIVATION_PLANE", "PF_BEND_X_PLANE",    "PF_BEND_Y_PLANE",
+      "PF_BEND_XY_PLANE", "PF_MEMORY_PLANE"};
   return kMacros[static_cast<std::size_t>(plane)];
 }
 
@@ -68,12 +75,16 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   const auto add = [&](bool wanted, CalibrationPlane plane) {
     if (wanted) planes.push_back(plane);
   };
-  add(!calibration.tare.empty() || plan.baseline_rate, CalibrationPlane::tare);
+  const bool bent = !calibration.bend_x.empty();
+  add(!calibration.tare.empty() || plan.baseline_rate || bent, CalibrationPlane::tare);
   add(!calibration.gain.empty(), CalibrationPlane::gain);
   add(!calibration.dead_zone.empty(), CalibrationPlane::dead_zone);
   add(!calibration.noise.empty() && plan.uncertainty, CalibrationPlane::noise);
   add(!calibration.mask.empty(), CalibrationPlane::mask);
   add(paths.skip_idle && has_activation_plane(plan), CalibrationPlane::activation);
+  add(bent, CalibrationPlane::bend_x);
+  add(bent, CalibrationPlane::bend_y);
+  add(bent, CalibrationPlane::bend_xy);
   for (std::size_t i = 0; i < memory_states(plan); ++i) planes.push_back(CalibrationPlane::memory);
   return planes;
 }

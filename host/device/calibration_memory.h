@@ -15,6 +15,9 @@ enum class CalibrationPlane : std::uint8_t {
   noise,
   mask,
   activation,
+  bend_x,
+  bend_y,
+  bend_xy,
   memory,  ///< the first state; the last planes
 };
 

@@ -14,6 +14,7 @@
 #include "device/slot_scheduler.h"
 #include "pillarfield/error.h"
 #include "pillarfield/tuning.h"
+#include "solve/curvature_follower.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
@@ -104,6 +105,7 @@ struct Processor::State {
     for (int i = 0; i < options.frames_in_flight; ++i) {
       slots.push_back(std::make_shared<Slot>(device.state(), wanted, settings, calibration, order));
     }
+    if (!wanted.calibration.bend_x.empty()) curvature.emplace(wanted);
     if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
     warm_up();
     order.rate = static_cast<float>(baseline_turn_rate(wanted));
@@ -126,8 +128,9 @@ struct Processor::State {
   SpeedPaths paths;
   CalibrationMemory calibration;  ///< outlives the slots: a kernel does not retain its arguments
   FrameOrder order;               ///< outlives the slots
-  std::optional<ContactStage> contacts;      ///< of the estimator `contact`
-  std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
+  std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
+  std::optional<ContactStage> contacts;        ///< of the estimator `contact`
+  std::vector<std::shared_ptr<Slot>> slots;    ///< a pinned one outlives the processor
   SlotScheduler scheduler;
   bool received = false;  ///< a frame has been received
 };
@@ -179,7 +182,10 @@ void Processor::submit(const FrameView& frame) {
   const std::optional<std::size_t> slot = state_->scheduler.next();
   if (!slot) throw_no_slot(state_->scheduler);
   try {
-    with_opencl_errors(state_->device.info().name, [&] { state_->slots[*slot]->submit(frame); });
+    std::optional<Curvature> bent;
+    if (state_->curvature) bent = state_->curvature->follow(frame);
+    with_opencl_errors(state_->device.info().name,
+                       [&] { state_->slots[*slot]->submit(frame, bent); });
   } catch (...) {
     state_->scheduler.returned()->give_back(*slot);
     throw;
@@ -214,6 +220,10 @@ Processor::PinnedResult Processor::pin() {
 FoundContacts Processor::contacts() const {
   if (!state_->contacts || !state_->received) return {};
   return state_->contacts->contacts();
+}
+
+Curvature Processor::curvature() const {
+  return state_->curvature ? state_->curvature->curvature() : Curvature{};
 }
 
 int Processor::in_flight() const { return static_cast<int>(state_->scheduler.in_flight()); }

@@ -25,7 +25,9 @@ struct Launch {
 };
 
 /// Arguments of kernels/frame/*.cl; those from kRate on are of follow_baseline alone.
+/// From kBendX on: the change of curvature of bend_tare.
 enum Argument : cl_uint { kRaw, kCalibration, kResults, kLayout, kRate, kFirstRow, kInterval };
+constexpr cl_uint kBendX = kRate;
 
 /// Tiles of a skin, across and down.
 cl::NDRange tiles_of(const SolverPlan& plan, const WireCrosstalk& wires) {
@@ -97,6 +99,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   kernel_ = kernel("solve_frame");
   if (plan.calibration.effects.wires) wires_ = kernel("find_wires");
   const SensorEffects& effects = plan.calibration.effects;
+  if (!plan.calibration.bend_x.empty()) bend_ = kernel("bend_tare");
   if (effects.pillar_leak) unleak_ = kernel("remove_pillar_leak");
   if (effects.pillar_leak || effects.arm_mm) correct_ = kernel("correct_forces");
   if (!order.follows_baseline) return;
@@ -113,13 +116,13 @@ Slot::~Slot() {
   }
 }
 
-void Slot::submit(const FrameView& frame) {
+void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) {
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   layout_.row_stride = on_device.row_stride;
   layout_.frame = ++order_->frame;
   if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
-  solve();
+  solve(bent);
   if (unleak_() != nullptr) launch(unleak_, global_, local_);
   if (correct_() != nullptr) launch(correct_, global_, local_);
   memory_->download(queue_);
@@ -133,10 +136,17 @@ void Slot::launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRan
   queue_.enqueueNDRangeKernel(kernel, cl::NullRange, global, local, after, done);
 }
 
-void Slot::solve() {
+void Slot::solve(const std::optional<Curvature>& bent) {
   if (!order_->is_needed) return launch(kernel_, global_, local_);
   std::vector<cl::Event> before;
   if (order_->left() != nullptr) before.push_back(order_->left);
+  if (bent) {
+    bend_.setArg(kBendX, static_cast<float>(bent->x));
+    bend_.setArg(kBendX + 1, static_cast<float>(bent->y));
+    bend_.setArg(kBendX + 2, static_cast<float>(bent->xy));
+    launch(bend_, global_, local_, &before);
+    before.clear();
+  }
   cl::Event* const left = &order_->left;
   launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
   if (order_->follows_baseline) {

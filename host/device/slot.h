@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "device/calibration_memory.h"
 #include "device/contact_stage.h"
@@ -40,8 +42,9 @@ class Slot {
   Slot(const Slot&) = delete;
   Slot& operator=(const Slot&) = delete;
 
-  /// Starts solving the frame; the slot must not be in flight.
-  void submit(const FrameView& frame);
+  /// Starts solving the frame, after a change of the skin's curvature if given; the slot must not
+  /// be in flight.
+  void submit(const FrameView& frame, const std::optional<Curvature>& bent = {});
 
   void wait();
 
@@ -58,7 +61,7 @@ class Slot {
   void launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRange& local,
               const std::vector<cl::Event>* after = nullptr, cl::Event* done = nullptr);
   /// Solves the frame; after the frame before, where there is an order.
-  void solve();
+  void solve(const std::optional<Curvature>& bent);
 
   std::uint32_t rows_;  ///< pillars
   std::uint32_t cols_;
@@ -70,6 +73,7 @@ class Slot {
   cl::NDRange tiles_;
   cl::Kernel unleak_;   ///< null without leak between pillars
   cl::Kernel correct_;  ///< null where no force is corrected by its neighbours
+  cl::Kernel bend_;     ///< null where the skin is not bent
   cl::Kernel follow_;   ///< null without a baseline rate
   FrameOrder* order_;
   cl::Buffer frame_;  ///< keeps the frame in flight alive

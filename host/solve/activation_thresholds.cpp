@@ -52,7 +52,7 @@ ActivationRange activation_range(const SolverPlan& plan) {
 bool has_activation_plane(const SolverPlan& plan) {
   const Calibration& calibration = plan.calibration;
   return !calibration.tare.empty() || !calibration.gain.empty() || !calibration.mask.empty() ||
-         plan.baseline_rate.has_value();
+         !calibration.bend_x.empty() || plan.baseline_rate.has_value();
 }
 
 std::vector<float> activation_thresholds(const SolverPlan& plan) {

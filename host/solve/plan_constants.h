@@ -27,7 +27,7 @@ Stages plan_constants(const SolverPlan& plan) {
           .mask = !calibration.mask.empty(),
           .saturation = skin.full_scale_counts.has_value(),
           .wires = effects.wires.has_value(),
-          .tare = !calibration.tare.empty(),
+          .tare = !calibration.tare.empty() || !calibration.bend_x.empty(),
           .gain = !calibration.gain.empty(),
           .power_law = skin.power_law.has_value(),
           .curve = !effects.curve.empty(),

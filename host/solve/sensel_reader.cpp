@@ -2,6 +2,7 @@
 
 #include "pillarfield/tuning.h"
 #include "skin/raw_reading.h"
+#include "solve/curvature_follower.h"
 #include "solve/plan_constants.h"
 
 namespace pillarfield {
@@ -31,6 +32,7 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
     stages_.leak_taps = {real(taps.self),        real(taps.inside), real(taps.across),
                          real(taps.both_inside), real(taps.mixed),  real(taps.both_across)};
   }
+  if (!calibration_.bend_x.empty()) bend(plan);
   if (!effects.memory) return;
   stages_.memory_model = memory_model(*effects.memory, plan.frame_interval_s);
   if (state_ == nullptr) return;
@@ -38,6 +40,23 @@ SenselReader::SenselReader(const SolverPlan& plan, const FrameView& frame, Senso
   state_->values.resize(states * plan.skin.sensels());
   state_->last_active.resize(plan.skin.sensels());
   ++state_->frame;
+}
+
+void SenselReader::bend(const SolverPlan& plan) {
+  if (state_ == nullptr) return;
+  if (!state_->curvature) {
+    state_->curvature = std::make_shared<CurvatureFollower>(plan);
+    state_->tare = calibration_.tare;
+    state_->tare.resize(plan.skin.sensels());
+  }
+  const std::optional<Curvature> change = state_->curvature->follow(frame_);
+  if (!change) return;
+  const maths::Curvature bent = {static_cast<float>(change->x), static_cast<float>(change->y),
+                                 static_cast<float>(change->xy)};
+  for (std::size_t i = 0; i < state_->tare.size(); ++i) {
+    state_->tare[i] = maths::bent_tare(state_->tare[i], calibration_.bend_x[i],
+                                       calibration_.bend_y[i], calibration_.bend_xy[i], bent);
+  }
 }
 
 maths::Pillar SenselReader::pillar(std::size_t row, std::size_t col) {
@@ -124,8 +143,9 @@ maths::Correction SenselReader::correction(std::size_t row, std::size_t col) con
   const auto value = [index](const auto& plane) {
     return plane.empty() ? 0.0F : static_cast<float>(plane[index]);
   };
-  return {value(calibration_.tare), value(calibration_.gain), value(calibration_.dead_zone),
-          value(calibration_.mask), wires_.at(row, col)};
+  const bool bent = state_ != nullptr && state_->curvature;
+  return {value(bent ? state_->tare : calibration_.tare), value(calibration_.gain),
+          value(calibration_.dead_zone), value(calibration_.mask), wires_.at(row, col)};
 }
 
 }  // namespace pillarfield

@@ -35,6 +35,8 @@ class SenselReader {
   [[nodiscard]] const single_precision::Stages& stages() const { return stages_; }
 
  private:
+  /// Updates the tare of a bent skin.
+  void bend(const SolverPlan& plan);
   [[nodiscard]] single_precision::Correction correction(std::size_t row, std::size_t col) const;
   [[nodiscard]] single_precision::Sensel linear(std::size_t row, std::size_t col) const;
   [[nodiscard]] single_precision::Sensel sensel(std::size_t row, std::size_t col);

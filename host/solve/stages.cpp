@@ -11,6 +11,7 @@ using Plan = SolverPlan;
 
 constexpr bool is_always(const Plan& /*plan*/) { return true; }
 constexpr const SensorEffects& effects(const Plan& plan) { return plan.calibration.effects; }
+constexpr bool is_bent(const Plan& plan) { return !plan.calibration.bend_x.empty(); }
 constexpr bool is_paper(const Plan& plan) { return plan.estimator == Estimator::paper; }
 
 /// In the order of kernels/frame/stages.h.
@@ -28,8 +29,16 @@ constexpr std::array kStages = {
           .place = StagePlace::frame,
           .needs_neighbours = true,
           .may_skip_idle = false},
+    Stage{.name = "bend",
+          .macro = "PF_BEND",
+          .is_named = is_bent,
+          .place = StagePlace::frame,
+          .needs_neighbours = true,
+          .has_memory = true},
     Stage{"tare", "PF_TARE",
-          [](const Plan& plan) { return !plan.calibration.tare.empty() || plan.baseline_rate; }},
+          [](const Plan& plan) {
+            return !plan.calibration.tare.empty() || plan.baseline_rate || is_bent(plan);
+          }},
     Stage{"gain", "PF_GAIN", [](const Plan& plan) { return !plan.calibration.gain.empty(); }},
     Stage{"power_law", "PF_POWER_EXPONENT",
           [](const Plan& plan) { return plan.skin.power_law.has_value(); }},

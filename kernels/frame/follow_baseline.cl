@@ -21,18 +21,12 @@ PF_INLINE void follow_row(global const PF_SENSEL* raw, Calibration calibration, 
                           Mask untouched, Real rate, Lanes lanes) {
   const RealPair readings = load_readings(raw);
   const CorrectionPair at = load_corrections(calibration, place);
-  const size_t offset = offset_of(calibration, place);
   RealPair tares;
   tares.left = follow_tare(at.left.tare, untared_sensel(readings.left, at.left, calibration.stages),
                            untouched, rate);
   tares.right = follow_tare(
       at.right.tare, untared_sensel(readings.right, at.right, calibration.stages), untouched, rate);
-  store_pair(tares, (global float*)PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset, lanes);
-#ifdef PF_SKIP_IDLE
-  const RealPair thresholds = {threshold_of_sensel(tares.left, at.left),
-                               threshold_of_sensel(tares.right, at.right)};
-  store_readings(thresholds, (global PF_SENSEL*)activation_thresholds(calibration) + offset, lanes);
-#endif
+  store_tares(tares, calibration, place, at, lanes);
 }
 
 /* Updates the tares of every `interval`-th pillar row from `first_row` on. A work-item updates

@@ -17,7 +17,7 @@ PF_INLINE global const PF_SENSEL* activation_thresholds(Calibration calibration)
 
 #ifdef PF_SKIP_IDLE
 
-#ifdef PF_BASELINE
+#if defined(PF_BASELINE) || defined(PF_BEND)
 /* Activation threshold of sensels with these tares and corrections, raw counts. */
 PF_INLINE Real threshold_of_sensel(Real tare, Correction at) {
   Real gain = (Real)(1.0f);
@@ -75,4 +75,19 @@ PF_INLINE bool is_idle(global const PF_SENSEL* raw, size_t row_stride,
 #endif
 }
 
+#endif
+
+#if defined(PF_BASELINE) || defined(PF_BEND)
+/* Stores the tares of one row of sensels, and the activation thresholds that follow from them; of
+ * `lanes`. */
+PF_INLINE void store_tares(RealPair tares, Calibration calibration, Place place, CorrectionPair at,
+                           Lanes lanes) {
+  const size_t offset = offset_of(calibration, place);
+  store_pair(tares, (global float*)PF_PLANE_OF(calibration, float, PF_TARE_PLANE) + offset, lanes);
+#ifdef PF_SKIP_IDLE
+  const RealPair thresholds = {threshold_of_sensel(tares.left, at.left),
+                               threshold_of_sensel(tares.right, at.right)};
+  store_readings(thresholds, (global PF_SENSEL*)activation_thresholds(calibration) + offset, lanes);
+#endif
+}
 #endif

@@ -79,6 +79,21 @@ static inline Real follow_tare(Real tare, Sensel raw, Mask untouched, Real rate)
 }
 #endif
 
+#ifndef PF_WHOLE
+/* A change of the skin's curvature, 1/mm. */
+typedef struct {
+  float x;
+  float y;
+  float xy;
+} Curvature;
+
+/* The tare after a change of curvature; the patterns are in counts mm. */
+static inline Real bent_tare(Real tare, Real x, Real y, Real xy, Curvature change) {
+  return tare + (x * PF_CONSTANT(Real, change.x) + y * PF_CONSTANT(Real, change.y) +
+                 xy * PF_CONSTANT(Real, change.xy));
+}
+#endif
+
 /* Classifies a reading: above `threshold` counts (zero or more) the sensel is usable or saturated.
  * Otherwise it is inactive and reads the threshold, the upper bound of V, or missing and reads
  * zero. A saturated sensel whose corrected reading is not above the threshold is missing. */

@@ -184,6 +184,23 @@ TEST_P(SensorEffectsOnDevice, CorrectionsOfForcesHaveTheBitsOfTheHost) {
   expect_host_bits(plan, true);
 }
 
+/// Patterns of a bent skin.
+void add_patterns(SolverPlan& plan, double spread) {
+  std::mt19937 random(3);
+  std::normal_distribution<float> value(0, static_cast<float>(spread));
+  for (auto* plane :
+       {&plan.calibration.bend_x, &plan.calibration.bend_y, &plan.calibration.bend_xy}) {
+    plane->resize(plan.skin.sensels());
+    for (float& each : *plane) each = value(random);
+  }
+}
+
+TEST_P(SensorEffectsOnDevice, BendingHasTheBitsOfTheHost) {
+  SolverPlan plan = plan_with({}, true);
+  add_patterns(plan, GetParam().type == SenselType::u16 ? 16 * 50 : 50);
+  expect_host_bits(plan, true);
+}
+
 TEST_P(SensorEffectsOnDevice, AllTogetherHaveTheBitsOfTheHost) {
   SolverPlan plan = plan_with(all_effects(GetParam().type), true);
   plan.uncertainty = true;

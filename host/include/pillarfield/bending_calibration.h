@@ -7,13 +7,6 @@
 
 namespace pillarfield {
 
-/// Curvature of a skin, 1/mm: its height over the tangent plane is −(x X² + y Y² + xy X Y)/2.
-struct Curvature {
-  double x = 0;
-  double y = 0;
-  double xy = 0;
-};
-
 /// Curvature around a cylinder of this radius, mm (below zero: inside of one), whose axis has the
 /// angle axis_deg from +x, counter-clockwise: (sin² a, cos² a, −2 sin a cos a) / radius.
 [[nodiscard]] Curvature curvature_of_cylinder(double radius_mm, double axis_deg);

@@ -17,6 +17,13 @@ inline constexpr std::uint8_t kMissing = 0;  ///< dead or masked: a fault
 inline constexpr std::uint8_t kGood = 1;
 inline constexpr std::uint8_t kAbsent = 2;  ///< the sensor has no sensel there: no fault
 
+/// Curvature of a skin, 1/mm: its height over the tangent plane is −(x X² + y Y² + xy X Y)/2.
+struct Curvature {
+  double x = 0;
+  double y = 0;
+  double xy = 0;
+};
+
 /// Corrections of single sensels: planes [sensel rows, cols], row by row. An empty plane needs no
 /// correction, and none is compiled into the kernel.
 ///

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "pillarfield/force_field.h"
@@ -8,6 +9,8 @@
 #include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
+
+class CurvatureFollower;
 
 /// Solves one frame in the calling thread, without OpenCL; link `pillarfield::core`.
 ///
@@ -28,11 +31,14 @@ namespace pillarfield {
 /// once.
 [[nodiscard]] ForceField solve_on_host(const SolverPlan& plan, const FrameView& frame);
 
-/// Hysteresis and creep of the sensels of a skin (SenselMemory) after a frame. Empty: at rest.
+/// What a frame leaves to the next one: hysteresis and creep of the sensels (SenselMemory), and the
+/// curvature of the skin. Empty: at rest, and flat.
 struct SensorState {
   std::vector<float> values;               ///< counts, [states, sensel rows, cols], plays first
   std::vector<std::uint32_t> last_active;  ///< the last frame with load, [sensel rows, cols]
   std::uint32_t frame = 0;                 ///< number of frames so far
+  std::vector<float> tare;                 ///< of the bent skin, counts, [sensel rows, cols]
+  std::shared_ptr<CurvatureFollower> curvature;  ///< made with the first frame of a bent skin
 };
 
 /// Solves one frame of a sequence: sensels are in `state` before it, which is updated.

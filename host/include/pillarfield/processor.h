@@ -151,6 +151,11 @@ class Processor {
   /// baseline_rate.
   [[nodiscard]] std::vector<float> tare() const;
 
+  /// The curvature of the skin in the frame submitted last, 1/mm, if the plan has the planes
+  /// bend_x, bend_y and bend_xy: Processor follows it through the readings of untouched sensels.
+  /// Else zero.
+  [[nodiscard]] Curvature curvature() const;
+
   [[nodiscard]] int in_flight() const;       ///< frames submitted and not yet received
   [[nodiscard]] int pinned() const;          ///< results held now
   [[nodiscard]] bool shares_memory() const;  ///< whether frames and results stay in place

@@ -1,0 +1,156 @@
+#include "solve/curvature_follower.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pillarfield/tuning.h"
+#include "skin/raw_reading.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kMostCurvatureSamples = 4096;
+constexpr std::size_t kLeastCurvatureSamples = 512;
+constexpr std::size_t kSenselsPerSample = 16;
+constexpr double kUntouchedDeviations = 4;
+constexpr double kLeastUntouched = 0.15;   // fraction of the samples
+constexpr double kTrustedUntouched = 0.5;  // below, the rough fit is tried too
+constexpr int kRoughPasses = 15;
+constexpr int kRefiningPasses = 4;
+constexpr double kAppliedPart = 0.1;  // of the noise
+
+using CurvatureTriple = std::array<double, 3>;
+using NormalMatrix = std::array<CurvatureTriple, 3>;
+
+double determinant(const NormalMatrix& m) {
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+         m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+         m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+}
+
+/// By Cramer's rule; a small ridge leaves out what the patterns do not determine.
+CurvatureTriple solved(NormalMatrix normal, const CurvatureTriple& right) {
+  const double trace = normal[0][0] + normal[1][1] + normal[2][2];
+  if (!(trace > 0)) return {};
+  for (std::size_t i = 0; i < 3; ++i) normal[i][i] += 1e-9 * trace;
+  const double all = determinant(normal);
+  CurvatureTriple solution{};
+  for (std::size_t column = 0; column < 3; ++column) {
+    NormalMatrix replaced = normal;
+    for (std::size_t row = 0; row < 3; ++row) replaced[row][column] = right[row];
+    solution[column] = determinant(replaced) / all;
+  }
+  return solution;
+}
+
+CurvatureTriple triple_of_curvature(const Curvature& curvature) {
+  return {curvature.x, curvature.y, curvature.xy};
+}
+
+}  // namespace
+
+CurvatureFollower::CurvatureFollower(const SolverPlan& plan) {
+  const Calibration& calibration = plan.calibration;
+  const std::size_t sensels = plan.skin.sensels();
+  const std::size_t wanted =
+      std::clamp(sensels / kSenselsPerSample, kLeastCurvatureSamples, kMostCurvatureSamples);
+  const std::size_t step = std::max<std::size_t>(1, sensels / wanted);
+  for (std::size_t i = step / 2; i < sensels; i += step) {
+    if (!calibration.mask.empty() && calibration.mask[i] != 1) continue;
+    const Triple pattern = {calibration.bend_x[i], calibration.bend_y[i], calibration.bend_xy[i]};
+    for (std::size_t k = 0; k < 3; ++k) spread_[k] += pattern[k] * pattern[k];
+    const double tare = calibration.tare.empty() ? 0 : calibration.tare[i];
+    samples_.push_back({i / plan.skin.cols, i % plan.skin.cols, pattern, tare});
+  }
+  for (double& spread : spread_) {
+    spread = std::sqrt(spread / std::max<double>(1, static_cast<double>(samples_.size())));
+  }
+  noise_ = reading_noise_n(plan) * plan.skin.counts_per_newton;
+  limit_ = std::max(kUntouchedDeviations * noise_, plan.skin.threshold_counts);
+}
+
+double CurvatureFollower::left(const std::vector<double>& differences, std::size_t sample,
+                               const Triple& curvature) const {
+  const Triple& pattern = samples_[sample].pattern;
+  return differences[sample] -
+         (curvature[0] * pattern[0] + curvature[1] * pattern[1] + curvature[2] * pattern[2]);
+}
+
+CurvatureFollower::Triple CurvatureFollower::fit(const std::vector<double>& differences,
+                                                 const std::vector<double>& weights) const {
+  NormalMatrix normal{};
+  Triple right{};
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (weights[i] == 0) continue;
+    const Triple& pattern = samples_[i].pattern;
+    for (std::size_t row = 0; row < 3; ++row) {
+      right[row] += weights[i] * pattern[row] * differences[i];
+      for (std::size_t col = 0; col < 3; ++col) {
+        normal[row][col] += weights[i] * pattern[row] * pattern[col];
+      }
+    }
+  }
+  return solved(normal, right);
+}
+
+CurvatureFollower::Triple CurvatureFollower::rough_fit(
+    const std::vector<double>& differences) const {
+  std::vector<double> weights(samples_.size(), 1);
+  Triple curvature{};
+  for (int pass = 0; pass < kRoughPasses; ++pass) {
+    curvature = fit(differences, weights);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      weights[i] = 1 / std::max(limit_, std::abs(left(differences, i, curvature)));
+    }
+  }
+  return curvature;
+}
+
+std::optional<CurvatureFollower::Triple> CurvatureFollower::refined(
+    const std::vector<double>& differences, Triple from, int passes) const {
+  std::vector<double> weights(samples_.size());
+  for (int pass = 0; pass < passes; ++pass) {
+    double untouched = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      weights[i] = std::abs(left(differences, i, from)) <= limit_ ? 1 : 0;
+      untouched += weights[i];
+    }
+    if (untouched < kLeastUntouched * static_cast<double>(samples_.size())) return std::nullopt;
+    from = fit(differences, weights);
+  }
+  return from;
+}
+
+std::optional<Curvature> CurvatureFollower::follow(const FrameView& frame) {
+  std::vector<double> differences(samples_.size());
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    const double reading = raw_reading(frame, samples_[i].row, samples_[i].col);
+    // A reading that is no number is far off every curvature.
+    differences[i] = std::isfinite(reading) ? reading - samples_[i].tare : kMaxPlaneCounts;
+  }
+  const Triple before = triple_of_curvature(applied_);
+  const auto fraction_near = [&](const Triple& curvature) {
+    double count = 0;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      count += std::abs(left(differences, i, curvature)) <= limit_ ? 1 : 0;
+    }
+    return count / static_cast<double>(samples_.size());
+  };
+  Triple from = before;
+  if (!started_ || fraction_near(before) < kTrustedUntouched) {
+    const Triple rough = rough_fit(differences);
+    if (fraction_near(rough) > fraction_near(before)) from = rough;
+  }
+  const std::optional<Triple> now = refined(differences, from, started_ ? 1 : kRefiningPasses);
+  if (!now) return std::nullopt;
+  started_ = true;
+  double change = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    change = std::max(change, std::abs((*now)[k] - before[k]) * spread_[k]);
+  }
+  if (change < kAppliedPart * noise_) return std::nullopt;
+  applied_ = {(*now)[0], (*now)[1], (*now)[2]};
+  return Curvature{applied_.x - before[0], applied_.y - before[1], applied_.xy - before[2]};
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "pillarfield/frame.h"
+#include "pillarfield/solver_plan.h"
+
+namespace pillarfield {
+
+/// Finds the curvature of a bent skin from the readings of its untouched sensels, whose tare is
+/// tare + bend_x·x + bend_y·y + bend_xy·xy: least squares over at most 4096 sensels of a frame,
+/// without those that are off by more than noise. With too few of them, as under a contact
+/// everywhere, the curvature stays (docs/derivations/sensor_effects.md, E8).
+class CurvatureFollower {
+ public:
+  /// The plan must have the planes bend_x, bend_y and bend_xy.
+  explicit CurvatureFollower(const SolverPlan& plan);
+
+  /// The change of the curvature to apply before this frame; none while the tare would change by
+  /// less than a tenth of the noise.
+  std::optional<Curvature> follow(const FrameView& frame);
+
+  /// The curvature applied so far.
+  [[nodiscard]] const Curvature& curvature() const { return applied_; }
+
+ private:
+  struct Sample {
+    std::size_t row;
+    std::size_t col;
+    std::array<double, 3> pattern;  ///< counts·mm
+    double tare;
+  };
+  using Triple = std::array<double, 3>;
+
+  /// Least squares of `differences` from the tare, with the weights.
+  [[nodiscard]] Triple fit(const std::vector<double>& differences,
+                           const std::vector<double>& weights) const;
+  /// Residuals at a curvature.
+  [[nodiscard]] double left(const std::vector<double>& differences, std::size_t sample,
+                            const Triple& curvature) const;
+  /// Curvature of least absolute differences, approximately: where to begin.
+  [[nodiscard]] Triple rough_fit(const std::vector<double>& differences) const;
+  /// Refines a curvature by the sensels near it; unset with too few.
+  [[nodiscard]] std::optional<Triple> refined(const std::vector<double>& differences, Triple from,
+                                              int passes) const;
+
+  std::vector<Sample> samples_;
+  double limit_;                    ///< largest difference of an untouched sensel, counts
+  std::array<double, 3> spread_{};  ///< RMS of the patterns
+  double noise_;
+  bool started_ = false;
+  Curvature applied_;
+};
+
+}  // namespace pillarfield
