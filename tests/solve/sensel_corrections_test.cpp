@@ -225,6 +225,44 @@ TEST(SenselMemory, OfAnyHistoryComesBack) {
   }
 }
 
+// --- Bending ---
+
+/// A skin of random patterns, of about 8 counts at a radius of 50 mm.
+Calibration random_patterns(std::size_t sensels) {
+  std::mt19937 random(17);
+  std::normal_distribution<float> pattern(0, 400);
+  Calibration calibration;
+  for (auto* plane : {&calibration.bend_x, &calibration.bend_y, &calibration.bend_xy}) {
+    for (std::size_t i = 0; i < sensels; ++i) plane->push_back(pattern(random));
+  }
+  calibration.tare.assign(sensels, 40);
+  return calibration;
+}
+
+TEST(Bending, IsFollowedUnderAContact) {
+  const ForceField truth = random_patch(kPatchSide, kPatchSide, 19);  // 39 % of the skin
+  const std::vector<double> v = loads_of(truth);
+  SolverPlan plan = pressed_plan(kPatchSide, kPatchSide, {});
+  plan.skin.threshold_counts = 2;
+  plan.noise_counts = 0.4;
+  plan.calibration = random_patterns(v.size());
+  const Calibration& planes = plan.calibration;
+  std::mt19937 random(23);
+  std::normal_distribution<double> noise(0, 0.4);
+  SensorState state;
+  for (int frame = 0; frame < 20; ++frame) {
+    const Curvature at = {0.02 - 0.001 * frame, 0.001 * frame, -0.01};
+    std::vector<double> readings = v;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      readings[i] += planes.tare[i] + at.x * planes.bend_x[i] + at.y * planes.bend_y[i] +
+                     at.xy * planes.bend_xy[i] + noise(random);
+    }
+    const ForceField solved = solve_readings(plan, readings, state);
+    EXPECT_LT(largest_error(solved, truth), 3) << frame;
+    EXPECT_LT(pressed_count(solved), pressed_count(truth) + 5) << frame;
+  }
+}
+
 // --- Wires ---
 
 SensorEffects with_wires(double ohm, std::uint32_t tile = 64) {

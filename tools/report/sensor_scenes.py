@@ -46,17 +46,18 @@ EFFECTS = {
                       "[surface]\nbend_spread_counts_mm = 300\n"
                       f"curvature_per_mm = [{1 / 60}, 0, 0]\n"),
 }
-TOGETHER = ("off_centre", "leak", "dead_zone", "curve", "hysteresis", "shear", "gains", "creep",
-            "wires", "pillar_leak")
-STEPS = ("wires", "pressures", "leak", "memory", "shear")
+CENTRED = ("leak", "dead_zone", "curve", "hysteresis", "shear", "gains", "creep", "wires",
+           "pillar_leak", "bending")
+CENTRED_STEPS = ("wires", "bending", "pressures", "leak", "memory", "shear")
 
 
-def together(names):
-    return "\n".join(EFFECTS[name].sensor for name in names)
+def together(title, names, steps):
+    return Effect(title, "\n".join(EFFECTS[name].sensor for name in names), steps,
+                  EFFECTS["bending"].surface)
 
 
-EFFECTS["centred"] = Effect("all but bending and off-centre pressure", together(TOGETHER[1:]), STEPS)
-EFFECTS["all"] = Effect("all but bending", together(TOGETHER), (*STEPS, "arm"))
+EFFECTS["centred"] = together("all but off-centre pressure", CENTRED, CENTRED_STEPS)
+EFFECTS["all"] = together("all together", ("off_centre", *CENTRED), (*CENTRED_STEPS, "arm"))
 
 
 def scene(sensor, *, contacts="", frames=1, rate_hz=100, skin=f"pillars = [{PILLARS}, {PILLARS}]",
