@@ -148,7 +148,9 @@ WireResult calibrate_wires(const SkinCalibration& before, std::span<const FrameS
   const NormalEquations equations = fit.linear_around(at);
   const std::vector<double> left = fit.changes(at);
   result.residual_after = rms_of(left);
-  const auto inverse = equations.inverse({true, true, true});
+  auto inverse = equations.inverse({true, true, true});
+  // Without a resistance of the columns that of idle rows has no effect.
+  if (!inverse) inverse = equations.inverse({true, true, false});
   if (!inverse) {
     throw Error("wires", "the other loads do not tell rows from columns",
                 "press elsewhere in the rows of the resting body, then in its columns");

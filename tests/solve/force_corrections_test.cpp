@@ -1,0 +1,228 @@
+// Corrections of forces: the shear coefficient, leaks between pillars, off-centre pressure.
+
+#include <gtest/gtest.h>
+
+#include "pillarfield/status.h"
+#include "pressed_skin.h"
+#include "solve/pillar_maths.h"
+
+namespace pillarfield {
+namespace {
+
+namespace maths = double_precision;
+
+// --- Shear coefficient ---
+
+/// A force on one pillar, from any direction.
+ForceField random_force(std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0, 1);
+  const double cosine = part(random);
+  const double phi = 2 * std::numbers::pi * part(random);
+  ForceField force(1, 1);
+  force.normal[0] = static_cast<float>(2 * cosine);
+  const double shear = 2 * std::sqrt(1 - cosine * cosine);
+  force.shear_x[0] = static_cast<float>(shear * std::cos(phi));
+  force.shear_y[0] = static_cast<float>(shear * std::sin(phi));
+  return force;
+}
+
+float end_of(const ForceField& solved, Uncertainty end) { return solved.uncertainty[end][0]; }
+
+/// True if an angle lies in the interval of phi of a solved pillar, which may cross pi.
+bool holds_phi(const ForceField& solved, double phi) {
+  constexpr double kTurn = 2 * std::numbers::pi;
+  const double low = end_of(solved, Uncertainty::phi_low) - 1e-4;
+  const double width = end_of(solved, Uncertainty::phi_high) - low;
+  return std::remainder(phi - low - kTurn / 2, kTurn) + kTurn / 2 <=
+         width + (width < 0 ? kTurn : 0) + 2e-4;
+}
+
+void expect_inside_ends(const ForceField& solved, const ForceField& truth) {
+  const double x = truth.shear_x[0];
+  const double y = truth.shear_y[0];
+  const double theta = std::atan2(std::hypot(x, y), truth.normal[0]);
+  EXPECT_GE(theta, end_of(solved, Uncertainty::theta_low) - 1e-4);
+  EXPECT_LE(theta, end_of(solved, Uncertainty::theta_high) + 1e-4);
+  EXPECT_TRUE(holds_phi(solved, std::atan2(-y, -x)));
+  const double magnitude = std::hypot(x, y, truth.normal[0]);
+  EXPECT_GE(magnitude, end_of(solved, Uncertainty::magnitude_low) - 1e-4);
+  EXPECT_LE(magnitude, end_of(solved, Uncertainty::magnitude_high) + 1e-4);
+}
+
+TEST(ShearCoefficient, ComesBackInAllRegions) {
+  std::mt19937 random(13);
+  std::array<int, kRegions> seen{};
+  for (const ShearCoefficient c : {ShearCoefficient{0.9, 0.9}, {0.3, 2}, {1.5, 0.7}}) {
+    SensorEffects effects;
+    effects.shear_coefficient = c;
+    SolverPlan plan = pressed_plan(1, 1, effects);
+    plan.noise_counts = 0.01;
+    plan.uncertainty = true;
+    for (int i = 0; i < 1000; ++i) {
+      const ForceField truth = random_force(random);
+      const ForceField solved = solve_readings(plan, loads_of(truth, c));
+      const Region region = region_of(solved.status[0]);
+      ++seen.at(static_cast<std::size_t>(region));
+      expect_inside_ends(solved, truth);
+      if (region != Region::one && region != Region::two) continue;
+      // An inactive sensel may hide half a count.
+      EXPECT_LT(largest_error(solved, truth),
+                region == Region::one ? 0.001 : 0.6 / c.x + 0.6 / c.y);
+    }
+  }
+  for (const Region region : {Region::one, Region::two, Region::three}) {
+    EXPECT_GT(seen.at(static_cast<std::size_t>(region)), 200);
+  }
+}
+
+// --- Leak between pillars ---
+
+TEST(PillarLeak, ComesBackWithinTheWeightsThatAreCut) {
+  constexpr std::uint32_t kSide = 14;
+  const ForceField truth = random_patch(kSide, kSide, 21);
+  SensorEffects effects;
+  effects.pillar_leak = {0.04, 0.01};
+  ForceField carried(kSide, kSide);
+  const auto leaked = [&](const std::vector<float>& plane, int row, int col) {
+    double sum = 0;
+    for (int down = -1; down <= 1; ++down) {
+      for (int right = -1; right <= 1; ++right) {
+        const int distance = std::abs(down) + std::abs(right);
+        const double part = distance == 0   ? 1
+                            : distance == 1 ? effects.pillar_leak->edge
+                                            : effects.pillar_leak->corner;
+        sum += part * plane[static_cast<std::size_t>((row + down) * int{kSide} + col + right)];
+      }
+    }
+    return static_cast<float>(sum);
+  };
+  for (int row = 3; row + 3 < int{kSide}; ++row) {
+    for (int col = 3; col + 3 < int{kSide}; ++col) {
+      const auto i = static_cast<std::size_t>(row * int{kSide} + col);
+      carried.shear_x[i] = leaked(truth.shear_x, row, col);
+      carried.shear_y[i] = leaked(truth.shear_y, row, col);
+      carried.normal[i] = leaked(truth.normal, row, col);
+    }
+  }
+  const std::vector<double> readings = loads_of(carried);
+  const ForceField solved = solve_readings(pressed_plan(kSide, kSide, effects), readings);
+  EXPECT_GT(largest_error(solve_readings(pressed_plan(kSide, kSide, {}), readings), truth), 15);
+  EXPECT_LT(largest_error(solved, truth), 2.5);
+  EXPECT_EQ(pressed_count(solved), pressed_count(truth));
+}
+
+// --- Off-centre pressure ---
+
+double moment(double before, double own, double after) {
+  return maths::lean_between(before, own, after).moment;
+}
+
+TEST(Lean, IsThatOfLinearPressureToFirstOrder) {
+  for (const double slope : {1e-3, -1e-3, 1e-2, 0.1}) {
+    const double exact = 2 * slope / 24;
+    EXPECT_NEAR(moment(1 - slope, 1, 1 + slope), exact, 0.25 * std::abs(exact) * slope * slope);
+  }
+}
+
+TEST(Lean, IsOddScaleFreeAndZeroUnderEvenPressure) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> force(0, 2);
+  for (int i = 0; i < 200; ++i) {
+    const double before = force(random);
+    const double own = force(random);
+    const double after = force(random);
+    EXPECT_NEAR(moment(before, own, after), -moment(after, own, before), 1e-12);
+    EXPECT_NEAR(moment(7 * before, 7 * own, 7 * after), 7 * moment(before, own, after), 1e-12);
+    EXPECT_NEAR(moment(before, own, before), 0, 1e-12);
+    EXPECT_GT(maths::lean_between(before, own, after).deviation, 0);
+  }
+  EXPECT_EQ(moment(1, 0, 2), 0);
+}
+
+/// The sensels read the moment over the arm as shear, + towards the higher pressure.
+TEST(Lean, IsTakenFromTheShear) {
+  constexpr std::uint32_t kSide = 9;
+  SensorEffects effects;
+  effects.arm_mm = 0.3;
+  SolverPlan plan = pressed_plan(kSide, kSide, effects);
+  const double pitch = plan.skin.pillar_pitch_mm();
+  ForceField truth(kSide, kSide);
+  ForceField read(kSide, kSide);
+  for (std::size_t i = 0; i < truth.normal.size(); ++i) {
+    const auto right = static_cast<double>(i % kSide);
+    const auto up = -static_cast<double>(i / kSide);
+    truth.normal[i] = static_cast<float>(2 + 0.03 * right + 0.02 * up);
+    read.normal[i] = truth.normal[i];
+    read.shear_x[i] = static_cast<float>(2 * 0.03 / 24 * pitch / *effects.arm_mm);
+    read.shear_y[i] = static_cast<float>(2 * 0.02 / 24 * pitch / *effects.arm_mm);
+  }
+  const ForceField solved = solve_readings(plan, loads_of(read));
+  for (std::size_t row = 1; row + 1 < kSide; ++row) {
+    for (std::size_t col = 1; col + 1 < kSide; ++col) {
+      EXPECT_NEAR(solved.shear_x[row * kSide + col], 0, 1e-5);
+      EXPECT_NEAR(solved.shear_y[row * kSide + col], 0, 1e-5);
+    }
+  }
+}
+
+// --- Intervals of corrected forces ---
+
+/// Forces of the segment of a pillar with two adjacent usable sensels, as the interval assumes.
+maths::Force on_segment(const maths::Force& force, int bits, double slope, double normal) {
+  const bool along_y = bits == 3 || bits == 12;
+  const double down = bits == 12 || bits == 6 ? -slope : slope;
+  maths::Force moved = force;
+  (along_y ? moved.shear_y : moved.shear_x) += down * (force.normal - normal);
+  moved.normal = normal;
+  return moved;
+}
+
+TEST(CorrectedInterval, HoldsTheSegmentAndReachesItsEnds) {
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> part(0, 1);
+  const maths::ShearWeights weights = {1 / 0.8, 1 / 1.3};
+  for (int i = 0; i < 400; ++i) {
+    const std::array<int, 4> pairs = {3, 6, 12, 9};
+    const int bits = pairs.at(static_cast<std::size_t>(i) % pairs.size());
+    const maths::Force force = {3 * part(random) - 1.5, 3 * part(random) - 1.5, part(random)};
+    const double slope = std::numbers::sqrt2 * (bits == 3 || bits == 12 ? weights.y : weights.x);
+    const auto interval =
+        maths::corrected_interval({}, force, maths::direction_of(force),
+                                  static_cast<maths::Bits>(bits), kSegmentPoint, 0, weights);
+    double theta_low = 9;
+    double low = 1e9;
+    double high = 0;
+    for (int sample = 1; sample <= 2000; ++sample) {
+      const maths::Force at =
+          on_segment(force, bits, slope, force.normal / kSegmentPoint * sample / 2000);
+      const auto direction = maths::direction_of(at);
+      theta_low = std::min(theta_low, direction.theta);
+      low = std::min(low, direction.magnitude);
+      high = std::max(high, direction.magnitude);
+      const double turn = std::remainder(direction.phi - interval.phi_low, 2 * std::numbers::pi);
+      const double width =
+          std::remainder(interval.phi_high - interval.phi_low, 2 * std::numbers::pi);
+      EXPECT_GE(turn, -1e-9);
+      EXPECT_LE(turn, width + 1e-9);
+    }
+    EXPECT_NEAR(interval.theta_low, theta_low, 2e-3);
+    EXPECT_NEAR(interval.magnitude_low, low, 2e-3);
+    EXPECT_NEAR(interval.magnitude_high, high, 2e-2);
+    EXPECT_GE(interval.magnitude_high, high - 1e-9);
+  }
+}
+
+TEST(CorrectedInterval, IsAPointWhereTheForceIsDetermined) {
+  const maths::Force force = {0.3, -0.2, 1};
+  const auto direction = maths::direction_of(force);
+  for (const int bits : {15, 7, 11, 13, 14}) {
+    const auto interval = maths::corrected_interval(
+        {}, force, direction, static_cast<maths::Bits>(bits), kSegmentPoint, 0.1, {1, 1});
+    EXPECT_EQ(interval.theta_low, direction.theta);
+    EXPECT_EQ(interval.phi_high, direction.phi);
+    EXPECT_EQ(interval.magnitude_low, direction.magnitude);
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

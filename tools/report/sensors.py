@@ -1,0 +1,148 @@
+"""sensors.py DOCS MEASURED: writes DOCS/sensors.md. MEASURED is the output of measure_sensors.py."""
+
+import math
+
+import page
+import sensor_scenes as scenes
+from page import percent, text
+
+SINGLE_LIMIT = {"hysteresis": 2.5, "creep": 2.5, "all": 3, "centred": 3, "bending": 1.2}
+OTHER_LIMIT = 1.5  # of the ideal error, for the other effects but off-centre pressure
+ABSENT_LIMIT = 1.02
+INSIDE_LIMIT, RIM_LIMIT = 0.6, 0.75  # of the uncorrected error
+WRONG_POINTS = 2
+COVERED = 0.93, 0.97
+PAPER_POINTS = 0.1
+COMPONENTS = ("shear_x", "shear_y", "normal")
+
+
+def rms(score, group="determined"):
+    squares, pillars = score[group]
+    return math.sqrt(squares / pillars) if pillars else None
+
+
+def share(score, group):
+    part, whole = score[group]
+    return part / whole
+
+
+def over_paper(score):
+    """Error of ambiguous pillars by `contact` over that by `paper`."""
+    return rms(score, "ambiguous_contact") / rms(score, "ambiguous_paper")
+
+
+def is_exact(name):
+    """Whether a recording holds the exact correction: not of hysteresis and creep."""
+    return "memory" not in scenes.EFFECTS[name].steps
+
+
+def coverage(score):
+    return " / ".join(percent(share(score, name), 0) for name in COMPONENTS)
+
+
+def error_rows(found):
+    ideal = rms(found["ideal"])
+    for name, effect in scenes.EFFECTS.items():
+        ignored, exact, calibrated = (found["effects"][name][way]
+                                      for way in ("ignored", "exact", "calibrated"))
+        yield [effect.title, text(rms(ignored)), text(rms(exact)) if is_exact(name) else "–",
+               text(rms(calibrated)), text(rms(calibrated) / ideal),
+               *(text(rms(score, "ambiguous")) for score in (ignored, calibrated)),
+               text(rms(found["absent"][name]) / ideal, ".3f")]
+
+
+def region_rows(found):
+    for name, effect in scenes.EFFECTS.items():
+        ignored, calibrated = (found["effects"][name][way] for way in ("ignored", "calibrated"))
+        yield [effect.title, percent(share(ignored, "wrong")), percent(share(calibrated, "wrong")),
+               coverage(ignored), coverage(calibrated), text(over_paper(calibrated))]
+
+
+def body_rows(found):
+    """Errors of off-centre pressure by body, ignored and corrected."""
+    ignored, corrected = (found["effects"]["off_centre"][way]["bodies"]
+                          for way in ("ignored", "calibrated"))
+    for body in scenes.BODIES:
+        cells = [text(rms(bodies[body], group), ".1f") for group in ("inside", "rim")
+                 for bodies in (ignored, corrected)]
+        yield [body, *cells]
+
+
+# --- Goals ---
+
+def verdict(holds):
+    return "met" if holds else "**not met**"
+
+
+def goal(what, wanted, measured, holds):
+    return [what, wanted, measured, verdict(holds)]
+
+
+def error_goals(found):
+    ideal = rms(found["ideal"])
+    for name, effect in scenes.EFFECTS.items():
+        if name == "off_centre":
+            continue
+        limit = SINGLE_LIMIT.get(name, OTHER_LIMIT)
+        ratio = rms(found["effects"][name]["calibrated"]) / ideal
+        yield goal(f"{effect.title}: error over the ideal sensor's", f"≤ {limit}", text(ratio),
+                   ratio <= limit)
+
+
+def off_centre_goals(found):
+    ignored, corrected = (found["effects"]["off_centre"][way] for way in ("ignored", "calibrated"))
+    for group, where, limit in (("inside", "inside contacts", INSIDE_LIMIT),
+                                ("rim", "at rims", RIM_LIMIT)):
+        left = rms(corrected, group) / rms(ignored, group)
+        yield goal(f"off-centre pressure {where}: error over the uncorrected one", f"≤ {limit}",
+                   text(left), left <= limit)
+
+
+def shared_goals(found):
+    """Goals of all effects, with the worst one."""
+    effects = {name: effect["calibrated"] for name, effect in found["effects"].items()}
+
+    def worst(values, show, holds, wanted, what):
+        failing = [name for name, value in values.items() if not holds(value)]
+        measured = ", ".join(f"{scenes.EFFECTS[name].title} {show(values[name])}"
+                             for name in failing) or "all"
+        return goal(what, wanted, measured, not failing)
+
+    ideal_wrong = share(found["ideal"], "wrong")
+    yield worst({name: share(score, "wrong") - ideal_wrong for name, score in effects.items()},
+                lambda points: f"{100 * points:+.1f}",
+                lambda points: 100 * points <= WRONG_POINTS, f"≤ +{WRONG_POINTS}",
+                "wrong regions, points above the ideal sensor")
+    yield worst({name: [share(score, part) for part in COMPONENTS]
+                 for name, score in effects.items()},
+                lambda shares: " / ".join(percent(part, 0) for part in shares),
+                lambda shares: COVERED[0] <= min(shares) and max(shares) <= COVERED[1],
+                "93 to 97", "truths in the stated 95 %, x / y / normal, %")
+    ideal_ratio = over_paper(found["absent"]["gains"])
+    yield worst({name: over_paper(score) - ideal_ratio for name, score in effects.items()},
+                lambda points: f"{points:+.2f}", lambda points: points <= PAPER_POINTS,
+                f"≤ +{PAPER_POINTS}",
+                "ambiguous pillars: ratio to `paper`, above that of the ideal sensor")
+    ideal = rms(found["ideal"])
+    yield worst({name: rms(score) / ideal for name, score in found["absent"].items()},
+                lambda ratio: text(ratio, ".3f"), lambda ratio: ratio <= ABSENT_LIMIT,
+                f"≤ {ABSENT_LIMIT}",
+                "calibrated but absent: error over the ideal sensor's")
+
+
+def main(docs, measured):
+    found = page.load(measured)
+    ideal = found["ideal"]
+    page.write(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
+               body_rows=body_rows(found),
+               goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
+               ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),
+               ideal_wrong=percent(share(ideal, "wrong")), ideal_coverage=coverage(ideal),
+               ideal_paper=text(over_paper(found["absent"]["gains"])),
+               tared_wrong=percent(share(found["absent"]["gains"], "wrong")),
+               histories=len(scenes.BODIES), frames=scenes.FRAMES, friction=scenes.FRICTION,
+               peak=scenes.PEAK_COUNTS, noise=scenes.NOISE_COUNTS, least=8)
+
+
+if __name__ == "__main__":
+    page.run(main)
