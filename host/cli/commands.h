@@ -100,6 +100,10 @@ struct ShearCommand : StepOptions {
   std::vector<double> loads_n;   ///< one per file, or none
 };
 
+struct ArmCommand : StepOptions {
+  std::vector<std::string> files;
+};
+
 struct LeakCommand : StepOptions {
   std::vector<std::string> files;
 };
@@ -152,6 +156,7 @@ void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);
 void calibrate(const LoadCommand& command);
 void calibrate(const ShearCommand& command);
+void calibrate(const ArmCommand& command);
 void calibrate(const LeakCommand& command);
 void calibrate(const MemoryCommand& command);
 void calibrate(const BendingCommand& command);

@@ -144,6 +144,21 @@ void add_shear(CLI::App& parent, Work& work) {
   });
 }
 
+void add_arm(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<ArmCommand>(
+      parent, work, calibrate, "arm",
+      "Arm of off-centre pressure, from bodies pressed straight down.",
+      std::string(kPressedSkin) +
+          "  pillarfield simulate scenes/leaning_skin_pressed.toml --uncalibrated -o balls.h5\n"
+          "  pillarfield calibrate equilibrate pressed.h5 --pressure-kpa 312.5 --calibration "
+          "tared.h5 -o equal.h5\n"
+          "  pillarfield calibrate arm balls.h5 --calibration equal.h5 -o arm.h5\n");
+  Group(command, "Input")
+      .file("PRESSED", options->files,
+            "Frames of bodies at rest that press straight down, one file per placement");
+  add_step(command, *options, true, kCalibration);
+}
+
 void add_leak(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<LeakCommand>(
       parent, work, calibrate, "leak",
@@ -285,6 +300,7 @@ void add_calibrate(CLI::App& parent, Work& work) {
   add_equilibrate(*steps, work);
   add_load(*steps, work);
   add_shear(*steps, work);
+  add_arm(*steps, work);
   add_leak(*steps, work);
   add_memory(*steps, work);
   add_bending(*steps, work);

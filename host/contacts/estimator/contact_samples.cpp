@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "solve/pillar_lean.h"
+
 namespace pillarfield {
 namespace {
 
@@ -31,14 +33,7 @@ void prefetch([[maybe_unused]] const void* from) {
 
 LeanShear lean_at(const ForceFieldView& forces, std::uint32_t index, float pitch_over_arm) {
   if (pitch_over_arm == 0) return {};
-  const std::uint32_t row = index / forces.cols;
-  const std::uint32_t col = index - row * forces.cols;
-  const auto normal = [&](bool exists, std::uint32_t at) { return exists ? forces.normal[at] : 0; };
-  const float own = forces.normal[index];
-  const auto x = single_precision::lean_between(normal(col > 0, index - 1), own,
-                                                normal(col + 1 < forces.cols, index + 1));
-  const auto y = single_precision::lean_between(normal(row + 1 < forces.rows, index + forces.cols),
-                                                own, normal(row > 0, index - forces.cols));
+  const auto [x, y] = pillar_lean(forces, index);
   const float square = x.deviation * x.deviation + y.deviation * y.deviation;
   return {pitch_over_arm * x.moment, pitch_over_arm * y.moment,
           pitch_over_arm * std::sqrt(square / 2)};

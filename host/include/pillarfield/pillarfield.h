@@ -83,6 +83,7 @@
 #include "pillarfield/recording.h"
 
 // Calibration of a new skin.
+#include "pillarfield/arm_calibration.h"
 #include "pillarfield/bending_calibration.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/fault_finder.h"
