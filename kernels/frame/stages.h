@@ -220,6 +220,17 @@ PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages sta
 #endif
 
 #ifdef PF_RESIDUAL
+#ifdef PF_UNCERTAINTY
+/* Deviations with the part of the residual that is common to the sensels of a pillar (E9). */
+PF_INLINE Force with_common_residual(Force deviations, Force force, Stages stages) {
+  const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE);
+  deviations.shear_x = plain_length_2(deviations.shear_x, relative * force.shear_x);
+  deviations.shear_y = plain_length_2(deviations.shear_y, relative * force.shear_y);
+  deviations.normal = plain_length_2(deviations.normal, relative * force.normal);
+  return deviations;
+}
+#endif
+
 /* Noise of a sensel with what calibration leaves, counts (E9). */
 PF_INLINE Real with_residual(Real noise, Sensel sensel, Stages stages) {
   const Real relative = PF_CONSTANT(Real, PF_RESIDUAL_RELATIVE) * sensel.reading;
@@ -317,6 +328,11 @@ PF_INLINE Solution solve_pillar(Pillar pillar, Noise noise, Stages stages) {
 #ifdef PF_SHEAR_COEFFICIENT
     if (PF_NAMED(shear_coefficient)) {
       solution.deviations = per_coefficient(solution.deviations, stages);
+    }
+#endif
+#ifdef PF_RESIDUAL
+    if (PF_NAMED(residual)) {
+      solution.deviations = with_common_residual(solution.deviations, solution.force, stages);
     }
 #endif
     solution.interval = direction_interval(pillar, diagonals, sum, solution.direction, scale,

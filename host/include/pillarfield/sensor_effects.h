@@ -70,8 +70,10 @@ struct SenselMemory {
 inline constexpr std::size_t kMaxPlays = 4;
 inline constexpr std::size_t kMaxCreeps = 2;
 
-/// What calibration leaves: standard deviation of a corrected reading V, independent from sensel to
-/// sensel, is the root of noise² + offset_counts² + (relative·V)² (E9).
+/// What calibration leaves. The standard deviation of a corrected reading V is the root of noise² +
+/// offset_counts² + (relative·V)². Curves, hysteresis and creep are common to the sensels of a
+/// pillar, gains are not; stated deviations allow for both: `relative` is counted once as
+/// independent from sensel to sensel, and once as common to all components of the force (E9).
 struct ResidualError {
   double relative = 0;       ///< 0..1
   double offset_counts = 0;  ///< >= 0
