@@ -44,7 +44,9 @@ class Scores(unittest.TestCase):
 
     def test_a_region_is_wrong_by_its_sensels(self):
         found = measure_sensors.scores(field(0, 0, 100), field(0, 0, 100), status(7))
-        self.assertEqual(found["wrong"], [4, 4])
+        self.assertEqual((found["wrong"], found["unflagged"]), ([4, 4], [4, 4]))
+        flagged = measure_sensors.scores(field(0, 0, 100), field(0, 0, 100), status(7 + 16))
+        self.assertEqual((flagged["wrong"], flagged["unflagged"]), ([4, 4], [0, 4]))
         found = measure_sensors.scores(field(0, 200, 100), field(0, 200, 100), status(3))
         self.assertEqual(found["wrong"], [0, 4])
         self.assertEqual((found["ambiguous"][1], found["determined"][1]), (4, 0))

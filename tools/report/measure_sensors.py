@@ -1,5 +1,6 @@
-"""measure_sensors.py PROGRAM FOLDER: prints the errors of solved forces under effects of a sensor, as
-JSON. PROGRAM is pillarfield; its recordings are made in FOLDER and removed."""
+"""measure_sensors.py PROGRAM FOLDER: prints the errors of forces under effects of a sensor, as JSON.
+
+PROGRAM is pillarfield, whose recordings and calibrations are made in FOLDER."""
 
 import concurrent.futures
 import json
@@ -49,20 +50,22 @@ def squares(errors, chosen):
 
 
 def scores(truth, forces, status, deviations=None):
-    """Pairs of a sum over pillars and their number. All arrays are [component,] frame, row, col; N."""
+    """Pairs of a sum over pillars and their number. Arrays are [component,] frame, row, col; N."""
     v = loads(truth)
     largest = v.max(axis=0)
     pressed = (truth[2] > 0) & (K * largest > LEAST_COUNTS)
     errors = K * (forces - truth)
     # A sensel that a pillar loads by less than its own rounding error is not one.
     truly = sum((v[bit] > 1e-6 * largest).astype(int) << bit for bit in range(4))
+    wrong = pressed & ((status & 15) != truly)
     determined = pressed & (usable(status) >= 3)
     rim = at_rim(truth[2] > 0)
     result = {"determined": squares(errors, determined),
               "inside": squares(errors, determined & ~rim),
               "rim": squares(errors, determined & rim),
               "ambiguous": squares(errors, pressed & (usable(status) == 2)),
-              "wrong": [int((pressed & ((status & 15) != truly)).sum()), int(pressed.sum())]}
+              "wrong": [int(wrong.sum()), int(pressed.sum())],
+              "unflagged": [int((wrong & ((status & AMBIGUOUS) == 0)).sum()), int(pressed.sum())]}
     if deviations is not None:
         stated = determined & ((status & AMBIGUOUS) == 0)
         held = numpy.abs(errors) <= LIMIT_95 * K * deviations

@@ -1,5 +1,5 @@
-"""Scenes of the report on sensors: the effects of a sensor, the experiments that calibrate them, and
-the histories that judge the result. No constant of the product was chosen by these histories."""
+"""Scenes of the report on sensors: effects, experiments that calibrate them, and histories that judge
+the result. No constant of the product was chosen by these histories."""
 
 import math
 from typing import NamedTuple
@@ -113,7 +113,7 @@ def history(body, sensor, surface="", stiffness=1):
 # --- Experiments ---
 
 def pressed(counts, path=""):
-    """The lines of [direction_sweep] of a uniform pressure at which an ideal sensel reads `counts`."""
+    """[direction_sweep] of a uniform pressure at which an ideal sensel reads `counts`."""
     return (f"[direction_sweep]\ndirections = {PILLARS}\ninclinations = {PILLARS}\n"
             f"max_theta_deg = 0\nmagnitudes_n = [{counts / COUNTS_PER_NEWTON}]\n{path}")
 
@@ -145,8 +145,8 @@ PULLS_DEG = {"right": 0, "up": 90, "left": 180, "down": 270}
 def punch(direction_deg, friction, radius_mm, path):
     keys = ",\n".join(f"  {{ time_s = {time:g}, position_mm = [{x:g}, {y:g}], load_n = {load:g} }}"
                       for time, x, y, load in path)
-    return (f'[[contact]]\nshape = "flat_punch"\nmotion = "slide"\ncontact_radius_mm = {radius_mm}\n'
-            f"friction = {friction}\ndirection_deg = {direction_deg}\npath = [\n{keys}\n]\n")
+    return ('[[contact]]\nshape = "flat_punch"\nmotion = "slide"\n'
+            f"contact_radius_mm = {radius_mm}\nfriction = {friction}\ndirection_deg = {direction_deg}\npath = [\n{keys}\n]\n")
 
 
 def pulled(sensor, direction_deg):
@@ -207,7 +207,8 @@ def experiment(name, effect):
     if name == "idle":
         return scene(effect.sensor, frames=100)
     if name.startswith("press"):
-        return scene(effect.sensor, skin="", frames=100, rate_hz=20, contacts=pressed(int(name[5:])))
+        return scene(effect.sensor, skin="", frames=100, rate_hz=20,
+                     contacts=pressed(int(name[5:])))
     if name == "cycles":
         return cycles(effect.sensor)
     if name == "tips":

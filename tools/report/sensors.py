@@ -1,4 +1,6 @@
-"""sensors.py DOCS MEASURED: writes DOCS/sensors.md. MEASURED is the output of measure_sensors.py."""
+"""sensors.py DOCS MEASURED: writes DOCS/sensors.md.
+
+MEASURED is the output of measure_sensors.py."""
 
 import math
 
@@ -36,6 +38,10 @@ def is_exact(name):
     return "memory" not in scenes.EFFECTS[name].steps
 
 
+def short(name):
+    return scenes.EFFECTS[name].title.split(",")[0]
+
+
 def coverage(score):
     return " / ".join(percent(share(score, name), 0) for name in COMPONENTS)
 
@@ -55,7 +61,7 @@ def region_rows(found):
     for name, effect in scenes.EFFECTS.items():
         ignored, calibrated = (found["effects"][name][way] for way in ("ignored", "calibrated"))
         yield [effect.title, percent(share(ignored, "wrong")), percent(share(calibrated, "wrong")),
-               coverage(ignored), coverage(calibrated), text(over_paper(calibrated))]
+               percent(share(calibrated, "unflagged")), coverage(ignored), coverage(calibrated), text(over_paper(calibrated))]
 
 
 def body_rows(found):
@@ -80,12 +86,12 @@ def goal(what, wanted, measured, holds):
 
 def error_goals(found):
     ideal = rms(found["ideal"])
-    for name, effect in scenes.EFFECTS.items():
+    for name in scenes.EFFECTS:
         if name == "off_centre":
             continue
         limit = SINGLE_LIMIT.get(name, OTHER_LIMIT)
         ratio = rms(found["effects"][name]["calibrated"]) / ideal
-        yield goal(f"{effect.title}: error over the ideal sensor's", f"≤ {limit}", text(ratio),
+        yield goal(f"{short(name)}: error over the ideal sensor's", f"≤ {limit}", text(ratio),
                    ratio <= limit)
 
 
@@ -104,7 +110,7 @@ def shared_goals(found):
 
     def worst(values, show, holds, wanted, what):
         failing = [name for name, value in values.items() if not holds(value)]
-        measured = ", ".join(f"{scenes.EFFECTS[name].title} {show(values[name])}"
+        measured = "; ".join(f"{short(name)} {show(values[name])}"
                              for name in failing) or "all"
         return goal(what, wanted, measured, not failing)
 
@@ -138,6 +144,7 @@ def main(docs, measured):
                goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
                ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),
                ideal_wrong=percent(share(ideal, "wrong")), ideal_coverage=coverage(ideal),
+               ideal_unflagged=percent(share(ideal, "unflagged")),
                ideal_paper=text(over_paper(found["absent"]["gains"])),
                tared_wrong=percent(share(found["absent"]["gains"], "wrong")),
                histories=len(scenes.BODIES), frames=scenes.FRAMES, friction=scenes.FRICTION,
