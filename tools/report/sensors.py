@@ -63,7 +63,8 @@ def region_rows(found):
     for name, effect in scenes.EFFECTS.items():
         ignored, calibrated = (found["effects"][name][way] for way in ("ignored", "calibrated"))
         yield [effect.title, percent(share(ignored, "wrong")), percent(share(calibrated, "wrong")),
-               percent(share(calibrated, "unflagged")), coverage(ignored), coverage(calibrated), text(over_paper(calibrated))]
+               percent(share(calibrated, "unflagged")), coverage(ignored),
+               coverage(calibrated), text(over_paper(calibrated))]
 
 
 def body_rows(found):
