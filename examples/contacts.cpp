@@ -21,8 +21,7 @@ int main(int argc, char** argv) try {
 
   pf::ContactOptions options;
   options.minimum_pillars = 4;
-  options.noise_n = pf::reading_noise_n(plan);
-  options.hidden_n = pf::hidden_normal_n(plan.skin);
+  pf::set_sensor(options, plan);
   pf::ContactTracker tracker(plan.skin.pillar_pitch_mm(), options);
 
   std::printf("time_s,id,x_mm,y_mm,shear_x_n,shear_y_n,normal_n,torque_nmm,friction,slip\n");

@@ -34,15 +34,19 @@ class ContactFrameStore {
   Indenters last_indenters_ = Indenters::mixed;
 };
 
+ContactOptions contact_options(const SolverPlan& plan) {
+  ContactOptions options;
+  set_sensor(options, plan);
+  return options;
+}
+
 /// Solves frames and tracks the contacts of each result while the next frame is being solved.
 class TrackingSolver {
  public:
   TrackingSolver(const Device& device, const SolverPlan& plan, const Frames& frames)
       : frames_(&frames),
         processor_(device, plan),
-        tracker_(plan.skin.pillar_pitch_mm(), {.friction = plan.friction,
-                                               .noise_n = reading_noise_n(plan),
-                                               .hidden_n = hidden_normal_n(plan.skin)}) {}
+        tracker_(plan.skin.pillar_pitch_mm(), contact_options(plan)) {}
 
   void run(int frames) {
     for (int i = 0; i < frames; ++i) {

@@ -99,6 +99,7 @@ ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, con
   info.source = std::filesystem::path(options.input).filename().string();
   info.angles = plan.angles;
   info.uncertainty = plan.uncertainty;
+  info.effects = plan.calibration.effects;
   info.surface = plan.skin.surface;
   if (!options.contacts_file.empty() && is_hdf5(options.output)) info.contacts = options.contacts;
   return info;
@@ -244,10 +245,7 @@ void solve(const SolveOptions& given) {
   const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
   print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
-  options.contacts.friction = plan.friction;
-  options.contacts.noise_n = reading_noise_n(plan);
-  options.contacts.hidden_n = hidden_normal_n(plan.skin);
-  options.contacts.surface = plan.skin.surface;
+  set_sensor(options.contacts, plan);
   const Device device = open_device(options.device.name);
   Processor processor(device, plan,
                       {.memory = options.device.memory,

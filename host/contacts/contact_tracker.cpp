@@ -55,10 +55,12 @@ ContactOptions checked(const ContactOptions& options) {
 }
 
 FrictionEstimator::Sensor sensor_of(double pitch_mm, const ContactOptions& options) {
+  SegmentModel segment = segment_model(options.effects, pitch_mm);
+  segment.hidden_n = static_cast<float>(options.hidden_n);
   return {.pitch_mm = pitch_mm,
           .reach_mm = options.reach_mm,
           .noise_n = options.noise_n,
-          .segment_end = {.hidden_n = static_cast<float>(options.hidden_n)}};
+          .segment = segment};
 }
 
 /// State of a tracked contact besides its track_id.
@@ -69,8 +71,17 @@ struct Track {
 
 }  // namespace
 
+void set_sensor(ContactOptions& options, const SolverPlan& plan) {
+  options.friction = plan.friction;
+  options.noise_n = reading_noise_n(plan);
+  options.hidden_n = hidden_normal_n(plan.skin);
+  options.effects = plan.calibration.effects;
+  options.surface = plan.skin.surface;
+}
+
 void check(const ContactOptions& options, const std::string& where) {
   check(options.friction, where);
+  check(options.effects, where);
   if (options.noise_n && !(*options.noise_n >= 0 && *options.noise_n <= kMostNoiseN)) {
     throw Error(where, fmt::format("a noise of {} N", *options.noise_n),
                 fmt::format("it must be 0 to {}", kMostNoiseN));

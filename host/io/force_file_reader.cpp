@@ -13,6 +13,7 @@
 #include "io/hdf5/number_type.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/stored_skin.h"
 #include "io/stored_surface.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -100,6 +101,8 @@ void OpenForces::read_info() {
   const hid_t root = file.id.get();
   info.estimator = hdf5::read_text(file, root, force_format::kEstimator).value_or("");
   info.segment_point = hdf5::read_number(file, root, force_format::kSegmentPoint);
+  info.effects = read_effects(file, force_format::kEffects);
+  check(info.effects, file.path.string());
   info.device = hdf5::read_text(file, root, force_format::kDevice).value_or("");
   info.source = hdf5::read_text(file, root, force_format::kSource).value_or("");
   const auto pitch_mm = hdf5::read_number(file, root, force_format::kPillarPitch);

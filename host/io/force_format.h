@@ -15,6 +15,7 @@ inline constexpr const char* kSource = "source";
 inline constexpr const char* kProgramVersion = "program_version";
 inline constexpr const char* kPillarPitch = "pillar_pitch_mm";
 
+inline constexpr const char* kEffects = "/effects";
 inline constexpr const char* kForce = "/force";
 inline constexpr const char* kTime = "/force/time";
 inline constexpr const char* kStatus = "/force/status";

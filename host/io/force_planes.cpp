@@ -16,7 +16,9 @@ std::vector<ResultPlane> planes_of(const ForceFileInfo& info) {
 }
 
 FramePlanes::FramePlanes(const ForceFileInfo& info)
-    : planes_(planes_of(info)), uncertainty_(info.uncertainty) {
+    : planes_(planes_of(info)),
+      uncertainty_(info.uncertainty),
+      coefficient_(info.effects.shear_coefficient.value_or(ShearCoefficient{})) {
   if (info.estimator == name_of(Estimator::direct)) direct_point_ = info.segment_point;
 }
 
@@ -25,7 +27,7 @@ void FramePlanes::set_frame(const ForceFieldView& forces) {
   if (!uncertainty_) return;
   for (auto& plane : ends_) plane.resize(forces.normal.size());
   for (std::size_t pillar = 0; pillar < forces.normal.size(); ++pillar) {
-    const auto ends = component_ends(forces, pillar, direct_point_);
+    const auto ends = component_ends(forces, pillar, direct_point_, coefficient_);
     for (std::size_t i = 0; i < kComponentEnds; ++i) ends_[i][pillar] = ends[i];
   }
 }

@@ -32,6 +32,7 @@ class FramePlanes {
   std::vector<ResultPlane> planes_;
   bool uncertainty_;
   std::optional<double> direct_point_;
+  ShearCoefficient coefficient_;
   ForceFieldView forces_;
   std::array<std::vector<float>, kComponentEnds> ends_;
 };

@@ -58,9 +58,11 @@ std::vector<std::uint8_t> mask_of(const std::vector<float>& plane, const Skin& s
   return mask;
 }
 
-void write_effects(const hdf5::File& file, const SensorEffects& effects) {
+}  // namespace
+
+void write_effects(const hdf5::File& file, const char* place, const SensorEffects& effects) {
   if (effects.empty()) return;
-  const hdf5::Handle group = hdf5::create_group(file, recording_format::kEffects);
+  const hdf5::Handle group = hdf5::create_group(file, place);
   for (const EffectParameter& parameter : parameters_of(effects)) {
     if (parameter.list) {
       hdf5::write_attribute(file, group.get(), parameter.name, parameter.values);
@@ -70,14 +72,12 @@ void write_effects(const hdf5::File& file, const SensorEffects& effects) {
   }
 }
 
-SensorEffects read_effects(const hdf5::File& file) {
-  if (!hdf5::exists(file, recording_format::kEffects)) return {};
-  const hdf5::Handle group = hdf5::open_object(file, recording_format::kEffects);
+SensorEffects read_effects(const hdf5::File& file, const char* place) {
+  if (!hdf5::exists(file, place)) return {};
+  const hdf5::Handle group = hdf5::open_object(file, place);
   return effects_of([&](const char* name) { return hdf5::read_numbers(file, group.get(), name); },
-                    fmt::format("{}: {}", file.path.string(), recording_format::kEffects));
+                    fmt::format("{}: {}", file.path.string(), place));
 }
-
-}  // namespace
 
 hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin) {
   hdf5::Handle group = hdf5::create_group(file, recording_format::kSkin);
@@ -118,7 +118,7 @@ void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& c
     hdf5::write_plane(file, name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, skin.rows, skin.cols,
                       plane.data());
   }
-  write_effects(file, calibration.effects);
+  write_effects(file, recording_format::kEffects, calibration.effects);
   if (calibration.mask.empty()) return;
   hdf5::write_plane(file, recording_format::kMask, H5T_STD_U8LE, H5T_NATIVE_UINT8, skin.rows,
                     skin.cols, calibration.mask.data());
@@ -133,7 +133,7 @@ Calibration read_planes(const hdf5::File& file, const Skin& skin, std::optional<
   for (const auto& [name, member] : kFloatPlanes) calibration.*member = plane(name);
   const std::string place =
       fmt::format("{}: {}", file.path.string(), recording_format::kCalibration);
-  calibration.effects = read_effects(file);
+  calibration.effects = read_effects(file, recording_format::kEffects);
   calibration.mask = mask_of(plane(recording_format::kMask), skin, place);
   check(calibration, skin, place, type);
   return calibration;

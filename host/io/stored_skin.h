@@ -27,6 +27,12 @@ hdf5::Handle write_skin(const hdf5::File& file, const StoredSkin& skin);
 /// The object /skin; invalid if absent.
 [[nodiscard]] hdf5::Handle open_skin(const hdf5::File& file);
 
+/// Creates the group `place` with the parameters of the effects, unless there are none.
+void write_effects(const hdf5::File& file, const char* place, const SensorEffects& effects);
+
+/// Reads the effects in the group `place`; none if it is absent. Throws Error if one is incomplete.
+[[nodiscard]] SensorEffects read_effects(const hdf5::File& file, const char* place);
+
 /// Creates the group /calibration with the non-empty planes, and its group /calibration/effects if
 /// there are any; no group if the calibration is empty.
 void write_planes(const hdf5::File& file, const Skin& skin, const Calibration& calibration);

@@ -40,15 +40,16 @@ double ambiguity_of(double high, double point) {
 }
 
 /// Intervals of the free shear component and of the normal force on the feasible segment of a
-/// direct force at the segment point `point` (F1, F2), N.
-void set_segment(double point, const Component& moving, const Component& normal,
-                 Interval& of_moving, Interval& of_normal) {
+/// direct force at the segment point `point` (F1, F2), N. `sign` is that of the free component,
+/// `slope` its decrease per newton.
+void set_segment(double point, double sign, double slope, const Component& moving,
+                 const Component& normal, Interval& of_moving, Interval& of_normal) {
   const double high = normal.value / point;
   const double ambiguity = ambiguity_of(high, point);
-  const double least = std::abs(moving.value) - std::numbers::sqrt2 * (high - normal.value);
-  const double most = std::abs(moving.value) + std::numbers::sqrt2 * normal.value;
-  const double noise = moving.noise_beside(std::numbers::sqrt2 * ambiguity);
-  of_moving = std::signbit(moving.value) ? Interval{-most, -least} : Interval{least, most};
+  const double least = sign * moving.value - slope * (high - normal.value);
+  const double most = sign * moving.value + slope * normal.value;
+  const double noise = moving.noise_beside(slope * ambiguity);
+  of_moving = sign < 0 ? Interval{-most, -least} : Interval{least, most};
   of_moving = of_moving.wider(kDeviations95 * noise);
   of_normal = {0, high + kDeviations95 * normal.noise_beside(ambiguity)};
 }
@@ -56,7 +57,8 @@ void set_segment(double point, const Component& moving, const Component& normal,
 }  // namespace
 
 std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, std::size_t pillar,
-                                                 const std::optional<double>& direct_point) {
+                                                 const std::optional<double>& direct_point,
+                                                 const ShearCoefficient& coefficient) {
   const auto component = [&](std::span<const float> values, Uncertainty deviation) {
     return Component{values[pillar], forces.uncertainty[deviation][pillar]};
   };
@@ -69,7 +71,9 @@ std::array<float, kComponentEnds> component_ends(const ForceFieldView& forces, s
   const std::uint8_t status = forces.status[pillar];
   if (direct_point && has_feasible_segment(status) && normal.value > 0) {
     const bool vertical = shear_y_is_free(status);
-    set_segment(*direct_point, vertical ? y : x, normal, vertical ? of_y : of_x, of_normal);
+    const double slope = std::numbers::sqrt2 / (vertical ? coefficient.y : coefficient.x);
+    set_segment(*direct_point, sign_of_free_shear(status), slope, vertical ? y : x, normal,
+                vertical ? of_y : of_x, of_normal);
   }
   if (normal.value >= 0) of_normal.low = std::max(of_normal.low, 0.0);
   const auto number = [](double value) { return static_cast<float>(value); };

@@ -6,133 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 
-#include "pillarfield/host_solve.h"
-#include "pillarfield/scene.h"
-#include "pillarfield/simulator.h"
+#include "dragged_bodies.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
 namespace {
-
-/// A body on 26 x 26 pillars that is pressed, dragged until it slides, and dragged another way.
-Scene dragged(const Body& shape, double friction) {
-  Scene scene;
-  scene.skin.rows = 52;
-  scene.skin.cols = 52;
-  scene.skin.threshold_counts = 2;
-  scene.skin.counts_per_newton = 160;
-  scene.sensor.noise_counts = 0.5;
-  scene.frames = 12;
-  scene.rate_hz = 10;
-  scene.modulus_kpa = 400;
-  Body body = shape;
-  body.friction = friction;
-  body.path = {{0.0, -1, 0.5, 0, 6},
-               {0.2, -1, 0.5, 0, 14},
-               {0.6, 0.4 * friction, 1, 5, 14},
-               {0.8, 3, 1.3, 5, 16},
-               {1.1, 3.5, -2, 5, 12}};
-  scene.bodies = {body};
-  return scene;
-}
-
-/// A body that is pressed and then turned, there and back.
-Scene turned(const Body& shape, double friction) {
-  Scene scene = dragged(shape, friction);
-  scene.bodies[0].path = {
-      {0.0, 0, 0, 0, 6}, {0.2, 0, 0, 0, 14}, {0.7, 0, 0, 40, 14}, {1.1, 0, 0, 10, 14}};
-  return scene;
-}
-
-Body fingertip() {
-  Body body;
-  body.shape = BodyShape::ellipsoid;
-  body.radii_mm = {14, 9, 8};
-  return body;
-}
-
-Body ball() {
-  Body body;
-  body.radius_mm = 14;
-  return body;
-}
-
-Body punch() {
-  Body body;
-  body.shape = BodyShape::punch;
-  body.radius_mm = 6;
-  body.edge_radius_mm = 2;
-  return body;
-}
-
-SolverPlan plan_of(const Scene& scene, Estimator estimator) {
-  SolverPlan plan;
-  plan.skin = scene.skin;
-  plan.sensel_type = SenselType::f32;
-  plan.estimator = estimator;
-  plan.noise_counts = scene.sensor.noise_counts;
-  plan.uncertainty = estimator != Estimator::paper;
-  return plan;
-}
-
-bool is_ambiguous_pair(std::uint8_t bits) { return region_of(bits) == Region::three; }
-
-/// Errors over the pillars of region 3 of a recording.
-struct Errors {
-  double squares = 0;  ///< of the force vector, counts²
-  double held = 0;     ///< true normal forces within 1.96 deviations
-  double pillars = 0;
-
-  [[nodiscard]] double rms() const { return std::sqrt(squares / pillars); }
-  [[nodiscard]] double coverage() const { return held / pillars; }
-};
-
-using Solve = std::function<ForceField(const FrameView&)>;
-
-Errors errors_of(const Scene& scene, const Solve& solve) {
-  const Simulator simulator(scene);
-  FrameBuffer raw(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
-  ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
-  Errors errors;
-  const double counts = scene.skin.counts_per_newton;
-  for (std::uint32_t frame = 0; frame < scene.frames; ++frame) {
-    simulator.render(frame, raw, truth);
-    const ForceField solved = solve(raw.view());
-    for (std::size_t i = 0; i < solved.pillars(); ++i) {
-      if (!is_ambiguous_pair(solved.status[i])) continue;
-      const double x = solved.shear_x[i] - truth.shear_x[i];
-      const double y = solved.shear_y[i] - truth.shear_y[i];
-      const double normal = solved.normal[i] - truth.normal[i];
-      errors.squares += counts * counts * (x * x + y * y + normal * normal);
-      errors.pillars += 1;
-      const auto& deviation = solved.uncertainty[Uncertainty::normal];
-      if (!deviation.empty() && std::abs(normal) < 1.96 * deviation[i]) errors.held += 1;
-    }
-  }
-  return errors;
-}
-
-Errors paper_errors(const Scene& scene) {
-  const SolverPlan plan = plan_of(scene, Estimator::paper);
-  return errors_of(scene, [&](const FrameView& frame) { return solve_on_host(plan, frame); });
-}
-
-/// Solves frame by frame, carrying friction over.
-Errors contact_errors(const Scene& scene, const FrictionKnowledge& friction = {}) {
-  SolverPlan direct = plan_of(scene, Estimator::direct);
-  SolverPlan plan = plan_of(scene, Estimator::contact);
-  plan.friction = friction;
-  ContactEstimator estimator(plan);
-  return errors_of(scene, [&](const FrameView& frame) {
-    ForceField field = solve_on_host(direct, frame);
-    estimator.resolve(field);
-    return field;
-  });
-}
 
 struct Case {
   const char* name;
@@ -155,21 +36,19 @@ TEST(ContactEstimator, BeatsThePapersMidpointAndHoldsTheTruth) {
   Errors all;
   for (const Case& each : kCases) {
     SCOPED_TRACE(std::string(each.name) + " at " + std::to_string(each.friction));
-    const Scene scene = each.motion(each.body(), each.friction);
-    const Errors paper = paper_errors(scene);
-    const Errors contact = contact_errors(scene);
+    const Simulator simulator(each.motion(each.body(), each.friction));
+    const Errors paper = paper_errors(simulator);
+    const Errors contact = contact_errors(simulator);
     ASSERT_GT(contact.pillars, 30);
     EXPECT_LT(contact.rms(), 0.45 * paper.rms());
-    all.squares += contact.squares;
-    all.held += contact.held;
-    all.pillars += contact.pillars;
+    all += contact;
   }
   EXPECT_GT(all.coverage(), 0.93);
   EXPECT_LT(all.rms(), 2);
 }
 
 TEST(ContactEstimator, AGivenFrictionHelpsAndALooseBoundDoesNotHarm) {
-  const Scene scene = dragged(ball(), 1.8);
+  const Simulator scene(dragged(ball(), 1.8));
   const double alone = contact_errors(scene).rms();
   FrictionKnowledge given;
   given.given = 1.8;
@@ -182,7 +61,7 @@ TEST(ContactEstimator, AGivenFrictionHelpsAndALooseBoundDoesNotHarm) {
 }
 
 TEST(ContactEstimator, RemembersWhatAContactShowed) {
-  const Scene scene = dragged(ball(), 1.6);
+  const Simulator scene(dragged(ball(), 1.6));
   FrictionKnowledge unrelated;
   unrelated.memory = false;
   EXPECT_LT(contact_errors(scene).rms(), contact_errors(scene, unrelated).rms());
@@ -206,9 +85,10 @@ TEST(ContactEstimator, ReadsTheShapeOfThePressureUnderASmoothBody) {
       contact.path = {{0, 0.4, -0.3, 40}};
       scene.bodies.clear();
       scene.load = std::vector<Contact>{contact};
-      const Errors found = contact_errors(scene);
+      const Simulator simulator(scene);
+      const Errors found = contact_errors(simulator);
       ASSERT_GT(found.pillars, 30);
-      EXPECT_LT(found.rms(), 0.25 * paper_errors(scene).rms())
+      EXPECT_LT(found.rms(), 0.25 * paper_errors(simulator).rms())
           << friction << " at " << direction_deg;
     }
   }

@@ -44,7 +44,10 @@ struct Field {
 
 ForceFileInfo info_of(std::uint32_t rows, std::uint32_t cols, bool angles = false) {
   ForceFileInfo info = {rows, cols, 1.265, "direct", "a device \xc2\xb5", "press.h5", angles};
-  if (angles) info.segment_point = 0.75;
+  if (!angles) return info;
+  info.segment_point = 0.75;
+  info.effects.shear_coefficient = {0.9, 1.1};
+  info.effects.arm_mm = 0.3;
   return info;
 }
 
@@ -72,6 +75,11 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
       EXPECT_EQ(reader.info().pillar_pitch_mm, 1.265);
       EXPECT_EQ(reader.info().estimator, "direct");
       EXPECT_EQ(reader.info().segment_point, angles ? std::optional(0.75) : std::nullopt);
+      const auto coefficient = reader.info().effects.shear_coefficient;
+      EXPECT_EQ(coefficient.has_value(), angles);
+      EXPECT_EQ(coefficient.value_or(ShearCoefficient{}).x, angles ? 0.9 : 1);
+      EXPECT_EQ(coefficient.value_or(ShearCoefficient{}).y, angles ? 1.1 : 1);
+      EXPECT_EQ(reader.info().effects.arm_mm, angles ? std::optional(0.3) : std::nullopt);
       EXPECT_EQ(reader.info().device, "a device \xc2\xb5");
       EXPECT_EQ(reader.info().source, "press.h5");
       EXPECT_TRUE(reader.warnings().empty());

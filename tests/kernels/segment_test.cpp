@@ -67,19 +67,18 @@ double ratio_of(const maths::Force& force) {
 }
 
 FeasibleSegment segment_of(const AmbiguousPillar& pillar) {
-  return pillarfield::segment_of(pillar.point,
-                                 shear_y_is_free(static_cast<std::uint8_t>(pillar.status)), {});
+  return pillarfield::segment_of(pillar.point, static_cast<std::uint8_t>(pillar.status), {}, {});
 }
 
 TEST(FeasibleSegment, HoldsTheForcesOfTheDirectSolve) {
   for (const float at : {0.5F, kPoint, 1.0F}) {
     for_ambiguous_pillars(
         [](const AmbiguousPillar& pillar, const maths::Force&) {
-          const bool vertical = shear_y_is_free(static_cast<std::uint8_t>(pillar.status));
+          const auto status = static_cast<std::uint8_t>(pillar.status);
           const float high = segment_of(pillar).high;
           EXPECT_NEAR(high, pillar.sum.high * kScale.normal, 1e-4);
           for (const float part : {0.0F, 0.25F, 0.7F, 1.0F}) {
-            const maths::Force here = force_on_segment(pillar.point, vertical, part * high);
+            const maths::Force here = force_on_segment(pillar.point, status, {}, part * high);
             const maths::Force there =
                 maths::force_at(pillar.diagonals, part * pillar.sum.high, kScale);
             ASSERT_NEAR(here.shear_x, there.shear_x, 1e-4);
@@ -93,11 +92,11 @@ TEST(FeasibleSegment, HoldsTheForcesOfTheDirectSolve) {
 
 TEST(FeasibleSegment, IsTheSameOfEachOfItsForces) {
   for_ambiguous_pillars([](const AmbiguousPillar& pillar, const maths::Force&) {
-    const bool vertical = shear_y_is_free(static_cast<std::uint8_t>(pillar.status));
+    const auto status = static_cast<std::uint8_t>(pillar.status);
     const FeasibleSegment segment = segment_of(pillar);
     for (const float part : {0.01F, 0.3F, 1.0F}) {
-      const maths::Force other = force_on_segment(pillar.point, vertical, part * segment.high);
-      const FeasibleSegment again = pillarfield::segment_of(other, vertical, {});
+      const maths::Force other = force_on_segment(pillar.point, status, {}, part * segment.high);
+      const FeasibleSegment again = pillarfield::segment_of(other, status, {}, {});
       ASSERT_NEAR(again.known_shear, segment.known_shear, 1e-4);
       ASSERT_NEAR(again.free_shear, segment.free_shear, 1e-4);
       ASSERT_NEAR(again.high, segment.high, 1e-4);
@@ -123,12 +122,53 @@ TEST(FeasibleSegment, RatiosFallAsTheNormalForceGrows) {
   });
 }
 
+/// A shear coefficient stretches the segment, off-centre pressure shifts it; neither changes which
+/// normal forces it has.
+TEST(FeasibleSegment, FollowsTheCoefficientsAndOffCentrePressure) {
+  SegmentModel model;
+  model.coefficient_x = 0.8F;
+  model.coefficient_y = 1.3F;
+  const LeanShear lean = {90, -120, 0};  // beyond the shear of most pillars
+  const auto corrected = [&](const maths::Force& force) {
+    return maths::Force{force.shear_x / model.coefficient_x - lean.x,
+                        force.shear_y / model.coefficient_y - lean.y, force.normal};
+  };
+  int flipped = 0;
+  for_ambiguous_pillars([&](const AmbiguousPillar& pillar, const maths::Force& truth) {
+    const auto status = static_cast<std::uint8_t>(pillar.status);
+    const maths::Force point = corrected(pillar.point);
+    const bool vertical = shear_y_is_free(status);
+    flipped += std::signbit(vertical ? point.shear_y : point.shear_x) !=
+               std::signbit(sign_of_free_shear(status));
+    SegmentModel direct = model;
+    direct.point = kPoint;
+    const float high = pillar.sum.high * kScale.normal;
+    ASSERT_NEAR(pillarfield::segment_of(point, status, direct, {}).high, high, 1e-3);
+    for (const float part : {0.0F, 0.3F, 0.7F, 1.0F}) {
+      const maths::Force here = force_on_segment(point, status, model, part * high);
+      const maths::Force there =
+          corrected(maths::force_at(pillar.diagonals, part * pillar.sum.high, kScale));
+      ASSERT_NEAR(here.shear_x, there.shear_x, 1e-3);
+      ASSERT_NEAR(here.shear_y, there.shear_y, 1e-3);
+      ASSERT_NEAR(pillarfield::segment_of(here, status, model, lean).high, high, 1e-3);
+    }
+    const FeasibleSegment segment = pillarfield::segment_of(point, status, model, lean);
+    const double ratio = ratio_of(corrected(truth));
+    ASSERT_NEAR(segment.ratio_at(truth.normal), ratio, 1e-4 * ratio);
+    const double least = segment.ratio_at(segment.least_ratio_normal());
+    for (int step = 1; step <= 40; ++step) {
+      ASSERT_GE(segment.ratio_at(double{segment.high} * step / 40), least * (1 - 1e-6));
+    }
+  });
+  EXPECT_GT(flipped, 50);
+}
+
 TEST(FeasibleSegment, ScalesWithTheForce) {
   const maths::Force force = {-0.3F, 1.2F, 0.5F};
-  const FeasibleSegment one = pillarfield::segment_of(force, true, {});
+  const FeasibleSegment one = pillarfield::segment_of(force, 3, {}, {});
   for (const float scale : {1e-12F, 1e-3F, 1e6F, 1e15F}) {
     const FeasibleSegment other = pillarfield::segment_of(
-        {scale * force.shear_x, scale * force.shear_y, scale * force.normal}, true, {});
+        {scale * force.shear_x, scale * force.shear_y, scale * force.normal}, 3, {}, {});
     EXPECT_NEAR(other.known_shear / scale, one.known_shear, 1e-6);
     EXPECT_NEAR(other.free_shear / scale, one.free_shear, 1e-6);
     EXPECT_NEAR(other.high / scale, one.high, 1e-6);

@@ -80,5 +80,16 @@ class Scenes(unittest.TestCase):
                                 or step in sensor_scenes.CONSTANTS)
 
 
+class Times(unittest.TestCase):
+    def test_rows_are_ratios_to_the_solve_without_the_effect(self):
+        cases = [{"name": f"sensor/{percent}/{effect}", "ns_per_pillar": time}
+                 for percent, factor in ((100, 4.0), (8, 1.0))
+                 for effect, time in [("none", factor), *((each, 1.5 * factor) for each in sensors.TIMED)]]
+        bench = sensors.speed.Bench("test", {"context": {}, "benchmarks": cases})
+        rows = list(sensors.time_rows(bench))
+        self.assertEqual(rows[0], ["response curve", "1.50", "1.50", "1.2"])
+        self.assertEqual(len(rows), len(sensors.TIMED))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -91,6 +91,31 @@ TEST(ComponentEnds, OfADirectForceHoldItsSegment) {
   }
 }
 
+/// A shear coefficient scales the ends of its component, and off-centre pressure shifts them, even
+/// where it turns the sign of the shear.
+TEST(ComponentEnds, FollowTheCoefficientAndOffCentrePressure) {
+  for (const std::array<float, 4>& readings :
+       {std::array<float, 4>{60, 45, 0, 0}, {0, 60, 45, 0}, {0, 0, 45, 60}, {45, 0, 0, 60}}) {
+    SolverPlan ideal;
+    const ForceField first = solved(readings, ideal);
+    const auto before = component_ends(first.view(), 0, ideal.segment_point);
+    SolverPlan plan;
+    plan.calibration.effects.shear_coefficient = {0.8, 1.25};
+    ForceField field = solved(readings, plan);
+    for (const float lean : {0.0F, 2.0F, -2.0F}) {
+      ForceField shifted = field;
+      shifted.shear_x[0] += lean;
+      shifted.shear_y[0] += lean;
+      const auto ends = component_ends(shifted.view(), 0, plan.segment_point, {0.8, 1.25});
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_NEAR(ends[i], before[i] / 0.8 + lean, 1e-5);
+        EXPECT_NEAR(ends[2 + i], before[2 + i] / 1.25 + lean, 1e-5);
+        EXPECT_NEAR(ends[4 + i], before[4 + i], 1e-6);
+      }
+    }
+  }
+}
+
 /// The segment does not depend on the segment point.
 TEST(ComponentEnds, OfADirectForceDoNotDependOnItsPoint) {
   std::array<float, kComponentEnds> first{};

@@ -1,11 +1,13 @@
-"""sensors.py DOCS MEASURED: writes DOCS/sensors.md.
+"""sensors.py DOCS MEASURED TIMED: writes DOCS/sensors.md.
 
-MEASURED is the output of measure_sensors.py."""
+MEASURED is the output of measure_sensors.py, TIMED that of pillarfield-bench of its cases sensor/."""
 
 import math
+import os
 
 import page
 import sensor_scenes as scenes
+import speed
 from page import percent, text
 
 SINGLE_LIMIT = {"hysteresis": 2.5, "creep": 2.5, "all": 3, "centred": 3, "bending": 1.2}
@@ -137,11 +139,30 @@ def shared_goals(found):
                 "calibrated but absent: error over the ideal sensor's")
 
 
-def main(docs, measured):
+TIMED = {"curve": ("response curve", "1.2"), "shear_coefficient": ("shear coefficient", "1.02"),
+         "leak": ("leak between sensels", "1.6"), "wires": ("wires", "2"),
+         "memory": ("hysteresis and creep", "1.3"), "bending": ("bending", "1.2"),
+         "pillar_leak": ("leak between pillars", "–"), "lean": ("off-centre pressure", "–"),
+         "sensor": ("all but the leak between pillars and bending", "–")}
+
+
+def time_rows(bench):
+    """The time of a frame with each effect over that without, loaded everywhere and in part."""
+    def ratio(percent, effect):
+        def time(name):
+            return bench.value(f"sensor/{percent}/{name}", "ns_per_pillar")
+        return text(time(effect) / time("none"))
+    for effect, (title, wanted) in TIMED.items():
+        yield [title, ratio(100, effect), ratio(8, effect), wanted]
+
+
+def main(docs, measured, timed):
     found = page.load(measured)
+    bench = speed.Bench(timed, page.load(timed))
     ideal = found["ideal"]
     page.write(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
-               body_rows=body_rows(found),
+               body_rows=body_rows(found), time_rows=time_rows(bench),
+               processor=speed.processor_name(), threads=os.cpu_count(),
                goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
                ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),
                ideal_wrong=percent(share(ideal, "wrong")), ideal_coverage=coverage(ideal),

@@ -34,10 +34,7 @@ void describe(SourceInfo& info, const SolverPlan& plan, const Processor& process
   info.has_readings = true;
   info.has_angles = plan.angles;
   info.has_uncertainty = plan.uncertainty;
-  info.contacts.friction = plan.friction;
-  info.contacts.noise_n = reading_noise_n(plan);
-  info.contacts.hidden_n = hidden_normal_n(plan.skin);
-  info.contacts.surface = plan.skin.surface;
+  set_sensor(info.contacts, plan);
   info.solver = fmt::format("{} on {}, {}", name_of(plan.estimator), processor.device().info().name,
                             processor.shares_memory() ? "zero copy" : "staged");
 }

@@ -35,6 +35,7 @@ SourceInfo info_of(const std::filesystem::path& path, const ForceFileReader& rea
   info.skin.sensel_pitch_mm = file.pillar_pitch_mm / 2;
   info.skin.surface = file.surface;
   info.contacts.surface = file.surface;
+  info.contacts.effects = file.effects;
   info.frames = reader.frames();
   info.has_angles = true;
   info.has_uncertainty = file.uncertainty;
@@ -89,13 +90,15 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
   if (block == nullptr) throw_all_fields_in_use();
   const double time_s = reader_->read(index, forces_);
   fill(*block, forces_);
-  return {.forces = block->view(),
-          .raw = {},
-          .time_s = time_s,
-          .index = index,
-          .direct_point = direct_point_of(reader_->info()),
-          .pages = block->pages(),
-          .keep_alive = block};
+  return {
+      .forces = block->view(),
+      .raw = {},
+      .time_s = time_s,
+      .index = index,
+      .direct_point = direct_point_of(reader_->info()),
+      .shear_coefficient = reader_->info().effects.shear_coefficient.value_or(ShearCoefficient{}),
+      .pages = block->pages(),
+      .keep_alive = block};
 }
 
 ShownContacts ForceFileProducer::contacts_of(const ShownField& field) {

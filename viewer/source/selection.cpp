@@ -52,7 +52,7 @@ void set_uncertainty(PillarValues& values, const ShownField& field, std::size_t 
   if (forces.uncertainty[Uncertainty::shear_x].empty()) return;
   std::ranges::transform(forces.uncertainty, values.uncertainty.emplace().begin(),
                          [at](std::span<const float> plane) { return plane[at]; });
-  values.component_ends = component_ends(forces, at, field.direct_point);
+  values.component_ends = component_ends(forces, at, field.direct_point, field.shear_coefficient);
 }
 
 bool is_finite(const ForceFieldView& forces, std::size_t at) {

@@ -8,6 +8,7 @@
 
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
+#include "pillarfield/sensor_effects.h"
 
 namespace pillarfield::viewer {
 
@@ -20,7 +21,8 @@ struct ShownField {
   FrameView raw;                            ///< its readings; no data for a source without
   double time_s = 0;                        ///< time of the frame in its source
   std::uint64_t index = 0;                  ///< index of the frame in its source
-  std::optional<double> direct_point = {};  ///< argument of component_ends()
+  std::optional<double> direct_point = {};  ///< argument of component_ends(), as the next one
+  ShearCoefficient shear_coefficient = {};
   /// Whole pages with all planes of `forces`, which a graphics device may import.
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;

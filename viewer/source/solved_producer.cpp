@@ -59,13 +59,15 @@ ShownField SolvedProducer::produce(std::uint64_t index) {
   next_ = index + 1;
   const auto held = std::make_shared<FieldMemoryOwner>(
       FieldMemoryOwner{processor_.pin(), std::move(frame.readings)});
-  return {.forces = forces,
-          .raw = raw,
-          .time_s = frame.time_s,
-          .index = index,
-          .direct_point = direct_point_,
-          .pages = held->result.pages(),
-          .keep_alive = held};
+  return {
+      .forces = forces,
+      .raw = raw,
+      .time_s = frame.time_s,
+      .index = index,
+      .direct_point = direct_point_,
+      .shear_coefficient = info_.calibration.effects.shear_coefficient.value_or(ShearCoefficient{}),
+      .pages = held->result.pages(),
+      .keep_alive = held};
 }
 
 bool SolvedProducer::refresh() {

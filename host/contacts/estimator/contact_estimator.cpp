@@ -32,19 +32,42 @@ void write_force(const FieldPlanes& field, std::uint32_t index, const maths::For
   field.phi[index] = direction.phi;
 }
 
-/// Writes the ends of angles and magnitude for forces between two points of a segment: theta and
-/// magnitude fall with the normal force, phi is monotonic (F5).
-void write_ends(const FieldPlanes& field, std::uint32_t index, const maths::Force& least,
-                const maths::Force& most) {
+/// A part of the segment through a force.
+struct SegmentPart {
+  maths::Force point;
+  std::uint8_t status;
+  float low_n;  ///< normal forces of its ends
+  float high_n;
+};
+
+/// Writes the ends of angles and magnitude on a part of a segment: phi is monotonic, and theta and
+/// magnitude each have one minimum, on an ideal skin at the largest normal force (F5, F7).
+void write_ends(const FieldPlanes& field, std::uint32_t index, const SegmentPart& part,
+                const FeasibleSegment& segment, const SegmentModel& model) {
+  const auto force_at = [&](float normal) {
+    return force_on_segment(part.point, part.status, model, normal);
+  };
+  const maths::Force least = force_at(part.low_n);
+  const maths::Force most = force_at(part.high_n);
   const maths::Direction flat = maths::direction_of(least);
   const maths::Direction steep = maths::direction_of(most);
+  const auto minimum_at = [&](double normal) {
+    const float at = std::clamp(static_cast<float>(normal), part.low_n, part.high_n);
+    return model.is_ideal() || at == part.high_n ? steep : maths::direction_of(force_at(at));
+  };
   const bool clockwise = least.shear_x * most.shear_y < least.shear_y * most.shear_x;
-  field.at(Uncertainty::theta_low, index) = steep.theta;
-  field.at(Uncertainty::theta_high, index) = flat.theta;
+  field.at(Uncertainty::theta_low, index) = minimum_at(segment.least_ratio_normal()).theta;
+  field.at(Uncertainty::theta_high, index) = std::max(flat.theta, steep.theta);
   field.at(Uncertainty::phi_low, index) = clockwise ? steep.phi : flat.phi;
   field.at(Uncertainty::phi_high, index) = clockwise ? flat.phi : steep.phi;
-  field.at(Uncertainty::magnitude_low, index) = steep.magnitude;
-  field.at(Uncertainty::magnitude_high, index) = flat.magnitude;
+  field.at(Uncertainty::magnitude_low, index) = minimum_at(segment.shortest_normal()).magnitude;
+  field.at(Uncertainty::magnitude_high, index) = std::max(flat.magnitude, steep.magnitude);
+}
+
+SegmentModel segment_model_of(const SolverPlan& plan) {
+  SegmentModel model = segment_model(plan.calibration.effects, plan.skin.pillar_pitch_mm());
+  model.point = static_cast<float>(plan.segment_point);
+  return model;
 }
 
 }  // namespace
@@ -52,11 +75,10 @@ void write_ends(const FieldPlanes& field, std::uint32_t index, const maths::Forc
 ContactEstimator::ContactEstimator(const SolverPlan& plan, std::size_t threads,
                                    const ContactParameters& parameters)
     : parameters_(parameters),
-      end_{.point = static_cast<float>(plan.segment_point),
-           .hidden_n = static_cast<float>(hidden_normal_n(plan.skin))},
+      model_(segment_model_of(plan)),
       friction_({.pitch_mm = plan.skin.pillar_pitch_mm(),
                  .noise_n = reading_noise_n(plan),
-                 .segment_end = end_},
+                 .segment = model_},
                 plan.friction, threads, parameters),
       rows_(plan.skin.pillar_rows()),
       cols_(plan.skin.pillar_cols()),
@@ -83,18 +105,19 @@ using Values = std::array<float, kBatchPillars>;
 /// Mean and mean square of the normal force over equally probable frictions `nodes`; a pillar
 /// sticks with probability `sticks`, else it slips (C8).
 PF_WIDE void average(const Values& fixed, const Values& moving, const Values& high,
-                     std::span<const float> nodes, float sticks, Values& mean, Values& square) {
-  constexpr float kRoot2 = std::numbers::sqrt2_v<float>;
+                     const Values& slope, const Values& slope_square, std::span<const float> nodes,
+                     float sticks, Values& mean, Values& square) {
   mean.fill(0);
   square.fill(0);
   const float share = 1.0F / static_cast<float>(nodes.size());
   for (const float friction : nodes) {
-    const float excess = friction * friction - 2;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       const float total = fixed[i] * fixed[i] + moving[i] * moving[i];
-      const float under = 2 * moving[i] * moving[i] + excess * total;
-      const float free = total / (kRoot2 * moving[i] + std::sqrt(under > 0 ? under : 0.0F));
-      const float slip = free < high[i] ? free : high[i];
+      const float under =
+          slope_square[i] * moving[i] * moving[i] + (friction * friction - slope_square[i]) * total;
+      const float sum_of = slope[i] * moving[i] + std::sqrt(under > 0 ? under : 0.0F);
+      const float free = total / sum_of;
+      const float slip = (sum_of > 0) & (free < high[i]) ? free : high[i];
       const float sum = slip + high[i];
       mean[i] += share * ((1 - sticks) * slip + sticks * 0.5F * sum);
       square[i] += share * ((1 - sticks) * slip * slip +
@@ -105,15 +128,31 @@ PF_WIDE void average(const Values& fixed, const Values& moving, const Values& hi
 
 }  // namespace
 
+/// Standard deviation of a slipping pillar's normal force, N, due to one of its shear, N (F8); at
+/// most the segment's length.
+double normal_deviation(const FeasibleSegment& segment, double normal, double shear_n) {
+  const double shear = segment.ratio_at(normal) * normal;
+  const double rest = segment.free_shear - segment.slope * normal;
+  const double stiffness = shear * shear / normal + segment.slope * rest;
+  return shear * shear_n < stiffness * segment.high ? shear * shear_n / stiffness : segment.high;
+}
+
 /// A batch of ambiguous pillars of a contact: segments and estimated normal forces.
 struct ContactEstimator::Batch {
   std::array<std::uint32_t, kBatchPillars> index{};
   Values fixed{};  ///< as in FeasibleSegment, N
   Values moving{};
   Values high{};
+  Values slope{};
+  Values slope_square{};
+  Values lean{};    ///< LeanShear::deviation
   Values mean{};    ///< of the normal force, N
   Values square{};  ///< mean square of the normal force, N²
   std::size_t pillars = 0;
+
+  [[nodiscard]] FeasibleSegment segment(std::size_t i) const {
+    return {fixed[i], moving[i], high[i], slope[i]};
+  }
 };
 
 /// Estimates the ambiguous pillars of a contact in batches.
@@ -123,8 +162,9 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
   const auto finish = [&] {
     for (std::size_t i = batch.pillars; i < kBatchPillars; ++i) {
       batch.fixed[i] = batch.moving[i] = batch.high[i] = 1;
+      batch.slope[i] = batch.slope_square[i] = 1;
     }
-    average(batch.fixed, batch.moving, batch.high, model.frictions,
+    average(batch.fixed, batch.moving, batch.high, batch.slope, batch.slope_square, model.frictions,
             static_cast<float>(parameters_.ambiguous_sticks), batch.mean, batch.square);
     for (std::size_t i = 0; i < batch.pillars; ++i) write(field, model, batch, i);
     batch.pillars = 0;
@@ -133,11 +173,15 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     if (!has_feasible_segment(field.status[index])) return;
     if (!(field.normal[index] > 0 && field.normal[index] < kMostNormalN)) return;
     const FeasibleSegment segment =
-        segment_of(force_of(field, index), shear_y_is_free(field.status[index]), end_);
+        segment_of(force_of(field, index), field.status[index], model_, {});
     batch.index[batch.pillars] = index;
     batch.fixed[batch.pillars] = segment.known_shear;
     batch.moving[batch.pillars] = segment.free_shear;
     batch.high[batch.pillars] = segment.high;
+    batch.slope[batch.pillars] = static_cast<float>(segment.slope);
+    batch.slope_square[batch.pillars] = model_.slope_square(shear_y_is_free(field.status[index]));
+    // The normal forces of neighbours may be estimates already: the deviation hardly changes.
+    batch.lean[batch.pillars] = lean_at(field.forces(), index, model_.pitch_over_arm).deviation;
     if (++batch.pillars == kBatchPillars) finish();
   };
   for (const ContactRun& run : labels_.runs(contact)) {
@@ -160,13 +204,16 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
                              const Batch& batch, std::size_t i) const {
   const std::uint32_t index = batch.index[i];
   const maths::Force point = force_of(field, index);
-  const bool vertical = shear_y_is_free(field.status[index]);
+  const std::uint8_t status = field.status[index];
+  const bool vertical = shear_y_is_free(status);
   const double noise_n = model.noise_n;
   const double high = batch.high[i];
   double mean = batch.mean[i];
   const double own = parameters_.ratio_deviation * mean;  // model error of a slipping pillar
-  double variance =
-      std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n * noise_n + own * own;
+  const double lean =
+      batch.lean[i] > 0 ? normal_deviation(batch.segment(i), mean, batch.lean[i]) : 0;
+  double variance = std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n * noise_n +
+                    own * own + lean * lean;
   const std::uint32_t row = index / cols_;
   if (const auto found = model.predicted(row, index - row * cols_, high, parameters_)) {
     const double weight = variance / (variance + found->variance);
@@ -175,18 +222,18 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
   }
   mean = std::min(mean, high);
   const double deviation = std::sqrt(variance);
-  write_force(field, index, force_on_segment(point, vertical, static_cast<float>(mean)));
+  write_force(field, index, force_on_segment(point, status, model_, static_cast<float>(mean)));
   if (deviation < parameters_.resolved_deviation * high) {
     field.status[index] |= status::kFromNeighbours;
   }
   if (!field.has_uncertainty()) return;
+  const double beside = lean > 0 ? std::hypot(noise_n, double{batch.lean[i]}) : noise_n;
   const auto low_n = static_cast<float>(std::max(mean - kNormal95 * deviation, 0.0));
   const auto high_n = static_cast<float>(std::min(mean + kNormal95 * deviation, high));
-  write_ends(field, index, force_on_segment(point, vertical, low_n),
-             force_on_segment(point, vertical, high_n));
+  write_ends(field, index, {point, status, low_n, high_n}, batch.segment(i), model_);
   field.at(Uncertainty::normal, index) = static_cast<float>(deviation);
   field.at(vertical ? Uncertainty::shear_y : Uncertainty::shear_x, index) =
-      static_cast<float>(std::hypot(std::numbers::sqrt2 * deviation, noise_n));
+      static_cast<float>(std::hypot(model_.slope(vertical) * deviation, beside));
 }
 
 }  // namespace pillarfield

@@ -41,7 +41,7 @@ class ContactEstimator {
              std::size_t i) const;
 
   ContactParameters parameters_;
-  SegmentEnd end_;
+  SegmentModel model_;
   FrictionEstimator friction_;
   std::uint32_t rows_;
   std::uint32_t cols_;

@@ -13,8 +13,10 @@ constexpr double kEdge = 0.25;
 
 /// Largest ratio of shear to normal force at which a pillar sheared in this direction has three
 /// usable sensels, and so a determined force (C4).
-double ceiling_of(double shear_x, double shear_y) {
-  const double least = std::min(std::abs(shear_x + shear_y), std::abs(shear_y - shear_x));
+double ceiling_of(double shear_x, double shear_y, const SegmentModel& model) {
+  const double x = model.coefficient_x * shear_x;
+  const double y = model.coefficient_y * shear_y;
+  const double least = std::min(std::abs(x + y), std::abs(y - x));
   const double shear = std::sqrt(shear_x * shear_x + shear_y * shear_y);
   return least > 0 ? std::numbers::sqrt2 * shear / least : ObservedRatio::kNoCeiling;
 }
@@ -27,9 +29,27 @@ void prefetch([[maybe_unused]] const void* from) {
 
 }  // namespace
 
-double deviation_of_ratio(double normal, double noise_n, const ContactParameters& parameters) {
+LeanShear lean_at(const ForceFieldView& forces, std::uint32_t index, float pitch_over_arm) {
+  if (pitch_over_arm == 0) return {};
+  const std::uint32_t row = index / forces.cols;
+  const std::uint32_t col = index - row * forces.cols;
+  const auto normal = [&](bool exists, std::uint32_t at) { return exists ? forces.normal[at] : 0; };
+  const float own = forces.normal[index];
+  const auto x = single_precision::lean_between(normal(col > 0, index - 1), own,
+                                                normal(col + 1 < forces.cols, index + 1));
+  const auto y = single_precision::lean_between(normal(row + 1 < forces.rows, index + forces.cols),
+                                                own, normal(row > 0, index - forces.cols));
+  const float square = x.deviation * x.deviation + y.deviation * y.deviation;
+  return {pitch_over_arm * x.moment, pitch_over_arm * y.moment,
+          pitch_over_arm * std::sqrt(square / 2)};
+}
+
+double deviation_of_ratio(double ratio, double normal, double noise_n, double shear_n,
+                          const ContactParameters& parameters) {
   const double noise = parameters.noise_of_ratio * noise_n / normal;
-  return std::sqrt(noise * noise + parameters.ratio_deviation * parameters.ratio_deviation);
+  const double square = noise * noise + parameters.ratio_deviation * parameters.ratio_deviation;
+  if (shear_n == 0) return std::sqrt(square);
+  return std::hypot(std::sqrt(square), shear_n / (ratio * normal));
 }
 
 ContactBox ContactBox::about(std::span<const ContactRun> runs) {
@@ -48,10 +68,10 @@ ContactBox ContactBox::about(std::span<const ContactRun> runs) {
 }
 
 void ContactSamples::sample(const ForceFieldView& forces, std::span<const ContactRun> runs,
-                            double noise_n, const SegmentEnd& end,
+                            double noise_n, const SegmentModel& model,
                             const ContactParameters& parameters) {
   forces_ = forces;
-  end_ = end;
+  model_ = model;
   runs_ = runs;
   box_ = ContactBox::about(runs);
   ratios_.clear();
@@ -93,12 +113,16 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
   const double least = parameters.least_normal * noise_n;
   if (!(normal > 0 && normal < kMostNormalN)) return;
   if (has_feasible_segment(status)) {
-    const FeasibleSegment segment = segment_at(forces_, index, end_);
+    const LeanShear lean = lean_at(forces_, index, model_.pitch_over_arm);
+    const FeasibleSegment segment = segment_at(forces_, index, model_, lean);
     const double high = segment.high;
     ambiguous_.push_back(index);
     peak_n_ = std::max(peak_n_, high);
     if (!(high > least)) return;
-    bounds_.push_back({segment.ratio_at(high), deviation_of_ratio(high, noise_n, parameters), 0});
+    const double flat = segment.least_ratio_normal();
+    const double ratio = segment.ratio_at(flat);
+    bounds_.push_back(
+        {ratio, deviation_of_ratio(ratio, flat, noise_n, lean.deviation, parameters), 0});
   } else if (is_determined(status)) {
     peak_n_ = std::max(peak_n_, normal);
     pressure_.push_back({box_.x_of(col), box_.y_of(row), normal * normal, 1});
@@ -107,7 +131,9 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
     const double y = forces_.shear_y[index];
     const double ratio = std::sqrt(x * x + y * y) / normal;
     if (ratio < parameters.least_ratio) return;
-    ratios_.push_back({ratio, deviation_of_ratio(normal, noise_n, parameters), ceiling_of(x, y)});
+    const double lean = lean_at(forces_, index, model_.pitch_over_arm).deviation;
+    ratios_.push_back({ratio, deviation_of_ratio(ratio, normal, noise_n, lean, parameters),
+                       ceiling_of(x, y, model_)});
   }
 }
 
@@ -115,7 +141,8 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
 double ContactSamples::most_normal(std::uint32_t index) const {
   const std::uint8_t status = forces_.status[index];
   if (is_determined(status)) return std::max(double{forces_.normal[index]}, 0.0);
-  return has_feasible_segment(status) ? segment_at(forces_, index, end_).high : 0;
+  if (!has_feasible_segment(status)) return 0;
+  return segment_at(forces_, index, model_, lean_at(forces_, index, model_.pitch_over_arm)).high;
 }
 
 /// Adds a sample of zero normal force at an edge, weighted by how little the outermost pillars bear

@@ -44,7 +44,7 @@ class ContactSamples {
 
   /// Samples the pillars of a contact. `noise_n` is the noise of a reading as a force, N.
   void sample(const ForceFieldView& forces, std::span<const ContactRun> runs, double noise_n,
-              const SegmentEnd& end, const ContactParameters& parameters);
+              const SegmentModel& model, const ContactParameters& parameters);
   /// Adds samples of zero normal force at the contact's edge to the regression's samples.
   void add_edges();
 
@@ -82,7 +82,7 @@ class ContactSamples {
 
   ForceFieldView forces_;
   std::span<const ContactRun> runs_;
-  SegmentEnd end_;
+  SegmentModel model_;
   ContactBox box_;
   std::uint32_t step_ = 1;  ///< pillars from one sample to the next
   double peak_n_ = 0;       ///< largest possible normal force of a sampled pillar
@@ -102,14 +102,19 @@ class ContactSamples {
   return {forces.shear_x[index], forces.shear_y[index], forces.normal[index]};
 }
 
+/// The lean of a pillar (docs/derivations/sensor_effects.md, E7); zero without an arm.
+[[nodiscard]] LeanShear lean_at(const ForceFieldView& forces, std::uint32_t index,
+                                float pitch_over_arm);
+
 /// The segment of an ambiguous pillar.
 [[nodiscard]] inline FeasibleSegment segment_at(const ForceFieldView& forces, std::uint32_t index,
-                                                const SegmentEnd& end) {
-  return segment_of(force_at(forces, index), shear_y_is_free(forces.status[index]), end);
+                                                const SegmentModel& model, const LeanShear& lean) {
+  return segment_of(force_at(forces, index), forces.status[index], model, lean);
 }
 
-/// Relative standard deviation of a ratio of shear to a normal force, N.
-[[nodiscard]] double deviation_of_ratio(double normal, double noise_n,
+/// Relative standard deviation of a ratio of shear to a normal force, N, with the standard
+/// deviation `shear_n` of the shear beyond noise.
+[[nodiscard]] double deviation_of_ratio(double ratio, double normal, double noise_n, double shear_n,
                                         const ContactParameters& parameters);
 
 /// Normal forces above this, N, are ignored: their squares would overflow.

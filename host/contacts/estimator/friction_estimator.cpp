@@ -90,7 +90,7 @@ void FrictionEstimator::update(const ForceFieldView& forces, const ContactLabels
   const auto runs = labels.runs(contact);
   model.noise_n =
       sensor_.noise_n ? *sensor_.noise_n : largest_normal(forces, runs) / kPeakOverNoise;
-  samples.sample(forces, runs, model.noise_n, sensor_.segment_end, parameters_);
+  samples.sample(forces, runs, model.noise_n, sensor_.segment, parameters_);
   model.box = samples.box();
   // Pillars that were not sampled may be ambiguous.
   model.any_ambiguous = !samples.ambiguous().empty() || samples.is_subsampled();
@@ -123,7 +123,8 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
   const std::size_t step = (ambiguous.size() + kMostPredicted - 1) / kMostPredicted;
   for (std::size_t i = 0; i < ambiguous.size(); i += step) {
     const std::uint32_t index = ambiguous[i];
-    const FeasibleSegment segment = segment_at(forces, index, sensor_.segment_end);
+    const LeanShear lean = lean_at(forces, index, sensor_.segment.pitch_over_arm);
+    const FeasibleSegment segment = segment_at(forces, index, sensor_.segment, lean);
     const std::uint32_t row = index / forces.cols;
     const auto found = model.predicted(row, index - row * forces.cols, segment.high, parameters_);
     if (!found) continue;
@@ -134,9 +135,11 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
     const double steepness = std::abs(std::log(segment.ratio_at(normal * (1 + kStep)) /
                                                segment.ratio_at(normal * (1 - kStep)))) /
                              (2 * kStep);
-    const double own = deviation_of_ratio(normal, model.noise_n, parameters_);
-    work.predicted.push_back({segment.ratio_at(normal), std::hypot(deviation * steepness, own),
-                              ObservedRatio::kNoCeiling});
+    const double ratio = segment.ratio_at(normal);
+    const double own =
+        deviation_of_ratio(ratio, normal, model.noise_n, lean.deviation, parameters_);
+    work.predicted.push_back(
+        {ratio, std::hypot(deviation * steepness, own), ObservedRatio::kNoCeiling});
   }
 }
 

@@ -49,7 +49,7 @@ class FrictionEstimator {
     double reach_mm = 10;  ///< largest movement of a contact between frames
     /// Noise of a reading as a force, N; unset: 1/64 of the largest force of each contact.
     std::optional<double> noise_n;
-    SegmentEnd segment_end = {};
+    SegmentModel segment = {};
   };
 
   /// `members`: number of threads that may call update() concurrently.

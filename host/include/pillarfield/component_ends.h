@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "pillarfield/force_field.h"
+#include "pillarfield/sensor_effects.h"
 
 namespace pillarfield {
 
@@ -28,8 +29,10 @@ inline constexpr std::size_t kComponentEnds = 6;
 ///
 /// For ambiguous pillars of Estimator::direct pass its SolverPlan::segment_point as `direct_point`:
 /// their intervals then span the segment, widened by 1.96 standard deviations of the noise. Leave
-/// it unset for other estimators. `forces` must have the planes of Uncertainty.
+/// it unset for other estimators. `coefficient` is that of the skin. `forces` must have the planes
+/// of Uncertainty.
 [[nodiscard]] std::array<float, kComponentEnds> component_ends(
-    const ForceFieldView& forces, std::size_t pillar, const std::optional<double>& direct_point);
+    const ForceFieldView& forces, std::size_t pillar, const std::optional<double>& direct_point,
+    const ShearCoefficient& coefficient = {});
 
 }  // namespace pillarfield

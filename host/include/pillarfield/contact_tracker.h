@@ -9,6 +9,7 @@
 #include "pillarfield/contact_labels.h"
 #include "pillarfield/contact_quantities.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/solver_plan.h"
 
 namespace pillarfield {
 
@@ -50,6 +51,7 @@ struct ContactOptions {
   /// Normal force that an inactive sensel may hide below the threshold, N, 0 to 1e6:
   /// hidden_normal_n().
   double hidden_n = 0;
+  SensorEffects effects = {};  ///< of the skin; the shear coefficient and the arm matter
   /// Surface of the skin, for ContactQuantities::wrench; it must fit the pillars. Unset: no wrench.
   std::optional<Surface> surface = {};
   double reach_mm = 10;  ///< how far a contact may move between frames, 0 to 1000
@@ -58,6 +60,9 @@ struct ContactOptions {
   /// sleep between frames.
   std::uint32_t threads = 0;
 };
+
+/// Sets the friction and the properties of the sensor to those of a plan.
+void set_sensor(ContactOptions& options, const SolverPlan& plan);
 
 /// Throws Error, naming `where`, if a member is out of range.
 void check(const ContactOptions& options, const std::string& where);

@@ -12,6 +12,7 @@
 #include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
 #include "pillarfield/read_options.h"
+#include "pillarfield/sensor_effects.h"
 
 namespace pillarfield {
 
@@ -29,6 +30,7 @@ struct ForceFileInfo {
       {};  ///< holds contacts, found with these options; HDF5 only
   /// SolverPlan::segment_point; HDF5 only. Unset: not stated.
   std::optional<double> segment_point = {};
+  SensorEffects effects = {};           ///< of the skin's calibration; HDF5 only
   std::optional<Surface> surface = {};  ///< of the skin; HDF5 only
 };
 

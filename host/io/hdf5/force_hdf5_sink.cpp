@@ -11,6 +11,7 @@
 #include "io/hdf5/contact_hdf5_tables.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
+#include "io/stored_skin.h"
 #include "io/stored_surface.h"
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
@@ -87,6 +88,7 @@ void Hdf5Sink::write_info() {
   hdf5::write_attribute(file_, root, force_format::kSource, info_.source);
   hdf5::write_attribute(file_, root, force_format::kProgramVersion, std::string(kVersion));
   hdf5::write_attribute(file_, root, force_format::kPillarPitch, info_.pillar_pitch_mm);
+  write_effects(file_, force_format::kEffects, info_.effects);
   if (!info_.surface) return;
   const PillarLayout pillars = {info_.rows, info_.cols, info_.pillar_pitch_mm};
   check(*info_.surface, pillars, path_.c_str());

@@ -17,6 +17,7 @@ void write_csv(const std::filesystem::path& path, const ShownField& field, const
   info.uncertainty = !forces.uncertainty[Uncertainty::normal].empty();
   if (field.direct_point) info.estimator = name_of(Estimator::direct);
   info.segment_point = field.direct_point;
+  info.effects.shear_coefficient = field.shear_coefficient;
   // Pillars outside `rect` count as idle, which are omitted.
   std::vector<std::uint8_t> status(forces.status.size());
   const std::uint32_t col_end = std::min(rect.col_end, forces.cols);
