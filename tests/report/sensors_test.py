@@ -50,6 +50,9 @@ class Scores(unittest.TestCase):
         found = measure_sensors.scores(field(0, 200, 100), field(0, 200, 100), status(3))
         self.assertEqual(found["wrong"], [0, 4])
         self.assertEqual((found["ambiguous"][1], found["determined"][1]), (4, 0))
+        found = measure_sensors.scores(field(0, 150, 100), field(0, 150, 100), status(15),
+                                       coefficient=0.9)
+        self.assertEqual(found["wrong"], [0, 4])
 
     def test_light_pillars_do_not_count(self):
         found = measure_sensors.scores(field(0, 0, 7), field(0, 0, 50), status(15))

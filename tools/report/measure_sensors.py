@@ -27,9 +27,9 @@ IDEAL = scenes.Effect("ideal sensor", "", ())
 
 # --- Errors ---
 
-def loads(truth):
-    """V of the sensels 1 to 4 of an ideal sensor, N, negative where a pillar lifts off."""
-    x, y, normal = truth[0] / 2**0.5, truth[1] / 2**0.5, truth[2]
+def loads(truth, coefficient=1):
+    """V of the sensels 1 to 4, N, negative where a pillar lifts off."""
+    x, y, normal = coefficient * truth[0] / 2**0.5, coefficient * truth[1] / 2**0.5, truth[2]
     return numpy.stack([normal + x + y, normal - x + y, normal - x - y, normal + x - y])
 
 
@@ -49,9 +49,9 @@ def squares(errors, chosen):
     return [float((errors**2).sum(axis=0)[chosen].sum()), int(chosen.sum())]
 
 
-def scores(truth, forces, status, deviations=None):
+def scores(truth, forces, status, deviations=None, coefficient=1):
     """Pairs of a sum over pillars and their number. Arrays are [component,] frame, row, col; N."""
-    v = loads(truth)
+    v = loads(truth, coefficient)
     largest = v.max(axis=0)
     pressed = (truth[2] > 0) & (K * largest > LEAST_COUNTS)
     errors = K * (forces - truth)
@@ -84,11 +84,11 @@ def planes(path, group):
         return numpy.stack([file[f"{group}/{name}"][:].astype(float) for name in COMPONENTS])
 
 
-def scores_of(recording, solved, with_uncertainty=True):
+def scores_of(recording, solved, with_uncertainty, coefficient):
     with h5py.File(solved) as file:
         status = file["force/status"][:]
     return scores(planes(recording, "truth"), planes(solved, "force"), status,
-                  planes(solved, "uncertainty") if with_uncertainty else None)
+                  planes(solved, "uncertainty") if with_uncertainty else None, coefficient)
 
 
 # --- The product's commands ---
@@ -175,7 +175,7 @@ class Sensor:
             self.run("solve", recording, "-o", "forces.h5", "--overwrite", "-q", "--estimator",
                      estimator, *words, *options)
             yield scores_of(Path(self.folder, recording), Path(self.folder, "forces.h5"),
-                            estimator != "paper")
+                            estimator != "paper", self.effect.coefficient)
 
     def score(self, *options, **more):
         return added(list(self.solve(*options, **more)))

@@ -19,6 +19,7 @@ class Effect(NamedTuple):
     sensor: str  # lines of a scene's [sensor]
     steps: tuple  # of its calibration, after the tare; names of CALIBRATIONS
     surface: str = ""
+    coefficient: float = 1  # of shear, which decides the sensels that a force loads
 
 
 PRESSURES = ("press12", "press30", "press60", "press100", "press160", "press240")
@@ -33,7 +34,8 @@ EFFECTS = {
                     "power_law_exponent = 0.9\npower_law_reference_counts = 100", ("pressures",)),
     "hysteresis": Effect("hysteresis 5 %", "hysteresis = 0.05\nhysteresis_range_counts = 160",
                          ("one pressure", "memory")),
-    "shear": Effect("shear coefficient 0.9", "shear_coefficient = 0.9", ("one pressure", "shear")),
+    "shear": Effect("shear coefficient 0.9", "shear_coefficient = 0.9", ("one pressure", "shear"),
+                    coefficient=0.9),
     "gains": Effect("gains 5 %", "gain_spread = 0.05", ("one pressure",)),
     "creep": Effect("creep 5 % a decade", "creep_per_decade = 0.05", ("one pressure", "memory")),
     "wires": Effect("wires, 50 Ω and 10 kΩ a sensel, tiles of 36 × 36",
@@ -54,7 +56,7 @@ CENTRED_STEPS = ("wires", "bending", "pressures", "leak", "shear", "memory")
 
 def together(title, names, steps):
     return Effect(title, "\n".join(EFFECTS[name].sensor for name in names), steps,
-                  EFFECTS["bending"].surface)
+                  EFFECTS["bending"].surface, EFFECTS["shear"].coefficient)
 
 
 EFFECTS["centred"] = together("all but off-centre pressure", CENTRED, CENTRED_STEPS)
