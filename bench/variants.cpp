@@ -79,6 +79,19 @@ void add_residual(SolverPlan& plan) {
   effects(plan).residual = {0.02, 0.5};
 }
 
+/// Patterns of the tare of a bent skin. The frames are those of a flat one.
+void add_bending(SolverPlan& plan) {
+  plan.calibration.bend_x = uneven_plane(plan.skin, -60, 60, 5);
+  plan.calibration.bend_y = uneven_plane(plan.skin, -60, 60, 6);
+  plan.calibration.bend_xy = uneven_plane(plan.skin, -60, 60, 7);
+}
+
+/// What every calibrated skin has.
+void add_calibrated(SolverPlan& plan) {
+  add_tare(plan);
+  add_gain(plan);
+}
+
 /// All corrections of a real sensor.
 void add_sensor(SolverPlan& plan) {
   for (const auto add : {add_tare, add_gain, add_dead_zone, add_curve, add_shear_coefficient,
@@ -120,6 +133,8 @@ constexpr std::array kStages = {
     Stage{"pillar_leak", add_pillar_leak},
     Stage{"lean", add_lean},
     Stage{"residual", add_residual},
+    Stage{"bending", add_bending},
+    Stage{"calibrated", add_calibrated},
     Stage{"sensor", add_sensor},
 };
 

@@ -44,12 +44,6 @@ void add_size_cases(const Session& session) {
       });
     }
   }
-  // A memory is kept only where the skin is touched.
-  for (const char* const stage : {"none", "memory", "sensor"}) {
-    add_case(fmt::format("contact/8/{}", stage), [&session, stage] {
-      return time_solve(session, square_metre(stage), {Touch::mixed, 0.08});
-    });
-  }
   for (const NamedTouch& each : kTouches) {
     add_case(fmt::format("regions/{}", each.name), [&session, touch = each.touch] {
       return time_solve(session, square_metre("none"), {touch, 1});

@@ -44,10 +44,15 @@ class Scores(unittest.TestCase):
 
     def test_a_region_is_wrong_by_its_sensels(self):
         found = measure_sensors.scores(field(0, 0, 100), field(0, 0, 100), status(7))
-        self.assertEqual(found["wrong"], [4, 4])
+        self.assertEqual((found["wrong"], found["unflagged"]), ([4, 4], [4, 4]))
+        flagged = measure_sensors.scores(field(0, 0, 100), field(0, 0, 100), status(7 + 16))
+        self.assertEqual((flagged["wrong"], flagged["unflagged"]), ([4, 4], [0, 4]))
         found = measure_sensors.scores(field(0, 200, 100), field(0, 200, 100), status(3))
         self.assertEqual(found["wrong"], [0, 4])
         self.assertEqual((found["ambiguous"][1], found["determined"][1]), (4, 0))
+        found = measure_sensors.scores(field(0, 150, 100), field(0, 150, 100), status(15),
+                                       coefficient=0.9)
+        self.assertEqual(found["wrong"], [0, 4])
 
     def test_light_pillars_do_not_count(self):
         found = measure_sensors.scores(field(0, 0, 7), field(0, 0, 50), status(15))
@@ -76,6 +81,17 @@ class Scenes(unittest.TestCase):
                 self.assertIn(step, measure_sensors.ORDER)
                 self.assertTrue(step in sensor_scenes.CALIBRATIONS
                                 or step in sensor_scenes.CONSTANTS)
+
+
+class Times(unittest.TestCase):
+    def test_rows_are_ratios_to_the_solve_without_the_effect(self):
+        cases = [{"name": f"sensor/{percent}/{effect}", "ns_per_pillar": time}
+                 for percent, factor in ((100, 4.0), (8, 1.0))
+                 for effect, time in [("none", factor), *((each, 1.5 * factor) for each in sensors.TIMED)]]
+        bench = sensors.speed.Bench("test", {"context": {}, "benchmarks": cases})
+        rows = list(sensors.time_rows(bench))
+        self.assertEqual(rows[0], ["response curve", "1.50", "1.50", "1.2"])
+        self.assertEqual(len(rows), len(sensors.TIMED))
 
 
 if __name__ == "__main__":

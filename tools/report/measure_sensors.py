@@ -1,5 +1,6 @@
-"""measure_sensors.py PROGRAM FOLDER: prints the errors of solved forces under effects of a sensor, as
-JSON. PROGRAM is pillarfield; its recordings are made in FOLDER and removed."""
+"""measure_sensors.py PROGRAM FOLDER: prints the errors of forces under effects of a sensor, as JSON.
+
+PROGRAM is pillarfield, whose recordings and calibrations are made in FOLDER."""
 
 import concurrent.futures
 import json
@@ -20,15 +21,15 @@ LEAST_COUNTS = 8  # of the largest load of a pillar that counts
 LIMIT_95 = 1.959964
 AMBIGUOUS = 16
 COMPONENTS = ("shear_x", "shear_y", "normal")
-ORDER = ("wires", "tare", "bending", "one pressure", "pressures", "leak", "memory", "shear", "arm")
+ORDER = ("wires", "tare", "bending", "one pressure", "pressures", "leak", "shear", "memory", "arm")
 IDEAL = scenes.Effect("ideal sensor", "", ())
 
 
 # --- Errors ---
 
-def loads(truth):
-    """V of the sensels 1 to 4 of an ideal sensor, N, negative where a pillar lifts off."""
-    x, y, normal = truth[0] / 2**0.5, truth[1] / 2**0.5, truth[2]
+def loads(truth, coefficient=1):
+    """V of the sensels 1 to 4, N, negative where a pillar lifts off."""
+    x, y, normal = coefficient * truth[0] / 2**0.5, coefficient * truth[1] / 2**0.5, truth[2]
     return numpy.stack([normal + x + y, normal - x + y, normal - x - y, normal + x - y])
 
 
@@ -48,21 +49,23 @@ def squares(errors, chosen):
     return [float((errors**2).sum(axis=0)[chosen].sum()), int(chosen.sum())]
 
 
-def scores(truth, forces, status, deviations=None):
-    """Pairs of a sum over pillars and their number. All arrays are [component,] frame, row, col; N."""
-    v = loads(truth)
+def scores(truth, forces, status, deviations=None, coefficient=1):
+    """Pairs of a sum over pillars and their number. Arrays are [component,] frame, row, col; N."""
+    v = loads(truth, coefficient)
     largest = v.max(axis=0)
     pressed = (truth[2] > 0) & (K * largest > LEAST_COUNTS)
     errors = K * (forces - truth)
     # A sensel that a pillar loads by less than its own rounding error is not one.
     truly = sum((v[bit] > 1e-6 * largest).astype(int) << bit for bit in range(4))
+    wrong = pressed & ((status & 15) != truly)
     determined = pressed & (usable(status) >= 3)
     rim = at_rim(truth[2] > 0)
     result = {"determined": squares(errors, determined),
               "inside": squares(errors, determined & ~rim),
               "rim": squares(errors, determined & rim),
               "ambiguous": squares(errors, pressed & (usable(status) == 2)),
-              "wrong": [int((pressed & ((status & 15) != truly)).sum()), int(pressed.sum())]}
+              "wrong": [int(wrong.sum()), int(pressed.sum())],
+              "unflagged": [int((wrong & ((status & AMBIGUOUS) == 0)).sum()), int(pressed.sum())]}
     if deviations is not None:
         stated = determined & ((status & AMBIGUOUS) == 0)
         held = numpy.abs(errors) <= LIMIT_95 * K * deviations
@@ -81,11 +84,11 @@ def planes(path, group):
         return numpy.stack([file[f"{group}/{name}"][:].astype(float) for name in COMPONENTS])
 
 
-def scores_of(recording, solved, with_uncertainty=True):
+def scores_of(recording, solved, with_uncertainty, coefficient):
     with h5py.File(solved) as file:
         status = file["force/status"][:]
     return scores(planes(recording, "truth"), planes(solved, "force"), status,
-                  planes(solved, "uncertainty") if with_uncertainty else None)
+                  planes(solved, "uncertainty") if with_uncertainty else None, coefficient)
 
 
 # --- The product's commands ---
@@ -172,7 +175,7 @@ class Sensor:
             self.run("solve", recording, "-o", "forces.h5", "--overwrite", "-q", "--estimator",
                      estimator, *words, *options)
             yield scores_of(Path(self.folder, recording), Path(self.folder, "forces.h5"),
-                            estimator != "paper")
+                            estimator != "paper", self.effect.coefficient)
 
     def score(self, *options, **more):
         return added(list(self.solve(*options, **more)))

@@ -1,5 +1,6 @@
-"""Scenes of the report on sensors: the effects of a sensor, the experiments that calibrate them, and
-the histories that judge the result. No constant of the product was chosen by these histories."""
+"""Scenes of the report on sensors: effects, experiments that calibrate them, histories that judge.
+
+No constant of the product was chosen by these histories."""
 
 import math
 from typing import NamedTuple
@@ -18,6 +19,7 @@ class Effect(NamedTuple):
     sensor: str  # lines of a scene's [sensor]
     steps: tuple  # of its calibration, after the tare; names of CALIBRATIONS
     surface: str = ""
+    coefficient: float = 1  # of shear, which decides the sensels that a force loads
 
 
 PRESSURES = ("press12", "press30", "press60", "press100", "press160", "press240")
@@ -32,7 +34,8 @@ EFFECTS = {
                     "power_law_exponent = 0.9\npower_law_reference_counts = 100", ("pressures",)),
     "hysteresis": Effect("hysteresis 5 %", "hysteresis = 0.05\nhysteresis_range_counts = 160",
                          ("one pressure", "memory")),
-    "shear": Effect("shear coefficient 0.9", "shear_coefficient = 0.9", ("one pressure", "shear")),
+    "shear": Effect("shear coefficient 0.9", "shear_coefficient = 0.9", ("one pressure", "shear"),
+                    coefficient=0.9),
     "gains": Effect("gains 5 %", "gain_spread = 0.05", ("one pressure",)),
     "creep": Effect("creep 5 % a decade", "creep_per_decade = 0.05", ("one pressure", "memory")),
     "wires": Effect("wires, 50 Ω and 10 kΩ a sensel, tiles of 36 × 36",
@@ -48,12 +51,12 @@ EFFECTS = {
 }
 CENTRED = ("leak", "dead_zone", "curve", "hysteresis", "shear", "gains", "creep", "wires",
            "pillar_leak", "bending")
-CENTRED_STEPS = ("wires", "bending", "pressures", "leak", "memory", "shear")
+CENTRED_STEPS = ("wires", "bending", "pressures", "leak", "shear", "memory")
 
 
 def together(title, names, steps):
     return Effect(title, "\n".join(EFFECTS[name].sensor for name in names), steps,
-                  EFFECTS["bending"].surface)
+                  EFFECTS["bending"].surface, EFFECTS["shear"].coefficient)
 
 
 EFFECTS["centred"] = together("all but off-centre pressure", CENTRED, CENTRED_STEPS)
@@ -85,7 +88,7 @@ class Body(NamedTuple):
 
 
 FRICTION = 1.6
-RATE_HZ = 2
+RATE_HZ = 20
 FRAMES = 24
 BODIES = {
     "fingertip": Body('shape = "ellipsoid"\nradii_mm = [9, 14, 11]', 14, 6),
@@ -101,8 +104,8 @@ BODIES = {
 def history(body, sensor, surface="", stiffness=1):
     """A body that presses, rests, is dragged, half unloaded, and dragged and turned further."""
     load = body.load_n * stiffness
-    path = ((0, -4, 0, 0, 0.2), (2, -4, 0, 0, 1), (4, -4, 0, 0, 1), (6, -2.5, 0.4, 0, 1),
-            (8, -2.5, 0.4, 0, 0.5), (11.5, body.drag_mm - 4, 1.2, 15, 0.8))
+    path = ((0, -4, 0, 0, 0.2), (0.2, -4, 0, 0, 1), (0.4, -4, 0, 0, 1), (0.6, -2.5, 0.4, 0, 1),
+            (0.8, -2.5, 0.4, 0, 0.5), (1.15, body.drag_mm - 4, 1.2, 15, 0.8))
     keys = ",\n".join(f"  {{ time_s = {time}, position_mm = [{x}, {y}], angle_deg = {angle}, "
                       f"load_n = {part * load:g} }}" for time, x, y, angle, part in path)
     return scene(sensor, frames=FRAMES, rate_hz=RATE_HZ, modulus_kpa=SOFT_KPA * stiffness,
@@ -113,7 +116,7 @@ def history(body, sensor, surface="", stiffness=1):
 # --- Experiments ---
 
 def pressed(counts, path=""):
-    """The lines of [direction_sweep] of a uniform pressure at which an ideal sensel reads `counts`."""
+    """[direction_sweep] of a uniform pressure at which an ideal sensel reads `counts`."""
     return (f"[direction_sweep]\ndirections = {PILLARS}\ninclinations = {PILLARS}\n"
             f"max_theta_deg = 0\nmagnitudes_n = [{counts / COUNTS_PER_NEWTON}]\n{path}")
 
@@ -123,13 +126,14 @@ def kilopascals(counts):
 
 
 CYCLES_COUNTS = 160
-CYCLES = ((0, 0), (3, 0.4), (6, 0), (10, 0.7), (14, 0.2), (17, 0.7), (21, 0), (26, 1), (31, 0),
-          (60, 0), (60.1, 0.6), (90, 0.6), (90.1, 0), (95, 0))
+# As fast as the histories, and held as long.
+CYCLES = ((0, 0), (0.5, 0.4), (1, 0), (1.7, 0.7), (2.4, 0.2), (3, 0.7), (3.7, 0), (4.5, 1), (5.3, 0),
+          (10, 0), (10.1, 0.6), (11.3, 0.6), (11.4, 0), (13, 0))
 
 
 def cycles(sensor):
     path = ", ".join(f"{{ time_s = {time}, factor = {factor} }}" for time, factor in CYCLES)
-    return scene(sensor, skin="", frames=1900, rate_hz=20,
+    return scene(sensor, skin="", frames=260, rate_hz=20,
                  contacts=pressed(CYCLES_COUNTS, f"path = [{path}]\n"))
 
 
@@ -145,17 +149,19 @@ PULLS_DEG = {"right": 0, "up": 90, "left": 180, "down": 270}
 def punch(direction_deg, friction, radius_mm, path):
     keys = ",\n".join(f"  {{ time_s = {time:g}, position_mm = [{x:g}, {y:g}], load_n = {load:g} }}"
                       for time, x, y, load in path)
-    return (f'[[contact]]\nshape = "flat_punch"\nmotion = "slide"\ncontact_radius_mm = {radius_mm}\n'
-            f"friction = {friction}\ndirection_deg = {direction_deg}\npath = [\n{keys}\n]\n")
+    return ('[[contact]]\nshape = "flat_punch"\nmotion = "slide"\n'
+            f"contact_radius_mm = {radius_mm}\nfriction = {friction}\n"
+            f"direction_deg = {direction_deg}\npath = [\n{keys}\n]\n")
 
 
 def pulled(sensor, direction_deg):
     """A flat body of four times its tangential load."""
-    return scene(sensor, frames=100,
+    return scene(sensor, frames=100, rate_hz=20,
                  contacts=punch(direction_deg, 0.25, 15, [(0, 0, 0, 4 * PULL_N)]))
 
 
-TIP_N = 0.25
+TIP_N = 0.5
+TIP_FRICTION = 2
 
 
 def tip_path(rows):
@@ -164,17 +170,17 @@ def tip_path(rows):
     for row in rows:
         for col in range(3, PILLARS - 2, 5):
             x, y = ((at - (PILLARS - 1) / 2) * PITCH_MM for at in (col, row))
-            path += [(time, x, y, 0), (time + 0.005, x, y, TIP_N), (time + 0.055, x, y, TIP_N),
-                     (time + 0.06, x, y, 0)]
-            time += 0.07
+            path += [(time, x, y, 0), (time + 0.05, x, y, TIP_N), (time + 0.3, x, y, TIP_N),
+                     (time + 0.35, x, y, 0)]
+            time += 0.4
     return path
 
 
 def tips(sensor):
     """Two sticky tips on single pillars, pulled in two directions."""
     paths = tip_path((3, 8, 13)), tip_path((22, 27, 32))
-    return scene(sensor, frames=int(100 * paths[0][-1][0]) + 1,
-                 contacts="".join(punch(direction, 2, 0.3, path)
+    return scene(sensor, frames=int(20 * paths[0][-1][0]) + 1, rate_hz=20,
+                 contacts="".join(punch(direction, TIP_FRICTION, 0.3, path)
                                   for direction, path in zip((30, 120), paths)))
 
 
@@ -207,7 +213,8 @@ def experiment(name, effect):
     if name == "idle":
         return scene(effect.sensor, frames=100)
     if name.startswith("press"):
-        return scene(effect.sensor, skin="", frames=100, rate_hz=20, contacts=pressed(int(name[5:])))
+        return scene(effect.sensor, skin="", frames=100, rate_hz=20,
+                     contacts=pressed(int(name[5:])))
     if name == "cycles":
         return cycles(effect.sensor)
     if name == "tips":

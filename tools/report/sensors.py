@@ -1,9 +1,13 @@
-"""sensors.py DOCS MEASURED: writes DOCS/sensors.md. MEASURED is the output of measure_sensors.py."""
+"""sensors.py DOCS MEASURED TIMED: writes DOCS/sensors.md.
+
+MEASURED is the output of measure_sensors.py, TIMED that of pillarfield-bench of its cases sensor/."""
 
 import math
+import os
 
 import page
 import sensor_scenes as scenes
+import speed
 from page import percent, text
 
 SINGLE_LIMIT = {"hysteresis": 2.5, "creep": 2.5, "all": 3, "centred": 3, "bending": 1.2}
@@ -36,6 +40,10 @@ def is_exact(name):
     return "memory" not in scenes.EFFECTS[name].steps
 
 
+def short(name):
+    return scenes.EFFECTS[name].title.split(",")[0]
+
+
 def coverage(score):
     return " / ".join(percent(share(score, name), 0) for name in COMPONENTS)
 
@@ -55,7 +63,8 @@ def region_rows(found):
     for name, effect in scenes.EFFECTS.items():
         ignored, calibrated = (found["effects"][name][way] for way in ("ignored", "calibrated"))
         yield [effect.title, percent(share(ignored, "wrong")), percent(share(calibrated, "wrong")),
-               coverage(ignored), coverage(calibrated), text(over_paper(calibrated))]
+               percent(share(calibrated, "unflagged")), coverage(ignored),
+               coverage(calibrated), text(over_paper(calibrated))]
 
 
 def body_rows(found):
@@ -80,12 +89,12 @@ def goal(what, wanted, measured, holds):
 
 def error_goals(found):
     ideal = rms(found["ideal"])
-    for name, effect in scenes.EFFECTS.items():
+    for name in scenes.EFFECTS:
         if name == "off_centre":
             continue
         limit = SINGLE_LIMIT.get(name, OTHER_LIMIT)
         ratio = rms(found["effects"][name]["calibrated"]) / ideal
-        yield goal(f"{effect.title}: error over the ideal sensor's", f"≤ {limit}", text(ratio),
+        yield goal(f"{short(name)}: error over the ideal sensor's", f"≤ {limit}", text(ratio),
                    ratio <= limit)
 
 
@@ -104,7 +113,7 @@ def shared_goals(found):
 
     def worst(values, show, holds, wanted, what):
         failing = [name for name, value in values.items() if not holds(value)]
-        measured = ", ".join(f"{scenes.EFFECTS[name].title} {show(values[name])}"
+        measured = "; ".join(f"{short(name)} {show(values[name])}"
                              for name in failing) or "all"
         return goal(what, wanted, measured, not failing)
 
@@ -130,14 +139,34 @@ def shared_goals(found):
                 "calibrated but absent: error over the ideal sensor's")
 
 
-def main(docs, measured):
+TIMED = {"curve": ("response curve", "1.2"), "shear_coefficient": ("shear coefficient", "1.02"),
+         "leak": ("leak between sensels", "1.6"), "wires": ("wires", "2"),
+         "memory": ("hysteresis and creep", "1.3"), "bending": ("bending", "1.2"),
+         "pillar_leak": ("leak between pillars", "–"), "lean": ("off-centre pressure", "–"),
+         "sensor": ("all but the leak between pillars and bending", "–")}
+
+
+def time_rows(bench):
+    """The time of a frame with each effect over that without, loaded everywhere and in part."""
+    def ratio(percent, effect):
+        def time(name):
+            return bench.value(f"sensor/{percent}/{name}", "ns_per_pillar")
+        return text(time(effect) / time("none"))
+    for effect, (title, wanted) in TIMED.items():
+        yield [title, ratio(100, effect), ratio(8, effect), wanted]
+
+
+def main(docs, measured, timed):
     found = page.load(measured)
+    bench = speed.Bench(timed, page.load(timed))
     ideal = found["ideal"]
     page.write(docs, "sensors", error_rows=error_rows(found), region_rows=region_rows(found),
-               body_rows=body_rows(found),
+               body_rows=body_rows(found), time_rows=time_rows(bench),
+               processor=speed.processor_name(), threads=os.cpu_count(),
                goal_rows=[*error_goals(found), *off_centre_goals(found), *shared_goals(found)],
                ideal=text(rms(ideal)), ideal_ambiguous=text(rms(ideal, "ambiguous")),
                ideal_wrong=percent(share(ideal, "wrong")), ideal_coverage=coverage(ideal),
+               ideal_unflagged=percent(share(ideal, "unflagged")),
                ideal_paper=text(over_paper(found["absent"]["gains"])),
                tared_wrong=percent(share(found["absent"]["gains"], "wrong")),
                histories=len(scenes.BODIES), frames=scenes.FRAMES, friction=scenes.FRICTION,

@@ -147,8 +147,8 @@ class Processor {
   [[nodiscard]] FoundContacts contacts() const;
 
   /// The tare after all frames submitted so far, [sensel rows, cols], counts; waits for them. It
-  /// changes only if the plan has a baseline_rate. Empty if the plan has no tare and no
-  /// baseline_rate.
+  /// changes only with a baseline_rate and with the planes bend_x, bend_y and bend_xy. Empty if the
+  /// plan has none of these and no tare.
   [[nodiscard]] std::vector<float> tare() const;
 
   /// The curvature of the skin in the frame submitted last, 1/mm, if the plan has the planes
