@@ -49,9 +49,8 @@ void add_plan_cases(const Session& session) {
   }
   // Each effect of a real sensor on a calibrated skin, by fraction in contact.
   for (const double percent : {8.0, 100.0}) {
-    for (const std::string_view effect :
-         {"none", "curve", "shear_coefficient", "leak", "memory", "wires", "pillar_leak", "lean",
-          "bending", "sensor"}) {
+    for (const std::string_view effect : {"none", "curve", "shear_coefficient", "leak", "memory",
+                                          "wires", "pillar_leak", "lean", "bending", "sensor"}) {
       add_case(fmt::format("sensor/{}/{}", percent, effect), [&session, percent, effect] {
         SolverPlan plan = plan_with("calibrated");
         add_stage(plan, effect);

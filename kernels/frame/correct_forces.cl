@@ -115,6 +115,14 @@ PF_INLINE Solution load_solution(global const uchar* results, Layout layout, uin
   return solution;
 }
 
+/* Writes all but the normal forces, which other work-items read. */
+PF_INLINE void store_corrected(Solution solution, Output output, size_t index, Lanes lanes) {
+  store_plane(solution.force.shear_x, (global float*)output.planes + index, lanes);
+  store_plane(solution.force.shear_y, (global float*)(output.planes + output.plane_bytes) + index,
+              lanes);
+  store_derived(solution, output, index, lanes);
+}
+
 /* Subtracts the lean of the pressure from the shear, and derives the other results from the
  * corrected forces. A work-item corrects blocks as in solve_frame. */
 kernel void correct_forces(global const PF_SENSEL* restrict raw,
@@ -142,7 +150,7 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
                                   load_near(normal, layout, row, -1, at));
       const Solution solution =
           correct_solution(load_solution(results, layout, row, col), x, y, planes.stages);
-      store_solution(solution, output, (size_t)row * cols + col, block.lanes);
+      store_corrected(solution, output, (size_t)row * cols + col, block.lanes);
     }
   }
 }

@@ -97,23 +97,31 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   return solve_pillar(pillar, noise_of(block, input), calibration.stages);
 }
 
-/* Writes the results of `lanes`, lane 0 at pillar `index`. */
-PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
-  global uchar* plane = output.forces;
 #define PF_STORE(name, unit, value)                                   \
   store_plane(solution.value, (global float*)(plane) + index, lanes); \
   plane += output.plane_bytes;
-  PF_FORCE_PLANES(PF_STORE)
-  plane = output.planes + 3 * output.plane_bytes;
+
+/* Writes what is derived from the forces of `lanes`, lane 0 at pillar `index`. */
+PF_INLINE void store_derived(Solution solution, Output output, size_t index, Lanes lanes) {
+#if defined(PF_ANGLES) || defined(PF_UNCERTAINTY)
+  global uchar* plane = output.planes + 3 * output.plane_bytes;
+#endif
 #ifdef PF_ANGLES
   PF_ANGLE_PLANES(PF_STORE)
 #endif
 #ifdef PF_UNCERTAINTY
   PF_UNCERTAINTY_PLANES(PF_STORE)
 #endif
-#undef PF_STORE
+}
+
+/* Writes the results of `lanes`. */
+PF_INLINE void store_lanes(Solution solution, Output output, size_t index, Lanes lanes) {
+  global uchar* plane = output.forces;
+  PF_FORCE_PLANES(PF_STORE)
+  store_derived(solution, output, index, lanes);
   store_status(solution.status, output.status + index, lanes);
 }
+#undef PF_STORE
 
 /* Writes the results of a block; tests once for all planes whether the block is whole. */
 PF_INLINE void store_solution(Solution solution, Output output, size_t index, Lanes lanes) {
