@@ -16,11 +16,11 @@ using core_test::message_of;
 using core_test::PressedSkin;
 
 /// 32 x 32 sensels on wires; 10 kohm at 255 counts.
-PressedSkin wired_skin(double row_ohm, double column_ohm) {
+PressedSkin wired_skin(double row_ohm, double column_ohm, double noise_counts = 0.5) {
   SensorModel sensor;
   sensor.tare_counts = 12;
   sensor.gain_spread = 0.05;
-  sensor.noise_counts = 0.5;
+  sensor.noise_counts = noise_counts;
   if (row_ohm + column_ohm > 0) {
     sensor.wires.emplace();
     sensor.wires->row_ohm = row_ohm;
@@ -73,6 +73,14 @@ TEST(WireCalibration, StoresNothingWithoutResistance) {
   EXPECT_FALSE(result.calibration.planes.effects.wires);
   EXPECT_LT(result.wires.row_per_count, 4 * result.standard_error.row_per_count + 1e-12);
   EXPECT_LT(result.wires.column_per_count, 4 * result.standard_error.column_per_count + 1e-12);
+}
+
+/// The columns' resistance is exactly zero, with which that of idle rows has no effect.
+TEST(WireCalibration, StoresNothingWithoutNoiseEither) {
+  PressedSkin skin = wired_skin(0, 0, 0);
+  const WireResult result = fitted(skin);
+  EXPECT_FALSE(result.found);
+  EXPECT_EQ(result.wires.column_per_count, 0);
 }
 
 TEST(WireCalibration, RefusesWhatDoesNotTell) {

@@ -78,7 +78,7 @@ TEST(ShearCoefficient, ComesBackInAllRegions) {
 // --- Leak between pillars ---
 
 TEST(PillarLeak, ComesBackWithinTheWeightsThatAreCut) {
-  constexpr std::uint32_t kSide = 14;
+  constexpr int kSide = 14;
   const ForceField truth = random_patch(kSide, kSide, 21);
   SensorEffects effects;
   effects.pillar_leak = {0.04, 0.01};
@@ -91,14 +91,16 @@ TEST(PillarLeak, ComesBackWithinTheWeightsThatAreCut) {
         const double part = distance == 0   ? 1
                             : distance == 1 ? effects.pillar_leak->edge
                                             : effects.pillar_leak->corner;
-        sum += part * plane[static_cast<std::size_t>((row + down) * int{kSide} + col + right)];
+        const int at = (row + down) * kSide + col + right;
+        sum += part * plane[static_cast<std::size_t>(at)];
       }
     }
     return static_cast<float>(sum);
   };
-  for (int row = 3; row + 3 < int{kSide}; ++row) {
-    for (int col = 3; col + 3 < int{kSide}; ++col) {
-      const auto i = static_cast<std::size_t>(row * int{kSide} + col);
+  for (int row = 3; row + 3 < kSide; ++row) {
+    for (int col = 3; col + 3 < kSide; ++col) {
+      const int at = row * kSide + col;
+      const auto i = static_cast<std::size_t>(at);
       carried.shear_x[i] = leaked(truth.shear_x, row, col);
       carried.shear_y[i] = leaked(truth.shear_y, row, col);
       carried.normal[i] = leaked(truth.normal, row, col);
@@ -128,13 +130,13 @@ TEST(Lean, IsOddScaleFreeAndZeroUnderEvenPressure) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> force(0, 2);
   for (int i = 0; i < 200; ++i) {
-    const double before = force(random);
+    const double left = force(random);
     const double own = force(random);
-    const double after = force(random);
-    EXPECT_NEAR(moment(before, own, after), -moment(after, own, before), 1e-12);
-    EXPECT_NEAR(moment(7 * before, 7 * own, 7 * after), 7 * moment(before, own, after), 1e-12);
-    EXPECT_NEAR(moment(before, own, before), 0, 1e-12);
-    EXPECT_GT(maths::lean_between(before, own, after).deviation, 0);
+    const double right = force(random);
+    EXPECT_NEAR(moment(left, own, right), -moment(right, own, left), 1e-12);
+    EXPECT_NEAR(moment(7 * left, 7 * own, 7 * right), 7 * moment(left, own, right), 1e-12);
+    EXPECT_NEAR(moment(left, own, left), 0, 1e-12);
+    EXPECT_GT(maths::lean_between(left, own, right).deviation, 0);
   }
   EXPECT_EQ(moment(1, 0, 2), 0);
 }
@@ -149,8 +151,9 @@ TEST(Lean, IsTakenFromTheShear) {
   ForceField truth(kSide, kSide);
   ForceField read(kSide, kSide);
   for (std::size_t i = 0; i < truth.normal.size(); ++i) {
+    const std::size_t row = i / kSide;
     const auto right = static_cast<double>(i % kSide);
-    const auto up = -static_cast<double>(i / kSide);
+    const auto up = -static_cast<double>(row);
     truth.normal[i] = static_cast<float>(2 + 0.03 * right + 0.02 * up);
     read.normal[i] = truth.normal[i];
     read.shear_x[i] = static_cast<float>(2 * 0.03 / 24 * pitch / *effects.arm_mm);

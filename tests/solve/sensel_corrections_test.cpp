@@ -11,7 +11,8 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::uint32_t kPatchSide = 16;  // pillars
+constexpr std::uint32_t kPatchSide = 16;   // pillars
+constexpr std::size_t kPatchSensels = 32;  // of a row
 
 // --- Response curve ---
 
@@ -33,7 +34,8 @@ TEST(ResponseCurve, PassesItsKnotsAndIncreases) {
       EXPECT_NEAR(load_at(curve, curve.readings[knot]), curve.loads[knot], 1e-9);
     }
     double before = 0;
-    for (double reading = 0.05; reading < 1.3 * curve.readings.back(); reading += 0.3) {
+    for (int step = 1; step <= 1000; ++step) {
+      const double reading = 0.0013 * step * curve.readings.back();
       const double load = load_at(curve, reading);
       EXPECT_GT(load, before);
       EXPECT_NEAR(reading_at(curve, load), reading, 1e-6);
@@ -66,7 +68,8 @@ TEST(ResponseCurve, HasAPolynomialThatIncreasesAndStaysNear) {
     const CurveFit fit = curve_polynomial(curve);
     EXPECT_LT(fit.rms_counts, rms) << power;
     float before = 0;
-    for (float reading = 0.5F; reading < 300; reading += 0.5F) {
+    for (int half = 1; half < 600; ++half) {
+      const auto reading = static_cast<float>(half) / 2;
       const float load = single_precision::curve_load(reading, fit.polynomial);
       EXPECT_GT(load, before);
       before = load;
@@ -104,7 +107,7 @@ TEST(SenselLeak, ComesBackWithinTheWeightsThatAreCut) {
   const std::vector<double> v = loads_of(truth);
   const double range = *std::ranges::max_element(v);
   for (const SenselLeak leak : {SenselLeak{0.05, 0.02}, {0.1, 0.06}, {-0.03, 0.04}, {0, 0.05}}) {
-    const std::vector<double> readings = leaked(v, 2 * kPatchSide, leak);
+    const std::vector<double> readings = leaked(v, kPatchSensels, leak);
     const ForceField solved =
         solve_readings(pressed_plan(kPatchSide, kPatchSide, with_leak(leak)), readings);
     const double per_second = std::abs(leak.inside * leak.across);
@@ -119,7 +122,7 @@ TEST(SenselLeak, ComesBackWithinTheWeightsThatAreCut) {
 TEST(SenselLeak, HasTheForwardModelOfTheSimulator) {
   const SenselLeak leak = {0.05, 0.02};
   std::vector<double> v = loads_of(random_patch(kPatchSide, kPatchSide, 6));
-  const std::vector<double> expected = leaked(v, 2 * kPatchSide, leak);
+  const std::vector<double> expected = leaked(v, kPatchSensels, leak);
   leak_between_sensels(leak, 2 * kPatchSide, 2 * kPatchSide, v);
   for (std::size_t i = 0; i < v.size(); ++i) EXPECT_NEAR(v[i], expected[i], 1e-9);
 }
@@ -129,7 +132,7 @@ TEST(SenselLeak, LeavesAUniformFieldExact) {
   std::ranges::fill(truth.normal, 1.0F);
   const SenselLeak leak = {0.1, 0.05};
   const ForceField solved = solve_readings(pressed_plan(kPatchSide, kPatchSide, with_leak(leak)),
-                                           leaked(loads_of(truth), 2 * kPatchSide, leak));
+                                           leaked(loads_of(truth), kPatchSensels, leak));
   for (std::size_t row = 2; row + 2 < kPatchSide; ++row) {
     for (std::size_t col = 2; col + 2 < kPatchSide; ++col) {
       EXPECT_NEAR(solved.normal[row * kPatchSide + col], 1, 1e-6);
@@ -143,7 +146,7 @@ TEST(SenselLeak, InsideAPillarHidesFromParity) {
   plan.parity_tolerance_counts = 0.01;
   const ForceField truth = random_patch(kPatchSide, kPatchSide, 7);
   const auto inconsistent = [&](const SenselLeak& leak) {
-    const ForceField solved = solve_readings(plan, leaked(loads_of(truth), 2 * kPatchSide, leak));
+    const ForceField solved = solve_readings(plan, leaked(loads_of(truth), kPatchSensels, leak));
     return std::ranges::count_if(solved.status, [](std::uint8_t bits) {
       return (bits & status::kInconsistent) != 0 && region_of(bits) == Region::one;
     });
