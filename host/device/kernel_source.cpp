@@ -137,6 +137,7 @@ void define_effects(const SolverPlan& plan, Definitions& all) {
     const auto curve = curve_polynomial(effects.curve).polynomial;
     all["PF_CURVE_COEFFICIENTS"] = hex_list(curve.terms);
     all["PF_CURVE_PER_COUNT"] = hex_float(curve.per_count);
+    all["PF_CURVE_ROOT"] = fmt::format("{}", curve.root);
   }
   if (effects.shear_coefficient) {
     all["PF_PER_COEFFICIENT_X"] = hex_float(1 / effects.shear_coefficient->x);

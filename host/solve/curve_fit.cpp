@@ -28,9 +28,9 @@ void subtract(CurveColumn& from, double factor, const CurveColumn& column) {
   for (std::size_t i = 0; i < from.size(); ++i) from[i] -= factor * column[i];
 }
 
-/// Least squares of `target` in x, x^2, ..., by Gram and Schmidt, twice for accuracy; returns the
-/// coefficients.
-std::vector<double> powers_fit(const CurveColumn& target, std::size_t terms) {
+/// Least squares of `target` in x, x·t, x·t², ..., t being x or, with `root`, its root, by Gram and
+/// Schmidt, twice for accuracy; returns the coefficients.
+std::vector<double> powers_fit(const CurveColumn& target, std::size_t terms, bool root) {
   std::vector<CurveColumn> basis;              // orthonormal
   std::vector<std::vector<double>> in_powers;  // its coefficients in the powers
   std::vector<double> result(terms, 0);
@@ -38,7 +38,8 @@ std::vector<double> powers_fit(const CurveColumn& target, std::size_t terms) {
   for (std::size_t term = 0; term < terms; ++term) {
     CurveColumn column(kCurveSamples);
     for (std::size_t i = 0; i < kCurveSamples; ++i) {
-      column[i] = std::pow(sample_at(i), static_cast<double>(term + 1));
+      const double exponent = 1 + (root ? 0.5 : 1.0) * static_cast<double>(term);
+      column[i] = std::pow(sample_at(i), exponent);
     }
     std::vector<double> powers(terms, 0);
     powers[term] = 1;
@@ -74,16 +75,16 @@ bool increases(const single_precision::CurvePolynomial& curve, double reach) {
 
 }  // namespace
 
-CurveFit curve_polynomial(const ResponseCurve& curve) {
+namespace {
+
+/// The fit in powers of x or of its root, with the most terms that increases everywhere.
+CurveFit curve_fit(const CurveColumn& target, double reach, bool root) {
   CurveFit fit;
-  if (curve.empty()) return fit;
-  const double reach = kCurveReach * curve.readings.back();
-  CurveColumn target(kCurveSamples);
-  for (std::size_t i = 0; i < kCurveSamples; ++i) target[i] = load_at(curve, reach * sample_at(i));
   for (std::size_t terms = PF_CURVE_TERMS; terms > 0; --terms) {
-    const std::vector<double> powers = powers_fit(target, terms);
+    const std::vector<double> powers = powers_fit(target, terms, root);
     fit.polynomial = {};
     fit.polynomial.per_count = static_cast<float>(1 / reach);
+    fit.polynomial.root = root ? 1 : 0;
     for (std::size_t k = 0; k < terms; ++k) {
       fit.polynomial.terms[k] = static_cast<float>(powers[k] / reach);
     }
@@ -97,6 +98,18 @@ CurveFit curve_polynomial(const ResponseCurve& curve) {
   }
   fit.rms_counts = std::sqrt(squares / static_cast<double>(kCurveSamples));
   return fit;
+}
+
+}  // namespace
+
+CurveFit curve_polynomial(const ResponseCurve& curve) {
+  if (curve.empty()) return {};
+  const double reach = kCurveReach * curve.readings.back();
+  CurveColumn target(kCurveSamples);
+  for (std::size_t i = 0; i < kCurveSamples; ++i) target[i] = load_at(curve, reach * sample_at(i));
+  const CurveFit straight = curve_fit(target, reach, false);
+  const CurveFit rooted = curve_fit(target, reach, true);
+  return rooted.rms_counts < straight.rms_counts ? rooted : straight;
 }
 
 double reading_at(const single_precision::CurvePolynomial& curve, double load) {

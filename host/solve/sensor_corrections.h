@@ -8,7 +8,8 @@
 namespace pillarfield {
 
 /// The polynomial that stands in for a response curve up to kCurveReach times its last knot: the
-/// least squares with the most terms that increases everywhere (E1). Zero for an empty curve.
+/// better one of two least squares, in powers of the reading or of its root, each with the most
+/// terms that increases everywhere (E1). Zero for an empty curve.
 struct CurveFit {
   single_precision::CurvePolynomial polynomial{};
   double rms_counts = 0;  ///< of its differences from the curve

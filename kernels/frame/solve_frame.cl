@@ -17,7 +17,7 @@
  *   PF_WIRES                        stage: row and column crosstalk (find_wires.cl)
  *   PF_CURVE                        stage: linearises readings by a polynomial;
  *   PF_CURVE_COEFFICIENTS           in braces, and
- *   PF_CURVE_PER_COUNT              members of CurvePolynomial
+ *   PF_CURVE_PER_COUNT, ..._ROOT    members of CurvePolynomial
  *   PF_LEAK                         stage: removes the leak between sensels (neighbours.h);
  *   PF_LEAK_SELF, ...               members of LeakTaps
  *   PF_MEMORY                       stage: removes hysteresis and creep (memory_planes.h);

@@ -131,7 +131,7 @@ PF_INLINE CurvePolynomial curve_of(Stages stages) {
 #ifdef __cplusplus
   return stages.curve_polynomial;
 #else
-  const CurvePolynomial curve = {PF_CURVE_COEFFICIENTS, PF_CURVE_PER_COUNT};
+  const CurvePolynomial curve = {PF_CURVE_COEFFICIENTS, PF_CURVE_PER_COUNT, PF_CURVE_ROOT};
   return curve;
 #endif
 }

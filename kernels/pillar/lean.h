@@ -8,7 +8,8 @@ typedef struct {
 } Lean;
 
 /* The lean of a pillar with the normal force `own` towards `after`, N. Negative forces count as
- * zero. The polynomial is exact in a pressure that varies linearly; its other coefficients are
+ * zero. The polynomial is exact, to first
+ * order, in a pressure that varies linearly; its other coefficients are
  * least squares over bodies of six shapes on an elastic half-space, and the deviation is what they
  * leave. */
 PF_INLINE Lean lean_between(Real before, Real own, Real after) {

@@ -1,7 +1,7 @@
 /* Row and column crosstalk of a scanned array (docs/derivations/sensor_effects.md, E5). */
 
 /* Largest gain of a row; beyond it the readout is saturated. */
-#define PF_WIRE_LARGEST_GAIN PF_REAL(2.0)
+#define PF_WIRE_LARGEST_GAIN PF_REAL(1.4)
 
 /* What the wires do to a sensel. */
 typedef struct {

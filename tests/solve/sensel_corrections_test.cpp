@@ -59,7 +59,7 @@ double slope_of(const single_precision::CurvePolynomial& curve, float reading) {
 }
 
 TEST(ResponseCurve, HasAPolynomialThatIncreasesAndStaysNear) {
-  for (const auto& [power, rms] : {std::pair{0.8, 0.25}, {0.9, 0.1}, {1.1, 0.1}, {1.25, 0.12}}) {
+  for (const auto& [power, rms] : {std::pair{0.8, 0.08}, {0.9, 0.04}, {1.1, 0.05}, {1.25, 0.12}}) {
     ResponseCurve curve;
     for (const double reading : {5.0, 12.0, 30.0, 60.0, 100.0, 160.0, 240.0}) {
       curve.readings.push_back(reading);
@@ -74,6 +74,7 @@ TEST(ResponseCurve, HasAPolynomialThatIncreasesAndStaysNear) {
       EXPECT_GT(load, before);
       before = load;
       EXPECT_NEAR(load, load_at(curve, reading), 5 * rms) << power << " " << reading;
+      if (reading < 2) continue;  // The root bends within the difference.
       EXPECT_NEAR(single_precision::curve_slope(reading, fit.polynomial),
                   slope_of(fit.polynomial, reading), 2e-3);
     }
