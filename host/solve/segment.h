@@ -34,6 +34,7 @@ struct SegmentModel {
   float coefficient_x = 1;  ///< ShearCoefficient
   float coefficient_y = 1;
   float pitch_over_arm = 0;  ///< of off-centre pressure; 0: none
+  float residual = 0;        ///< ResidualError::relative
 
   [[nodiscard]] bool is_ideal() const {
     return coefficient_x == 1 && coefficient_y == 1 && pitch_over_arm == 0;
@@ -54,6 +55,7 @@ struct SegmentModel {
   SegmentModel model;
   model.coefficient_x = static_cast<float>(coefficient.x);
   model.coefficient_y = static_cast<float>(coefficient.y);
+  if (effects.residual) model.residual = static_cast<float>(effects.residual->relative);
   if (effects.arm_mm) model.pitch_over_arm = static_cast<float>(pitch_mm / *effects.arm_mm);
   return model;
 }

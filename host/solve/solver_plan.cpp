@@ -150,7 +150,10 @@ double reading_noise(const SolverPlan& plan) {
 
 double reading_noise_n(const SolverPlan& plan) {
   const double assumed = plan.skin.threshold_counts / kThresholdDeviations;
-  return given_noise(plan).value_or(assumed) / plan.skin.counts_per_newton;
+  const double noise = given_noise(plan).value_or(assumed);
+  const ResidualError residual = plan.calibration.effects.residual.value_or(ResidualError{});
+  if (residual.offset_counts == 0) return noise / plan.skin.counts_per_newton;
+  return std::hypot(noise, residual.offset_counts) / plan.skin.counts_per_newton;
 }
 
 double hidden_normal_n(const Skin& skin) {

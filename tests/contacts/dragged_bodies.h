@@ -72,6 +72,9 @@ inline Body punch() {
 inline SolverPlan plan_of(const Scene& scene, Estimator estimator) {
   SolverPlan plan;
   plan.calibration.effects = known_effects(scene.sensor, scene.skin);
+  if (const double gains = scene.sensor.gain_spread; gains > 0) {
+    plan.calibration.effects.residual = {gains, 0};  // Nothing calibrates them.
+  }
   plan.skin = scene.skin;
   plan.sensel_type = SenselType::f32;
   plan.estimator = estimator;

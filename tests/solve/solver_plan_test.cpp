@@ -19,6 +19,8 @@ TEST(ReadingNoise, OfThePlaneElseOfThePlanElseAFourthOfTheThreshold) {
   EXPECT_DOUBLE_EQ(reading_noise_n(plan), 0.02);
   plan.noise_counts.reset();
   EXPECT_DOUBLE_EQ(reading_noise_n(plan), 0.02);
+  plan.calibration.effects.residual = {0.1, 1.5};
+  EXPECT_DOUBLE_EQ(reading_noise_n(plan), 0.025);
 }
 
 }  // namespace

@@ -137,6 +137,9 @@ double normal_deviation(const FeasibleSegment& segment, double normal, double sh
   return shear * shear_n < stiffness * segment.high ? shear * shear_n / stiffness : segment.high;
 }
 
+/// Mean reading of the usable sensels as a force, N: that of the free shear without normal force.
+double mean_reading_n(const FeasibleSegment& segment) { return segment.free_shear / segment.slope; }
+
 /// A batch of ambiguous pillars of a contact: segments and estimated normal forces.
 struct ContactEstimator::Batch {
   std::array<std::uint32_t, kBatchPillars> index{};
@@ -212,8 +215,9 @@ void ContactEstimator::write(const FieldPlanes& field, const ContactModel& model
   const double own = parameters_.ratio_deviation * mean;  // model error of a slipping pillar
   const double lean =
       batch.lean[i] > 0 ? normal_deviation(batch.segment(i), mean, batch.lean[i]) : 0;
-  double variance = std::max(batch.square[i] - mean * mean, 0.0) + 0.5 * noise_n * noise_n +
-                    own * own + lean * lean;
+  const double residual = model_.residual * mean_reading_n(batch.segment(i));
+  double variance = std::max(batch.square[i] - mean * mean, 0.0) +
+                    0.5 * (noise_n * noise_n + residual * residual) + own * own + lean * lean;
   const std::uint32_t row = index / cols_;
   if (const auto found = model.predicted(row, index - row * cols_, high, parameters_)) {
     const double weight = variance / (variance + found->variance);

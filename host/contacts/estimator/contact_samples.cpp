@@ -39,12 +39,14 @@ LeanShear lean_at(const ForceFieldView& forces, std::uint32_t index, float pitch
           pitch_over_arm * std::sqrt(square / 2)};
 }
 
-double deviation_of_ratio(double ratio, double normal, double noise_n, double shear_n,
+double deviation_of_ratio(double ratio, double normal, double noise_n, const PillarError& error,
                           const ContactParameters& parameters) {
   const double noise = parameters.noise_of_ratio * noise_n / normal;
-  const double square = noise * noise + parameters.ratio_deviation * parameters.ratio_deviation;
-  if (shear_n == 0) return std::sqrt(square);
-  return std::hypot(std::sqrt(square), shear_n / (ratio * normal));
+  const double residual = parameters.noise_of_ratio * error.residual;
+  const double square =
+      noise * noise + parameters.ratio_deviation * parameters.ratio_deviation + residual * residual;
+  if (error.shear_n == 0) return std::sqrt(square);
+  return std::hypot(std::sqrt(square), error.shear_n / (ratio * normal));
 }
 
 ContactBox ContactBox::about(std::span<const ContactRun> runs) {
@@ -117,7 +119,9 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
     const double flat = segment.least_ratio_normal();
     const double ratio = segment.ratio_at(flat);
     bounds_.push_back(
-        {ratio, deviation_of_ratio(ratio, flat, noise_n, lean.deviation, parameters), 0});
+        {ratio,
+         deviation_of_ratio(ratio, flat, noise_n, {lean.deviation, model_.residual}, parameters),
+         0});
   } else if (is_determined(status)) {
     peak_n_ = std::max(peak_n_, normal);
     pressure_.push_back({box_.x_of(col), box_.y_of(row), normal * normal, 1});
@@ -127,8 +131,9 @@ void ContactSamples::sample_pillar(std::uint32_t row, std::uint32_t col, double 
     const double ratio = std::sqrt(x * x + y * y) / normal;
     if (ratio < parameters.least_ratio) return;
     const double lean = lean_at(forces_, index, model_.pitch_over_arm).deviation;
-    ratios_.push_back({ratio, deviation_of_ratio(ratio, normal, noise_n, lean, parameters),
-                       ceiling_of(x, y, model_)});
+    ratios_.push_back(
+        {ratio, deviation_of_ratio(ratio, normal, noise_n, {lean, model_.residual}, parameters),
+         ceiling_of(x, y, model_)});
   }
 }
 

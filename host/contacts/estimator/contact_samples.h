@@ -112,9 +112,15 @@ class ContactSamples {
   return segment_of(force_at(forces, index), forces.status[index], model, lean);
 }
 
-/// Relative standard deviation of a ratio of shear to a normal force, N, with the standard
-/// deviation `shear_n` of the shear beyond noise.
-[[nodiscard]] double deviation_of_ratio(double ratio, double normal, double noise_n, double shear_n,
+/// Errors of a pillar's shear and readings beyond noise.
+struct PillarError {
+  double shear_n = 0;   ///< standard deviation of the shear, N
+  double residual = 0;  ///< relative standard deviation of a reading
+};
+
+/// Relative standard deviation of a ratio of shear to a normal force, N.
+[[nodiscard]] double deviation_of_ratio(double ratio, double normal, double noise_n,
+                                        const PillarError& error,
                                         const ContactParameters& parameters);
 
 /// Normal forces above this, N, are ignored: their squares would overflow.

@@ -136,8 +136,8 @@ void FrictionEstimator::predict(const ForceFieldView& forces, const ContactModel
                                                segment.ratio_at(normal * (1 - kStep)))) /
                              (2 * kStep);
     const double ratio = segment.ratio_at(normal);
-    const double own =
-        deviation_of_ratio(ratio, normal, model.noise_n, lean.deviation, parameters_);
+    const double own = deviation_of_ratio(ratio, normal, model.noise_n,
+                                          {lean.deviation, sensor_.segment.residual}, parameters_);
     work.predicted.push_back(
         {ratio, std::hypot(deviation * steepness, own), ObservedRatio::kNoCeiling});
   }

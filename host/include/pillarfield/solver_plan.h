@@ -67,9 +67,10 @@ void check(const SolverPlan& plan, std::string_view where);
 /// time constant). Both in seconds, above zero.
 [[nodiscard]] double baseline_rate(double time_constant_s, double frame_interval_s);
 
-/// Standard deviation of a reading as a force, N, for ContactOptions::noise_n: that of noise_counts
-/// and of rounding, over counts_per_newton. A quarter of the threshold stands in for it if the plan
-/// has neither noise_counts nor a noise plane.
+/// Standard deviation of a reading as a force, N, for ContactOptions::noise_n: that of
+/// noise_counts, of rounding and of ResidualError::offset_counts, over counts_per_newton. A quarter
+/// of the threshold stands in for the first two if the plan has neither noise_counts nor a noise
+/// plane.
 [[nodiscard]] double reading_noise_n(const SolverPlan& plan);
 
 /// The largest normal force that inactive sensels may hide below the threshold, N, for
