@@ -33,16 +33,16 @@ struct SegmentModel {
   float hidden_n = 0;  ///< normal force below the threshold, N, if `point` is 0
   float coefficient_x = 1;  ///< ShearCoefficient
   float coefficient_y = 1;
-  float pitch_over_arm = 0;  ///< of off-centre pressure; 0: none
-  float residual = 0;        ///< ResidualError::relative
+  float pitch_over_arm = 0;              ///< of off-centre pressure; 0: none
+  float residual = 0;                    ///< ResidualError::relative
+  double slope_x = std::numbers::sqrt2;  ///< over coefficient_x
+  double slope_y = std::numbers::sqrt2;
 
   [[nodiscard]] bool is_ideal() const {
     return coefficient_x == 1 && coefficient_y == 1 && pitch_over_arm == 0;
   }
   /// Decrease of the free shear component per newton of normal force (F6).
-  [[nodiscard]] double slope(bool vertical) const {
-    return std::numbers::sqrt2 / (vertical ? coefficient_y : coefficient_x);
-  }
+  [[nodiscard]] double slope(bool vertical) const { return vertical ? slope_y : slope_x; }
   [[nodiscard]] float slope_square(bool vertical) const {
     const float coefficient = vertical ? coefficient_y : coefficient_x;
     return 2 / (coefficient * coefficient);
@@ -55,6 +55,8 @@ struct SegmentModel {
   SegmentModel model;
   model.coefficient_x = static_cast<float>(coefficient.x);
   model.coefficient_y = static_cast<float>(coefficient.y);
+  model.slope_x = std::numbers::sqrt2 / coefficient.x;
+  model.slope_y = std::numbers::sqrt2 / coefficient.y;
   if (effects.residual) model.residual = static_cast<float>(effects.residual->relative);
   if (effects.arm_mm) model.pitch_over_arm = static_cast<float>(pitch_mm / *effects.arm_mm);
   return model;

@@ -125,9 +125,9 @@ TEST(FeasibleSegment, RatiosFallAsTheNormalForceGrows) {
 /// A shear coefficient stretches the segment, off-centre pressure shifts it; neither changes which
 /// normal forces it has.
 TEST(FeasibleSegment, FollowsTheCoefficientsAndOffCentrePressure) {
-  SegmentModel model;
-  model.coefficient_x = 0.8F;
-  model.coefficient_y = 1.3F;
+  SensorEffects effects;
+  effects.shear_coefficient = {0.8, 1.3};
+  const SegmentModel model = segment_model(effects, 1);
   const LeanShear lean = {90, -120, 0};  // beyond the shear of most pillars
   const auto corrected = [&](const maths::Force& force) {
     return maths::Force{force.shear_x / model.coefficient_x - lean.x,

@@ -161,6 +161,7 @@ struct ContactEstimator::Batch {
 /// Estimates the ambiguous pillars of a contact in batches.
 void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact) const {
   const ContactModel& model = friction_.model(contact);
+  const bool leans = model_.pitch_over_arm > 0;
   Batch batch;
   const auto finish = [&] {
     for (std::size_t i = batch.pillars; i < kBatchPillars; ++i) {
@@ -184,7 +185,8 @@ void ContactEstimator::estimate(const FieldPlanes& field, std::uint32_t contact)
     batch.slope[batch.pillars] = static_cast<float>(segment.slope);
     batch.slope_square[batch.pillars] = model_.slope_square(shear_y_is_free(field.status[index]));
     // The normal forces of neighbours may be estimates already: the deviation hardly changes.
-    batch.lean[batch.pillars] = lean_at(field.forces(), index, model_.pitch_over_arm).deviation;
+    batch.lean[batch.pillars] =
+        leans ? lean_at(field.forces(), index, model_.pitch_over_arm).deviation : 0;
     if (++batch.pillars == kBatchPillars) finish();
   };
   for (const ContactRun& run : labels_.runs(contact)) {
