@@ -6,7 +6,8 @@
 
 #include "pillarfield/solver_plan.h"
 
-/// @file Settings for tests and benchmarks, and functions that layers of the library share.
+/// @file
+/// Settings for tests and benchmarks, and functions that layers of the library share.
 /// Programs do not need them, pillarfield.h does not include them, and they may change with every
 /// version.
 namespace pillarfield {
