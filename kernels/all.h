@@ -21,7 +21,7 @@
 #endif
 #include "frame/layout.h"
 #include "frame/result_planes.h"
-#ifndef PF_WHOLE
+#if !defined(PF_WHOLE) && (!defined(__cplusplus) || PF_PRECISION == 32)
 #include "frame/wire_sweep.h"
 #endif
 #include "frame/stages.h"

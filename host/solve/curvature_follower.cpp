@@ -9,7 +9,7 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kMostCurvatureSamples = 4096;
+constexpr std::size_t kMostCurvatureSamples = 1024;
 constexpr std::size_t kLeastCurvatureSamples = 512;
 constexpr std::size_t kSenselsPerSample = 16;
 constexpr double kUntouchedDeviations = 4;

@@ -11,7 +11,7 @@
 namespace pillarfield {
 
 /// Finds the curvature of a bent skin from the readings of its untouched sensels, whose tare is
-/// tare + bend_x·x + bend_y·y + bend_xy·xy: least squares over at most 4096 sensels of a frame,
+/// tare + bend_x·x + bend_y·y + bend_xy·xy: least squares over at most 1024 sensels of a frame,
 /// without those that are off by more than noise. With too few of them, as under a contact
 /// everywhere, the curvature stays (docs/derivations/sensor_effects.md, E8).
 class CurvatureFollower {

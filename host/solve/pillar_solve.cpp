@@ -9,6 +9,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/tuning.h"
+#include "solve/pillar_lean.h"
 #include "solve/pillar_maths.h"
 #include "solve/sensel_reader.h"
 
@@ -116,16 +117,12 @@ void correct_forces(const maths::Stages& stages, ForceField& field) {
       *plane = unleaked(*plane, field, stages);
     }
   }
-  const PlaneView normal(field.normal, field);
+  const ForceFieldView forces = field.view();
   for (std::size_t row = 0; row < field.rows; ++row) {
     for (std::size_t col = 0; col < field.cols; ++col) {
       const std::size_t index = row * field.cols + col;
       if (!is_loaded(field, index)) continue;
-      const float own = normal.at(row, col);
-      const maths::Lean x =
-          maths::lean_between(normal.at(row, col - 1), own, normal.at(row, col + 1));
-      const maths::Lean y =
-          maths::lean_between(normal.at(row + 1, col), own, normal.at(row - 1, col));
+      const auto [x, y] = pillar_lean(forces, index);
       const maths::Solution before = solution_at(field, index, stages.uncertainty);
       store_solution(maths::correct_solution(before, x, y, stages), index, stages.uncertainty,
                      field);

@@ -11,6 +11,7 @@ namespace {
 constexpr int kPatch = 32;
 constexpr int kMiddle = kPatch / 2;
 constexpr int kTerms = 200;
+constexpr double kLeastTerm = 1e-9;
 
 using Patch = std::vector<double>;
 
@@ -58,7 +59,12 @@ Patch inverse_of(Receives receives) {
       }
     }
     term = next;
-    for (std::size_t place = 0; place < term.size(); ++place) inverse[place] += term[place];
+    double largest = 0;
+    for (std::size_t place = 0; place < term.size(); ++place) {
+      inverse[place] += term[place];
+      largest = std::max(largest, std::abs(term[place]));
+    }
+    if (largest < kLeastTerm) break;
   }
   return inverse;
 }

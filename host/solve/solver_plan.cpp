@@ -58,6 +58,12 @@ std::optional<double> given_noise(const SolverPlan& plan) {
   return std::nullopt;
 }
 
+/// The noise of a reading, counts, with the residual offset of the calibration (E9).
+double with_offset(const SolverPlan& plan, double noise) {
+  const ResidualError residual = plan.calibration.effects.residual.value_or(ResidualError{});
+  return residual.offset_counts == 0 ? noise : std::hypot(noise, residual.offset_counts);
+}
+
 constexpr int kMaxBaselineInterval = 1024;
 constexpr double kMaxFrameIntervalS = 1e6;
 
@@ -150,10 +156,7 @@ double reading_noise(const SolverPlan& plan) {
 
 double reading_noise_n(const SolverPlan& plan) {
   const double assumed = plan.skin.threshold_counts / kThresholdDeviations;
-  const double noise = given_noise(plan).value_or(assumed);
-  const ResidualError residual = plan.calibration.effects.residual.value_or(ResidualError{});
-  if (residual.offset_counts == 0) return noise / plan.skin.counts_per_newton;
-  return std::hypot(noise, residual.offset_counts) / plan.skin.counts_per_newton;
+  return with_offset(plan, given_noise(plan).value_or(assumed)) / plan.skin.counts_per_newton;
 }
 
 double hidden_normal_n(const Skin& skin) {
@@ -162,7 +165,7 @@ double hidden_normal_n(const Skin& skin) {
 
 double region_margin(const SolverPlan& plan) {
   const std::optional<double> noise = given_noise(plan);
-  return noise ? region_margin(*noise) : 0;
+  return noise ? region_margin(with_offset(plan, *noise)) : 0;
 }
 
 double region_margin(double noise_counts) {

@@ -148,8 +148,8 @@ PF_INLINE Sensel untared_sensel(Counts raw, Correction at, Stages stages) {
   return sensel;
 }
 
-/* Applies the stages of a sensel before its neighbours count: a valid reading is V. */
-PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
+/* Applies the stages before the response. */
+PF_INLINE Sensel gained_sensel(Counts raw, Correction at, Stages stages) {
   Sensel sensel = untared_sensel(raw, at, stages);
 #ifdef PF_TARE
   if (PF_NAMED(tare)) sensel = subtract_tare(sensel, at.tare);
@@ -157,6 +157,12 @@ PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) sensel = apply_gain(sensel, at.gain);
 #endif
+  return sensel;
+}
+
+/* Applies the stages of a sensel before its neighbours count: a valid reading is V. */
+PF_INLINE Sensel linear_sensel(Counts raw, Correction at, Stages stages) {
+  Sensel sensel = gained_sensel(raw, at, stages);
 #ifdef PF_POWER_EXPONENT
   if (PF_NAMED(power_law)) {
     sensel =
@@ -187,32 +193,25 @@ PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
 #ifdef PF_UNCERTAINTY
 /* Noise of a sensel after correction, counts. */
 PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
+#ifdef PF_WIRES
+  if (PF_NAMED(wires)) {
+    noise =
+        noise * (at.wires.row * column_load(raw, at.wires, PF_CONSTANT(Real, PF_COLUMN_PER_COUNT)));
+  }
+#endif
 #ifdef PF_GAIN
   if (PF_NAMED(gain)) noise = noise * at.gain;
 #endif
 #ifdef PF_POWER_EXPONENT
   if (PF_NAMED(power_law)) {
-    Real reading = raw;
-#ifdef PF_TARE
-    if (PF_NAMED(tare)) reading = reading - at.tare;
-#endif
-#ifdef PF_GAIN
-    if (PF_NAMED(gain)) reading = reading * at.gain;
-#endif
-    noise = noise * power_law_slope(reading, PF_CONSTANT(Real, PF_POWER_EXPONENT),
+    noise = noise * power_law_slope(gained_sensel(raw, at, stages).reading,
+                                    PF_CONSTANT(Real, PF_POWER_EXPONENT),
                                     PF_CONSTANT(Real, PF_POWER_REFERENCE));
   }
 #endif
 #ifdef PF_CURVE
   if (PF_NAMED(curve)) {
-    Real reading = raw;
-#ifdef PF_TARE
-    if (PF_NAMED(tare)) reading = reading - at.tare;
-#endif
-#ifdef PF_GAIN
-    if (PF_NAMED(gain)) reading = reading * at.gain;
-#endif
-    noise = noise * curve_slope(reading, curve_of(stages));
+    noise = noise * curve_slope(gained_sensel(raw, at, stages).reading, curve_of(stages));
   }
 #endif
   return noise;

@@ -17,23 +17,17 @@ typedef struct {
 } RowWires;
 
 /* PF_WIRE_PARTS sensels at once: vectors of the device, or one by one. */
-#ifdef __cplusplus
+#if defined(__cplusplus)
 #define PF_WIRE_LANES 1
-typedef float WireReal;
-#define PF_LOAD_WIRES(place) (*(place))
-#define PF_STORE_WIRES(value, place) *(place) = (value)
-#define PF_WIRE_VALUE(x) (x)
 #else
 #define PF_WIRE_LANES PF_LANES
-typedef Real WireReal;
-#if PF_LANES == 1
+#endif
+#if PF_WIRE_LANES == 1
 #define PF_LOAD_WIRES(place) (*(place))
 #define PF_STORE_WIRES(value, place) *(place) = (value)
 #else
 #define PF_LOAD_WIRES(place) PF_JOIN(vload, PF_LANES)(0, place)
 #define PF_STORE_WIRES(value, place) PF_JOIN(vstore, PF_LANES)(value, 0, place)
-#endif
-#define PF_WIRE_VALUE(x) ((WireReal)(x))
 #endif
 #define PF_WIRE_GROUPS (PF_WIRE_PARTS / PF_WIRE_LANES)
 
@@ -50,21 +44,22 @@ PF_INLINE float sum_of_parts(float* parts) {
  * are zero. `conductances` is room for a row. */
 PF_INLINE RowWires sweep_row(const float* readings, const float* columns, float* next,
                              float* conductances, int cols, RowWires before, WireModel model) {
-  const WireReal one = PF_WIRE_VALUE(1.0f);
-  const WireReal column = PF_WIRE_VALUE(model.column);
-  WireReal all[PF_WIRE_GROUPS];
-  WireReal driven[PF_WIRE_GROUPS];
-  for (int i = 0; i < PF_WIRE_GROUPS; ++i) all[i] = driven[i] = PF_WIRE_VALUE(0.0f);
+  const Real column = PF_CONSTANT(Real, model.column);
+  Wires at_row;
+  at_row.row = PF_CONSTANT(Real, before.row);
+  at_row.idle = PF_CONSTANT(Real, before.idle);
+  Real all[PF_WIRE_GROUPS];
+  Real driven[PF_WIRE_GROUPS];
+  for (int i = 0; i < PF_WIRE_GROUPS; ++i) all[i] = driven[i] = PF_REAL(0.0);
   for (int at = 0; at < cols; at += PF_WIRE_PARTS) {
     for (int i = 0; i < PF_WIRE_GROUPS; ++i) {
       const int place = at + i * PF_WIRE_LANES;
-      const WireReal others = PF_LOAD_WIRES(columns + place);
-      const WireReal reading = PF_LOAD_WIRES(readings + place) * PF_WIRE_VALUE(before.row);
-      const WireReal rough = reading * (one + column * others);
-      const WireReal load = one + column * (others + rough * (one - PF_WIRE_VALUE(before.idle)));
-      const WireReal conductance = reading * load;
+      const Real reading = PF_LOAD_WIRES(readings + place);
+      at_row.column = PF_LOAD_WIRES(columns + place);
+      const Real load = column_load(reading, at_row, column);
+      const Real conductance = reading * at_row.row * load;
       all[i] = all[i] + conductance;
-      driven[i] = driven[i] + conductance * (one - column * conductance / load);
+      driven[i] = driven[i] + conductance * (PF_REAL(1.0) - column * conductance / load);
       PF_STORE_WIRES(conductance, conductances + place);
     }
   }
@@ -78,7 +73,7 @@ PF_INLINE RowWires sweep_row(const float* readings, const float* columns, float*
   after.row = 1.0f + model.row * sum_of_parts(driven_parts);
   after.idle = 1.0f / (1.0f + model.idle * sum_of_parts(all_parts));
   for (int at = 0; at < cols; at += PF_WIRE_LANES) {
-    const WireReal more = PF_LOAD_WIRES(conductances + at) * PF_WIRE_VALUE(after.idle);
+    const Real more = PF_LOAD_WIRES(conductances + at) * PF_CONSTANT(Real, after.idle);
     PF_STORE_WIRES(PF_LOAD_WIRES(next + at) + more, next + at);
   }
   return after;

@@ -11,12 +11,16 @@ typedef struct {
   Real column; /* conductance that loads the column, counts */
 } Wires;
 
+/* Factor by which the load of its column lowers a reading. */
+PF_INLINE Real column_load(Real reading, Wires at, Real column_per_count) {
+  const Real one = PF_REAL(1.0);
+  const Real rough = reading * at.row * (one + column_per_count * at.column);
+  return one + column_per_count * (at.column + rough * (one - at.idle));
+}
+
 /* Conductance of a sensel, counts, from its reading. */
 PF_INLINE Real conductance(Real reading, Wires at, Real column_per_count) {
-  const Real driven = reading * at.row;
-  const Real rough = driven * (PF_REAL(1.0) + column_per_count * at.column);
-  const Real load = at.column + rough * (PF_REAL(1.0) - at.idle);
-  return driven * (PF_REAL(1.0) + column_per_count * load);
+  return reading * at.row * column_load(reading, at, column_per_count);
 }
 
 /* Removes the crosstalk from a raw reading; where the readout is saturated the sensel is missing.

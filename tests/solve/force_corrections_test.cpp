@@ -227,5 +227,45 @@ TEST(CorrectedInterval, IsAPointWhereTheForceIsDetermined) {
   }
 }
 
+// --- What calibration leaves ---
+
+/// One pillar of one count per newton that reads these four values.
+ForceField solve_readings(const std::array<float, 4>& v, const SensorEffects& effects) {
+  SolverPlan plan = pressed_plan(1, 1, effects);
+  plan.sensel_type = SenselType::f32;
+  plan.skin.counts_per_newton = 1;
+  plan.noise_counts = 2;
+  plan.uncertainty = true;
+  const std::array<float, 4> frame = {v[1], v[0], v[2], v[3]};
+  return solve_on_host(plan, {frame.data(), SenselType::f32, 2, 2, 2});
+}
+
+TEST(Residual, WidensDeviationsOnceForEachSenselAndOnceForThePillar) {
+  SensorEffects effects;
+  effects.residual = {0.05, 3};
+  const std::array<double, 4> v = {140, 120, 60, 80};
+  const ForceField solved = solve_readings({140, 120, 60, 80}, effects);
+  double variance = 0;
+  for (const double reading : v) variance += 4 + 9 + std::pow(0.05 * reading, 2);
+  // The normal force is a quarter of the sum, the shear a sum and difference over 2 sqrt(2).
+  EXPECT_NEAR(end_of(solved, Uncertainty::normal),
+              std::hypot(std::sqrt(variance) / 4, 0.05 * solved.normal[0]), 1e-3);
+  EXPECT_NEAR(end_of(solved, Uncertainty::shear_x),
+              std::hypot(std::sqrt(variance / 8), 0.05 * solved.shear_x[0]), 1e-3);
+}
+
+TEST(Residual, FlagsRegionsThatItCouldChange) {
+  // Parity predicts -30 counts for the fourth sensel.
+  const std::array<float, 4> v = {100, 30, 0, 40};
+  const auto is_flagged = [&](const ResidualError& residual) {
+    SensorEffects effects;
+    effects.residual = residual;
+    return (solve_readings(v, effects).status[0] & status::kAmbiguous) != 0;
+  };
+  EXPECT_FALSE(is_flagged({0, 0}));
+  EXPECT_TRUE(is_flagged({0.05, 0}));
+  EXPECT_TRUE(is_flagged({0, 4}));
+}
+
 }  // namespace
 }  // namespace pillarfield

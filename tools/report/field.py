@@ -5,7 +5,7 @@ from pathlib import Path
 
 import page
 import pictures
-from page import percent, text
+from page import met_or_not, percent, text
 
 FRICTIONS = (0.8, 1.2, 1.6, 2.2, 3.0, 4.5)
 LARGEST_USUAL = 3.0  # largest friction of the goals: larger ones are rare
@@ -113,7 +113,7 @@ def goal(what, wanted, measure, shown, met, method="contact", noise=""):
     value of `contact` with the true friction decides what bounds a missed goal."""
     value, given = measure(method), measure("given")
     bound = "" if met(value) else "friction" if met(given) else "more than friction"
-    return [what, wanted, shown(value), "met" if met(value) else "**not met**", shown(given),
+    return [what, wanted, shown(value), met_or_not(met(value)), shown(given),
             noise and shown(measure("noise")), bound]
 
 

@@ -33,6 +33,11 @@ def percent(share, digits=1):
     return f"{100 * share:.{digits}f}"
 
 
+def met_or_not(holds):
+    """The last cell of a goal."""
+    return "met" if holds else "**not met**"
+
+
 def root_mean_square(values):
     """None of no values."""
     values = list(values)

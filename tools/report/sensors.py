@@ -8,7 +8,7 @@ import os
 import page
 import sensor_scenes as scenes
 import speed
-from page import percent, text
+from page import met_or_not, percent, text
 
 SINGLE_LIMIT = {"hysteresis": 2.5, "creep": 2.5, "all": 3, "centred": 3, "bending": 1.2}
 OTHER_LIMIT = 1.5  # of the ideal error, for the other effects but off-centre pressure
@@ -79,12 +79,8 @@ def body_rows(found):
 
 # --- Goals ---
 
-def verdict(holds):
-    return "met" if holds else "**not met**"
-
-
 def goal(what, wanted, measured, holds):
-    return [what, wanted, measured, verdict(holds)]
+    return [what, wanted, measured, met_or_not(holds)]
 
 
 def error_goals(found):

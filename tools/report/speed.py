@@ -10,7 +10,7 @@ from pathlib import Path
 
 import page
 import pictures
-from page import Failure, percent, text
+from page import Failure, met_or_not, percent, text
 
 
 class Bench:
@@ -110,7 +110,7 @@ def goal_row(what, sign, limit, measured):
         return [what, f"{sign} {limit:g}", "–", "not measured"]
     met = measured >= limit if sign == "≥" else measured <= limit
     return [what, f"{sign} {limit:g}", format(measured, ".0f" if measured >= 100 else ".3g"),
-            "met" if met else "**not met**"]
+            met_or_not(met)]
 
 
 def goal_rows(bench, live):
