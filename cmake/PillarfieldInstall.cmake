@@ -6,7 +6,7 @@ add_library(pillarfield_all INTERFACE)
 add_library(pillarfield::pillarfield ALIAS pillarfield_all)
 set_target_properties(pillarfield_all PROPERTIES EXPORT_NAME pillarfield)
 
-foreach(layer kernels core device io pipeline)
+foreach(layer kernels core device io streams pipeline)
   target_link_libraries(pillarfield_all INTERFACE pillarfield_${layer})
   install(TARGETS pillarfield_${layer} EXPORT pillarfield)
 endforeach()

@@ -7,4 +7,6 @@ const Calibration& FrameStream::calibration() const {
   return none;
 }
 
+StreamHealth FrameStream::health() const { return {}; }
+
 }  // namespace pillarfield

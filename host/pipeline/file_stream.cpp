@@ -16,6 +16,7 @@ class FileStream final : public FrameStream {
     if (next_ >= source_.frames()) return Arrival::ended;
     frame.time_s = source_.read(next_++, frame.buffer);
     frame.readings = frame.buffer.view();
+    frame.missing.clear();
     frame.arrived = std::chrono::steady_clock::now().time_since_epoch();
     return Arrival::arrived;
   }

@@ -52,6 +52,8 @@ void Pipeline::State::deliver() {
   SolvedFrame solved;
   solved.forces = processor.receive();
   ++delivered;
+  solved.readings = frame.readings;
+  solved.missing = frame.missing;
   solved.time_s = frame.time_s;
   solved.sequence = frame.sequence;
   solved.arrived = frame.arrived;

@@ -6,11 +6,12 @@ import re
 import sys
 
 LAYERS = ["kernels", "base", "skin", "solve", "contacts", "calibration", "simulation", "evaluation",
-          "device", "io", "pipeline", "testbed", "cli"]
+          "device", "io", "streams", "pipeline", "testbed", "cli"]
 # Public headers without a source file of their name.
 HEADER_MODULES = {"version": "base", "body": "simulation", "contact": "simulation",
                   "scene": "simulation", "friction": "solve", "host_solve": "solve",
-                  "read_options": "io", "recording": "io", "force_file": "io", "contact_file": "io"}
+                  "read_options": "io", "recording": "io", "force_file": "io", "contact_file": "io",
+                  "live": "streams", "stream_format": "streams"}
 
 
 def modules_of_headers(host):

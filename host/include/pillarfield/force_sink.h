@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <cstdint>
+#include <span>
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/frame.h"
 
 namespace pillarfield {
 
@@ -12,10 +14,12 @@ namespace pillarfield {
 /// the call that receives it.
 struct SolvedFrame {
   ForceFieldView forces = {};
-  const FrameContacts* contacts = nullptr;  ///< null: contacts are not tracked
-  double time_s = 0;                        ///< sensor time
-  std::uint64_t sequence = 0;               ///< StreamedFrame::sequence
-  std::chrono::nanoseconds arrived{0};      ///< StreamedFrame::arrived
+  const FrameContacts* contacts = nullptr;    ///< null: contacts are not tracked
+  FrameView readings = {};                    ///< StreamedFrame::readings; no data: not at hand
+  std::span<const SenselBlock> missing = {};  ///< StreamedFrame::missing
+  double time_s = 0;                          ///< sensor time
+  std::uint64_t sequence = 0;                 ///< StreamedFrame::sequence
+  std::chrono::nanoseconds arrived{0};        ///< StreamedFrame::arrived
 };
 
 /// Receives solved frames one by one, for instance a file or a socket. create_force_sink() and

@@ -22,6 +22,14 @@ struct FrameView {
   std::size_t row_stride = 0;  ///< readings from one row to the next, at least cols
 };
 
+/// A rectangle of sensels.
+struct SenselBlock {
+  std::uint32_t first_row = 0;
+  std::uint32_t rows = 0;
+  std::uint32_t first_col = 0;
+  std::uint32_t cols = 0;
+};
+
 /// Throws Error, naming `where`, if the frame is not of this size and type, has no data, or its
 /// rows overlap.
 void check(const FrameView& frame, const Skin& skin, SenselType type, std::string_view where);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "pillarfield/calibration.h"
 #include "pillarfield/frame.h"
@@ -18,10 +19,28 @@ struct StreamedFrame {
 
   FrameBuffer buffer;  ///< for streams that copy their readings
   FrameView readings;  ///< view of `buffer` or of the stream's memory
-  double time_s = 0;   ///< sensor time
+  /// Readings that did not arrive; `readings` has earlier ones there. Their pillars are reported as
+  /// missing.
+  std::vector<SenselBlock> missing;
+  double time_s = 0;  ///< sensor time
   /// Frame number of the sensor; a gap means lost frames.
   std::uint64_t sequence = 0;
   std::chrono::nanoseconds arrived{0};  ///< time of arrival, std::steady_clock
+};
+
+/// What a stream received so far, and what it did not.
+struct StreamHealth {
+  std::uint64_t frames = 0;       ///< delivered by next()
+  std::uint64_t lost = 0;         ///< frames whose sequence number never came
+  std::uint64_t incomplete = 0;   ///< delivered frames with missing readings
+  std::uint64_t late = 0;         ///< packets that came after their frame was delivered or lost
+  std::uint64_t duplicates = 0;   ///< packets that came twice
+  std::uint64_t reordered = 0;    ///< packets that came after one of a later frame, in time
+  std::uint64_t invalid = 0;      ///< packets that are no frame of this stream
+  std::uint64_t restarts = 0;     ///< new sessions, or sequences that began anew
+  std::uint64_t clock_jumps = 0;  ///< sensor times that went back, or ahead by over a second
+  std::uint64_t overrun = 0;  ///< lost frames that the sensor sent, and the program was late for
+  double rate_hz = 0;         ///< frames per second, over about the last second
 };
 
 /// Result of FrameStream::next().
@@ -45,6 +64,13 @@ class FrameStream {
 
   /// The calibration of the stream's sensels; empty unless overridden.
   [[nodiscard]] virtual const Calibration& calibration() const;
+
+  /// Counts since the stream was opened; zero unless overridden.
+  [[nodiscard]] virtual StreamHealth health() const;
+
+  /// Discards the frames that wait, without counting them as lost: for a program that was not ready
+  /// for them. Does nothing unless overridden.
+  virtual void discard_waiting() {}
 
   /// Waits for the next frame, at most for `timeout`; may return earlier. A `timeout` of zero
   /// polls.

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "pillarfield/force_file.h"
+#include "pillarfield/frame_stream.h"
+
+namespace pillarfield {
+
+/// Options of a live source.
+struct LiveSourceOptions {
+  /// Skin constants other than rows and columns, which the frames bring, and the calibration.
+  Skin skin = {};
+  Calibration calibration = {};
+  /// Called about ten times a second while no frame has arrived yet; true gives up.
+  std::function<bool()> stop = {};
+  std::uint32_t serial_baud = 2'000'000;  ///< of `serial:`
+};
+
+/// Whether `source` names a live source: `-` (packets on standard input), `shm:NAME` (a ring in
+/// shared memory), `udp:ADDRESS:PORT` or `serial:DEVICE` (docs/streams.md).
+[[nodiscard]] bool is_live_source(std::string_view source);
+
+/// Opens a live source and waits for its first valid packet, which gives size and type of the
+/// frames. Its streams follow a sensor that stops and starts again. next() never throws for what a
+/// sensor sends: invalid packets are counted in health(). Returns null if LiveSourceOptions::stop
+/// gave up. Throws Error if the name is none of a live source, the source cannot be opened (a
+/// ring that does not exist yet is waited for), or the calibration does not fit the frames.
+[[nodiscard]] std::unique_ptr<FrameStream> open_live_source(const std::string& source,
+                                                            const LiveSourceOptions& options);
+
+/// What a live sink did so far.
+struct LiveSinkStatistics {
+  std::uint64_t frames = 0;   ///< written or sent
+  std::uint64_t dropped = 0;  ///< frames that the sink was too slow for
+  std::uint64_t clients = 0;  ///< connected now
+  std::uint64_t refused = 0;  ///< clients refused or disconnected by a limit
+  std::string failure = {};   ///< why it stopped; empty while it works
+};
+
+/// A sink that never delays its stream: append() copies what the sink needs, and drops the frame if
+/// the sink is behind. It never throws after construction: a sink that fails stops, and
+/// statistics() tells why.
+class LiveSink : public ForceSink {
+ public:
+  [[nodiscard]] virtual const std::string& name() const = 0;
+  [[nodiscard]] virtual LiveSinkStatistics statistics() const = 0;
+};
+
+/// What a live sink says of the stream that it passes on.
+struct LiveSinkInfo {
+  ForceFileInfo forces = {};
+  Skin skin = {};
+  SenselType sensel_type = SenselType::u8;
+  Calibration calibration = {};  ///< for recordings of raw frames
+};
+
+/// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON
+/// of contacts and total), `foxglove:[ADDRESS:]PORT` (a WebSocket server), a .mcap file, or any
+/// file of create_force_sink() (docs/streams.md). Throws Error for another target, or one that
+/// cannot be opened.
+[[nodiscard]] std::unique_ptr<LiveSink> create_live_sink(const std::string& target,
+                                                         const LiveSinkInfo& info);
+
+/// A live sink that records the raw frames, as RecordingWriter does, and survives a kill.
+[[nodiscard]] std::unique_ptr<LiveSink> create_live_recording(const std::string& path,
+                                                              const LiveSinkInfo& info);
+
+}  // namespace pillarfield

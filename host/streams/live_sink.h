@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "pillarfield/live.h"
+
+namespace pillarfield {
+
+/// A kind of live sink, defined beside its class and listed in live_sink.cpp.
+struct LiveSinkKind {
+  std::string_view prefix;  ///< "udp:", or an extension ".mcap"
+  const char* form = "";    ///< for messages: "udp:ADDRESS:PORT"
+  /// Creates the sink for the whole target.
+  std::unique_ptr<LiveSink> (*create)(const std::string& target,
+                                      const LiveSinkInfo& info) = nullptr;
+};
+
+[[nodiscard]] std::span<const LiveSinkKind> live_sink_kinds();
+
+}  // namespace pillarfield

@@ -1,0 +1,45 @@
+#include "streams/live_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "pillarfield/error.h"
+#include "pillarfield/printable.h"
+
+namespace pillarfield {
+namespace {
+
+const LiveSourceKind* kind_of_source(std::string_view source) {
+  const auto kinds = live_source_kinds();
+  const auto found = std::ranges::find_if(kinds, [&](const LiveSourceKind& kind) {
+    return kind.prefix == "-" ? source == "-" : source.starts_with(kind.prefix);
+  });
+  return found == kinds.end() ? nullptr : &*found;
+}
+
+std::string forms_of_sources() {
+  std::string forms;
+  for (const LiveSourceKind& kind : live_source_kinds()) {
+    forms += fmt::format("{}{}", forms.empty() ? "" : ", ", kind.form);
+  }
+  return forms;
+}
+
+}  // namespace
+
+std::span<const LiveSourceKind> live_source_kinds() { return {}; }
+
+bool is_live_source(std::string_view source) { return kind_of_source(source) != nullptr; }
+
+std::unique_ptr<FrameStream> open_live_source(const std::string& source,
+                                              const LiveSourceOptions& options) {
+  const LiveSourceKind* const kind = kind_of_source(source);
+  if (kind == nullptr) {
+    throw Error(printable(source), "it names no live source",
+                fmt::format("give one of {}", forms_of_sources()));
+  }
+  return kind->open(source.substr(kind->prefix.size()), options);
+}
+
+}  // namespace pillarfield
