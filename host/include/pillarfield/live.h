@@ -72,6 +72,7 @@ struct LiveSinkInfo {
   Skin skin = {};
   SenselType sensel_type = SenselType::u8;
   Calibration calibration = {};  ///< for recordings of raw frames
+  Replace replace = Replace::results;  ///< which existing file a file may replace
 };
 
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON
