@@ -71,8 +71,8 @@ struct LiveSinkInfo {
   ForceFileInfo forces = {};
   Skin skin = {};
   SenselType sensel_type = SenselType::u8;
-  Calibration calibration = {};  ///< for recordings of raw frames
-  Replace replace = Replace::results;  ///< which existing file a file may replace
+  Calibration calibration = {};        ///< for recordings of raw frames
+  Replace replace = Replace::results;  ///< which existing file a sink of files may replace
 };
 
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON
