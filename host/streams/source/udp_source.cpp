@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <netdb.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -13,6 +12,7 @@
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/live_source.h"
+#include "streams/sink/address.h"
 #include "streams/source/byte_source.h"
 
 namespace pillarfield {
@@ -115,45 +115,10 @@ void UdpSource::clear_counts() {
   ignores_next_drops_ = true;
 }
 
-/// An address of a socket, of IPv4 or IPv6.
-struct SocketAddress {
-  sockaddr_storage storage = {};
-  socklen_t size = 0;
-  int family = 0;
-};
-
-SocketAddress resolve(const std::string& name, const std::string& rest) {
-  constexpr const char* kMend = "give udp:ADDRESS:PORT, for instance udp:127.0.0.1:5005";
-  const std::size_t colon = rest.rfind(':');
-  if (colon == std::string::npos || colon == 0) throw Error(name, "lacks a port", kMend);
-  std::string host = rest.substr(0, colon);
-  const std::string port = rest.substr(colon + 1);
-  if (host.size() > 2 && host.front() == '[' && host.back() == ']') {
-    host = host.substr(1, host.size() - 2);
-  }
-  const bool digits = port.find_first_not_of("0123456789") == std::string::npos;
-  if (!digits || port.empty() || port.size() > 5 || std::stoi(port) < 1 ||
-      std::stoi(port) > 65535) {
-    throw Error(name, fmt::format("'{}' is no port", printable(port)), "give one of 1 to 65535");
-  }
-  addrinfo hints = {};
-  hints.ai_socktype = SOCK_DGRAM;
-  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
-  addrinfo* found = nullptr;
-  if (const int failure = getaddrinfo(host.c_str(), port.c_str(), &hints, &found); failure != 0) {
-    throw Error(name, fmt::format("'{}' is no address: {}", printable(host), gai_strerror(failure)),
-                kMend);
-  }
-  SocketAddress address = {{}, found->ai_addrlen, found->ai_family};
-  std::memcpy(&address.storage, found->ai_addr, found->ai_addrlen);
-  freeaddrinfo(found);
-  return address;
-}
-
 std::unique_ptr<FrameStream> open_udp(const std::string& rest, const LiveSourceOptions& options) {
   const std::string name = printable("udp:" + rest);
-  const SocketAddress address = resolve(name, rest);
-  const int opened = socket(address.family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const SocketAddress address = address_of(rest, name, 1);
+  const int opened = socket(address.get()->sa_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (opened < 0) {
     throw Error(name, std::strerror(errno), "check the network");
   }
@@ -164,7 +129,7 @@ std::unique_ptr<FrameStream> open_udp(const std::string& rest, const LiveSourceO
   if (setsockopt(opened, SOL_SOCKET, SO_RCVBUFFORCE, &kReceiveBuffer, sizeof kReceiveBuffer) != 0) {
     setsockopt(opened, SOL_SOCKET, SO_RCVBUF, &kReceiveBuffer, sizeof kReceiveBuffer);
   }
-  if (bind(opened, reinterpret_cast<const sockaddr*>(&address.storage), address.size) != 0) {
+  if (bind(opened, address.get(), address.size) != 0) {
     throw Error(name, fmt::format("cannot be bound: {}", std::strerror(errno)),
                 "give an address of this computer and a free port");
   }
