@@ -151,7 +151,7 @@ struct Level {
 };
 
 Level level_of(const HealthReport& health, std::uint64_t lost_before) {
-  if (health.silent_s > 1) return {3, "no frames arrive"};
+  if (health.since_frame_s > 1) return {3, "no frames arrive"};
   if (health.stream.lost > lost_before) return {1, "frames are lost"};
   if (health.dead + health.stuck > 0) return {1, "sensels are dead or stuck"};
   if (health.drifting > 0) return {1, "sensels drift"};
@@ -175,7 +175,7 @@ void put_values(CdrWriter& cdr, const HealthReport& health) {
       {"solved", fmt::format("{}", health.solved)},
       {"latency_ms_median", fmt::format("{}", health.latency_ms_median)},
       {"latency_ms_worst", fmt::format("{}", health.latency_ms_worst)},
-      {"silent_s", fmt::format("{}", health.silent_s)},
+      {"since_frame_s", fmt::format("{}", health.since_frame_s)},
       {"dead", fmt::format("{}", health.dead)},
       {"stuck", fmt::format("{}", health.stuck)},
       {"drifting", fmt::format("{}", health.drifting)},
