@@ -151,7 +151,9 @@ void run(const DriverOptions& options) {
   if (!options.reference.empty()) {
     reference = create_force_sink(options.reference, recording.info.forces);
   }
-  fmt::print("ready\n");
+  fmt::print("ready");
+  for (const auto& sink : sinks) fmt::print(" {}", sink->name());
+  fmt::print("\n");
   std::fflush(stdout);
   wait_for_clients(sinks, options.clients);
 
