@@ -191,7 +191,8 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
 
 void compare(const CompareOptions& options) {
   const ForceFileReader forces(options.forces, options.read);
-  const std::unique_ptr<FrameSource> recording = open_frames(options.recording, options.read);
+  const std::unique_ptr<FrameSource> recording =
+      open_frames(options.recording, {.trust = options.read.trust, .untimed = true});
   const std::uint64_t frames = common_frames(forces, *recording, options);
   const ForceFileInfo& info = forces.info();
   ForceField solved(info.rows, info.cols);

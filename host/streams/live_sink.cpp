@@ -11,12 +11,14 @@
 #include "streams/sink/file_sinks.h"
 #include "streams/sink/foxglove_sink.h"
 #include "streams/sink/mcap_sink.h"
+#include "streams/sink/ring_sink.h"
 #include "streams/sink/udp_sink.h"
 
 namespace pillarfield {
 
 std::span<const LiveSinkKind> live_sink_kinds() {
-  static const std::array kinds = {mcap_sink_kind(), udp_sink_kind(), foxglove_sink_kind()};
+  static const std::array kinds = {mcap_sink_kind(), ring_sink_kind(), udp_sink_kind(),
+                                   foxglove_sink_kind()};
   return kinds;
 }
 
