@@ -158,6 +158,7 @@ class Numbers(CommandTest):
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
         needed = {"simulate": [scene, "-o", output], "pace": [recording], "testbed": [],
+                  "info": [recording], "apply": [recording, recording, "-o", output],
                   "solve": [recording, "-o", output, "--contacts", output]}
         step = [recording, "--calibration", recording, "-o", output]
         needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
@@ -168,7 +169,7 @@ class Numbers(CommandTest):
             text = run(*command, "--help").stdout
             options = re.findall(r"^  (--[\w-]+) ([A-Z][\w,.]*)", text, re.MULTILINE)
             for option in [name for name, kind in options
-                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE")]:
+                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE", "NAME")]:
                 for value in ("nan", "-inf", "1e999", "x"):
                     with self.subTest(command=command, option=option, value=value):
                         self.assert_fails(*command, *needed[command[-1]], f"{option}={value}",
