@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "pillarfield/skin.h"
+#include "pillarfield/tare.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::viewer {
@@ -150,6 +152,43 @@ void take_scale(Options& options, const std::string& text) {
   require(options.scale >= 0.5 && options.scale <= 4, "the scale must lie in [0.5, 4]");
 }
 
+void take_shape(Options& options, const std::string& text) {
+  const auto shape = numbers(text, "x", 2, "ROWSxCOLS, in sensels");
+  for (const double size : shape) {
+    require(is_whole(size) && size >= 2 && size <= kMaxSensels,
+            fmt::format("rows and columns must lie in [2, {}]", kMaxSensels));
+  }
+  options.plain.frame_size =
+      FrameSize{static_cast<std::uint32_t>(shape[0]), static_cast<std::uint32_t>(shape[1])};
+}
+
+/// Adds what files of plain numbers leave open.
+void add_plain_data(CLI::App& app, Options& options) {
+  ReadOptions& plain = options.plain;
+  const auto above = [](double least, double most) { return CLI::Range(least, most); };
+  const auto group = [](CLI::Option* option) { option->group("Plain data"); };
+  group(app.add_option("--dataset", plain.dataset, "Array of frames in an HDF5 file or .npz"));
+  group(app.add_option("--times", plain.times, "Array of their times in that file, s"));
+  group(app.add_option_function<std::string>(
+      "--shape", [&](const std::string& text) { take_shape(options, text); },
+      "Sensels of a frame whose readings lie in one line, ROWSxCOLS"));
+  group(app.add_option("--rate", plain.rate_hz, "Frames per second, if the file has no times")
+            ->check(above(1e-6, 1e9)));
+  group(app.add_option("--pitch-mm", plain.sensel_pitch_mm, "Distance of neighbouring sensels")
+            ->check(above(0.001, 1000)));
+  group(
+      app.add_option("--counts-per-newton", plain.counts_per_newton, "Counts per newton and pillar")
+          ->check(above(kMinCountsPerNewton, kMaxCountsPerNewton)));
+  group(app.add_option("--threshold", plain.threshold_counts, "Readings above this are usable")
+            ->check(above(0, kMaxCounts)));
+  group(app.add_option("--full-scale", plain.full_scale_counts,
+                       "Readings of this or more are saturated")
+            ->check(above(0, kMaxCounts)));
+  group(app.add_option("--tare-frames", plain.tare_frames,
+                       "Measure tare, noise and threshold in the first N frames, without load")
+            ->check(CLI::Range(std::uint64_t{kLeastTareFrames}, std::uint64_t{1} << 32)));
+}
+
 void add_texts(CLI::App& app, Options& options) {
   const auto add = [&](const char* name, const char* help,
                        void (*take)(Options&, const std::string&)) {
@@ -188,11 +227,13 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                "pillarfield-viewer");
   app.set_version_flag("--version", kVersion, "Print the version and exit");
   app.footer(kFooter);
-  app.add_option("source", options.source, "Scene, recording, Tekscan export or force fields")
+  app.add_option("source", options.source,
+                 "Scene, recording, Tekscan export, plain data or force fields")
       ->required();
   app.add_flag("--trust-input", options.trust_input,
                "Read HDF5 files without probing them in a separate process first");
   add_texts(app, options);
+  add_plain_data(app, options);
   std::uint64_t frame = 1;
   auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1]")
                         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "pillarfield/read_options.h"
 #include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
@@ -13,6 +14,7 @@ namespace pillarfield::viewer {
 struct Options {
   std::filesystem::path source;
   bool trust_input = false;
+  ReadOptions plain;   ///< of plain data: array, times, size of a frame, rate, constants, tare
   std::string device;  ///< OpenCL device that solves
   std::string gpu;     ///< Vulkan device that draws
   std::uint32_t width = 1280;

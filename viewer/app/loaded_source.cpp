@@ -40,6 +40,7 @@ class Progress {
 ProducerOptions producer_options(const Options& options) {
   ProducerOptions wanted;
   wanted.device = options.device;
+  wanted.read = options.plain;
   wanted.read.trust = options.trust_input;
   if (isatty(STDERR_FILENO) == 1) {
     wanted.on_compiling = [](const std::string& line) {

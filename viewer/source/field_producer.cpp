@@ -112,7 +112,7 @@ bool lacks_tare(FrameSource& source, const SolverPlan& plan, Processor& processo
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                                               const ProducerOptions& options) {
-  std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});
+  std::unique_ptr<FrameSource> source = open_frames(path, options.read);
   if (source->frames() == 0) {
     throw Error(path.string(), "it has no frames", "give a recording with at least one frame");
   }
@@ -133,9 +133,10 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   if (lacks_tare(*source, plan, processor)) {
     info.warnings.emplace_back(
         "In the first frame every pillar is in contact, and there is no tare; measure one with "
-        "'pillarfield calibrate tare'.");
+        "'pillarfield calibrate tare', or give --tare-frames.");
   }
-  return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
+  return std::make_unique<SolvedProducer>(std::move(info),
+                                          recorded_frames(path, std::move(source), options.read),
                                           plan, std::move(processor));
 }
 
@@ -155,6 +156,7 @@ std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
                                              const ProducerOptions& options,
                                              const std::function<void(double)>& progress) {
   if (path.extension() == ".toml") return open_scene(path, options, progress);
+  if (!options.read.dataset.empty()) return open_recording(path, options);
   if (!options.read.trust) probe_file(path);
   if (is_force_file(path, {.trust = true})) return std::make_unique<ForceFileProducer>(path);
   return open_recording(path, options);
