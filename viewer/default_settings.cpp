@@ -6,6 +6,7 @@
 #include "pillarfield/error.h"
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
+#include "viewer/source/selection.h"
 #include "viewer/style/surface.h"
 #include "viewer/style/ticks.h"
 
@@ -71,6 +72,26 @@ Surface surface_of(const Options& options, const SourceInfo& source) {
 
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
   return fitting_range(quantity, quantile(survey(producer, quantity), kRangeQuantile));
+}
+
+std::uint64_t most_loaded_frame(FieldProducer& producer) {
+  constexpr std::uint64_t kMostCompared = 64;
+  const std::uint64_t frames = producer.info().frames;
+  const std::uint64_t compared = std::min(frames, kMostCompared);
+  std::uint64_t most_loaded = 0;
+  double most_n = 0;
+  for (std::uint64_t i = 0; i < compared; ++i) {
+    const ShownField field = producer.produce((2 * i + 1) * frames / (2 * compared));
+    const ForceFieldView& forces = field.forces;
+    const double total_n =
+        sums_over(field, {0, forces.rows, 0, forces.cols}, producer.info().skin.pillar_pitch_mm())
+            .normal;
+    if (total_n > most_n) {
+      most_n = total_n;
+      most_loaded = field.index;
+    }
+  }
+  return most_loaded;
 }
 
 View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {

@@ -44,6 +44,9 @@ struct Options {
   std::filesystem::path video;
   std::filesystem::path csv;
   bool overwrite = false;
+  std::optional<double> fps;      ///< pictures a second of the video; unset: rate times speed
+  double speed = 1;               ///< of the video, relative to the source
+  bool has_frame = false;         ///< first_frame was given
   std::uint64_t first_frame = 0;  ///< first frame shown (--frame, --frames)
   std::uint64_t end_frame = 0;    ///< one past the last rendered frame; 0: first_frame + 1
 };
@@ -56,6 +59,9 @@ struct Options {
 /// frames; the view is not set. Throws Error where the source lacks the quantity.
 [[nodiscard]] RenderSettings default_settings(const Options& options, FieldProducer& producer,
                                               double scale);
+
+/// The frame with the largest total normal force of up to 64 evenly spaced ones.
+[[nodiscard]] std::uint64_t most_loaded_frame(FieldProducer& producer);
 
 /// Range of the colour bar fitted to up to 16 evenly spaced frames.
 [[nodiscard]] Range range_that_fits(FieldProducer& producer, Quantity quantity);

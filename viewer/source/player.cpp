@@ -118,6 +118,7 @@ void Player::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& l
   lock.unlock();
   const Time start = now();
   auto field = std::make_unique<ShownField>(producer->produce(frame));
+  field->frames = producer->info().frames;
   if (with_contacts) {
     field->contacts = std::make_shared<const ShownContacts>(producer->contacts_of(*field));
   }

@@ -21,6 +21,7 @@ struct ShownField {
   FrameView raw;                            ///< its readings; no data for a source without
   double time_s = 0;                        ///< time of the frame in its source
   std::uint64_t index = 0;                  ///< index of the frame in its source
+  std::uint64_t frames = 0;                 ///< of the source at that time; 0: not known
   std::optional<double> direct_point = {};  ///< argument of component_ends(), as the next one
   ShearCoefficient shear_coefficient = {};
   /// Whole pages with all planes of `forces`, which a graphics device may import.

@@ -27,7 +27,7 @@ FrameWriter::FrameWriter(AppState& state, Kind kind, std::filesystem::path path,
                          std::uint32_t width, std::uint32_t height)
     : state_(&state), path_(std::move(path)), frames_(state.player->state().frames) {
   if (kind == Kind::video) {
-    const double rate = state.player->info().rate_hz;
+    const double rate = state.player->info().rate_hz * state.player->state().speed;
     video_ = std::make_unique<VideoWriter>(path_, width, height, rate, Replace::nothing);
   }
   state.writing = true;
