@@ -91,17 +91,17 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
 
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
                                      const SpeedPaths& paths)
-    : plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
-  const std::vector<CalibrationPlane> planes = calibration_planes(plan, paths);
-  has_tare_ = std::ranges::count(planes, CalibrationPlane::tare) > 0;
+    : planes_(calibration_planes(plan, paths)),
+      plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
+  has_tare_ = std::ranges::count(planes_, CalibrationPlane::tare) > 0;
   states_ = memory_states(plan);
-  first_state_ = planes.size() - states_;
-  if (planes.empty()) return;
-  const std::size_t bytes = planes.size() * plane_bytes_;
+  first_state_ = planes_.size() - states_;
+  if (planes_.empty()) return;
+  const std::size_t bytes = planes_.size() * plane_bytes_;
   memory_ = allocate_large_pages(bytes);
   std::memset(memory_.get(), 0, bytes);
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    copy_plane(plan, planes[i], memory_.get() + i * plane_bytes_);
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    copy_plane(plan, planes_[i], memory_.get() + i * plane_bytes_);
   }
   const auto device = context.getInfo<CL_CONTEXT_DEVICES>().front();
   const bool shared = device.getInfo<CL_DEVICE_HOST_UNIFIED_MEMORY>() == CL_TRUE;
@@ -110,13 +110,30 @@ CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPla
   if (!shared) memory_.reset();
 }
 
+cl::CommandQueue CalibrationMemory::queue() const {
+  const auto context = buffer_.getInfo<CL_MEM_CONTEXT>();
+  return {context, context.getInfo<CL_CONTEXT_DEVICES>().front()};
+}
+
 void CalibrationMemory::clear_states() const {
   if (states_ == 0) return;
-  const auto context = buffer_.getInfo<CL_MEM_CONTEXT>();
-  const cl::CommandQueue queue(context, context.getInfo<CL_CONTEXT_DEVICES>().front());
-  queue.enqueueFillBuffer(buffer_, cl_float{0}, first_state_ * plane_bytes_,
-                          states_ * plane_bytes_);
-  queue.finish();
+  const cl::CommandQueue commands = queue();
+  commands.enqueueFillBuffer(buffer_, cl_float{0}, first_state_ * plane_bytes_,
+                             states_ * plane_bytes_);
+  commands.finish();
+}
+
+void CalibrationMemory::set_tare(const SolverPlan& plan) const {
+  const cl::CommandQueue commands = queue();
+  std::vector<std::byte> values(plan.skin.sensels() * sizeof(float));
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    if (planes_[i] != CalibrationPlane::tare && planes_[i] != CalibrationPlane::activation) {
+      continue;
+    }
+    copy_plane(plan, planes_[i], values.data());
+    commands.enqueueWriteBuffer(buffer_, CL_TRUE, i * plane_bytes_, values.size(), values.data());
+  }
+  clear_states();
 }
 
 }  // namespace pillarfield

@@ -39,10 +39,16 @@ class CalibrationMemory {
   [[nodiscard]] std::size_t plane_bytes() const { return plane_bytes_; }
   /// Sets all states of sensels to rest; no kernel may be running.
   void clear_states() const;
+  /// Replaces tare and activation thresholds by those of a plan and sets states to rest; no kernel
+  /// may be running.
+  void set_tare(const SolverPlan& plan) const;
   /// True if there is a tare; it is the first plane.
   [[nodiscard]] bool has_tare() const { return has_tare_; }
 
  private:
+  [[nodiscard]] cl::CommandQueue queue() const;
+
+  std::vector<CalibrationPlane> planes_;
   std::size_t plane_bytes_;
   bool has_tare_;
   std::size_t first_state_ = 0;  ///< number of planes before the states

@@ -110,6 +110,11 @@ struct Processor::State {
     warm_up();
     order.rate = static_cast<float>(baseline_turn_rate(wanted));
     order.frame = 0;
+    if (!calibration.has_tare()) return;
+    retared.emplace(wanted);
+    Calibration& planes = retared->calibration;
+    planes.dead_zone = planes.noise = {};
+    planes.bend_x = planes.bend_y = planes.bend_xy = {};
   }
 
   /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
@@ -130,7 +135,8 @@ struct Processor::State {
   FrameOrder order;               ///< outlives the slots
   std::optional<CurvatureFollower> curvature;  ///< of a skin that may be bent
   std::optional<ContactStage> contacts;        ///< of the estimator `contact`
-  std::vector<std::shared_ptr<Slot>> slots;    ///< a pinned one outlives the processor
+  std::optional<SolverPlan> retared;         ///< of a plan with a tare: what set_tare() needs of it
+  std::vector<std::shared_ptr<Slot>> slots;  ///< a pinned one outlives the processor
   SlotScheduler scheduler;
   bool received = false;  ///< a frame has been received
 };
@@ -205,6 +211,36 @@ ForceFieldView Processor::receive() {
   state_->scheduler.receive();
   state_->received = true;
   return slot.results();
+}
+
+std::optional<ForceFieldView> Processor::try_receive() {
+  if (state_->scheduler.in_flight() == 0) return std::nullopt;
+  const bool done = with_opencl_errors(state_->device.info().name, [&] {
+    return state_->slots[state_->scheduler.oldest()]->is_done();
+  });
+  if (!done) return std::nullopt;
+  return receive();
+}
+
+void Processor::set_tare(std::span<const float> tare) {
+  constexpr const char* kWhere = "Processor::set_tare";
+  if (!state_->retared) {
+    throw Error(kWhere, "the plan has no tare",
+                "give it one in its calibration, for instance zero");
+  }
+  if (tare.size() != state_->skin.sensels()) {
+    throw Error(kWhere, fmt::format("the tare has {} values", tare.size()),
+                fmt::format("the skin has {} x {} sensels", state_->skin.rows, state_->skin.cols));
+  }
+  Calibration given;
+  given.tare.assign(tare.begin(), tare.end());
+  check(given, state_->skin, kWhere, state_->sensel_type);
+  state_->retared->calibration.tare = std::move(given.tare);
+  with_opencl_errors(state_->device.info().name, [&] {
+    for (const auto& slot : state_->slots) slot->wait();
+    state_->calibration.set_tare(*state_->retared);
+  });
+  if (state_->curvature) state_->curvature->set_tare(tare);
 }
 
 Processor::PinnedResult Processor::pin() {

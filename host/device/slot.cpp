@@ -119,6 +119,7 @@ Slot::~Slot() {
 void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) {
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
+  done_ = {};
   layout_.row_stride = on_device.row_stride;
   layout_.frame = ++order_->frame;
   if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
@@ -157,6 +158,14 @@ void Slot::solve(const std::optional<Curvature>& bent) {
 }
 
 void Slot::wait() { queue_.finish(); }
+
+bool Slot::is_done() {
+  if (done_() == nullptr) {
+    queue_.enqueueMarkerWithWaitList(nullptr, &done_);
+    queue_.flush();
+  }
+  return done_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;
+}
 
 ForceFieldView Slot::results() const {
   const std::size_t pillars = std::size_t{rows_} * cols_;

@@ -48,6 +48,9 @@ class Slot {
 
   void wait();
 
+  /// Whether wait() would return at once.
+  [[nodiscard]] bool is_done();
+
   /// Estimates the ambiguous pillars of the frame, after wait().
   void resolve(ContactStage& contacts) { contacts.resolve(*memory_); }
 
@@ -76,6 +79,7 @@ class Slot {
   cl::Kernel bend_;     ///< null where the skin is not bent
   cl::Kernel follow_;   ///< null without a baseline rate
   FrameOrder* order_;
+  cl::Event done_;    ///< behind the frame, once is_done() was asked for it; else null
   cl::Buffer frame_;  ///< keeps the frame in flight alive
   single_precision::Layout layout_{};
   std::unique_ptr<SlotMemory> memory_;

@@ -7,6 +7,7 @@
 
 #include "pillarfield/error.h"
 #include "pipeline/frame_loop.h"
+#include "pipeline/missing_pillars.h"
 
 namespace pillarfield {
 
@@ -44,6 +45,7 @@ struct Pipeline::State {
   std::vector<StreamedFrame> frames;
   std::uint64_t submitted = 0;
   std::uint64_t delivered = 0;
+  MissingPillars missing;
   PipelineStatistics done;
 };
 
@@ -52,14 +54,16 @@ void Pipeline::State::deliver() {
   SolvedFrame solved;
   solved.forces = processor.receive();
   ++delivered;
+  const bool is_whole = frame.missing.empty();
+  if (!is_whole) solved.forces = missing.without(solved.forces, frame.missing);
   solved.readings = frame.readings;
   solved.missing = frame.missing;
   solved.time_s = frame.time_s;
   solved.sequence = frame.sequence;
   solved.arrived = frame.arrived;
   if (options.contacts != nullptr) {
-    const FrameContacts& found =
-        options.contacts->update(solved.forces, frame.time_s, processor.contacts());
+    const FrameContacts& found = options.contacts->update(
+        solved.forces, frame.time_s, is_whole ? processor.contacts() : FoundContacts{});
     solved.contacts = &found;
     done.most_contacts = std::max(done.most_contacts, found.contacts.size());
     for (const TrackedContact& contact : found.contacts) {

@@ -49,7 +49,7 @@ CurvatureTriple triple_of_curvature(const Curvature& curvature) {
 
 }  // namespace
 
-CurvatureFollower::CurvatureFollower(const SolverPlan& plan) {
+CurvatureFollower::CurvatureFollower(const SolverPlan& plan) : cols_(plan.skin.cols) {
   const Calibration& calibration = plan.calibration;
   const std::size_t sensels = plan.skin.sensels();
   const std::size_t wanted =
@@ -67,6 +67,14 @@ CurvatureFollower::CurvatureFollower(const SolverPlan& plan) {
   }
   noise_ = reading_noise_n(plan) * plan.skin.counts_per_newton;
   limit_ = std::max(kUntouchedDeviations * noise_, plan.skin.threshold_counts);
+}
+
+void CurvatureFollower::set_tare(std::span<const float> tare) {
+  for (Sample& sample : samples_) {
+    const Triple& pattern = sample.pattern;
+    sample.tare = tare[sample.row * cols_ + sample.col] -
+                  (applied_.x * pattern[0] + applied_.y * pattern[1] + applied_.xy * pattern[2]);
+  }
 }
 
 double CurvatureFollower::left(const std::vector<double>& differences, std::size_t sample,

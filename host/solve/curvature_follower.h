@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pillarfield/frame.h"
@@ -23,6 +24,9 @@ class CurvatureFollower {
   /// less than a tenth of the noise.
   std::optional<Curvature> follow(const FrameView& frame);
 
+  /// Follows from a new tare on, measured at the curvature applied so far.
+  void set_tare(std::span<const float> tare);
+
   /// The curvature applied so far.
   [[nodiscard]] const Curvature& curvature() const { return applied_; }
 
@@ -31,7 +35,7 @@ class CurvatureFollower {
     std::size_t row;
     std::size_t col;
     std::array<double, 3> pattern;  ///< counts·mm
-    double tare;
+    double tare;                    ///< of the plane skin
   };
   using Triple = std::array<double, 3>;
 
@@ -47,6 +51,7 @@ class CurvatureFollower {
   [[nodiscard]] std::optional<Triple> refined(const std::vector<double>& differences, Triple from,
                                               int passes) const;
 
+  std::size_t cols_;
   std::vector<Sample> samples_;
   double limit_;                    ///< largest difference of an untouched sensel, counts
   std::array<double, 3> spread_{};  ///< RMS of the patterns

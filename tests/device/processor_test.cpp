@@ -431,5 +431,56 @@ TEST(Processor, RefusesPlansOutOfRange) {
   EXPECT_THROW(Processor(test_device(), plan, {}, {.lanes = 3}), Error);
 }
 
+/// Frames after a new tare solve as on a processor that has it from the start, idle blocks, bending
+/// and hysteresis included.
+TEST(SetTare, EqualsAPlanWithThatTare) {
+  for (const SenselType type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    SolverPlan plan = full_plan(64, 94, type, 5);
+    plan.calibration.effects.memory.emplace().plays = {{.width_counts = 3, .weight = 0.2}};
+    const std::vector<float> before = plan.calibration.tare;
+    std::vector<float> after = before;
+    for (std::size_t i = 0; i < after.size(); ++i) after[i] += i % 3 == 0 ? 9.0F : -2.5F;
+    Processor retared(test_device(), plan);
+    plan.calibration.tare = after;
+    Processor expected(test_device(), plan);
+    for (std::uint32_t seed = 1; seed < 4; ++seed) {
+      const RandomFrame frame(plan, 0, seed);
+      retared.submit(frame.view());
+      if (seed == 1) retared.set_tare(after);  // One frame is in flight, with the tare before.
+      const ForceFieldView forces = retared.receive();
+      if (seed == 1) continue;
+      expected.submit(frame.view());
+      expect_same_bits(forces, expected.receive());
+    }
+    EXPECT_EQ(retared.tare(), after);
+  }
+}
+
+TEST(SetTare, RefusesWhatIsNoTare) {
+  SolverPlan plan = bare_plan(8, 8, SenselType::u8);
+  EXPECT_THROW(Processor(test_device(), plan).set_tare(std::vector<float>(64)), Error);
+  plan.calibration.tare.assign(64, 1);
+  Processor processor(test_device(), plan);
+  EXPECT_THROW(processor.set_tare(std::vector<float>(63)), Error);
+  std::vector<float> wrong(64, 1);
+  wrong[7] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(processor.set_tare(wrong), Error);
+  EXPECT_EQ(processor.tare(), plan.calibration.tare);
+}
+
+TEST(TryReceive, GivesEachFrameOnceItIsSolved) {
+  const SolverPlan plan = bare_plan(64, 94, SenselType::u8);
+  Processor processor(test_device(), plan);
+  EXPECT_FALSE(processor.try_receive());
+  for (std::uint32_t seed = 1; seed < 20; ++seed) {
+    const RandomFrame frame(plan, 0, seed);
+    processor.submit(frame.view());
+    std::optional<ForceFieldView> forces;
+    while (!forces) forces = processor.try_receive();
+    expect_same_bits(*forces, solve_on_host(plan, frame.view()).view());
+    EXPECT_FALSE(processor.try_receive());
+  }
+}
+
 }  // namespace
 }  // namespace pillarfield

@@ -15,6 +15,7 @@
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/status.h"
 #include "tests/device/same_bits.h"
 #include "tests/device/test_device.h"
 #include "tests/io/sample_files.h"
@@ -70,6 +71,7 @@ class Presses final : public FrameStream {
     std::optional<std::uint64_t> fails_at = {};  ///< index of the failing frame
     std::uint64_t waits_before = ~0ULL;          ///< a timeout comes before this frame
     std::uint32_t rows = kSkin.rows;             ///< sensel rows of its frames
+    std::vector<SenselBlock> missing = {};       ///< of every other frame, from the second on
   };
   explicit Presses(const Options& options) : options_(options) {}
 
@@ -92,6 +94,8 @@ class Presses final : public FrameStream {
     press(next_, buffer);
     frame.readings = buffer.view();
     frame.readings.rows = options_.rows;
+    frame.missing.clear();
+    if (next_ % 2 == 1) frame.missing = options_.missing;
     frame.time_s = time_of(next_);
     frame.arrived = Nanoseconds(1000 + next_);
     ++next_;
@@ -191,6 +195,39 @@ TEST(Pipeline, CountsMissingSequenceNumbers) {
   std::vector<std::uint64_t> numbers;
   for (const auto& frame : sink.frames) numbers.push_back(frame.sequence);
   EXPECT_EQ(numbers, (std::vector<std::uint64_t>{90, 91, 95, 96, 3, 4}));
+}
+
+/// A pillar loses its force with any of its readings, and its contact loses the pillar; other
+/// pillars and other frames keep theirs.
+TEST(Pipeline, ReportsPillarsWithoutTheirReadingsAsMissing) {
+  const SenselBlock corner = {.first_row = 5, .rows = 4, .first_col = 0, .cols = 13};
+  const SenselBlock beyond = {.first_row = 22, .rows = 99, .first_col = 39, .cols = 99};
+  Presses stream({.frames = 10, .missing = {corner, beyond}});
+  Processor processor(test_device(), plan_of());
+  Processor reference(test_device(), plan_of());
+  ContactTracker tracker(kSkin.pillar_pitch_mm());
+  FrameBuffer raw(SenselType::u8, kSkin.rows, kSkin.cols);
+  std::uint64_t index = 0;
+  const auto sink = callback_sink([&](const SolvedFrame& frame) {
+    press(index, raw);
+    reference.submit(raw.view());
+    const ForceFieldView whole = reference.receive();
+    std::uint64_t pillars = 0;
+    for (std::size_t i = 0; i < whole.status.size(); ++i) {
+      const std::size_t row = i / whole.cols;
+      const std::size_t col = i % whole.cols;
+      const bool is_missing = index % 2 == 1 && ((row >= 2 && row < 5 && col < 7) ||
+                                                 (row == whole.rows - 1 && col == whole.cols - 1));
+      ASSERT_EQ(frame.forces.status[i], is_missing ? status::kInconsistent : whole.status[i]) << i;
+      ASSERT_EQ(frame.forces.normal[i], is_missing ? 0 : whole.normal[i]) << i;
+      ASSERT_EQ(frame.forces.theta[i], is_missing ? 0 : whole.theta[i]) << i;
+      pillars += (frame.forces.status[i] & status::kUsable) != 0 ? 1U : 0U;
+    }
+    EXPECT_EQ(frame.contacts->total.pillars, pillars);
+    ++index;
+  });
+  EXPECT_EQ(Pipeline(stream, processor, {sink.get()}, {.contacts = &tracker}).run().frames, 10);
+  EXPECT_EQ(index, 10);
 }
 
 TEST(Pipeline, DeliversFramesInFlightBeforeItWaits) {

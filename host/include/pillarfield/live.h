@@ -43,6 +43,18 @@ struct LiveSinkStatistics {
   std::string failure = {};   ///< why it stopped; empty while it works
 };
 
+/// The state of a live run, about once a second.
+struct HealthReport {
+  StreamHealth stream = {};
+  std::uint64_t solved = 0;      ///< frames since the start
+  double latency_ms_median = 0;  ///< from arrival to delivery, over the last second
+  double latency_ms_worst = 0;   ///< over the last second
+  double silent_s = 0;           ///< since the last frame arrived
+  std::uint64_t dead = 0;        ///< sensels that do not respond where the others do
+  std::uint64_t stuck = 0;       ///< sensels whose reading is constant and out of place
+  std::uint64_t drifting = 0;    ///< untouched sensels whose reading left their tare
+};
+
 /// A sink that never delays its stream: append() copies what the sink needs, and drops the frame if
 /// the sink is behind. It never throws after construction: a sink that fails stops, and
 /// statistics() tells why.
@@ -50,6 +62,8 @@ class LiveSink : public ForceSink {
  public:
   [[nodiscard]] virtual const std::string& name() const = 0;
   [[nodiscard]] virtual LiveSinkStatistics statistics() const = 0;
+  /// Passes the health of the run on, where the sink has a place for it; called between frames.
+  virtual void report(const HealthReport& health) { static_cast<void>(health); }
 };
 
 /// What a live sink says of the stream that it passes on.
@@ -57,7 +71,8 @@ struct LiveSinkInfo {
   ForceFileInfo forces = {};
   Skin skin = {};
   SenselType sensel_type = SenselType::u8;
-  Calibration calibration = {};  ///< for recordings of raw frames
+  Calibration calibration = {};        ///< for recordings of raw frames
+  Replace replace = Replace::results;  ///< which existing file a sink of files may replace
 };
 
 /// Creates a live sink: `shm:NAME` (a ring of results in shared memory), `udp:ADDRESS:PORT` (JSON

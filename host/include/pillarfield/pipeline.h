@@ -12,6 +12,11 @@
 
 namespace pillarfield {
 
+/// A sink that calls a function for each frame, in the thread of Pipeline::run(): a control loop,
+/// or a plot. What it throws ends the run.
+[[nodiscard]] std::unique_ptr<ForceSink> callback_sink(
+    std::function<void(const SolvedFrame&)> call);
+
 /// Statistics of a run of a Pipeline.
 struct PipelineStatistics {
   std::uint64_t frames = 0;       ///< solved and passed to every sink
@@ -30,6 +35,9 @@ struct PipelineStatistics {
 ///     Pipeline(*stream, processor, {sink.get()}).run();
 ///     sink->finish();
 ///
+/// A pillar with a reading in StreamedFrame::missing gets no force and the status of missing
+/// sensels; its contacts are found without it.
+///
 /// Frames keep their order. Several are in flight, so reading and writing overlap with solving; a
 /// frame never waits for one that has not arrived. Sinks run in the thread of run(): a slow sink
 /// delays the stream, which then drops or queues frames.
@@ -38,7 +46,8 @@ class Pipeline {
   struct Options {
     int frames_in_flight = 2;            ///< at most that of the processor
     ContactTracker* contacts = nullptr;  ///< null: contacts are not tracked
-    /// Called before each frame, and ten times a second while none arrives; true ends the run.
+    /// Called before each frame, and ten times a second while none arrives; true ends the run. It
+    /// runs in the thread of run(), and may call Processor::set_tare().
     std::function<bool()> stop = {};
   };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -136,6 +137,11 @@ class Processor {
   /// pinned, or for the life of a PinnedResult. Throws Error if no frame is in flight.
   [[nodiscard]] ForceFieldView receive();
 
+  /// receive() if the oldest frame in flight is solved, without waiting; nothing if it is not or
+  /// none is in flight. For control loops that must not block; the estimator `contact` still runs
+  /// in this call.
+  [[nodiscard]] std::optional<ForceFieldView> try_receive();
+
   /// Holds the result received last. Throws Error if there is none, it is held already, or a frame
   /// submitted since reuses its slot.
   [[nodiscard]] PinnedResult pin();
@@ -150,6 +156,12 @@ class Processor {
   /// changes only with a baseline_rate and with the planes bend_x, bend_y and bend_xy. Empty if the
   /// plan has none of these and no tare.
   [[nodiscard]] std::vector<float> tare() const;
+
+  /// Replaces the tare, [sensel rows, cols], counts, for the frames submitted from now on; waits for
+  /// those in flight. The skin must be untouched: hysteresis and creep begin at rest. Throws Error
+  /// if the plan has no tare (it may be zero), or `tare` has another size or a value that is not
+  /// finite.
+  void set_tare(std::span<const float> tare);
 
   /// The curvature of the skin in the frame submitted last, 1/mm, if the plan has the planes
   /// bend_x, bend_y and bend_xy: Processor follows it through the readings of untouched sensels.
