@@ -271,6 +271,7 @@ void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& 
     list.add(Special::saturated, "saturated");
     list.add(Special::inconsistent, "inconsistent");
   }
+  list.add(Special::no_reading, "no reading");
   list.add(Special::idle, "no contact");
   list.skip(12);
   if (settings.arrows) write_arrow_scale(canvas, source, layout, list.y());
