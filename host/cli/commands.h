@@ -65,6 +65,25 @@ struct PaceOptions : PrintOptions {
   DeviceOptions device;
 };
 
+struct StreamOptions : PrintOptions {
+  std::string source;
+  std::optional<double> rate_hz;  ///< of a replayed file, or of the sensor
+  bool repeat = false;
+  std::uint32_t serial_baud = 2'000'000;
+  std::vector<std::string> sinks;
+  std::string record;   ///< file of raw frames; empty: none
+  std::string control;  ///< socket, "-" for standard input, empty: none
+  Replace replace = Replace::results;
+  double tare_s = 0;  ///< duration of a tare at the start; 0: none
+  std::optional<double> seconds;
+  std::optional<std::uint64_t> frames;
+  double health_interval_s = 1;
+  int frames_in_flight = 2;
+  ContactOptions contacts;
+  PlanOptions plan;
+  DeviceOptions device;
+};
+
 struct CompareOptions : PrintOptions {
   std::string forces;
   std::string recording;
@@ -151,6 +170,7 @@ struct InfoOptions : PrintOptions {
 void simulate(const SimulateOptions& options);
 void solve(const SolveOptions& given);
 void pace(const PaceOptions& options);
+void stream(const StreamOptions& options);
 void compare(const CompareOptions& options);
 void calibrate(const TareCommand& command);
 void calibrate(const EquilibrateCommand& command);

@@ -3,13 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
+#include "io/force_sink.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
+#include "streams/sink/file_sinks.h"
+#include "streams/sink/mcap_sink.h"
+#include "streams/sink/udp_sink.h"
 
 namespace pillarfield {
 
-std::span<const LiveSinkKind> live_sink_kinds() { return {}; }
+std::span<const LiveSinkKind> live_sink_kinds() {
+  static const std::array kinds = {mcap_sink_kind(), udp_sink_kind()};
+  return kinds;
+}
 
 std::unique_ptr<LiveSink> create_live_sink(const std::string& target, const LiveSinkInfo& info) {
   const auto kinds = live_sink_kinds();
@@ -18,11 +26,13 @@ std::unique_ptr<LiveSink> create_live_sink(const std::string& target, const Live
                                              : target.starts_with(candidate.prefix);
   });
   if (kind != kinds.end()) return kind->create(target, info);
-  std::string forms;
-  for (const LiveSinkKind& each : kinds) {
-    forms += fmt::format("{}{}", forms.empty() ? "" : ", ", each.form);
+  if (format_by_extension(target, OutputKind::forces) != nullptr) {
+    return create_live_file(target, info);
   }
-  throw Error(printable(target), "it names no live sink", fmt::format("give one of {}", forms));
+  std::string forms;
+  for (const LiveSinkKind& each : kinds) forms += fmt::format("{}, ", each.form);
+  throw Error(printable(target), "it names no live sink",
+              fmt::format("give one of {}or a file {}", forms, endings_of(OutputKind::forces)));
 }
 
 }  // namespace pillarfield

@@ -180,6 +180,71 @@ void add_pace(CLI::App& parent, Work& work) {
   add_general(command, *options, "Print the report as JSON", kQuietReport);
 }
 
+void add_contacts(CLI::App* command, ContactOptions& options) {
+  Group contacts(command, "Contacts");
+  contacts.whole("--minimum-pillars", options.minimum_pillars, "N",
+                 "Leave out contacts of fewer pillars [1]", 0,
+                 std::numeric_limits<std::uint32_t>::max());
+  contacts.number("--contact-reach", options.reach_mm, "MM",
+                  "Largest movement of a contact between frames [10]");
+}
+
+void add_stream_ends(CLI::App* command, StreamOptions& options) {
+  Group output(command, "Output");
+  output
+      .text("--to", options.sinks, "SINK",
+            "Send forces on, any number of times: shm:NAME, udp:ADDRESS:PORT, foxglove[:PORT], "
+            "FILE.mcap, or a file as solve writes it")
+      ->allow_extra_args(false);
+  output.text("--record", options.record, "FILE", "Record the raw frames (HDF5)");
+  add_overwrite(command, options.replace);
+  Group run(command, "Run");
+  run.number("--seconds", options.seconds, "SECONDS", "End after this time [at the source's end]",
+             1e-3, 1e9);
+  run.whole("--frames", options.frames, "N", "End after this many frames", 1,
+            std::numeric_limits<std::int64_t>::max());
+  run.number("--tare", options.tare_s, "SECONDS",
+             "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
+  command
+      ->add_option("--control", options.control,
+                   "Take lines of control from a socket that the program makes, or from standard "
+                   "input (-): tare, pause, resume, record FILE, record stop, health, quit")
+      ->type_name("SOCKET|-")
+      ->group("Run");
+  run.number("--health-interval", options.health_interval_s, "SECONDS",
+             "Time between reports of health [1]", 0.05, 3600);
+}
+
+void add_stream(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<StreamOptions>(
+      parent, work, stream, "stream",
+      "Solve live frames of a sensor and send their forces on (docs/streams.md).",
+      "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n");
+  Group input(command, "Input");
+  command
+      ->add_option("SOURCE", options->source,
+                   "- (packets on standard input), shm:NAME, udp:ADDRESS:PORT, serial:DEVICE, or a "
+                   "scene or file of frames, replayed at its own pace")
+      ->required()
+      ->type_name("SOURCE")
+      ->group("Input");
+  input.number("--rate", options->rate_hz, "HZ",
+               "Frames per second of a replayed file [its own], or of the sensor", 0.01, 1e5);
+  input.flag("--repeat", options->repeat, "Replay a file again and again");
+  input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
+              100'000'000);
+  add_stream_ends(command, *options);
+  add_sensor(command, options->plan);
+  add_solver(command, options->plan);
+  add_contacts(command, options->contacts);
+  add_device(command, options->device);
+  Group(command, "Device")
+      .whole("--in-flight", options->frames_in_flight, "FRAMES",
+             "Number of frames in the solver at once [2]", 1, 64);
+  add_general(command, *options, "Print reports of health and the summary as lines of JSON",
+              kQuietWriter);
+}
+
 void add_compare(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<CompareOptions>(
       parent, work, compare, "compare", "Compare solved forces with the truth by region.",
@@ -318,6 +383,7 @@ Work parse_arguments(int argc, char** argv) {
       "  pillarfield compare forces.h5 demo.h5\n");
   add_simulate(app, work);
   add_solve(app, work);
+  add_stream(app, work);
   add_pace(app, work);
   add_compare(app, work);
   add_calibrate(app, work);

@@ -19,6 +19,7 @@ enum class OutputKind : std::uint8_t {
   calibration,
   forces,    ///< the format follows from the path's extension
   contacts,  ///< likewise
+  messages,  ///< .mcap
   png,
   svg,
   video,
@@ -31,8 +32,8 @@ enum class OutputKind : std::uint8_t {
 /// Which existing file an output may replace. All but `nothing` replace an empty file.
 enum class Replace : std::uint8_t {
   nothing,
-  results,   ///< a file whose content is of the same kind, except recordings, calibrations and
-             ///< texts, which cannot be made again
+  results,   ///< a file whose content is of the same kind, except recordings, calibrations,
+             ///< messages and texts, which cannot be made again
   anything,  ///< any regular file
 };
 

@@ -51,7 +51,8 @@ struct Beginning {
   std::string_view bytes;
 };
 
-constexpr std::array<Beginning, 4> kBeginnings = {{
+constexpr std::array<Beginning, 5> kBeginnings = {{
+    {OutputKind::messages, "holds messages", 0, "\x89MCAP0\r\n"},
     {OutputKind::png, "is a picture", 0, "\x89PNG\r\n\x1a\n"},
     {OutputKind::video, "is a video", 4, "ftyp"},              // MP4, QuickTime
     {OutputKind::video, "is a video", 0, "\x1a\x45\xdf\xa3"},  // Matroska, WebM
@@ -94,7 +95,7 @@ bool is_empty_file(const std::filesystem::path& path) {
 
 bool is_result(OutputKind kind) {
   return kind != OutputKind::recording && kind != OutputKind::calibration &&
-         kind != OutputKind::text;
+         kind != OutputKind::messages && kind != OutputKind::text;
 }
 
 /// Number of frames in an unfinished recording.

@@ -1,0 +1,158 @@
+#include "cli/stream/control.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield::cli {
+namespace {
+
+constexpr std::size_t kMostClients = 8;
+constexpr std::size_t kMostLineBytes = 4096;
+
+std::string reason() { return std::generic_category().message(errno); }
+
+sockaddr_un address_of(const std::string& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  if (path.size() >= sizeof address.sun_path) {
+    throw Error(path, "the name of the control socket is too long",
+                fmt::format("give at most {} bytes", sizeof address.sun_path - 1));
+  }
+  std::memcpy(address.sun_path, path.data(), path.size());
+  return address;
+}
+
+bool someone_listens(const sockaddr_un& address) {
+  const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool listens =
+      connect(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  close(probe);
+  return listens;
+}
+
+/// Removes the socket of a program that was killed; any other file stays.
+void remove_left_socket(const std::string& path, const sockaddr_un& address) {
+  struct stat status {};
+  if (lstat(path.c_str(), &status) != 0) return;
+  if (!S_ISSOCK(status.st_mode)) {
+    throw Error(path, "it exists and is no socket", "name another control socket");
+  }
+  if (someone_listens(address)) {
+    throw Error(path, "another program listens on this socket", "name another control socket");
+  }
+  unlink(path.c_str());
+}
+
+int listen_on(const std::string& path) {
+  const sockaddr_un address = address_of(path);
+  remove_left_socket(path, address);
+  const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const mode_t mask = umask(S_IRWXG | S_IRWXO);
+  const bool bound =
+      bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      listen(listener, static_cast<int>(kMostClients)) == 0;
+  const std::string why = bound ? "" : reason();
+  umask(mask);
+  if (bound) return listener;
+  close(listener);
+  throw Error(path, fmt::format("the control socket cannot be made: {}", why),
+              "name a place in a folder of yours");
+}
+
+}  // namespace
+
+ControlChannel::ControlChannel(std::string path) : path_(std::move(path)) {
+  if (path_.empty()) return;
+  if (path_ == "-") {
+    clients_.push_back({.id = next_id_++, .input = STDIN_FILENO, .output = STDOUT_FILENO});
+    return;
+  }
+  listener_ = listen_on(path_);
+}
+
+ControlChannel::~ControlChannel() {
+  for (const Client& client : clients_) close_client(client);
+  if (listener_ < 0) return;
+  close(listener_);
+  unlink(path_.c_str());
+}
+
+void ControlChannel::close_client(const Client& client) {
+  if (client.input != STDIN_FILENO) close(client.input);
+}
+
+void ControlChannel::poll(
+    const std::function<std::string(std::uint64_t client, std::string_view line)>& handle) {
+  const auto now = std::chrono::steady_clock::now();
+  if (path_.empty() || now < next_poll_) return;
+  next_poll_ = now + std::chrono::milliseconds(20);
+  accept_clients();
+  std::erase_if(clients_, [&](Client& client) {
+    if (read_from(client, handle)) return false;
+    close_client(client);
+    return true;
+  });
+}
+
+void ControlChannel::accept_clients() {
+  if (listener_ < 0) return;
+  for (;;) {
+    const int connection = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+    if (connection < 0) return;
+    if (clients_.size() >= kMostClients) {
+      close(connection);
+      continue;
+    }
+    clients_.push_back({.id = next_id_++, .input = connection, .output = connection});
+  }
+}
+
+/// Returns whether the client is still there.
+bool ControlChannel::read_from(
+    Client& client,
+    const std::function<std::string(std::uint64_t client, std::string_view line)>& handle) {
+  pollfd ready = {.fd = client.input, .events = POLLIN, .revents = 0};
+  if (::poll(&ready, 1, 0) != 1) return true;
+  std::array<char, kMostLineBytes> bytes;
+  const ssize_t count = read(client.input, bytes.data(), bytes.size());
+  if (count < 0) return errno == EAGAIN || errno == EINTR;
+  if (count == 0) return false;
+  client.begun.append(bytes.data(), static_cast<std::size_t>(count));
+  for (std::size_t end = client.begun.find('\n'); end != std::string::npos;
+       end = client.begun.find('\n')) {
+    std::string line = client.begun.substr(0, end);
+    client.begun.erase(0, end + 1);
+    if (line.ends_with('\r')) line.pop_back();
+    if (line.empty()) continue;
+    if (const std::string said = handle(client.id, line); !said.empty()) answer(client.id, said);
+  }
+  return client.begun.size() <= kMostLineBytes;
+}
+
+void ControlChannel::answer(std::uint64_t client, const std::string& line) {
+  const auto found = std::ranges::find(clients_, client, &Client::id);
+  if (found == clients_.end()) return;
+  const std::string text = line + '\n';
+  if (found->output == STDOUT_FILENO) {
+    fmt::print("{}", text);
+    std::fflush(stdout);
+  } else {
+    // A client that does not read loses answers.
+    static_cast<void>(send(found->output, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT));
+  }
+}
+
+}  // namespace pillarfield::cli

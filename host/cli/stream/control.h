@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pillarfield::cli {
+
+/// Lines of text from clients, and answers to them: a Unix-domain socket that only this user may
+/// open, or standard input and output. At most 8 clients; a line has at most 4096 bytes.
+class ControlChannel {
+ public:
+  /// `path`: of the socket; "-": standard input and output; empty: no channel. Throws Error if
+  /// another program listens there, or the socket cannot be made.
+  explicit ControlChannel(std::string path);
+  ~ControlChannel();  ///< removes the socket
+  ControlChannel(const ControlChannel&) = delete;
+  ControlChannel& operator=(const ControlChannel&) = delete;
+
+  /// Handles what has arrived, without waiting: calls `handle` for each line and sends its answer,
+  /// if any, as a line. Does nothing within 20 ms of the last call that did.
+  void poll(const std::function<std::string(std::uint64_t client, std::string_view line)>& handle);
+
+  /// Sends a later answer; does nothing if the client is gone.
+  void answer(std::uint64_t client, const std::string& line);
+
+ private:
+  struct Client {
+    std::uint64_t id = 0;
+    int input = -1;
+    int output = -1;
+    std::string begun = {};  ///< of a line
+  };
+
+  void accept_clients();
+  [[nodiscard]] bool read_from(
+      Client& client,
+      const std::function<std::string(std::uint64_t client, std::string_view line)>& handle);
+  static void close_client(const Client& client);
+
+  std::string path_;
+  int listener_ = -1;
+  std::uint64_t next_id_ = 1;
+  std::vector<Client> clients_;
+  std::chrono::steady_clock::time_point next_poll_;
+};
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,29 @@
+#include "cli/stream/latency_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pillarfield::cli {
+
+void LatencyHistogram::add(std::chrono::nanoseconds latency) {
+  const double ms = 1e-6 * static_cast<double>(latency.count());
+  const double bin = std::ceil(kBinsPerDecade * std::log10(std::max(1e3 * ms, 1.0)));
+  ++bins_.at(std::min(static_cast<std::size_t>(bin), bins_.size() - 1));
+  ++frames_;
+  worst_ms_ = std::max(worst_ms_, ms);
+}
+
+std::optional<double> LatencyHistogram::quantile_ms(double fraction) const {
+  if (frames_ == 0) return std::nullopt;
+  const double wanted = std::max(1.0, std::ceil(fraction * static_cast<double>(frames_)));
+  std::uint64_t count = 0;
+  for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
+    count += bins_.at(bin);
+    if (static_cast<double>(count) < wanted) continue;
+    const double upper = 1e-3 * std::pow(10, static_cast<double>(bin) / kBinsPerDecade);
+    return std::min(upper, worst_ms_);
+  }
+  return worst_ms_;
+}
+
+}  // namespace pillarfield::cli

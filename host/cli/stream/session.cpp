@@ -1,0 +1,377 @@
+#include "cli/stream/session.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <sstream>
+#include <utility>
+
+#include "cli/json_text.h"
+#include "cli/number_text.h"
+#include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
+#include "pillarfield/printable.h"
+
+namespace pillarfield::cli {
+namespace {
+
+constexpr double kTareSeconds = 0.5;
+constexpr double kMostTareSeconds = 60;
+
+std::chrono::nanoseconds nanoseconds_of(double seconds) {
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+}
+
+double seconds_of(std::chrono::nanoseconds time) {
+  return 1e-9 * static_cast<double>(time.count());
+}
+
+std::vector<std::string> words_of(std::string_view line) {
+  std::istringstream text{std::string(line)};
+  std::vector<std::string> words;
+  for (std::string word; text >> word;) words.push_back(word);
+  return words;
+}
+
+std::string done_line(const std::string& what) { return json_text({{"ok", true}, {"done", what}}); }
+
+std::string failed_line(const std::string& why) {
+  return json_text({{"ok", false}, {"error", why}});
+}
+
+nlohmann::ordered_json sink_json(const LiveSink& sink) {
+  const LiveSinkStatistics statistics = sink.statistics();
+  nlohmann::ordered_json json = {{"name", sink.name()},
+                                 {"frames", statistics.frames},
+                                 {"dropped", statistics.dropped},
+                                 {"clients", statistics.clients},
+                                 {"refused", statistics.refused}};
+  if (!statistics.failure.empty()) json["failure"] = statistics.failure;
+  return json;
+}
+
+}  // namespace
+
+/// The source, paused and observed.
+class StreamSession::Source final : public FrameStream {
+ public:
+  Source(StreamSession& session, FrameStream& stream) : session_(session), stream_(stream) {}
+
+  [[nodiscard]] const Skin& skin() const override { return stream_.skin(); }
+  [[nodiscard]] SenselType sensel_type() const override { return stream_.sensel_type(); }
+  [[nodiscard]] StreamHealth health() const override { return stream_.health(); }
+  void discard_waiting() override { stream_.discard_waiting(); }
+
+  [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) override {
+    const Arrival arrival = stream_.next(frame, timeout);
+    if (arrival != Arrival::arrived) return arrival;
+    session_.last_arrival_ = Clock::now();
+    ++session_.received_;
+    if (frame.missing.empty()) {
+      session_.watch_.offer(frame.readings);
+      session_.take_tare(frame.readings, frame.arrived);
+    }
+    return session_.paused_ ? Arrival::timed_out : arrival;
+  }
+
+ private:
+  StreamSession& session_;
+  FrameStream& stream_;
+};
+
+/// All live sinks; sinks may come and go between frames.
+class StreamSession::Sinks final : public ForceSink {
+ public:
+  explicit Sinks(StreamSession& session) : session_(session) {}
+
+  void add(std::unique_ptr<LiveSink> sink) { sinks_.push_back(std::move(sink)); }
+
+  void append(const SolvedFrame& frame) override {
+    for (const auto& sink : sinks_) sink->append(frame);
+    const auto latency = Clock::now().time_since_epoch() - frame.arrived;
+    session_.all_latencies_.add(latency);
+    session_.recent_latencies_.add(latency);
+    session_.contacts_ = frame.contacts->contacts.size();
+    ++session_.solved_;
+  }
+
+  void finish() override {
+    for (const auto& sink : sinks_) sink->finish();
+  }
+
+  /// Completes and removes a sink.
+  void finish(const std::string& name) {
+    std::erase_if(sinks_, [&](const auto& sink) {
+      if (sink->name() != name) return false;
+      sink->finish();
+      return true;
+    });
+  }
+
+  void report(const HealthReport& health) {
+    for (const auto& sink : sinks_) {
+      sink->report(health);
+      const std::string failure = sink->statistics().failure;
+      if (failure.empty() || std::ranges::count(failed_, sink->name()) > 0) continue;
+      failed_.push_back(sink->name());
+      fmt::print(stderr, "pillarfield: {}: {}\n", printable(sink->name()), printable(failure));
+    }
+  }
+
+  [[nodiscard]] bool has_failed() const { return !failed_.empty(); }
+  [[nodiscard]] const std::vector<std::unique_ptr<LiveSink>>& all() const { return sinks_; }
+
+ private:
+  StreamSession& session_;
+  std::vector<std::unique_ptr<LiveSink>> sinks_;
+  std::vector<std::string> failed_;
+};
+
+StreamSession::StreamSession(const StreamOptions& options, FrameStream& source,
+                             const SolverPlan& plan, Processor& processor, LiveSinkInfo info)
+    : options_(options),
+      plan_(plan),
+      processor_(processor),
+      info_(std::move(info)),
+      tracker_(plan.skin.pillar_pitch_mm(), *info_.forces.contacts),
+      tare_(plan.skin, plan.sensel_type),
+      watch_(plan),
+      source_(std::make_unique<Source>(*this, source)),
+      sinks_(std::make_unique<Sinks>(*this)),
+      control_(options.control) {
+  for (const std::string& target : options.sinks) sinks_->add(create_live_sink(target, info_));
+  if (!options.record.empty()) {
+    sinks_->add(create_live_recording(options.record, info_));
+    recording_ = options.record;
+  }
+  if (options.tare_s > 0) tare_.start(nanoseconds_of(options.tare_s));
+}
+
+StreamSession::~StreamSession() = default;
+
+void StreamSession::run() {
+  source_->discard_waiting();
+  start_ = last_arrival_ = last_report_ = Clock::now();
+  next_report_ = start_ + nanoseconds_of(options_.health_interval_s);
+  Pipeline pipeline(*source_, processor_, {sinks_.get()},
+                    {.frames_in_flight = options_.frames_in_flight,
+                     .contacts = &tracker_,
+                     .stop = [this] { return should_stop(); }});
+  pipeline.run();
+  report_health();
+  if (line_drawn_) fmt::print(stderr, "\n");
+  sinks_->finish();
+  sinks_->report(last_health_);
+  if (sinks_->has_failed()) {
+    throw Error(options_.source, "an output failed; see above", "mend it and start again");
+  }
+}
+
+bool StreamSession::should_stop() {
+  control_.poll([this](std::uint64_t client, std::string_view line) { return obey(client, line); });
+  const auto now = Clock::now();
+  if (now >= next_report_) report_health();
+  return quit_ || is_interrupted() || (options_.frames && solved_ >= *options_.frames) ||
+         (options_.seconds && now - start_ >= nanoseconds_of(*options_.seconds));
+}
+
+void StreamSession::take_tare(const FrameView& frame, std::chrono::nanoseconds arrived) {
+  std::string said;
+  try {
+    const std::vector<float>* const tare = tare_.add(frame, arrived);
+    if (tare == nullptr) return;
+    processor_.set_tare(*tare);
+    watch_.set_tare(*tare);
+    info_.calibration.tare = *tare;
+    said = done_line("tare");
+  } catch (const Error& error) {
+    said = failed_line(error.what());
+    if (tare_client_ == 0) fmt::print(stderr, "pillarfield: {}\n", printable(error.what()));
+  }
+  control_.answer(std::exchange(tare_client_, 0), said);
+}
+
+HealthReport StreamSession::health() const {
+  HealthReport health;
+  health.stream = source_->health();
+  if (health.stream.frames == 0) {  // A replayed file keeps no count.
+    health.stream.frames = received_;
+    health.stream.rate_hz = replay_hz_;
+  }
+  health.solved = solved_;
+  health.latency_ms_median = recent_latencies_.quantile_ms(0.5).value_or(0);
+  health.latency_ms_worst = recent_latencies_.worst_ms();
+  health.since_frame_s = seconds_of(Clock::now() - last_arrival_);
+  const SenselHealth sensels = watch_.health();
+  health.dead = sensels.dead;
+  health.stuck = sensels.stuck;
+  health.drifting = sensels.drifting;
+  return health;
+}
+
+void StreamSession::report_health() {
+  const auto now = Clock::now();
+  replay_hz_ = static_cast<double>(received_ - received_at_report_) /
+               std::max(1e-9, seconds_of(now - last_report_));
+  received_at_report_ = received_;
+  last_report_ = now;
+  last_health_ = health();
+  next_report_ = now + nanoseconds_of(options_.health_interval_s);
+  sinks_->report(last_health_);
+  show(last_health_);
+  recent_latencies_.clear();
+}
+
+nlohmann::ordered_json StreamSession::health_json(const HealthReport& health) const {
+  const StreamHealth& stream = health.stream;
+  nlohmann::ordered_json json = {
+      {"seconds", seconds_of(Clock::now() - start_)},
+      {"rate_hz", stream.rate_hz},
+      {"frames", stream.frames},
+      {"solved", health.solved},
+      {"lost", stream.lost},
+      {"incomplete", stream.incomplete},
+      {"late", stream.late},
+      {"duplicates", stream.duplicates},
+      {"reordered", stream.reordered},
+      {"invalid", stream.invalid},
+      {"restarts", stream.restarts},
+      {"clock_jumps", stream.clock_jumps},
+      {"overrun", stream.overrun},
+      {"since_frame_s", health.since_frame_s},
+      {"latency_ms", {{"median", health.latency_ms_median}, {"worst", health.latency_ms_worst}}},
+      {"sensels", {{"dead", health.dead}, {"stuck", health.stuck}, {"drifting", health.drifting}}},
+      {"contacts", contacts_},
+      {"paused", paused_}};
+  if (!recording_.empty()) json["recording"] = recording_;
+  json["sinks"] = nlohmann::ordered_json::array();
+  for (const auto& sink : sinks_->all()) json["sinks"].push_back(sink_json(*sink));
+  return json;
+}
+
+/// A line of JSON, or on a terminal a line that each report draws anew.
+void StreamSession::show(const HealthReport& health) {
+  if (options_.json) {
+    fmt::print("{}\n", json_text({{"health", health_json(health)}}));
+    std::fflush(stdout);
+    return;
+  }
+  if (options_.quiet || isatty(STDERR_FILENO) != 1) return;
+  const StreamHealth& stream = health.stream;
+  const std::string state = health.since_frame_s > 1
+                                ? fmt::format("no frames for {:.0f} s", health.since_frame_s)
+                                : fmt::format("{:.0f} Hz", stream.rate_hz);
+  fmt::print(
+      stderr,
+      "\r\033[K{}{}  solved {}  lost {}  incomplete {}  invalid {}  latency {:.2f} ms, worst "
+      "{:.2f}  contacts {}  sensels dead {}, stuck {}, drifting {}",
+      state, paused_ ? ", paused" : "", grouped(health.solved), stream.lost, stream.incomplete,
+      stream.invalid, health.latency_ms_median, health.latency_ms_worst, contacts_, health.dead,
+      health.stuck, health.drifting);
+  std::fflush(stderr);
+  line_drawn_ = true;
+}
+
+std::string StreamSession::obey(std::uint64_t client, std::string_view line) {
+  const std::vector<std::string> words = words_of(line);
+  if (words.empty()) return "";
+  const std::string& verb = words.front();
+  if (verb == "tare") return start_tare(client, words);
+  if (verb == "record") return record(words);
+  if (words.size() == 1) {
+    if (verb == "pause" || verb == "resume") {
+      paused_ = verb == "pause";
+      return done_line(verb);
+    }
+    if (verb == "health") return json_text({{"ok", true}, {"health", health_json(health())}});
+    if (verb == "quit") {
+      quit_ = true;
+      return done_line(verb);
+    }
+  }
+  return failed_line(
+      fmt::format("'{}' is no control line; there are: tare [SECONDS] [preloaded], pause, resume, "
+                  "record FILE, record stop, health, quit",
+                  printable(line)));
+}
+
+std::string StreamSession::start_tare(std::uint64_t client, const std::vector<std::string>& words) {
+  double seconds = kTareSeconds;
+  bool preloaded = false;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    if (word == "preloaded") {
+      preloaded = true;
+      continue;
+    }
+    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), seconds);
+    if (status != std::errc() || end != word.data() + word.size() ||
+        !(seconds > 0 && seconds <= kMostTareSeconds)) {
+      return failed_line(fmt::format("tare: '{}' is no duration; give above 0 to {:g} seconds",
+                                     printable(word), kMostTareSeconds));
+    }
+  }
+  if (tare_.is_running()) return failed_line("tare: one is being measured; wait for it");
+  tare_.start(nanoseconds_of(seconds), preloaded);
+  tare_client_ = client;
+  return "";  // take_tare() answers.
+}
+
+std::string StreamSession::record(const std::vector<std::string>& words) {
+  if (words.size() != 2) return failed_line("record: give a file, or stop");
+  try {
+    if (words[1] == "stop") {
+      if (recording_.empty()) return failed_line("record: nothing is being recorded");
+      sinks_->finish(std::exchange(recording_, ""));
+      return done_line("record stop");
+    }
+    if (!recording_.empty()) {
+      return failed_line(fmt::format("record: {} is being recorded; give 'record stop' first",
+                                     printable(recording_)));
+    }
+    sinks_->add(create_live_recording(words[1], info_));
+    recording_ = words[1];
+    return done_line("record");
+  } catch (const Error& error) {
+    return failed_line(error.what());
+  }
+}
+
+void StreamSession::print_summary() const {
+  if (options_.json) {
+    nlohmann::ordered_json json = health_json(last_health_);
+    json["source"] = options_.source;
+    json["device"] = processor_.device().info().name;
+    json["latency_ms"] = {{"median", all_latencies_.quantile_ms(0.5).value_or(0)},
+                          {"p99", all_latencies_.quantile_ms(0.99).value_or(0)},
+                          {"worst", all_latencies_.worst_ms()}};
+    fmt::print("{}\n", json_text({{"summary", json}}));
+    return;
+  }
+  if (options_.quiet) return;
+  const StreamHealth& stream = last_health_.stream;
+  const double seconds = seconds_of(Clock::now() - start_);
+  fmt::print("Solved {} of {} x {} pillars from {} in {:.1f} s on {}\n", counted(solved_, "frame"),
+             plan_.skin.pillar_rows(), plan_.skin.pillar_cols(), printable(options_.source),
+             seconds, processor_.device().info().name);
+  if (solved_ > 0) {
+    fmt::print("  latency    median {:.3f} ms, 99 % {:.3f} ms, worst {:.3f} ms\n",
+               *all_latencies_.quantile_ms(0.5), *all_latencies_.quantile_ms(0.99),
+               all_latencies_.worst_ms());
+  }
+  fmt::print("  frames     {} lost, of which {} came too fast; {} incomplete\n",
+             grouped(stream.lost), grouped(stream.overrun), grouped(stream.incomplete));
+  fmt::print("  packets    {} late, {} twice, {} out of order, {} invalid\n", grouped(stream.late),
+             grouped(stream.duplicates), grouped(stream.reordered), grouped(stream.invalid));
+  fmt::print("  sensor     {} restarts, {} clock jumps\n", grouped(stream.restarts),
+             grouped(stream.clock_jumps));
+  for (const auto& sink : sinks_->all()) {
+    const LiveSinkStatistics statistics = sink->statistics();
+    fmt::print("  {}: {} written, {} dropped\n", printable(sink->name()),
+               counted(statistics.frames, "frame"), grouped(statistics.dropped));
+  }
+}
+
+}  // namespace pillarfield::cli

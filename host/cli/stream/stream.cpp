@@ -1,0 +1,92 @@
+// pillarfield stream: forces of live frames.
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/pace/frames.h"
+#include "cli/progress.h"
+#include "cli/stream/replay.h"
+#include "cli/stream/session.h"
+#include "pillarfield/error.h"
+#include "pillarfield/live.h"
+#include "pillarfield/printable.h"
+
+namespace pillarfield::cli {
+namespace {
+
+std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
+  if (!is_live_source(options.source)) {
+    return replayed_file(options.source, options.plan.read, options.rate_hz, options.repeat,
+                         options.quiet);
+  }
+  if (const auto say = terminal_line(options.quiet)) {
+    say(fmt::format("Waiting for frames from {} ...", options.source));
+  }
+  LiveSourceOptions live;
+  live.stop = is_interrupted;
+  live.serial_baud = options.serial_baud;
+  return open_live_source(options.source, live);
+}
+
+/// The plan has a tare, so that it can be measured anew.
+SolverPlan plan_of(const StreamOptions& options, const FrameStream& source) {
+  SolverPlan plan;
+  plan.skin = source.skin();
+  plan.sensel_type = source.sensel_type();
+  plan.calibration = source.calibration();
+  PlanOptions plan_options = options.plan;
+  if (is_scene(options.source) && plan_options.scene.empty()) plan_options.scene = options.source;
+  plan = plan_of(plan_options, std::move(plan), options.source, [&] {
+    if (options.rate_hz) return 1 / *options.rate_hz;
+    throw Error("--rate", "--follow-baseline and creep need the rate of the sensor",
+                "give --rate HZ");
+  });
+  if (plan.calibration.tare.empty()) plan.calibration.tare.assign(plan.skin.sensels(), 0);
+  check(plan, options.source);
+  return plan;
+}
+
+LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, const Device& device) {
+  LiveSinkInfo info;
+  info.skin = plan.skin;
+  info.sensel_type = plan.sensel_type;
+  info.calibration = plan.calibration;
+  info.replace = options.replace;
+  ForceFileInfo& forces = info.forces;
+  forces.rows = plan.skin.pillar_rows();
+  forces.cols = plan.skin.pillar_cols();
+  forces.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
+  forces.estimator = name_of(plan.estimator);
+  if (plan.estimator != Estimator::paper) forces.segment_point = plan.segment_point;
+  forces.device = device.info().name;
+  forces.source = options.source;
+  forces.angles = plan.angles;
+  forces.uncertainty = plan.uncertainty;
+  forces.effects = plan.calibration.effects;
+  forces.surface = plan.skin.surface;
+  forces.contacts = options.contacts;
+  set_sensor(*forces.contacts, plan);
+  return info;
+}
+
+}  // namespace
+
+void stream(const StreamOptions& options) {
+  const std::unique_ptr<FrameStream> source = opened_source(options);
+  if (!source) return;  // Interrupted before a frame came.
+  const SolverPlan plan = plan_of(options, *source);
+  const Device device = open_device(options.device.name);
+  Processor processor(device, plan,
+                      {.memory = options.device.memory,
+                       .frames_in_flight = options.frames_in_flight,
+                       .on_compiling = terminal_line(options.quiet)});
+  StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
+  session.run();
+  session.print_summary();
+}
+
+}  // namespace pillarfield::cli

@@ -1,0 +1,77 @@
+#include "streams/sink/file_sinks.h"
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "pillarfield/recording.h"
+#include "streams/sink/queued_sink.h"
+
+namespace pillarfield {
+namespace {
+
+/// Writes a file of forces.
+class FileConsumer final : public SinkConsumer {
+ public:
+  FileConsumer(std::unique_ptr<ForceSink> file, const ForceFileInfo& info)
+      : file_(std::move(file)),
+        parts_{.forces = true,
+               .all_planes = info.angles || info.uncertainty,
+               .contacts = info.contacts.has_value()} {}
+
+  [[nodiscard]] FrameParts wants(const SolvedFrame&) override { return parts_; }
+  [[nodiscard]] bool consume(const SolvedFrame& frame) override {
+    file_->append(frame);
+    return true;
+  }
+  void finish() override { file_->finish(); }
+
+ private:
+  std::unique_ptr<ForceSink> file_;
+  FrameParts parts_;
+};
+
+/// Records the raw frames, and flushes them once a second.
+class RecordingConsumer final : public SinkConsumer {
+ public:
+  RecordingConsumer(const std::string& path, const LiveSinkInfo& info)
+      : writer_(
+            path, info.skin, info.sensel_type, info.calibration,
+            {.flush_every = std::numeric_limits<std::uint32_t>::max(), .replace = info.replace}) {}
+
+  [[nodiscard]] FrameParts wants(const SolvedFrame&) override { return {.readings = true}; }
+  [[nodiscard]] bool consume(const SolvedFrame& frame) override {
+    writer_.append(frame.readings, frame.time_s);
+    has_unflushed_ = true;
+    idle();
+    return true;
+  }
+  void idle() override {
+    constexpr std::chrono::seconds kInterval{1};
+    const auto now = std::chrono::steady_clock::now();
+    if (!has_unflushed_ || now - flushed_ < kInterval) return;
+    writer_.flush();
+    flushed_ = now;
+    has_unflushed_ = false;
+  }
+  void finish() override { writer_.finish(); }
+
+ private:
+  RecordingWriter writer_;
+  bool has_unflushed_ = false;
+  std::chrono::steady_clock::time_point flushed_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+std::unique_ptr<LiveSink> create_live_file(const std::string& path, const LiveSinkInfo& info) {
+  auto file = create_force_sink(path, info.forces, info.replace);
+  return std::make_unique<QueuedSink>(path,
+                                      std::make_unique<FileConsumer>(std::move(file), info.forces));
+}
+
+std::unique_ptr<LiveSink> create_live_recording(const std::string& path, const LiveSinkInfo& info) {
+  return std::make_unique<QueuedSink>(path, std::make_unique<RecordingConsumer>(path, info));
+}
+
+}  // namespace pillarfield

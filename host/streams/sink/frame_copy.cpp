@@ -1,0 +1,80 @@
+#include "streams/sink/frame_copy.h"
+
+#include <cstring>
+
+#include "solve/result_planes.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::size_t kUsualContacts = 256;
+
+std::size_t planes_to_copy(bool all_planes) { return all_planes ? kSolvedPlanes : kForcePlanes; }
+
+}  // namespace
+
+std::size_t bytes_of(const SolvedFrame& frame, const FrameParts& parts) {
+  std::size_t bytes = frame.missing.size_bytes();
+  if (parts.forces) {
+    bytes += frame.forces.status.size();
+    for (std::size_t plane = 0; plane < planes_to_copy(parts.all_planes); ++plane) {
+      bytes += plane_of(frame.forces, plane).size_bytes();
+    }
+  }
+  if (parts.contacts && frame.contacts != nullptr) {
+    bytes += frame.contacts->contacts.size() * sizeof(TrackedContact) +
+             frame.contacts->ended.size() * sizeof(EndedContact);
+  }
+  const FrameView& readings = frame.readings;
+  if (parts.readings && readings.data != nullptr) {
+    bytes += size_of(readings.type) * readings.rows * readings.cols;
+  }
+  return bytes;
+}
+
+void FrameCopy::assign(const SolvedFrame& frame, const FrameParts& parts) {
+  frame_ = {};
+  frame_.time_s = frame.time_s;
+  frame_.sequence = frame.sequence;
+  frame_.arrived = frame.arrived;
+  missing_.assign(frame.missing.begin(), frame.missing.end());
+  frame_.missing = missing_;
+  if (parts.forces) copy_forces(frame.forces, parts.all_planes);
+  if (parts.contacts && frame.contacts != nullptr) {
+    contacts_ = *frame.contacts;
+    frame_.contacts = &contacts_;
+  }
+  if (parts.readings && frame.readings.data != nullptr) copy_readings(frame.readings);
+}
+
+void FrameCopy::trim() {
+  if (contacts_.contacts.capacity() + contacts_.ended.capacity() <= kUsualContacts) return;
+  frame_.contacts = nullptr;
+  contacts_ = {};
+}
+
+void FrameCopy::copy_forces(const ForceFieldView& forces, bool all_planes) {
+  frame_.forces.rows = forces.rows;
+  frame_.forces.cols = forces.cols;
+  planes_.resize(planes_to_copy(all_planes));
+  for (std::size_t plane = 0; plane < planes_.size(); ++plane) {
+    const std::span<const float> values = plane_of(forces, plane);
+    planes_[plane].assign(values.begin(), values.end());
+    plane_of(frame_.forces, plane) = planes_[plane];
+  }
+  status_.assign(forces.status.begin(), forces.status.end());
+  frame_.forces.status = status_;
+}
+
+void FrameCopy::copy_readings(const FrameView& readings) {
+  const std::size_t row_bytes = size_of(readings.type) * readings.cols;
+  const std::size_t stride = size_of(readings.type) * readings.row_stride;
+  readings_.resize(row_bytes * readings.rows);
+  const auto* const source = static_cast<const std::byte*>(readings.data);
+  for (std::size_t row = 0; row < readings.rows; ++row) {
+    std::memcpy(readings_.data() + row * row_bytes, source + row * stride, row_bytes);
+  }
+  frame_.readings = {readings_.data(), readings.type, readings.rows, readings.cols, readings.cols};
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,140 @@
+#include "streams/sink/queued_sink.h"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <utility>
+
+namespace pillarfield {
+
+QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
+                       const QueueLimits& limits)
+    : name_(std::move(name)),
+      limits_(limits),
+      consumer_(std::move(consumer)),
+      slots_(std::max<std::size_t>(limits.frames, 1)),
+      thread_([this] { run(); }) {}
+
+QueuedSink::~QueuedSink() { end_thread(End::abandoned); }
+
+void QueuedSink::append(const SolvedFrame& frame) {
+  const FrameParts parts = consumer_->wants(frame);
+  if (!parts.any()) return;
+  const std::size_t bytes = bytes_of(frame, parts);
+  Slot* const slot = free_slot(bytes);
+  if (slot == nullptr) return;
+  try {
+    slot->copy.assign(frame, parts);
+  } catch (const std::exception&) {  // no memory
+    const std::scoped_lock lock(mutex_);
+    ++dropped_;
+    return;
+  }
+  slot->bytes = bytes;
+  {
+    const std::scoped_lock lock(mutex_);
+    ++waiting_;
+    waiting_bytes_ += bytes;
+  }
+  changed_.notify_one();
+}
+
+/// Returns null, and counts the frame as dropped, if it may not wait.
+QueuedSink::Slot* QueuedSink::free_slot(std::size_t bytes) {
+  const std::scoped_lock lock(mutex_);
+  const bool is_full =
+      waiting_ == slots_.size() || (waiting_ > 0 && waiting_bytes_ + bytes > limits_.bytes);
+  if (is_full || end_ != End::none || !failure_.empty()) {
+    ++dropped_;
+    return nullptr;
+  }
+  return &slots_[(first_ + waiting_) % slots_.size()];
+}
+
+void QueuedSink::report(const HealthReport& health) {
+  {
+    const std::scoped_lock lock(mutex_);
+    health_ = health;
+  }
+  changed_.notify_one();
+}
+
+void QueuedSink::finish() { end_thread(End::finished); }
+
+void QueuedSink::end_thread(End end) {
+  if (!thread_.joinable()) return;
+  {
+    const std::scoped_lock lock(mutex_);
+    end_ = end;
+  }
+  changed_.notify_one();
+  thread_.join();
+}
+
+LiveSinkStatistics QueuedSink::statistics() const {
+  LiveSinkStatistics statistics;
+  {
+    const std::scoped_lock lock(mutex_);
+    statistics.frames = frames_;
+    statistics.dropped = dropped_;
+    statistics.failure = failure_;
+  }
+  consumer_->add_to(statistics);
+  return statistics;
+}
+
+void QueuedSink::run() {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+/// Stops the sink; frames that wait are dropped.
+void QueuedSink::fail(const std::string& reason) {
+  const std::scoped_lock lock(mutex_);
+  if (failure_.empty()) failure_ = reason;
+  dropped_ += std::exchange(waiting_, 0);
+  waiting_bytes_ = 0;
+}
+
+void QueuedSink::work() {
+  constexpr std::chrono::milliseconds kIdle{100};
+  std::unique_lock lock(mutex_);
+  while (failure_.empty()) {
+    const bool has_work = changed_.wait_for(
+        lock, kIdle, [&] { return waiting_ > 0 || health_ || end_ != End::none; });
+    if (health_) {
+      const HealthReport health = *std::exchange(health_, std::nullopt);
+      lock.unlock();
+      consumer_->report(health);
+      lock.lock();
+    } else if (waiting_ > 0) {
+      consume_oldest(lock);
+    } else if (has_work) {
+      break;
+    } else {
+      lock.unlock();
+      consumer_->idle();
+      lock.lock();
+    }
+  }
+  const bool finishes = end_ == End::finished && failure_.empty();
+  lock.unlock();
+  if (finishes) consumer_->finish();
+}
+
+void QueuedSink::consume_oldest(std::unique_lock<std::mutex>& lock) {
+  Slot& slot = slots_[first_];
+  lock.unlock();
+  const bool arrived = consumer_->consume(slot.copy.frame());
+  slot.copy.trim();
+  lock.lock();
+  ++(arrived ? frames_ : dropped_);
+  first_ = (first_ + 1) % slots_.size();
+  --waiting_;
+  waiting_bytes_ -= slot.bytes;
+}
+
+}  // namespace pillarfield
