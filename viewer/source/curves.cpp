@@ -85,8 +85,8 @@ std::vector<CurvePoint> points_between(const std::deque<CurvePoint>& points, dou
   const auto last = std::ranges::upper_bound(points, to_s, {}, &CurvePoint::time_s);
   auto begin = static_cast<std::size_t>(first - points.begin());
   auto end = static_cast<std::size_t>(last - points.begin());
-  begin -= begin > 0 ? 1 : 0;
-  end += end < points.size() ? 1 : 0;
+  if (begin > 0) --begin;
+  if (end < points.size()) ++end;
   return begin < end ? thinned_points(points, begin, end, most) : std::vector<CurvePoint>{};
 }
 

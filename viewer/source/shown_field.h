@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,6 +29,8 @@ struct ShownField {
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;
   std::shared_ptr<const ShownContacts> contacts = {};  ///< null while contacts are off
+  std::shared_ptr<const ShownField> peak = {};         ///< see PeakHold; null while it is off
+  std::optional<std::chrono::nanoseconds> arrived = {};  ///< from a sensor, std::steady_clock
 };
 
 }  // namespace pillarfield::viewer

@@ -155,7 +155,7 @@ class PanelSheet : public testing::Test {
   gpu::Instance instance_{{}, true};
   gpu::Device device_{instance_, {}};
   MadeField made_;
-  Player player_{std::make_unique<OneField>(made_)};
+  FilePlayer player_{std::make_unique<OneField>(made_)};
 };
 
 std::size_t colours_in(const Pixels& pixels) {

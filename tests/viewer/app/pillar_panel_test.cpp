@@ -80,7 +80,7 @@ class PillarPanel : public testing::Test {
   ImGuiContext* context_;
   float side_ = 0;
   MadeField made_;
-  Player player_{std::make_unique<NoFields>(made_)};
+  FilePlayer player_{std::make_unique<NoFields>(made_)};
   AppState state_;
 };
 
