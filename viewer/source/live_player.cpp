@@ -96,7 +96,8 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   void run();
   void run_pipeline();
   void take_tare(const StreamedFrame& frame);
-  [[nodiscard]] ShownField field_of(const SolvedFrame& frame) const;
+  [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
+  [[nodiscard]] bool waits_for_display(LiveTime now) const;
   void publish(const SolvedFrame& frame);
   void wake_display();
 
@@ -114,6 +115,7 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   PeakHold peak;
   ObjectPool<LiveField> fields;
   LiveTime copy_time{0};
+  std::optional<SolvedFrame> skipped;  ///< the frame solved last, if it was not published
   bool tracks = false;
   SenselWatch watch;
 
@@ -192,6 +194,8 @@ void LivePlayer::State::run_pipeline() {
 }
 
 Arrival LivePlayer::State::next(StreamedFrame& frame, std::chrono::nanoseconds timeout) {
+  // Without frames in flight: the memory of the last one is not used again yet.
+  if (timeout.count() > 0 && skipped) publish(*std::exchange(skipped, std::nullopt));
   const Arrival arrival = stream->next(frame, timeout);
   {
     const std::scoped_lock lock(mutex);
@@ -230,12 +234,12 @@ void LivePlayer::State::tell(std::string words) {
   ++messages;
 }
 
-ShownField LivePlayer::State::field_of(const SolvedFrame& frame) const {
+ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t index) const {
   ShownField field;
   field.forces = frame.forces;
   field.raw = frame.readings;
   field.time_s = live_seconds(frame.arrived - start);
-  field.index = solved;
+  field.index = index;
   field.arrived = frame.arrived;
   if (plan.estimator == Estimator::direct) field.direct_point = plan.segment_point;
   field.shear_coefficient =
@@ -249,29 +253,33 @@ void LivePlayer::State::append(const SolvedFrame& frame) {
     const std::scoped_lock lock(recording_mutex);
     if (recording != nullptr) recording->append(frame);
   }
-  curves->add(field_of(frame));
+  curves->add(field_of(frame, solved));
   if (wants_peak) {
     if (peak_begins.exchange(false)) peak.reset();
     peak.add(frame.forces);
   }
-  if (!paused) publish(frame);
   ++solved;
+  skipped.reset();
+  if (!paused && waits_for_display(begin)) skipped = frame;
+  if (!paused && !skipped) publish(frame);
   const std::scoped_lock lock(mutex);
   times.add(begin, live_now());
 }
 
-/// Copies the frame for the display unless a field waits that is younger than the time of a copy.
+/// True if a field waits that is younger than the time of two copies.
+bool LivePlayer::State::waits_for_display(LiveTime now) const {
+  const std::scoped_lock lock(mutex);
+  return waiting != nullptr && now < waiting_since + 2 * copy_time;
+}
+
+/// Copies the frame solved last for the display.
 void LivePlayer::State::publish(const SolvedFrame& frame) {
   const LiveTime begin = live_now();
-  {
-    const std::scoped_lock lock(mutex);
-    if (waiting != nullptr && begin < waiting_since + 2 * copy_time) return;
-  }
   const std::shared_ptr<LiveField> copy = fields.acquire();
   if (copy == nullptr) return;
   copy->planes.copy(frame.forces);
   copy_readings(frame.readings, copy->readings);
-  auto field = std::make_unique<ShownField>(field_of(frame));
+  auto field = std::make_unique<ShownField>(field_of(frame, solved - 1));
   field->forces = copy->planes.view();
   field->raw = copy->readings.view();
   field->pages = copy->planes.pages();
