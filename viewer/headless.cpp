@@ -1,6 +1,7 @@
 #include "viewer/headless.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +13,7 @@
 #include "pillarfield/printable.h"
 #include "viewer/app/export/export.h"
 #include "viewer/app/field_place.h"
-#include "viewer/app/loaded_source.h"
+#include "viewer/app/source/loaded_source.h"
 #include "viewer/render/renderer.h"
 #include "viewer/render/scene.h"
 
@@ -144,12 +145,13 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  const auto producer = open_producer(options.source, producer_options(options));
+  const bool on_terminal = isatty(STDERR_FILENO) == 1;
+  const auto producer =
+      open_producer(options.source, producer_options(options, [=](const std::string& line) {
+                      if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
+                    }));
   const SourceInfo& source = producer->info();
-  for (const std::string& warning : source.warnings) {
-    fmt::print(stderr, "pillarfield-viewer: {}\n",
-               printable(fmt::format("{}: {}", source.name, warning)));
-  }
+  fmt::print(stderr, "{}", warning_lines(source));
   const FrameRange span = frames_of(options, *producer);
   const Paths pictures = png_names(options, span, source.frames);
   check_exports(options, pictures, replace);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "pillarfield/live.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::viewer {
@@ -18,8 +19,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 constexpr const char* kFooter = R"(
-SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solved while you watch, or
-a file of force fields from `pillarfield solve`. Keys and mouse: press ? in the window.
+SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solved while you watch;
+a file of force fields from `pillarfield solve`; or a sensor: udp:ADDRESS:PORT, shm:NAME,
+serial:DEVICE, or - for standard input. Keys and mouse: press ? in the window.
 
 Try:  pillarfield-viewer scenes/demo.toml
       pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png
@@ -200,6 +202,13 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
           "--png, --video and --csv need --headless; the window has keys for them");
   require(!options.video.empty() || (!options.fps && options.speed == 1),
           "--fps and --speed need --video");
+  require(!options.headless || !options.source.empty(), "--headless needs a source");
+  require(options.beside.empty() || !options.truth, "a second source and --truth exclude each other");
+  require(options.beside != "-", "only the first source can be standard input");
+  require(!options.headless || (options.beside.empty() && !options.truth),
+          "--headless draws one source, without --truth");
+  require(!options.headless || !is_live_source(options.source.string()),
+          "a sensor needs the window; record it with 'pillarfield stream --record' first");
   require(!options.headless || writes,
           "--headless needs something to write: --png, --video or --csv");
 }
@@ -211,8 +220,14 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                "pillarfield-viewer");
   app.set_version_flag("--version", kVersion, "Print the version and exit");
   app.footer(kFooter);
-  app.add_option("source", options.source, "Scene, recording, Tekscan export or force fields")
-      ->required();
+  app.add_option("source", options.source,
+                 "Scene, recording, Tekscan export, force fields or live source [start page]");
+  app.add_option("beside", options.beside, "A second source, shown beside the first");
+  app.add_flag("--truth", options.truth, "Show the true forces of a simulation beside those solved");
+  app.add_option("--counts-per-newton", options.counts_per_newton, "Response of a live sensor")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--calibration", options.calibration, "Calibration file of a live sensor")
+      ->check(CLI::ExistingFile);
   app.add_flag("--trust-input", options.trust_input,
                "Read HDF5 files without probing them in a separate process first");
   add_texts(app, options);

@@ -11,7 +11,11 @@ namespace pillarfield::viewer {
 
 /// The command line.
 struct Options {
-  std::filesystem::path source;
+  std::filesystem::path source;  ///< a file, or a live source; empty: the start page
+  std::filesystem::path beside;  ///< a second source, shown at the right; empty: none
+  bool truth = false;            ///< the true forces beside those solved
+  std::optional<double> counts_per_newton;  ///< of a sensor
+  std::filesystem::path calibration;        ///< of a sensor
   bool trust_input = false;
   std::string device;  ///< OpenCL device that solves
   std::string gpu;     ///< Vulkan device that draws
@@ -54,6 +58,14 @@ struct Options {
 /// Parses the command line; prints --help and --version. Returns the exit status if the program
 /// must end.
 [[nodiscard]] std::optional<int> parse_options(int argc, char** argv, Options& options);
+
+/// Settings of a picture from the options, without what is fitted to a source: ranges, lengths of
+/// arrows, the view. Throws Error where the source lacks the quantity.
+[[nodiscard]] RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
+                                             double scale);
+
+/// A range from the displayed unit to that of the value.
+[[nodiscard]] Range in_unit_of(const Range& shown, Quantity quantity);
 
 /// Settings of the first picture from the options, with defaults fitted to up to 16 evenly spaced
 /// frames; the view is not set. Throws Error where the source lacks the quantity.

@@ -53,11 +53,6 @@ CurveSums curve_sums(const ForceFieldView& forces, const PillarRect& rect, doubl
   return sums;
 }
 
-bool equal(const PillarRect& a, const PillarRect& b) {
-  return a.row_begin == b.row_begin && a.row_end == b.row_end && a.col_begin == b.col_begin &&
-         a.col_end == b.col_end;
-}
-
 std::uint64_t next_index(const std::deque<CurvePoint>& points) {
   return points.empty() ? 0 : points.back().index + 1;
 }
@@ -117,7 +112,7 @@ void Curves::set_rects(std::span<const PillarRect> rects) {
   std::vector<Curve> next;
   for (const PillarRect& rect : rects) {
     const auto old = std::ranges::find_if(
-        curves_, [&](const Curve& curve) { return equal(curve.rect, rect); });
+        curves_, [&](const Curve& curve) { return curve.rect == rect; });
     next.push_back(old == curves_.end() ? Curve{rect, {}} : std::move(*old));
   }
   curves_ = std::move(next);
@@ -184,7 +179,7 @@ std::vector<CurvePoint> Curves::of(const PillarRect& rect, double from_s, double
                                    std::size_t most) const {
   const std::scoped_lock lock(mutex_);
   const auto found =
-      std::ranges::find_if(curves_, [&](const Curve& curve) { return equal(curve.rect, rect); });
+      std::ranges::find_if(curves_, [&](const Curve& curve) { return curve.rect == rect; });
   if (found == curves_.end()) return {};
   return points_between(found->points, from_s, to_s, most);
 }
