@@ -13,7 +13,7 @@ namespace pillarfield::viewer {
 namespace {
 
 /// open_producer() probes every file that is not trusted.
-constexpr ReadOptions kProbed = {.trust = true};
+const ReadOptions kProbed = {.trust = true};
 
 std::string solver_of(const ForceFileInfo& info) {
   if (info.estimator.empty()) return "not known";

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "io/extension.h"
 #include "pillarfield/recording.h"
 #include "streams/sink/queued_sink.h"
 
@@ -65,9 +66,12 @@ class RecordingConsumer final : public SinkConsumer {
 }  // namespace
 
 std::unique_ptr<LiveSink> create_live_file(const std::string& path, const LiveSinkInfo& info) {
-  auto file = create_force_sink(path, info.forces, info.replace);
+  ForceFileInfo forces = info.forces;
+  const std::string extension = extension_of(path);
+  if (extension != ".h5" && extension != ".hdf5") forces.contacts.reset();  // Forces alone.
+  auto file = create_force_sink(path, forces, info.replace);
   return std::make_unique<QueuedSink>(path,
-                                      std::make_unique<FileConsumer>(std::move(file), info.forces));
+                                      std::make_unique<FileConsumer>(std::move(file), forces));
 }
 
 std::unique_ptr<LiveSink> create_live_recording(const std::string& path, const LiveSinkInfo& info) {

@@ -1,10 +1,11 @@
-#include "cli/options/nearest_word.h"
+#include "base/nearest_word.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 
-namespace pillarfield::cli {
+namespace pillarfield {
 namespace {
 
 /// The optimal string alignment distance.
@@ -28,7 +29,7 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
+std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   constexpr std::size_t kLongest = 40;  // The table is quadratic, and all names are shorter.
   if (word.size() > kLongest) return {};
   std::string nearest;
@@ -40,7 +41,12 @@ std::string suggestion(std::string_view word, const std::vector<std::string>& ca
     too_many = edits;
     nearest = candidate;
   }
+  return nearest;
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
+  const std::string nearest = nearest_word(word, candidates);
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
-}  // namespace pillarfield::cli
+}  // namespace pillarfield

@@ -1,0 +1,227 @@
+"""`pillarfield stream`: frames of files and of sockets through the solver to files and sockets."""
+
+import json
+import os
+import signal
+import socket
+import stat
+import struct
+import subprocess
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from command import BALL, PROGRAM, CommandTest, run
+
+PATIENCE_S = 60
+
+
+def wait_for(condition, what):
+    """Waits until condition() is true."""
+    end = time.monotonic() + PATIENCE_S
+    while not (value := condition()):
+        assert time.monotonic() < end, f"{what} did not come"
+        time.sleep(0.01)
+    return value
+
+
+class Control:
+    """A client of the control socket."""
+
+    def __init__(self, path):
+        self.socket = socket.socket(socket.AF_UNIX)
+        wait_for(path.exists, "the control socket")
+        self.socket.connect(str(path))
+        self.socket.settimeout(PATIENCE_S)
+        self.file = self.socket.makefile("rw")
+
+    def say(self, line):
+        self.file.write(line + "\n")
+        self.file.flush()
+        return json.loads(self.file.readline())
+
+    def close(self):
+        self.file.close()
+        self.socket.close()
+
+
+class StreamTest(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.folder / "ball.toml"
+        self.scene.write_text(BALL)
+        self.recording = self.folder / "ball.h5"
+        run("simulate", self.scene, "-o", self.recording)
+        self.socket = self.folder / "control"
+
+    def started(self, *arguments, **options):
+        """Starts a stream that the test ends."""
+        process = subprocess.Popen([PROGRAM, "stream", *map(str, arguments)], text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def control(self):
+        control = Control(self.socket)
+        self.addCleanup(control.close)
+        return control
+
+    def ended(self, process):
+        """The summary of a stream that ends by itself."""
+        out, err = process.communicate(timeout=PATIENCE_S)
+        self.assertEqual((process.returncode, err), (0, ""))
+        lines = [json.loads(line) for line in out.splitlines()]
+        self.assertEqual([list(line)[0] for line in lines[-1:]], ["summary"])
+        return lines[-1]["summary"]
+
+    def assert_same_forces(self, actual, expected):
+        with h5py.File(actual) as a, h5py.File(expected) as b:
+            for plane in ("shear_x", "shear_y", "normal", "status"):
+                np.testing.assert_array_equal(a["force"][plane][:], b["force"][plane][:])
+
+
+class Replay(StreamTest):
+    def test_a_recording_gives_the_forces_of_solve_and_its_own_frames(self):
+        forces, copy = self.folder / "live.h5", self.folder / "copy.h5"
+        csv = self.folder / "live.csv"
+        summary = self.ended(self.started(self.recording, "--to", forces, "--to", csv, "--record",
+                                          copy, "--json"))
+        self.assertEqual((summary["solved"], summary["lost"]), (6, 0))
+        self.assertEqual([(sink["frames"], sink["dropped"]) for sink in summary["sinks"]],
+                         3 * [(6, 0)])
+        for name in ("solved.h5", "solved.csv"):
+            run("solve", self.recording, "-o", self.folder / name)
+        self.assert_same_forces(forces, self.folder / "solved.h5")
+        self.assertEqual(csv.read_text(), (self.folder / "solved.csv").read_text())
+        with h5py.File(copy) as a, h5py.File(self.recording) as b:
+            np.testing.assert_array_equal(a["frames/raw"][:], b["frames/raw"][:])
+            np.testing.assert_array_equal(a["frames/time"][:], b["frames/time"][:])
+
+    def test_a_scene_repeats_until_its_limit(self):
+        summary = self.ended(self.started(self.scene, "--repeat", "--rate", 400, "--frames", 50,
+                                          "--json"))
+        self.assertEqual(summary["solved"], 50)
+        self.assertGreater(summary["seconds"], 49 / 400 * 0.9)
+        self.assertLessEqual(summary["latency_ms"]["median"], summary["latency_ms"]["p99"])
+
+    def test_an_interrupt_completes_the_files(self):
+        forces = self.folder / "live.h5"
+        process = self.started(self.scene, "--repeat", "--to", forces, "--control", self.socket,
+                               "--json")
+        control = self.control()
+        wait_for(lambda: control.say("health")["health"]["solved"] > 5, "six frames")
+        process.send_signal(signal.SIGINT)
+        solved = self.ended(process)["solved"]
+        with h5py.File(forces) as file:
+            self.assertEqual(len(file["force/normal"]), solved)
+
+    def test_a_killed_run_leaves_the_flushed_frames_of_its_recording(self):
+        copy = self.folder / "copy.h5"
+        process = self.started(self.recording, "--repeat", "--rate", 500, "--record", copy,
+                               "--control", self.socket)
+        control = self.control()
+        wait_for(lambda: control.say("health")["health"]["seconds"] > 2.5, "the third second")
+        process.kill()
+        process.wait()
+        part = self.folder / "copy.h5.part"
+        with h5py.File(self.recording) as file:
+            frames = file["frames/raw"][:]
+        run("solve", part, "-o", self.folder / "again.h5", "-q")
+        with h5py.File(part, "r", swmr=True) as file:
+            kept = file["frames/raw"][:]
+        self.assertGreater(len(kept), 400)
+        for index, frame in enumerate(kept):
+            np.testing.assert_array_equal(frame, frames[index % 6])
+
+    def test_refusals(self):
+        for arguments, names in [
+                (("nothing.h5",), ("nothing.h5",)),
+                ((self.recording, "--to", "nowhere"), ("nowhere", ".mcap")),
+                ((self.recording, "--to", "udp:127.0.0.1:99999"), ("99999",)),
+                ((self.recording, "--control", self.recording), ("no socket",)),
+                ((self.recording, "--record", self.recording), (str(self.recording),)),
+                ((self.recording, "--follow-baseline", 3), ("--rate",))]:
+            self.assert_fails("stream", *arguments, names=names)
+
+
+class ControlLines(StreamTest):
+    def test_every_line(self):
+        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
+        control = self.control()
+        self.assertEqual(stat.S_IMODE(os.stat(self.socket).st_mode) & 0o077, 0)
+        self.assertEqual(control.say("pause"), {"ok": True, "done": "pause"})
+        solved = control.say("health")["health"]["solved"]
+        before = control.say("health")["health"]["frames"]
+        wait_for(lambda: control.say("health")["health"]["frames"] > before, "another frame")
+        health = control.say("health")["health"]
+        self.assertLessEqual(health["solved"], solved + 2)  # Two were in flight.
+        self.assertTrue(health["paused"])
+        control.say("resume")
+        wait_for(lambda: control.say("health")["health"]["solved"] > solved + 5, "further frames")
+        self.assertIn("touched", control.say("tare 0.1")["error"])
+        self.assertEqual(control.say("tare 0.1 preloaded"), {"ok": True, "done": "tare"})
+        for line in ("tare -1", "tare nan", "tare 61", "record", "record stop", "hold", "pause now"):
+            self.assertFalse(control.say(line)["ok"], line)
+        copy = self.folder / "copy.h5"
+        self.assertTrue(control.say(f"record {copy}")["ok"])
+        self.assertFalse(control.say(f"record {self.folder / 'other.h5'}")["ok"])
+        wait_for(lambda: control.say("health")["health"]["sinks"][0]["frames"] > 3, "a recording")
+        self.assertTrue(control.say("record stop")["ok"])
+        with h5py.File(copy) as file:
+            self.assertGreater(len(file["frames/raw"]), 3)
+            self.assertEqual(file["calibration/tare"].shape, (40, 40))
+        self.assertTrue(control.say("quit")["ok"])
+        self.ended(process)
+        self.assertFalse(self.socket.exists())
+
+    def test_a_new_tare_takes_the_load_away(self):
+        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json",
+                               "--threshold", 5)
+        control = self.control()
+        self.assertGreater(wait_for(lambda: control.say("health")["health"]["contacts"],
+                                    "a contact"), 0)
+        self.assertTrue(control.say("tare 0.2 preloaded")["ok"])
+        wait_for(lambda: control.say("health")["health"]["contacts"] == 0, "an idle skin")
+        control.say("quit")
+        self.ended(process)
+
+    def test_rubbish_and_many_clients_do_no_harm(self):
+        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
+        control = self.control()
+        others = [Control(self.socket) for _ in range(12)]
+        others[0].socket.sendall(b"\xff\x00" * 20000)
+        others[1].socket.sendall(b"health\n" * 5000)  # and never reads
+        for other in others[2:]:
+            other.close()
+        wait_for(lambda: control.say("health")["health"]["solved"] > 20, "frames")
+        control.say("quit")
+        self.ended(process)
+        for other in others[:2]:
+            other.close()
+
+    def test_a_socket_in_use_is_refused_and_a_left_one_replaced(self):
+        process = self.started(self.scene, "--repeat", "--control", self.socket, "--json")
+        self.control().say("health")
+        self.assert_fails("stream", self.recording, "--control", self.socket, names=("listens",))
+        process.kill()
+        process.wait()
+        self.assertTrue(self.socket.exists())
+        self.ended(self.started(self.recording, "--control", self.socket, "--json"))
+
+    def test_standard_input(self):
+        process = self.started(self.scene, "--repeat", "--control", "-", "--json",
+                               stdin=subprocess.PIPE)
+        process.stdin.write("pause\nquit\n")
+        process.stdin.flush()
+        out = process.communicate(timeout=PATIENCE_S)[0]
+        answers = [json.loads(line) for line in out.splitlines()]
+        self.assertIn({"ok": True, "done": "quit"}, answers)
+
+
+if __name__ == "__main__":
+    unittest.main()
