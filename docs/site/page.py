@@ -78,7 +78,7 @@ def headed(path, lines):
         anchor = slug(heading[2])
         seen[anchor] = seen.get(anchor, -1) + 1
         name = label(path, anchor + (f"-{seen[anchor]}" if seen[anchor] else ""))
-        if heading[1] == "#":
+        if len(seen) == 1:  # the title
             name = page_name(path)
         yield line if name == "index" else f"{line[:-1]} {{#{name}}}\n", True
 
