@@ -67,19 +67,26 @@ def is_code(lines):
         before = line
 
 
-def headed(path, lines):
-    """The lines with the anchors of headings, and whether each is code or a heading."""
+def anchors(lines):
+    """The anchor of each line: None where it is no heading."""
     seen = {}
     for line, code in zip(lines, is_code(lines)):
-        heading = None if code else re.fullmatch(r"(#+) (.*)\n", line)
-        if heading is None:
+        heading = None if code else re.fullmatch(r"#+ (.*)\n", line)
+        anchor = slug(heading[1]) if heading else None
+        count = seen.get(anchor, 0)
+        seen[anchor] = count + 1
+        yield f"{anchor}-{count}" if anchor and count else anchor
+
+
+def headed(path, lines):
+    """The lines with the anchors of headings, and whether each is code or a heading."""
+    has_title = False
+    for line, code, anchor in zip(lines, is_code(lines), anchors(lines)):
+        if anchor is None:
             yield line, code
             continue
-        anchor = slug(heading[2])
-        seen[anchor] = seen.get(anchor, -1) + 1
-        name = label(path, anchor + (f"-{seen[anchor]}" if seen[anchor] else ""))
-        if len(seen) == 1:  # the title
-            name = page_name(path)
+        name = label(path, anchor) if has_title else page_name(path)
+        has_title = True
         yield line if name == "index" else f"{line[:-1]} {{#{name}}}\n", True
 
 
