@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <optional>
 
 #include "cli/commands.h"
@@ -26,7 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// facts_of() probes a file once, before it is opened several times.
-constexpr ReadOptions kProbed = {.trust = true};
+const ReadOptions kProbed = {.trust = true};
 
 /// Returns a value as text: the members of a list, and of an object with their names.
 std::string text_of(const Json& value) {
@@ -109,8 +110,8 @@ void add_skin(Json& facts, const Skin& skin) {
   add_surface(facts, skin.surface);
 }
 
-Json facts_of_frames(const std::string& file) {
-  const std::unique_ptr<FrameSource> source = open_frames(file, kProbed);
+Json facts_of_frames(const std::string& file, const ReadOptions& options) {
+  const std::unique_ptr<FrameSource> source = open_frames(file, options);
   Json facts = {{"format", source->format()}, {"frames", source->frames()}};
   facts["sensel_type"] = name_of(source->sensel_type());
   add_skin(facts, source->skin());
@@ -118,7 +119,8 @@ Json facts_of_frames(const std::string& file) {
     // Also checks that the readings can be read.
     FrameBuffer frame(source->sensel_type(), source->skin().rows, source->skin().cols);
     const double first = source->read(0, frame);
-    facts["seconds"] = source->read(source->frames() - 1, frame) - first;
+    const double seconds = source->read(source->frames() - 1, frame) - first;
+    if (std::isfinite(seconds)) facts["seconds"] = seconds;
   }
   facts["calibration"] = plane_names(source->calibration());
   add_effects(facts, source->calibration().effects);
@@ -204,9 +206,10 @@ Json facts_of_scene(const std::string& file) {
 
 Json facts_of(const std::string& file, const ReadOptions& options) {
   if (file.ends_with(".toml")) return facts_of_scene(file);
+  if (!options.dataset.empty()) return facts_of_frames(file, options);
   if (!options.trust) probe_file(file);
   if (is_calibration_file(file, kProbed)) return facts_of_calibration(file);
-  return is_force_file(file, kProbed) ? facts_of_forces(file) : facts_of_frames(file);
+  return is_force_file(file, kProbed) ? facts_of_forces(file) : facts_of_frames(file, options);
 }
 
 void print_device_error() {

@@ -210,7 +210,7 @@ void warn_of_tare(const SolveOptions& options, const FrameSource& source, const 
   }
   fmt::print(stderr,
              "{}: {} of all pillars are in contact and there is no tare; measure one with "
-             "'pillarfield calibrate tare'\n",
+             "'pillarfield calibrate tare', or in frames without load with --tare-frames\n",
              printable(options.input), percent(regions.in_contact(), regions.all()));
 }
 
@@ -242,7 +242,8 @@ void solve(const SolveOptions& given) {
   if (table) outputs.push_back(*table);
   check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
                 options.replace);
-  const std::unique_ptr<FrameSource> source = open_frames(options.input, options.plan.read);
+  const std::unique_ptr<FrameSource> source =
+      open_frames(options.input, frame_options(options.plan));
   print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
+#include "calibration/wire_correction.h"
 #include "pillarfield/error.h"
+#include "pillarfield/tare.h"
 
 namespace pillarfield {
 
@@ -28,6 +31,102 @@ void FileSource::require_fitting(const FrameBuffer& frame) const {
               fmt::format("its frames do not fit a buffer of {} x {} {}", view.rows, view.cols,
                           name_of(view.type)),
               fmt::format("make it {} x {} {}", skin_.rows, skin_.cols, name_of(type_)));
+}
+
+void FileSource::take_constants(const StoredSkin& stored, const ReadOptions& options) {
+  const auto take = [&](const char* name, const std::optional<double>& given,
+                        const std::optional<double>& constant, double& value) {
+    if (given || constant) {
+      value = given ? *given : *constant;
+    } else {
+      warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, value));
+    }
+  };
+  take("sensel_pitch_mm", options.sensel_pitch_mm, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
+  take("counts_per_newton", options.counts_per_newton, stored.counts_per_newton,
+       skin_.counts_per_newton);
+  if (options.tare_frames == 0) {
+    take("threshold_counts", options.threshold_counts, stored.threshold_counts,
+         skin_.threshold_counts);
+  }
+  skin_.full_scale_counts =
+      options.full_scale_counts ? options.full_scale_counts : stored.full_scale_counts;
+  skin_.power_law = stored.power_law;
+}
+
+void FileSource::assume_times(const ReadOptions& options, const char* failure) {
+  if (options.rate_hz && !(*options.rate_hz > 0 && std::isfinite(*options.rate_hz))) {
+    throw Error(path_.string(), fmt::format("a rate of {} Hz is given", *options.rate_hz),
+                "it must be above zero");
+  }
+  rate_hz_ = options.rate_hz;
+  if (rate_hz_ || options.untimed || frames_ <= 1) return;
+  throw Error(path_.string(), failure, "give their rate with --rate HZ");
+}
+
+double FileSource::assumed_time(std::uint64_t index) const {
+  if (rate_hz_) return static_cast<double>(index) / *rate_hz_;
+  return frames_ <= 1 ? 0 : std::numeric_limits<double>::quiet_NaN();
+}
+
+void FileSource::require_no_rate(const ReadOptions& options) const {
+  if (!options.rate_hz) return;
+  throw Error(path_.string(), "has times of its frames", "leave out --rate");
+}
+
+void FileSource::take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
+                               FrameBuffer& frame) const {
+  const auto inexact = convert_to_readings(type, numbers, skin_.sensels(), frame.bytes().data());
+  if (!inexact) return;
+  throw Error(path_.string(),
+              fmt::format("frame {}, row {}, column {} holds an {} beyond ±16777216", index,
+                          *inexact / skin_.cols, *inexact % skin_.cols, name_of(type)),
+              "store readings as float32");
+}
+
+void FileSource::measure_tare(const ReadOptions& options) {
+  if (options.tare_frames > frames_) {
+    throw Error(path_.string(), fmt::format("has {} frames", frames_),
+                fmt::format("give a --tare-frames below {}", options.tare_frames));
+  }
+  WireCorrection correct(skin_, type_, calibration_.effects.wires);
+  FrameStatistics unloaded(path_.string(), correct.skin(), correct.type());
+  FrameBuffer frame(type_, skin_.rows, skin_.cols);
+  for (std::uint64_t index = 0; index < options.tare_frames; ++index) {
+    read(index, frame);
+    unloaded.add(correct(frame.view()));
+  }
+  SkinCalibration before = blank_calibration(skin_);
+  before.planes = calibration_;
+  before.counts_per_newton = skin_.counts_per_newton;
+  before.power_law = skin_.power_law;
+  const TareResult tare = take_tare(before, unloaded, {});
+  apply(tare.calibration, skin_, calibration_);
+  if (options.threshold_counts) skin_.threshold_counts = *options.threshold_counts;
+  warnings_.push_back(fmt::format(
+      "Tare and noise are those of the first {} frames; readings above {:.4g} counts are usable.",
+      options.tare_frames, skin_.threshold_counts));
+  if (tare.findings.empty()) return;
+  warnings_.push_back(
+      fmt::format("{} sensels read as faulty in the first {} frames and are masked.",
+                  tare.findings.size(), options.tare_frames));
+}
+
+void RisingTimes::add(std::span<const double> times_s) {
+  for (const double time_s : times_s) {
+    if (!std::isfinite(time_s)) {
+      throw Error(place_, fmt::format("frame {} has the time {}", frames_, time_s),
+                  "store finite seconds");
+    }
+    if (time_s <= before_s_) {
+      throw Error(place_,
+                  fmt::format("frame {} has the time {}, and the frame before it {}", frames_,
+                              time_s, before_s_),
+                  "store times that rise from frame to frame");
+    }
+    before_s_ = time_s;
+    ++frames_;
+  }
 }
 
 void FileSource::warn_of_size() {

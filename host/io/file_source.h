@@ -1,9 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <limits>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "io/plain/number_array.h"
+#include "io/stored_skin.h"
 #include "pillarfield/recording.h"
 
 namespace pillarfield {
@@ -20,11 +26,28 @@ class FileSource : public FrameSource {
   [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
   void read_truth(std::uint64_t index, ForceField& truth) override;
 
+  /// ReadOptions::tare_frames. Throws Error if the file has fewer, or as take_tare() does.
+  void measure_tare(const ReadOptions& options);
+
  protected:
   FileSource(std::filesystem::path path, std::string format);
 
   void require_frame(std::uint64_t index) const;
   void require_fitting(const FrameBuffer& frame) const;
+
+  /// Sets the constants of the skin: those of the options, else those of the file, else the
+  /// defaults, with a warning.
+  void take_constants(const StoredSkin& stored, const ReadOptions& options);
+
+  /// Sets the times of a file that stores none. Throws Error if they are used and no rate is given.
+  void assume_times(const ReadOptions& options, const char* failure = "has no times of its frames");
+  [[nodiscard]] double assumed_time(std::uint64_t index) const;
+  /// Throws Error if a rate is given to a file with times.
+  void require_no_rate(const ReadOptions& options) const;
+
+  /// Converts the numbers of frame `index`. Throws Error if float32 does not hold one exactly.
+  void take_readings(NumberType type, const std::byte* numbers, std::uint64_t index,
+                     FrameBuffer& frame) const;
 
   /// Warns of an odd last row or column, which has no pillars, and of a file without frames.
   void warn_of_size();
@@ -36,6 +59,23 @@ class FileSource : public FrameSource {
   std::uint64_t frames_ = 0;
   Calibration calibration_;
   std::vector<std::string> warnings_;
+
+ private:
+  std::optional<double> rate_hz_;
+};
+
+/// Checks that the times of all frames are finite and rise.
+class RisingTimes {
+ public:
+  explicit RisingTimes(std::string place) : place_(std::move(place)) {}
+
+  /// Adds the times of the next frames. Throws Error, naming the frame, if one does not rise.
+  void add(std::span<const double> times_s);
+
+ private:
+  std::string place_;
+  std::uint64_t frames_ = 0;
+  double before_s_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace pillarfield

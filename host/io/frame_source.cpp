@@ -11,9 +11,29 @@ namespace pillarfield {
 
 // Each is defined beside its source.
 SourceFormat tekscan_format();
+SourceFormat npy_format();
+SourceFormat npz_format();
+SourceFormat table_format();
+
+namespace {
+
+std::unique_ptr<FileSource> open_source(const std::filesystem::path& path,
+                                        const ReadOptions& options) {
+  const DetectedFormat detected = detect_format(path);
+  if (detected.kind == FileKind::hdf5) {
+    if (!options.trust) probe_frames(path, options);
+    return read_hdf5_frames(hdf5::open_to_read(path), options);
+  }
+  if (detected.frames != nullptr) return detected.frames->open(path, options);
+  std::string known = "an HDF5 recording";
+  for (const SourceFormat& format : source_formats()) known += std::string(" nor a ") + format.name;
+  throw Error(path.string(), "is neither " + known, "docs/formats.md describes them");
+}
+
+}  // namespace
 
 std::span<const SourceFormat> source_formats() {
-  static const std::array formats = {tekscan_format()};
+  static const std::array formats = {tekscan_format(), npy_format(), npz_format(), table_format()};
   return formats;
 }
 
@@ -24,15 +44,23 @@ const SourceFormat* source_format(std::string_view head) {
   return nullptr;
 }
 
+void refuse_dataset(const std::filesystem::path& path, const ReadOptions& options) {
+  if (options.dataset.empty() && options.times.empty()) return;
+  throw Error(path.string(), "has no named arrays",
+              options.dataset.empty() ? "leave out --times" : "leave out --dataset");
+}
+
+void refuse_size(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.frame_size) return;
+  throw Error(path.string(), "has the size of its frames", "leave out --shape");
+}
+
 std::unique_ptr<FrameSource> open_frames(const std::filesystem::path& path,
                                          const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  const DetectedFormat detected = detect_format(path);
-  if (detected.kind == FileKind::hdf5) return read_recording(open_probed(path, options));
-  if (detected.frames != nullptr) return detected.frames->open(path);
-  std::string known = "an HDF5 recording";
-  for (const SourceFormat& format : source_formats()) known += std::string(" nor a ") + format.name;
-  throw Error(path.string(), "is neither " + known, "docs/formats.md describes them");
+  std::unique_ptr<FileSource> source = open_source(path, options);
+  if (options.tare_frames > 0) source->measure_tare(options);
+  return source;
 }
 
 }  // namespace pillarfield

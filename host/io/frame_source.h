@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "pillarfield/recording.h"
+#include "io/file_source.h"
 
 namespace pillarfield {
 
@@ -15,12 +15,19 @@ struct SourceFormat {
   const char* name = "";  ///< "Tekscan ASCII export"
   /// Whether a file has the format, by its first 4096 bytes.
   bool (*recognises)(std::string_view head) = nullptr;
-  std::unique_ptr<FrameSource> (*open)(const std::filesystem::path& path) = nullptr;
+  std::unique_ptr<FileSource> (*open)(const std::filesystem::path& path,
+                                      const ReadOptions& options) = nullptr;
 };
 
 [[nodiscard]] std::span<const SourceFormat> source_formats();
 
 /// The format of a file by its first 4096 bytes; null if unknown.
 [[nodiscard]] const SourceFormat* source_format(std::string_view head);
+
+/// Throws Error if the options name an array, for a file that has only one.
+void refuse_dataset(const std::filesystem::path& path, const ReadOptions& options);
+
+/// Throws Error if the options give the size of a frame, for a file that has it.
+void refuse_size(const std::filesystem::path& path, const ReadOptions& options);
 
 }  // namespace pillarfield

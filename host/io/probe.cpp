@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <functional>
 #include <new>
 #include <utility>
 #include <vector>
@@ -29,11 +30,11 @@ constexpr char kReadable = 'k';
 constexpr char kRefused = 'e';
 constexpr char kNoMemory = 'm';
 
-void open_as_it_says(const std::filesystem::path& path) {
+void try_as_it_says(const std::filesystem::path& path) {
   hdf5::File file = hdf5::open_to_read(path, true);
   const std::string format = hdf5::read_text(file, file.id.get(), "format").value_or("");
   if (format == recording_format::kName) {
-    (void)read_recording(std::move(file));
+    (void)read_recording(std::move(file), {.untimed = true});
   } else if (format == force_format::kName) {
     try_forces(std::move(file));
   } else if (format == calibration_format::kName) {
@@ -41,10 +42,10 @@ void open_as_it_says(const std::filesystem::path& path) {
   }
 }
 
-std::string answer_about(const std::filesystem::path& path) {
+std::string answer_of(const std::function<void()>& attempt) {
   try {
     const hdf5::QuietErrors quiet;
-    open_as_it_says(path);
+    attempt();
     return {kReadable};
   } catch (const std::bad_alloc&) {
     return {kNoMemory};
@@ -86,18 +87,12 @@ int fork_within_hdf5() {
   return child;
 }
 
-}  // namespace
-
-hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options) {
-  if (!options.trust) probe_file(path);
-  return hdf5::open_to_read(path);
-}
-
-void probe_file(const std::filesystem::path& path) {
+/// Runs `attempt`, which opens the file, in a child process.
+void probe(const std::filesystem::path& path, const std::function<void()>& attempt) {
   const hdf5::QuietErrors quiet;
   if (kind_of(path) != FileKind::hdf5 || is_open_already(path)) return;
   const ChildEnd end =
-      run_in_child(path.string(), {}, fork_within_hdf5, [&] { return answer_about(path); });
+      run_in_child(path.string(), {}, fork_within_hdf5, [&] { return answer_of(attempt); });
   if (end.returned && end.text[0] == kReadable) return;
   // The text already names the place.
   if (end.returned && end.text[0] == kRefused) throw Error({}, end.text.substr(1));
@@ -112,6 +107,21 @@ void probe_file(const std::filesystem::path& path) {
               fmt::format("reading it crashes the HDF5 library (signal {}, {})", end.signal,
                           strsignal(end.signal)),
               kDamagedOrTrusted);
+}
+
+}  // namespace
+
+hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options) {
+  if (!options.trust) probe_file(path);
+  return hdf5::open_to_read(path);
+}
+
+void probe_file(const std::filesystem::path& path) {
+  probe(path, [&] { try_as_it_says(path); });
+}
+
+void probe_frames(const std::filesystem::path& path, const ReadOptions& options) {
+  probe(path, [&] { (void)read_hdf5_frames(hdf5::open_to_read(path, true), options); });
 }
 
 }  // namespace pillarfield

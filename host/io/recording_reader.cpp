@@ -2,15 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "io/file_source.h"
+#include "io/hdf5/dataset.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/links.h"
 #include "io/hdf5/number_type.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/misspelt_names.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "io/stored_surface.h"
@@ -21,7 +23,7 @@ namespace {
 
 class Recording final : public FileSource {
  public:
-  explicit Recording(hdf5::File file);
+  Recording(hdf5::File file, const ReadOptions& options);
 
   [[nodiscard]] bool has_truth() const override { return !truth_.empty(); }
   double time(std::uint64_t index) override;
@@ -30,26 +32,20 @@ class Recording final : public FileSource {
 
  private:
   void read_size();
-  void take_skin();
+  void take_skin(const ReadOptions& options);
+  void open_times();
+  void check_times(const ReadOptions& options);
   void open_truth();
   void count_frames();
   [[nodiscard]] std::string place(const char* object) const;
 
   hdf5::File file_;
   hdf5::StoredFrames raw_;
-  hdf5::StoredFrames time_;
-  std::vector<hdf5::StoredFrames> truth_;  // empty, or shear_x, shear_y, normal
+  NumberType number_;                       // of the readings
+  std::vector<std::byte> numbers_;          // of a frame, unless they are readings
+  std::optional<hdf5::StoredFrames> time_;  // unset: see assumed_time()
+  std::vector<hdf5::StoredFrames> truth_;   // empty, or shear_x, shear_y, normal
 };
-
-SenselType sensel_type_of(const hdf5::StoredFrames& raw, const std::filesystem::path& path) {
-  const std::string type = hdf5::name_of_type(raw.type());
-  for (const SenselType each : {SenselType::u8, SenselType::u16, SenselType::f32}) {
-    if (type == name_of(each)) return each;
-  }
-  throw Error(path.string(),
-              fmt::format("{} is {}, which is not a type of readings", raw.name(), type),
-              "store uint8, uint16 or float32");
-}
 
 void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::path& path) {
   if (frames.value_class() == H5T_FLOAT) return;
@@ -59,18 +55,41 @@ void require_floats(const hdf5::StoredFrames& frames, const std::filesystem::pat
       "store floats");
 }
 
-Recording::Recording(hdf5::File file) : FileSource(file.path, "recording"), file_(std::move(file)) {
+Recording::Recording(hdf5::File file, const ReadOptions& options)
+    : FileSource(file.path, "recording"), file_(std::move(file)) {
   hdf5::require_format(file_, recording_format::kName, recording_format::kVersion);
   raw_ = {file_, recording_format::kRaw, 2};
-  time_ = {file_, recording_format::kTime, 0};
-  require_floats(time_, path_);
-  type_ = sensel_type_of(raw_, path_);
+  open_times();
+  number_ = hdf5::number_type_of(raw_, file_);
+  type_ = sensel_type_for(number_);
   read_size();
-  take_skin();
+  take_skin(options);
   calibration_ = read_planes(file_, skin_, type_);
   open_truth();
   count_frames();
+  check_times(options);
   warn_of_size();
+  for (std::string& warning : misspelt_names(file_)) warnings_.push_back(std::move(warning));
+}
+
+void Recording::open_times() {
+  if (!hdf5::exists(file_, recording_format::kTime)) return;
+  time_.emplace(file_, recording_format::kTime, 0);
+  require_floats(*time_, path_);
+}
+
+void Recording::check_times(const ReadOptions& options) {
+  if (!time_) return assume_times(options, "has no /frames/time");
+  require_no_rate(options);
+  if (file_.probing) return;
+  constexpr std::uint64_t kBlock = 1U << 16U;
+  RisingTimes rising(place(recording_format::kTime));
+  std::vector<double> times_s;
+  for (std::uint64_t first = 0; first < frames_; first += kBlock) {
+    times_s.resize(std::min(kBlock, frames_ - first));
+    time_->get_all(first, times_s.size(), H5T_NATIVE_DOUBLE, times_s.data());
+    rising.add(times_s);
+  }
 }
 
 std::string Recording::place(const char* object) const {
@@ -89,20 +108,8 @@ void Recording::read_size() {
   skin_.cols = static_cast<std::uint32_t>(shape[1]);
 }
 
-void Recording::take_skin() {
-  const StoredSkin stored = read_skin(file_);
-  const auto take = [&](const char* name, const std::optional<double>& constant, double& value) {
-    if (constant) {
-      value = *constant;
-    } else {
-      warnings_.push_back(fmt::format("The file has no {}; {} is assumed.", name, value));
-    }
-  };
-  take(recording_format::kPitch, stored.sensel_pitch_mm, skin_.sensel_pitch_mm);
-  take(recording_format::kCountsPerNewton, stored.counts_per_newton, skin_.counts_per_newton);
-  take(recording_format::kThreshold, stored.threshold_counts, skin_.threshold_counts);
-  skin_.full_scale_counts = stored.full_scale_counts;
-  skin_.power_law = stored.power_law;
+void Recording::take_skin(const ReadOptions& options) {
+  take_constants(read_skin(file_), options);
   skin_.surface = read_surface(file_, skin_.pillar_layout());
   check(skin_, place(recording_format::kSkin).c_str());
 }
@@ -120,8 +127,9 @@ void Recording::open_truth() {
 }
 
 void Recording::count_frames() {
-  std::uint64_t most = std::max(raw_.frames(), time_.frames());
-  frames_ = std::min(raw_.frames(), time_.frames());
+  const std::uint64_t times = time_ ? time_->frames() : raw_.frames();
+  std::uint64_t most = std::max(raw_.frames(), times);
+  frames_ = std::min(raw_.frames(), times);
   for (const auto& plane : truth_) {
     most = std::max(most, plane.frames());
     frames_ = std::min(frames_, plane.frames());
@@ -141,12 +149,9 @@ void Recording::count_frames() {
 double Recording::time(std::uint64_t index) {
   const hdf5::QuietErrors quiet;
   require_frame(index);
+  if (!time_) return assumed_time(index);
   double time_s = 0;
-  time_.get(index, H5T_NATIVE_DOUBLE, &time_s);
-  if (!std::isfinite(time_s)) {
-    throw Error(place(recording_format::kTime),
-                fmt::format("frame {} has the time {}", index, time_s), "store finite seconds");
-  }
+  time_->get(index, H5T_NATIVE_DOUBLE, &time_s);
   return time_s;
 }
 
@@ -154,7 +159,13 @@ double Recording::read(std::uint64_t index, FrameBuffer& frame) {
   const hdf5::QuietErrors quiet;
   require_fitting(frame);
   const double time_s = time(index);
-  raw_.get(index, recording_format::memory_type_of(type_), frame.bytes().data());
+  if (name_of(number_) == name_of(type_)) {
+    raw_.get(index, hdf5::memory_type_of(number_), frame.bytes().data());
+    return time_s;
+  }
+  numbers_.resize(skin_.sensels() * number_.bytes);
+  raw_.get(index, hdf5::memory_type_of(number_), numbers_.data());
+  take_readings(number_, numbers_.data(), index, frame);
   return time_s;
 }
 
@@ -173,8 +184,8 @@ void Recording::read_truth(std::uint64_t index, ForceField& truth) {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> read_recording(hdf5::File file) {
-  return std::make_unique<Recording>(std::move(file));
+std::unique_ptr<FileSource> read_recording(hdf5::File file, const ReadOptions& options) {
+  return std::make_unique<Recording>(std::move(file), options);
 }
 
 }  // namespace pillarfield

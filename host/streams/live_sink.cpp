@@ -9,13 +9,16 @@
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/sink/file_sinks.h"
+#include "streams/sink/foxglove_sink.h"
 #include "streams/sink/mcap_sink.h"
+#include "streams/sink/ring_sink.h"
 #include "streams/sink/udp_sink.h"
 
 namespace pillarfield {
 
 std::span<const LiveSinkKind> live_sink_kinds() {
-  static const std::array kinds = {mcap_sink_kind(), udp_sink_kind()};
+  static const std::array kinds = {mcap_sink_kind(), ring_sink_kind(), udp_sink_kind(),
+                                   foxglove_sink_kind()};
   return kinds;
 }
 
@@ -23,7 +26,7 @@ std::unique_ptr<LiveSink> create_live_sink(const std::string& target, const Live
   const auto kinds = live_sink_kinds();
   const auto kind = std::ranges::find_if(kinds, [&](const LiveSinkKind& candidate) {
     return candidate.prefix.starts_with('.') ? target.ends_with(candidate.prefix)
-                                             : target.starts_with(candidate.prefix);
+                                             : (target + ":").starts_with(candidate.prefix);
   });
   if (kind != kinds.end()) return kind->create(target, info);
   if (format_by_extension(target, OutputKind::forces) != nullptr) {

@@ -3,11 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield {
+
+// Each is defined beside its source.
+LiveSourceKind stdin_kind();
+LiveSourceKind ring_kind();
+LiveSourceKind udp_kind();
+LiveSourceKind serial_kind();
+
 namespace {
 
 const LiveSourceKind* kind_of_source(std::string_view source) {
@@ -28,7 +36,10 @@ std::string forms_of_sources() {
 
 }  // namespace
 
-std::span<const LiveSourceKind> live_source_kinds() { return {}; }
+std::span<const LiveSourceKind> live_source_kinds() {
+  static const std::array kinds = {stdin_kind(), ring_kind(), udp_kind(), serial_kind()};
+  return kinds;
+}
 
 bool is_live_source(std::string_view source) { return kind_of_source(source) != nullptr; }
 

@@ -276,7 +276,7 @@ TEST(CalibrationFile, ABrokenOrCutFileNeverCrashes) {
   const std::string whole = bytes_of(directory / "whole.h5");
   const auto path = directory / "broken.h5";
   // The checksums of our own files keep HDF5 from crashing in the test process.
-  constexpr ReadOptions kTrusted = {.trust = true};
+  const ReadOptions kTrusted = {.trust = true};
   const auto try_to_read = [&](const std::string& bytes) {
     write_bytes(path, bytes);
     try {

@@ -46,7 +46,8 @@ void put_values(hid_t file, const char* name, hid_t type, const std::vector<hsiz
                 bool gzip) {
   std::size_t values = 1;
   for (const hsize_t size : extent) values *= size;
-  const std::vector<float> ones(values, 1.0f);
+  std::vector<float> rising(values);
+  std::iota(rising.begin(), rising.end(), 1.0f);
   const int rank = static_cast<int>(extent.size());
   const hid_t space = H5Screate_simple(rank, extent.data(), nullptr);
   const hid_t layout = H5Pcreate(H5P_DATASET_CREATE);
@@ -57,7 +58,7 @@ void put_values(hid_t file, const char* name, hid_t type, const std::vector<hsiz
     H5Pset_deflate(layout, 4);
   }
   const hid_t dataset = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
-  H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, ones.data());
+  H5Dwrite(dataset, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, rising.data());
   H5Dclose(dataset);
   H5Pclose(layout);
   H5Sclose(space);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "cli/options/nearest_word.h"
+#include "base/nearest_word.h"
 
 namespace pillarfield::cli {
 
@@ -48,7 +48,9 @@ CLI::Validator one_of(const std::vector<std::string>& words, const std::string& 
 
 CLI::Validator no_stream() {
   const auto error_of = [](const std::string& text) -> std::string {
-    return text == "-" ? "'-' names no stream; ./- is a file of this name" : "";
+    return text == "-" ? "'-' is no file; 'pillarfield stream -' reads frames from standard input, "
+                         "and ./- is a file of this name"
+                       : "";
   };
   return {error_of, ""};
 }

@@ -9,11 +9,11 @@
 #include <limits>
 #include <memory>
 
+#include "base/nearest_word.h"
 #include "cli/commands.h"
 #include "cli/options/argument_group.h"
 #include "cli/options/completion.h"
 #include "cli/options/help.h"
-#include "cli/options/nearest_word.h"
 #include "cli/options/shared_arguments.h"
 #include "pillarfield/printable.h"
 
@@ -122,7 +122,11 @@ void add_solve(CLI::App& parent, Work& work) {
       "  pillarfield solve demo.h5 -o forces.npy --outputs angles,uncertainty --noise 0.5\n"
       "  pillarfield solve demo.h5 -o forces.h5 --estimator contact --contacts contacts.csv\n");
   Group input(command, "Input");
-  input.file("INPUT", options->input, "Recording (HDF5) or Tekscan ASCII export");
+  input.file(
+      "INPUT", options->input,
+      "Recording (HDF5), Tekscan ASCII export, or plain data: .npy, .npz, CSV, HDF5 dataset");
+  add_tare_frames(command, options->plan.read);
+  add_plain_data(command, options->plan.read, true);
   add_output(command, *options,
              "Force fields; the ending sets the format: " + endings_of(OutputKind::forces));
   add_sensor(command, options->plan);
@@ -155,7 +159,9 @@ void add_pace(CLI::App& parent, Work& work) {
   command->alias("live");
   Group input(command, "Input");
   input.file("SOURCE", options->source,
-             "Scene (TOML), recording (HDF5) or Tekscan ASCII export, replayed from memory");
+             "Scene (TOML), or frames as of solve, replayed from memory");
+  add_tare_frames(command, options->plan.read);
+  add_plain_data(command, options->plan.read, false);
   input.whole("--memory-limit", options->memory_limit_mib, "MIB",
               "Memory limit of the frames loaded beforehand [1024]", 1, 1U << 20U);
   Group pacing(command, "Pace");
@@ -203,6 +209,8 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
              1e-3, 1e9);
   run.whole("--frames", options.frames, "N", "End after this many frames", 1,
             std::numeric_limits<std::int64_t>::max());
+  run.number("--end-when-idle", options.most_idle_s, "SECONDS",
+             "End when no frame came for this time [wait for the sensor]", 0.01, 1e9);
   run.number("--tare", options.tare_s, "SECONDS",
              "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
   command
@@ -219,7 +227,8 @@ void add_stream(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<StreamOptions>(
       parent, work, stream, "stream",
       "Solve live frames of a sensor and send their forces on (docs/streams.md).",
-      "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n");
+      "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n"
+      "  pillarfield stream scenes/demo.toml --repeat --seconds 1 --to udp:127.0.0.1:9870\n");
   Group input(command, "Input");
   command
       ->add_option("SOURCE", options->source,
@@ -302,12 +311,13 @@ void add_info(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   CLI::Option* const file =
       input.text("FILE", options->file, "FILE",
-                 "Recording, Tekscan export, force fields, calibration or scene to describe");
+                 "Frames as of solve, force fields, calibration or scene to describe");
   CLI::Option* const devices = input.flag("--devices", options->devices, "List OpenCL devices");
   CLI::Option* const kernel =
       input.text("--kernel", options->kernel, "SCENE",
                  "Print the stages of a scene and the OpenCL C compiled for it");
   add_trust(command, options->read);
+  add_plain_data(command, options->read, false);
   file->excludes(devices)->excludes(kernel);
   devices->excludes(kernel);
   add_general(command, *options, "Print as JSON", kQuietReport);

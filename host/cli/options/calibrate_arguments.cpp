@@ -11,13 +11,15 @@ namespace pillarfield::cli {
 namespace {
 
 /// Adds the arguments of all steps.
-void add_step(CLI::App* command, StepOptions& options, bool needs_calibration, const char* output) {
+void add_step(CLI::App* command, StepOptions& options, bool needs_calibration, const char* output,
+              bool uses_times = false) {
   if (needs_calibration) {
     Group(command, "Input")
         .text("--calibration", options.calibration, "FILE", "Calibration to extend")
         ->required();
   }
   add_trust(command, options.read);
+  add_plain_data(command, options.read, uses_times);
   add_output(command, options, output);
   add_general(command, options, "Print the summary as JSON", kQuietWriter);
 }
@@ -194,7 +196,7 @@ void add_memory(CLI::App& parent, Work& work) {
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false);
-  add_step(command, *options, true, kCalibration);
+  add_step(command, *options, true, kCalibration, true);
   command->parse_complete_callback([options = options] {
     require_one_each("--pressure", options->files, options->logs.size());
   });
@@ -280,8 +282,8 @@ void add_apply(CLI::App& parent, Work& work) {
       std::string(kIdleSkin) + "  pillarfield calibrate apply tared.h5 idle.h5 -o calibrated.h5\n");
   Group input(command, "Input");
   input.file("CALIBRATION", options->calibration, "Calibration");
-  input.file("RECORDING", options->recording, "Recording or Tekscan export to copy");
-  add_step(command, *options, false, "Recording (HDF5)");
+  input.file("RECORDING", options->recording, "Frames to copy, as of solve");
+  add_step(command, *options, false, "Recording (HDF5)", true);
 }
 
 }  // namespace

@@ -40,7 +40,13 @@ std::optional<double> apply_scene(const std::string& file, SolverPlan& plan) {
 void apply_calibration(const PlanOptions& options, const std::string& source, SolverPlan& plan) {
   const SkinCalibration calibration = read_calibration_file(options.calibration, options.read);
   require_fitting(calibration, plan.skin, source);
+  // The tare of --tare-frames stays.
+  const std::vector<float> tare = plan.calibration.tare;
+  const std::vector<float> noise = plan.calibration.noise;
   apply(calibration, plan.skin, plan.calibration);
+  if (options.read.tare_frames == 0) return;
+  plan.calibration.tare = tare;
+  plan.calibration.noise = noise;
 }
 
 void apply_numbers(const PlanOptions& options, SolverPlan& plan) {
@@ -84,6 +90,14 @@ void apply_segment_point(const PlanOptions& options, const std::string& source, 
 }
 
 }  // namespace
+
+ReadOptions frame_options(const PlanOptions& options) {
+  ReadOptions read = options.read;
+  read.counts_per_newton = options.counts_per_newton;
+  read.threshold_counts = options.threshold_counts;
+  read.full_scale_counts = options.full_scale_counts;
+  return read;
+}
 
 SolverPlan plan_of(const PlanOptions& options, SolverPlan plan, const std::string& source,
                    const std::function<double()>& frame_interval_s) {

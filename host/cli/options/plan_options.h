@@ -32,6 +32,9 @@ struct PlanOptions {
   bool everything = false;
 };
 
+/// The options of opening the frames: `read`, and the constants that the others give.
+[[nodiscard]] ReadOptions frame_options(const PlanOptions& options);
+
 /// Applies the scene, the calibration and the other options, in this order, to `plan`. Messages
 /// name the frames `source`. Calls `frame_interval_s`, the seconds between frames, if the baseline
 /// is followed or the sensels have a memory. Throws Error where a file cannot be read or does not

@@ -1,6 +1,32 @@
 #include "cli/options/shared_arguments.h"
 
+#include <charconv>
+#include <limits>
+#include <system_error>
+
+#include "pillarfield/skin.h"
+#include "pillarfield/tare.h"
+
 namespace pillarfield::cli {
+namespace {
+
+/// Reads the size of a frame, such as "40x60".
+FrameSize frame_size_of(const std::string& text) {
+  FrameSize size;
+  const char* const end = text.data() + text.size();
+  const auto rows = std::from_chars(text.data(), end, size.rows);
+  if (rows.ec == std::errc{} && rows.ptr != end && *rows.ptr == 'x') {
+    const auto cols = std::from_chars(rows.ptr + 1, end, size.cols);
+    const auto fits = [](std::uint32_t each) { return each >= 2 && each <= kMaxSensels; };
+    if (cols.ec == std::errc{} && cols.ptr == end && fits(size.rows) && fits(size.cols))
+      return size;
+  }
+  throw CLI::ValidationError(
+      "--shape",
+      fmt::format("'{}' is not ROWSxCOLS of 2 to {} each, such as 40x60", text, kMaxSensels));
+}
+
+}  // namespace
 
 void add_help(CLI::App* command) {
   command->set_help_flag("-h,--help", "Print this help and exit")->group("General");
@@ -30,6 +56,34 @@ void add_trust(CLI::App* command, ReadOptions& options) {
   Group(command, "Input")
       .flag("--trust-input", options.trust,
             "Read HDF5 files without checking them first in a separate process");
+}
+
+void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times) {
+  options.untimed = !uses_times;
+  Group plain(command, "Plain data");
+  plain.text("--dataset", options.dataset, "NAME",
+             "Array of frames in an HDF5 file or .npz archive [an archive's only one]");
+  plain.text("--times", options.times, "NAME",
+             "Array of their times in that file, seconds [time of an archive]");
+  command
+      ->add_option_function<std::string>(
+          "--shape", [&](const std::string& text) { options.frame_size = frame_size_of(text); },
+          "Sensels of a frame whose readings lie in one line")
+      ->type_name("ROWSxCOLS")
+      ->group("Plain data");
+  if (uses_times) {
+    plain.number("--rate", options.rate_hz, "HZ", "Frames per second, if the file has no times",
+                 1e-6, 1e9);
+  }
+  plain.number("--pitch-mm", options.sensel_pitch_mm, "MM",
+               "Distance between neighbouring sensels [the file's]", 0.001, 1000);
+}
+
+void add_tare_frames(CLI::App* command, ReadOptions& options) {
+  Group(command, "Input")
+      .whole("--tare-frames", options.tare_frames, "N",
+             "Measure tare, noise and threshold in the first N frames, without load [the file's]",
+             kLeastTareFrames, std::numeric_limits<std::uint32_t>::max());
 }
 
 }  // namespace pillarfield::cli

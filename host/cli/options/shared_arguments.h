@@ -22,6 +22,9 @@ void add_general(CLI::App* command, PrintOptions& options, const char* json, con
 void add_overwrite(CLI::App* command, Replace& replace);
 void add_output(CLI::App* command, WriteOptions& options, const std::string& description);
 void add_trust(CLI::App* command, ReadOptions& options);
+/// Adds what files of plain numbers leave open; --rate if the command uses the times of frames.
+void add_plain_data(CLI::App* command, ReadOptions& options, bool uses_times);
+void add_tare_frames(CLI::App* command, ReadOptions& options);
 
 /// Adds a command; its options live as long as the work.
 template <class Options>

@@ -161,7 +161,7 @@ void pace(const PaceOptions& options) {
   report.source = options.source;
   report.schedule = schedule_of(options);
   report.deadline = deadline_of(options);
-  PaceFrames frames = open_pace_frames(options.source, options.plan.read);
+  PaceFrames frames = open_pace_frames(options.source, frame_options(options.plan));
   const SolverPlan plan = plan_of(options, frames);
   load(frames, report.schedule.frames, options.memory_limit_mib << 20U, options.quiet);
   report.frames_in_source = frames.in_source;

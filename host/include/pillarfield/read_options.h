@@ -1,15 +1,47 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace pillarfield {
 
-/// Options of opening a file for reading.
+/// Size of a frame, sensels.
+struct FrameSize {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+};
+
+/// Options of opening a file for reading. All but `trust` concern frames: open_frames() uses them.
 struct ReadOptions {
   /// The file comes from a trusted source, such as your own programs. Other HDF5 files pass
-  /// probe_file() first.
+  /// probe_file() first, and other frames have at most 8,388,608 sensels.
   bool trust = false;
+
+  /// Array of frames in an HDF5 file or an .npz archive. Empty: the readings of a recording, the
+  /// only array of frames of an archive.
+  std::string dataset = {};
+  /// One-dimensional array of the frames' times, s, in that file. Empty: `time` of an archive.
+  std::string times = {};
+  /// Size of a frame whose readings lie in one line of a table or array.
+  std::optional<FrameSize> frame_size = {};
+
+  /// Frames per second, for a file without times: frame i has the time i / rate_hz. Throws Error
+  /// for a file with times.
+  std::optional<double> rate_hz = {};
+  /// The caller uses no times: a file without times needs no rate, and its times are NaN.
+  bool untimed = false;
+
+  /// Constants of the skin, in place of those in the file.
+  std::optional<double> sensel_pitch_mm = {};
+  std::optional<double> counts_per_newton = {};
+  std::optional<double> threshold_counts = {};
+  std::optional<double> full_scale_counts = {};
+
+  /// Number of first frames, of the unloaded skin, from which take_tare() measures tare, noise and
+  /// threshold in place of those in the file; at least kLeastTareFrames. 0: none.
+  std::uint64_t tare_frames = 0;
 };
 
 /// Reads an HDF5 file in a child process, limited to 2 s of processor time and 1 GB of memory, to

@@ -18,6 +18,11 @@ enum PillarfieldContent {
   PILLARFIELD_END = 3     /* nothing: the sensor stops */
 };
 
+/* Added to `content`: the packet ends with a uint32_t, counted in `bytes`, the CRC-32 (of zlib,
+ * zip, Ethernet) of all bytes before it, header included. For serial lines, which have none of
+ * their own. */
+#define PILLARFIELD_CHECKED 0x100u
+
 /* Blocks are 8 x 8 sensels, numbered row by row; those at the right and lower border of the skin
  * may reach beyond it, where their readings are ignored. */
 #define PILLARFIELD_BLOCK_SIDE 8u
@@ -33,7 +38,7 @@ typedef struct PillarfieldPacket {
   uint32_t cols;     /* sensel columns */
   uint64_t session;  /* a number that the driver draws when it starts; 0: none */
   uint64_t sequence; /* of the frame; one more than that of the previous frame */
-  uint64_t time_ns;  /* the sensor's clock when it scanned the frame; any origin */
+  uint64_t time_ns;  /* the sensor's clock when it scanned the frame, any origin; 0: none */
   uint32_t part;     /* of this packet in its frame, from 0 */
   uint32_t parts;    /* packets of the frame, at least 1 */
   uint32_t first;    /* ROWS: the first row */
@@ -41,5 +46,83 @@ typedef struct PillarfieldPacket {
   uint32_t patch;    /* 0 */
   uint32_t bytes;    /* after this header */
 } PillarfieldPacket;
+
+/* Limits of what is accepted. */
+#define PILLARFIELD_MAX_SENSELS (1u << 24) /* of a frame */
+#define PILLARFIELD_MAX_PARTS (1u << 16)   /* of a frame */
+
+/* A ring in POSIX shared memory, `/NAME` of shm_open(): a PillarfieldRing, then `slots` slots of
+ * `slot_bytes`. One process writes it, any number read it and never delay the writer.
+ *
+ * To publish number n (0, 1, ...) in the slot n % slots: set `lock` to 2n + 1, write the content,
+ * set `lock` to 2n + 2, `published` to n + 1 and `signal` to its lower 32 bits, then wake all who
+ * wait for `signal` (futex, not private). To read it: wait until `published` is above n, copy the
+ * content, and use the copy if `lock` is still 2n + 2. `lock`, `published`, `signal` and `closed`
+ * are atomic; a store releases, a load acquires.
+ *
+ * A writer creates the segment with mode 0600, locks it with flock() while it lives, sets `magic`
+ * last, and in the end sets `closed`, wakes and unlinks. One that starts where another was killed
+ * goes on with a segment of the layout that it needs, from `published` on, and unlinks any other.
+ */
+#define PILLARFIELD_RING_MAGIC 0x31475250u /* "PRG1" */
+
+enum PillarfieldRingKind { PILLARFIELD_RING_FRAMES = 1, PILLARFIELD_RING_RESULTS = 2 };
+
+typedef struct PillarfieldRing {
+  uint32_t magic; /* PILLARFIELD_RING_MAGIC */
+  uint32_t kind;  /* PillarfieldRingKind */
+  uint32_t rows;  /* of sensels; in a ring of results of pillars */
+  uint32_t cols;
+  uint32_t type;       /* PillarfieldReadingType; in a ring of results 0 */
+  uint32_t slots;      /* at least 2 */
+  uint64_t slot_bytes; /* from one slot to the next, a multiple of 64 */
+  uint64_t session;    /* a number that the writer draws when it starts */
+  uint64_t published;  /* how many were published; the newest has the number published - 1 */
+  uint32_t signal;     /* the lower 32 bits of `published` */
+  uint32_t closed;     /* 1: the writer has ended */
+  uint64_t reserved;   /* 0 */
+} PillarfieldRing;
+
+/* A slot of frames: this, then all readings, row by row from the top left. */
+typedef struct PillarfieldFrameSlot {
+  uint64_t lock;
+  uint64_t reserved[7];
+  PillarfieldPacket packet; /* content FRAME */
+} PillarfieldFrameSlot;
+
+#define PILLARFIELD_MAX_CONTACTS 64u
+
+/* Forces act on the skin: x right, y up, normal positive under pressure. Places are in mm from the
+ * centre of the patch. NaN: unknown. */
+typedef struct PillarfieldContact {
+  uint64_t track_id; /* 1, 2, ...; never reused */
+  uint64_t pillars;  /* in contact */
+  double shear_x_n;
+  double shear_y_n;
+  double normal_n;
+  double torque_nmm;  /* about the outward normal through the centre of pressure */
+  double centre_x_mm; /* centre of pressure */
+  double centre_y_mm;
+  double area_mm2;
+  double friction;       /* coefficient */
+  double slip_margin;    /* 1 - |shear| / (friction * normal) */
+  double slipping_share; /* part of the normal force on pillars that slip */
+} PillarfieldContact;
+
+/* A slot of results: this, then planes [rows, cols] one after the other, row by row from the top
+ * left: shear_x, shear_y and normal as float in N, and the status bytes (pillarfield/status.h). */
+typedef struct PillarfieldResultSlot {
+  uint64_t lock;
+  uint64_t sequence;        /* of the frame */
+  double time_s;            /* the sensor's clock, from the first frame on */
+  uint64_t arrived_ns;      /* CLOCK_MONOTONIC when the frame had arrived */
+  uint64_t arrived_unix_ns; /* CLOCK_REALTIME then */
+  uint64_t published_ns;    /* CLOCK_MONOTONIC when the result was published */
+  uint32_t missing;         /* 1: readings of the frame did not arrive */
+  uint32_t contacts;        /* valid elements of `contact` */
+  uint64_t contacts_found;  /* may be more */
+  PillarfieldContact total; /* of all loaded pillars; track_id 0 */
+  PillarfieldContact contact[PILLARFIELD_MAX_CONTACTS]; /* the strongest, by normal force */
+} PillarfieldResultSlot;
 
 #endif

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "io/file_source.h"
 #include "io/hdf5/file.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/recording.h"
@@ -16,7 +17,15 @@ namespace pillarfield {
 [[nodiscard]] hdf5::File open_probed(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Reads a recording, format "pillarfield-recording" version 1.
-[[nodiscard]] std::unique_ptr<FrameSource> read_recording(hdf5::File file);
+[[nodiscard]] std::unique_ptr<FileSource> read_recording(hdf5::File file,
+                                                         const ReadOptions& options);
+
+/// Reads a recording, or the datasets that the options name in a file of another program.
+[[nodiscard]] std::unique_ptr<FileSource> read_hdf5_frames(hdf5::File file,
+                                                           const ReadOptions& options);
+
+/// As probe_file(), for read_hdf5_frames().
+void probe_frames(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Opens everything that a ForceFileReader reads.
 void try_forces(hdf5::File file);

@@ -14,10 +14,11 @@ namespace {
 
 /// The number type of a dataset; NumPy stores booleans as an enumeration of int8.
 Handle number_type(const std::filesystem::path& path, const std::string& name,
-                   const Handle& dataset) {
+                   const Handle& dataset, bool& is_enumeration) {
   const std::string failure = fmt::format("{} has no type", name);
   Handle type = own(H5Dget_type(dataset.get()), path, failure, kDamaged);
-  if (H5Tget_class(type.get()) == H5T_ENUM) {
+  is_enumeration = H5Tget_class(type.get()) == H5T_ENUM;
+  if (is_enumeration) {
     type = own(H5Tget_super(type.get()), path, failure, kDamaged);
   }
   require_number(path, name, type.get());
@@ -40,7 +41,7 @@ StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_
     throw Error(path_.string(), fmt::format("{} is not a dataset", name),
                 "docs/formats.md lists the required objects");
   }
-  type_ = number_type(path_, name_, dataset_);
+  type_ = number_type(path_, name_, dataset_, is_enumeration_);
   storage_ = storage_of(file, dataset_, name_);
   if (storage_.extent.size() != frame_rank + 1) {
     throw Error(path_.string(), fmt::format("{} has {} dimensions", name, storage_.extent.size()),

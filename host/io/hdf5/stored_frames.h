@@ -36,6 +36,8 @@ class StoredFrames {
     return {storage_.extent.begin() + 1, storage_.extent.end()};
   }
 
+  /// Whether the values are an enumeration, such as NumPy's booleans; type() is its integer.
+  [[nodiscard]] bool is_enumeration() const { return is_enumeration_; }
   [[nodiscard]] hid_t type() const { return type_.get(); }
   [[nodiscard]] H5T_class_t value_class() const { return H5Tget_class(type_.get()); }
 
@@ -56,6 +58,7 @@ class StoredFrames {
   std::string name_;
   Handle dataset_;
   Handle type_;  ///< of the values; for an enumeration, of its integers
+  bool is_enumeration_ = false;
   Storage storage_;
   std::unique_ptr<FilteredChunks> chunks_;  ///< set for filtered datasets
 };

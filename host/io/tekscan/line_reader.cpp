@@ -16,8 +16,11 @@ constexpr std::size_t kLongestLine = 1 << 20;
 
 }  // namespace
 
-LineReader::LineReader(std::filesystem::path path)
-    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "rb")), buffer_(2 * kLongestLine) {
+LineReader::LineReader(std::filesystem::path path, const char* mend_long)
+    : path_(std::move(path)),
+      mend_long_(mend_long),
+      file_(std::fopen(path_.c_str(), "rb")),
+      buffer_(2 * kLongestLine) {
   if (!file_) throw Error(path_.string(), std::strerror(errno), "check its permissions");
 }
 
@@ -31,7 +34,7 @@ bool LineReader::next() {
   ++number_;
   line_ = rest.substr(0, rest.find('\n'));
   if (line_.size() > kLongestLine)
-    throw Error(place(), "the line is longer than any line of an export");
+    throw Error(place(), "the line is longer than any line of an export", mend_long_);
   begin_ = std::min(begin_ + line_.size() + 1, end_);
   if (line_.ends_with('\r')) line_.remove_suffix(1);
   return true;

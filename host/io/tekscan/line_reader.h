@@ -13,8 +13,9 @@ namespace pillarfield {
 /// Reads a text file line by line in constant memory. Lines end with LF or CRLF.
 class LineReader {
  public:
-  /// Throws Error if the file cannot be opened.
-  explicit LineReader(std::filesystem::path path);
+  /// `mend_long` is the remedy for a line that is too long. Throws Error if the file cannot be
+  /// opened.
+  explicit LineReader(std::filesystem::path path, const char* mend_long = "");
 
   /// Moves to the next line; false at the end. Throws Error if a line exceeds 1 MiB.
   bool next();
@@ -32,6 +33,7 @@ class LineReader {
   void fill();
 
   std::filesystem::path path_;
+  const char* mend_long_;
   std::unique_ptr<std::FILE, Close> file_;
   std::vector<char> buffer_;
   std::size_t begin_ = 0;  // of the unread bytes

@@ -17,16 +17,16 @@ namespace {
 /// An export in any units (docs/formats.md), read into memory as a whole.
 class Tekscan final : public FileSource {
  public:
-  explicit Tekscan(const std::filesystem::path& path);
+  Tekscan(const std::filesystem::path& path, const ReadOptions& options);
 
   double time(std::uint64_t index) override;
   double read(std::uint64_t index, FrameBuffer& frame) override;
 
  private:
-  void take_spacing(const TekscanHeader& header);
-  void take_full_scale();
+  void take_spacing(const TekscanHeader& header, const ReadOptions& options);
+  void take_counts(const TekscanHeader& header, const ReadOptions& options);
   void take_newtons(const TekscanHeader& header);
-  void take_times(TekscanExport& data);
+  void take_times(TekscanExport& data, const ReadOptions& options);
   void take_mask(TekscanExport& data);
   void spread_outline();
   void spread(const std::array<std::size_t, 4>& sensels);
@@ -36,21 +36,25 @@ class Tekscan final : public FileSource {
   std::vector<double> times_s_;
 };
 
-Tekscan::Tekscan(const std::filesystem::path& path) : FileSource(path, "Tekscan ASCII") {
+Tekscan::Tekscan(const std::filesystem::path& path, const ReadOptions& options)
+    : FileSource(path, "Tekscan ASCII") {
+  refuse_dataset(path, options);
+  refuse_size(path, options);
   TekscanExport data = parse_tekscan(path);
   readings_ = std::move(data.readings);
   type_ = readings_.type();
   frames_ = data.numbers.size();
   skin_.rows = *data.header.rows;
   skin_.cols = *data.header.cols;
-  take_spacing(data.header);
+  take_spacing(data.header, options);
   if (data.header.is_calibrated()) {
     take_newtons(data.header);
   } else {
-    skin_.threshold_counts = data.header.noise_threshold_counts.value_or(skin_.threshold_counts);
-    take_full_scale();
+    take_counts(data.header, options);
   }
-  take_times(data);
+  warnings_.emplace_back(
+      "Shear is that of pillars on the sensor; without pillars it has no meaning.");
+  take_times(data, options);
   take_mask(data);
   warn_of_header(data.header);
   warn_of_size();
@@ -58,7 +62,11 @@ Tekscan::Tekscan(const std::filesystem::path& path) : FileSource(path, "Tekscan 
 }
 
 /// Sets the pitch: the geometric mean of both spacings, which keeps the area of a sensel.
-void Tekscan::take_spacing(const TekscanHeader& header) {
+void Tekscan::take_spacing(const TekscanHeader& header, const ReadOptions& options) {
+  if (options.sensel_pitch_mm) {
+    skin_.sensel_pitch_mm = *options.sensel_pitch_mm;
+    return;
+  }
   if (!header.row_spacing_mm && !header.col_spacing_mm) {
     warnings_.push_back(fmt::format(
         "The export has no spacing; a sensel pitch of {} mm is assumed.", skin_.sensel_pitch_mm));
@@ -76,12 +84,21 @@ void Tekscan::take_spacing(const TekscanHeader& header) {
       row_mm, col_mm, skin_.sensel_pitch_mm));
 }
 
-void Tekscan::take_full_scale() {
-  if (type_ == SenselType::u8) {
+/// Sets the constants of an export of raw counts.
+void Tekscan::take_counts(const TekscanHeader& header, const ReadOptions& options) {
+  skin_.threshold_counts = options.threshold_counts.value_or(
+      header.noise_threshold_counts.value_or(skin_.threshold_counts));
+  if (options.full_scale_counts) {
+    skin_.full_scale_counts = options.full_scale_counts;
+  } else if (type_ == SenselType::u8) {
     skin_.full_scale_counts = 255;
   } else {
     warnings_.push_back(
         "Readings exceed 8 bits, so the full scale is unknown and saturation is not detected.");
+  }
+  if (options.counts_per_newton) {
+    skin_.counts_per_newton = *options.counts_per_newton;
+    return;
   }
   warnings_.push_back(fmt::format(
       "The export has no counts per newton; {} is assumed, so forces are known only up to "
@@ -97,17 +114,16 @@ void Tekscan::take_newtons(const TekscanHeader& header) {
           ? fmt::format("Readings are pressures; times {:.6g} mm² they are newtons on a sensel.",
                         header.area_mm2().value_or(0))
           : "Readings are newtons on a sensel.");
-  warnings_.emplace_back(
-      "Shear is that of pillars on the sensor; without pillars it has no meaning.");
 }
 
-void Tekscan::take_times(TekscanExport& data) {
+void Tekscan::take_times(TekscanExport& data, const ReadOptions& options) {
   times_s_ = std::move(data.times_s);
-  if (!times_s_.empty()) return;
-  if (!data.header.seconds_per_frame) {
+  if (!times_s_.empty() || data.header.seconds_per_frame) require_no_rate(options);
+  if (!times_s_.empty()) return RisingTimes(path_.string()).add(times_s_);
+  if (!data.header.seconds_per_frame && !options.rate_hz) {
     warnings_.push_back("The export has no times; frames are assumed to be 1 s apart.");
   }
-  const double period_s = data.header.seconds_per_frame.value_or(1);
+  const double period_s = data.header.seconds_per_frame.value_or(1 / options.rate_hz.value_or(1));
   for (const std::uint64_t number : data.numbers) {
     times_s_.push_back(period_s * (static_cast<double>(number) - 1));
   }
@@ -195,9 +211,8 @@ bool looks_like_tekscan(std::string_view head) {
 SourceFormat tekscan_format() {
   return {.name = "Tekscan ASCII export",
           .recognises = looks_like_tekscan,
-          .open = [](const std::filesystem::path& path) -> std::unique_ptr<FrameSource> {
-            return std::make_unique<Tekscan>(path);
-          }};
+          .open = [](const std::filesystem::path& path, const ReadOptions& options)
+              -> std::unique_ptr<FileSource> { return std::make_unique<Tekscan>(path, options); }};
 }
 
 }  // namespace pillarfield

@@ -7,6 +7,7 @@
 
 #include "io/force_planes.h"
 #include "io/force_sink.h"
+#include "io/plain/npy.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield {
@@ -17,7 +18,6 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 // A multiple of 64 that holds all planes and any number of frames.
 constexpr std::size_t kHeaderBytes = 1024;
 
-constexpr std::string_view kNpyMagic = "\x93NUMPY";
 constexpr std::string_view kNpyFields =
     "('shear_x', '<f4'), ('shear_y', '<f4'), ('normal', '<f4'), ('status', '|u1')";
 

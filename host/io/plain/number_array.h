@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/skin.h"
+
+namespace pillarfield {
+
+/// Type of the numbers in an array: an integer of 1, 2, 4 or 8 bytes or a float of 4 or 8.
+struct NumberType {
+  enum class Kind : std::uint8_t { unsigned_integer, signed_integer, real };
+  Kind kind = Kind::unsigned_integer;
+  std::size_t bytes = 1;
+};
+
+/// "uint8", "int16", "float64".
+[[nodiscard]] std::string name_of(NumberType type);
+
+/// The type of readings for numbers of a type: uint8, uint16 and float32 stay, others become
+/// float32.
+[[nodiscard]] SenselType sensel_type_for(NumberType type);
+
+/// Converts `count` numbers to readings of sensel_type_for(type). A float64 beyond float32 becomes
+/// infinite, which is a missing reading. Returns the index of the first integer beyond ±2^24, which
+/// float32 does not hold exactly; unset if there is none.
+[[nodiscard]] std::optional<std::size_t> convert_to_readings(NumberType type,
+                                                             const std::byte* numbers,
+                                                             std::size_t count,
+                                                             std::byte* readings);
+
+/// An array of numbers in a file, in C order. A slice is an element of its first dimension.
+class NumberArray {
+ public:
+  NumberArray(std::string place, NumberType type, std::vector<std::uint64_t> shape)
+      : place_(std::move(place)), type_(type), shape_(std::move(shape)) {}
+  virtual ~NumberArray() = default;
+  NumberArray(const NumberArray&) = delete;
+  NumberArray& operator=(const NumberArray&) = delete;
+
+  /// "frames.npz: raw", for messages.
+  [[nodiscard]] const std::string& place() const { return place_; }
+  [[nodiscard]] NumberType type() const { return type_; }
+  /// At least one dimension.
+  [[nodiscard]] const std::vector<std::uint64_t>& shape() const { return shape_; }
+  [[nodiscard]] std::size_t slice_bytes() const;
+
+  /// Copies `count` slices from `first` on, in the byte order of the host.
+  virtual void read(std::uint64_t first, std::uint64_t count, std::byte* numbers) = 0;
+
+ private:
+  std::string place_;
+  NumberType type_;
+  std::vector<std::uint64_t> shape_;
+};
+
+/// "200 x 40 x 60".
+[[nodiscard]] std::string text_of_shape(const std::vector<std::uint64_t>& shape);
+
+/// Reads a one-dimensional array of any type. Throws Error if it has more dimensions.
+[[nodiscard]] std::vector<double> read_numbers(NumberArray& array);
+
+/// An array in memory.
+[[nodiscard]] std::unique_ptr<NumberArray> array_in_memory(std::string place, NumberType type,
+                                                           std::vector<std::uint64_t> shape,
+                                                           std::vector<std::byte> numbers);
+
+}  // namespace pillarfield

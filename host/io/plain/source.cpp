@@ -1,0 +1,140 @@
+#include "io/plain/source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "io/hdf5/stored_frames.h"
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+class ArraySource final : public FileSource {
+ public:
+  ArraySource(const std::filesystem::path& path, std::string format,
+              std::unique_ptr<NumberArray> readings, std::vector<double> times_s,
+              const ReadOptions& options);
+
+  double time(std::uint64_t index) override;
+  double read(std::uint64_t index, FrameBuffer& frame) override;
+
+ private:
+  void take_shape(const ReadOptions& options);
+  void take_lines(const FrameSize& size);
+  void check_size(const ReadOptions& options) const;
+
+  std::unique_ptr<NumberArray> array_;
+  std::vector<double> times_s_;     // empty: see assumed_time()
+  std::uint64_t slices_ = 1;        // of the array, in a frame
+  std::vector<std::byte> numbers_;  // of a frame
+};
+
+ArraySource::ArraySource(const std::filesystem::path& path, std::string format,
+                         std::unique_ptr<NumberArray> readings, std::vector<double> times_s,
+                         const ReadOptions& options)
+    : FileSource(path, std::move(format)),
+      array_(std::move(readings)),
+      times_s_(std::move(times_s)) {
+  type_ = sensel_type_for(array_->type());
+  take_shape(options);
+  check_size(options);
+  take_constants({}, options);
+  check(skin_, path.c_str());
+  if (times_s_.empty()) {
+    assume_times(options);
+  } else {
+    require_no_rate(options);
+    if (times_s_.size() != frames_) {
+      throw Error(array_->place(),
+                  fmt::format("has {} frames and {} times", frames_, times_s_.size()),
+                  "store one time per frame");
+    }
+    RisingTimes(path.string()).add(times_s_);
+  }
+  warn_of_size();
+}
+
+void ArraySource::take_shape(const ReadOptions& options) {
+  const std::vector<std::uint64_t>& shape = array_->shape();
+  const auto& size = options.frame_size;
+  if (shape.size() == 3) {
+    frames_ = shape[0];
+    skin_.rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[1], kMaxSensels + 1));
+    skin_.cols = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[2], kMaxSensels + 1));
+  } else if (shape.size() == 2 && size && (shape[0] != size->rows || shape[1] != size->cols)) {
+    take_lines(*size);
+  } else if (shape.size() == 2) {
+    frames_ = 1;
+    slices_ = shape[0];
+    skin_.rows = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[0], kMaxSensels + 1));
+    skin_.cols = static_cast<std::uint32_t>(std::min<std::uint64_t>(shape[1], kMaxSensels + 1));
+    if (size) return;
+    warnings_.push_back(fmt::format(
+        "The array of {} is read as one frame; if each line is a frame, give --shape ROWSxCOLS.",
+        text_of_shape(shape)));
+  } else {
+    throw Error(array_->place(), fmt::format("has the shape {}", text_of_shape(shape)),
+                "frames need the shape (frames, rows, columns)");
+  }
+  if (!size || (skin_.rows == size->rows && skin_.cols == size->cols)) return;
+  throw Error(array_->place(), fmt::format("its frames are {} x {}", skin_.rows, skin_.cols),
+              fmt::format("leave out --shape {}x{}", size->rows, size->cols));
+}
+
+/// Takes each line of a two-dimensional array as a frame.
+void ArraySource::take_lines(const FrameSize& size) {
+  const std::vector<std::uint64_t>& shape = array_->shape();
+  if (shape[1] != std::uint64_t{size.rows} * size.cols) {
+    throw Error(array_->place(),
+                fmt::format("has lines of {} numbers, and a frame of {} x {} has {}", shape[1],
+                            size.rows, size.cols, std::uint64_t{size.rows} * size.cols),
+                "give the --shape of one frame");
+  }
+  frames_ = shape[0];
+  skin_.rows = size.rows;
+  skin_.cols = size.cols;
+}
+
+void ArraySource::check_size(const ReadOptions& options) const {
+  const auto fits = [](std::uint32_t size) { return size >= 2 && size <= kMaxSensels; };
+  if (!fits(skin_.rows) || !fits(skin_.cols)) {
+    throw Error(array_->place(),
+                fmt::format("with the shape {} has no frames of 2 to {} rows and columns",
+                            text_of_shape(array_->shape()), kMaxSensels),
+                "frames need the shape (frames, rows, columns)");
+  }
+  if (!options.trust && skin_.sensels() > hdf5::kMaxProbedValues) {
+    throw Error(array_->place(),
+                fmt::format("has frames of {} sensels, more than {}", skin_.sensels(),
+                            hdf5::kMaxProbedValues),
+                "read larger ones from a trusted file, with --trust-input");
+  }
+}
+
+double ArraySource::time(std::uint64_t index) {
+  require_frame(index);
+  return times_s_.empty() ? assumed_time(index) : times_s_[index];
+}
+
+double ArraySource::read(std::uint64_t index, FrameBuffer& frame) {
+  const hdf5::QuietErrors quiet;
+  require_frame(index);
+  require_fitting(frame);
+  numbers_.resize(skin_.sensels() * array_->type().bytes);
+  array_->read(index * slices_, slices_, numbers_.data());
+  take_readings(array_->type(), numbers_.data(), index, frame);
+  return time(index);
+}
+
+}  // namespace
+
+std::unique_ptr<FileSource> array_source(const std::filesystem::path& path, std::string format,
+                                         std::unique_ptr<NumberArray> readings,
+                                         std::vector<double> times_s, const ReadOptions& options) {
+  return std::make_unique<ArraySource>(path, std::move(format), std::move(readings),
+                                       std::move(times_s), options);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "io/file_source.h"
+#include "io/plain/number_array.h"
+
+namespace pillarfield {
+
+/// Frames in an array of numbers: [frames, rows, cols], [rows, cols] as one frame, or
+/// [frames, rows · cols] with ReadOptions::frame_size. `times_s` is empty if the file has none.
+/// Throws Error if the array is of another shape or the times do not fit.
+[[nodiscard]] std::unique_ptr<FileSource> array_source(const std::filesystem::path& path,
+                                                       std::string format,
+                                                       std::unique_ptr<NumberArray> readings,
+                                                       std::vector<double> times_s,
+                                                       const ReadOptions& options);
+
+}  // namespace pillarfield

@@ -1,0 +1,159 @@
+#include "streams/ring/ring_reader.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// How long a replaced ring may go unnoticed.
+constexpr RingReader::Time kLongestWait = 50ms;
+
+RingReader::Time now_of_ring() { return std::chrono::steady_clock::now().time_since_epoch(); }
+
+}  // namespace
+
+RingReader::RingReader(const std::string& name, PillarfieldRingKind kind)
+    : name_("shm:" + name), segment_name_(segment_name(name)), kind_(kind) {}
+
+template <class T>
+T RingReader::load(std::size_t offset) const {
+  T value{};
+  if (pread(segment_.get(), &value, sizeof value, static_cast<off_t>(offset)) !=
+      static_cast<ssize_t>(sizeof value)) {
+    value = {};
+  }
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return value;
+}
+
+bool RingReader::open() {
+  if (segment_.is_open() || attach()) return true;
+  return false;
+}
+
+/// Opens the segment of the name; false if there is none yet, or none that fits.
+bool RingReader::attach() {
+  Descriptor segment(shm_open(segment_name_.c_str(), O_RDONLY | O_CLOEXEC, 0));
+  if (!segment.is_open()) {
+    if (errno == ENOENT || layout_) return false;
+    throw Error(name_, fmt::format("cannot be opened: {}", std::strerror(errno)),
+                "only the user who made the ring reads it");
+  }
+  struct stat status = {};
+  fstat(segment.get(), &status);
+  std::swap(segment_, segment);
+  const auto ring = load<PillarfieldRing>(0);
+  if (ring.magic != 0 && fits(ring, static_cast<std::uint64_t>(status.st_size))) {
+    head_ = Mapping(segment_, sizeof ring, false);
+  }
+  if (head_.data() == nullptr) {
+    // Its writer may be about to fill it; any other counts once.
+    if (ring.magic != 0 && std::exchange(rejected_inode_, status.st_ino) != status.st_ino) {
+      ++invalid_;
+    }
+    segment_.reset();
+    return false;
+  }
+  ring_ = ring;
+  const bool is_first = !layout_;
+  if (is_first) {
+    layout_ = layout_of(ring);
+    slot_.resize(*content_bytes(*layout_));
+  }
+  const std::uint64_t kept = is_first ? 1 : ring_.slots - 1;
+  next_ = ring_.published - std::min<std::uint64_t>(ring_.published, kept);
+  return true;
+}
+
+bool RingReader::fits(const PillarfieldRing& ring, std::uint64_t bytes) {
+  const bool valid = is_valid(ring, bytes) && layout_of(ring).kind == kind_;
+  if (layout_) return valid && layout_of(ring) == *layout_;
+  if (valid) return true;
+  throw Error(name_,
+              kind_ == PILLARFIELD_RING_FRAMES ? "is no ring of frames" : "is no ring of results",
+              "docs/streams.md describes the ring");
+}
+
+void RingReader::detach() {
+  head_ = Mapping();
+  segment_.reset();
+}
+
+bool RingReader::is_replaced() const {
+  struct stat status = {};
+  return fstat(segment_.get(), &status) != 0 || status.st_nlink == 0 ||
+         !is_valid(load<PillarfieldRing>(0), static_cast<std::uint64_t>(status.st_size));
+}
+
+void RingReader::skip_to(std::uint64_t number) {
+  overrun_ += number - next_;
+  next_ = number;
+}
+
+/// Copies the slot of `next_`; false if it is overwritten.
+bool RingReader::copy_next() {
+  const std::uint64_t offset = slot_offset(ring_, next_);
+  const auto bytes = static_cast<ssize_t>(slot_.size());
+  if (pread(segment_.get(), slot_.data(), slot_.size(), static_cast<off_t>(offset)) != bytes) {
+    return false;
+  }
+  std::atomic_thread_fence(std::memory_order_acquire);
+  return load<std::uint64_t>(offset) == 2 * next_ + 2;
+}
+
+void RingReader::wait(std::uint32_t signal, Time timeout) {
+  if (timeout <= 0ns) return;
+  const Time slice = std::min(timeout, kLongestWait);
+  const Time start = now_of_ring();
+  wait_for_word(head_.data() + offsetof(PillarfieldRing, signal), signal, slice);
+  if (now_of_ring() - start < slice) return;
+  if (is_replaced()) detach();
+}
+
+const std::byte* RingReader::read(Time timeout) {
+  const Time until = now_of_ring() + timeout;
+  // A segment that changes without rest ends the loop too.
+  for (int attempts = 0; attempts < 1000; ++attempts) {
+    const Time left = until - now_of_ring();
+    if (!open()) {
+      if (left <= 0ns) return nullptr;
+      std::this_thread::sleep_for(std::min<Time>(left, 10ms));
+      attempts = 0;
+      continue;
+    }
+    const auto signal = load<std::uint32_t>(offsetof(PillarfieldRing, signal));
+    const auto published = load<std::uint64_t>(offsetof(PillarfieldRing, published));
+    if (published < next_) next_ = published;  // A new writer counts anew.
+    if (published == next_) {
+      if (left <= 0ns) return nullptr;
+      wait(signal, left);
+      continue;
+    }
+    if (published - next_ > ring_.slots) skip_to(published - 1);
+    if (copy_next()) {
+      ++next_;
+      return slot_.data();
+    }
+    const auto newest = load<std::uint64_t>(offsetof(PillarfieldRing, published)) - 1;
+    skip_to(newest > next_ ? newest : next_ + 1);
+  }
+  return nullptr;
+}
+
+}  // namespace pillarfield

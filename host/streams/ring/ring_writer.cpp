@@ -1,0 +1,134 @@
+#include "streams/ring/ring_writer.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <random>
+
+#include "pillarfield/error.h"
+
+namespace pillarfield {
+namespace {
+
+std::uint64_t draw_session() {
+  std::random_device random;
+  return (std::uint64_t{random()} << 32) | random() | 1;
+}
+
+template <class T>
+void store(T& member, T value) {
+  std::atomic_ref(member).store(value, std::memory_order_release);
+}
+
+}  // namespace
+
+RingWriter::RingWriter(const std::string& name, const RingLayout& layout, std::uint32_t slots)
+    : name_("shm:" + name), segment_name_(segment_name(name)) {
+  const auto content = content_bytes(layout);
+  if (!content) throw Error(name_, "the skin is too large for a ring", "use a smaller one");
+  PillarfieldRing wanted = {};
+  wanted.magic = PILLARFIELD_RING_MAGIC;
+  wanted.kind = layout.kind;
+  wanted.rows = layout.rows;
+  wanted.cols = layout.cols;
+  wanted.type = layout.type;
+  wanted.slots = slots;
+  wanted.slot_bytes = (*content + 63) / 64 * 64;
+  // Another process may unlink the segment between two steps.
+  for (int attempts = 0; !open(wanted); ++attempts) {
+    if (attempts == 100) throw Error(name_, "is unlinked again and again", "give another name");
+  }
+  number_ = ring().published;
+  ring().session = draw_session();
+  store(ring().closed, 0U);
+}
+
+RingWriter::~RingWriter() { close(); }
+
+PillarfieldRing& RingWriter::ring() const {
+  return *reinterpret_cast<PillarfieldRing*>(memory_.data());
+}
+
+/// Opens or creates the segment of the name; false if it must be tried again.
+bool RingWriter::open(const PillarfieldRing& wanted) {
+  segment_ = Descriptor(shm_open(segment_name_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
+  struct stat status = {};
+  if (!segment_.is_open() || fstat(segment_.get(), &status) != 0 || status.st_uid != geteuid()) {
+    throw Error(name_, "the shared memory belongs to another user", "give another name");
+  }
+  if (flock(segment_.get(), LOCK_EX | LOCK_NB) != 0) {
+    throw Error(name_, "another program writes this ring", "give another name");
+  }
+  const std::uint64_t bytes = sizeof wanted + wanted.slots * wanted.slot_bytes;
+  fstat(segment_.get(), &status);
+  if (status.st_nlink == 0) return false;
+  const auto size = static_cast<std::uint64_t>(status.st_size);
+  if (size == 0) create(wanted);
+  memory_ = Mapping(segment_, bytes, true);
+  if (memory_.data() == nullptr) throw Error(name_, std::strerror(errno), "free some memory");
+  if (size == 0) {
+    PillarfieldRing unfinished = wanted;
+    unfinished.magic = 0;
+    ring() = unfinished;
+    store(ring().magic, PILLARFIELD_RING_MAGIC);
+    return true;
+  }
+  if (size == bytes && std::memcmp(&ring(), &wanted, offsetof(PillarfieldRing, session)) == 0) {
+    return true;
+  }
+  shm_unlink(segment_name_.c_str());
+  return false;
+}
+
+/// Allocates the memory of a new segment.
+void RingWriter::create(const PillarfieldRing& wanted) {
+  const auto bytes = static_cast<off_t>(sizeof wanted + wanted.slots * wanted.slot_bytes);
+  if (const int failure = posix_fallocate(segment_.get(), 0, bytes); failure != 0) {
+    shm_unlink(segment_name_.c_str());
+    throw Error(name_, fmt::format("{} bytes of shared memory: {}", bytes, std::strerror(failure)),
+                "free some of /dev/shm");
+  }
+}
+
+std::span<std::byte> RingWriter::begin() {
+  std::byte* const slot = memory_.data() + slot_offset(ring(), number_);
+  std::atomic_ref(*reinterpret_cast<std::uint64_t*>(slot))
+      .store(2 * number_ + 1, std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_release);
+  return {slot, ring().slot_bytes};
+}
+
+void RingWriter::publish() {
+  std::byte* const slot = memory_.data() + slot_offset(ring(), number_);
+  store(*reinterpret_cast<std::uint64_t*>(slot), 2 * number_ + 2);
+  ++number_;
+  store(ring().published, number_);
+  store(ring().signal, static_cast<std::uint32_t>(number_));
+  wake_waiting(reinterpret_cast<std::byte*>(&ring().signal));
+}
+
+void RingWriter::close() {
+  if (memory_.data() == nullptr) return;
+  store(ring().closed, 1U);
+  wake_waiting(reinterpret_cast<std::byte*>(&ring().signal));
+  // Another segment may have the name by now.
+  const Descriptor named(shm_open(segment_name_.c_str(), O_RDONLY | O_CLOEXEC, 0));
+  struct stat ours = {};
+  struct stat status = {};
+  if (named.is_open() && fstat(named.get(), &status) == 0 && fstat(segment_.get(), &ours) == 0 &&
+      status.st_ino == ours.st_ino) {
+    shm_unlink(segment_name_.c_str());
+  }
+  memory_ = Mapping();
+  segment_.reset();
+}
+
+}  // namespace pillarfield

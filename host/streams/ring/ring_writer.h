@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "streams/ring/ring_memory.h"
+
+namespace pillarfield {
+
+/// Writes a ring in shared memory. It takes up a ring of the same layout whose writer was killed,
+/// replaces another one, and unlinks its own at the end.
+class RingWriter {
+ public:
+  /// `name` without "shm:". Throws Error if the name is no name, another program writes the ring,
+  /// or memory is short.
+  RingWriter(const std::string& name, const RingLayout& layout, std::uint32_t slots);
+  ~RingWriter();
+  RingWriter(const RingWriter&) = delete;
+  RingWriter& operator=(const RingWriter&) = delete;
+
+  /// The slot of the next publication, to be filled from the second member on.
+  [[nodiscard]] std::span<std::byte> begin();
+
+  /// Publishes what was written to begin().
+  void publish();
+
+  /// Unlinks the ring; readers see that it is closed.
+  void close();
+
+ private:
+  [[nodiscard]] bool open(const PillarfieldRing& wanted);
+  void create(const PillarfieldRing& wanted);
+  [[nodiscard]] PillarfieldRing& ring() const;
+
+  std::string name_;
+  std::string segment_name_;
+  Descriptor segment_;
+  Mapping memory_;
+  std::uint64_t number_ = 0;  ///< of the next publication
+};
+
+}  // namespace pillarfield

@@ -1,0 +1,389 @@
+#include "streams/sink/foxglove_server.h"
+
+#include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstring>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <semaphore>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/printable.h"
+#include "streams/sink/foxglove_protocol.h"
+
+namespace pillarfield {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using ErrorCode = boost::system::error_code;
+
+std::chrono::milliseconds milliseconds_of(double seconds) {
+  return std::chrono::milliseconds(static_cast<std::int64_t>(1e3 * seconds));
+}
+
+/// The first subprotocol of the client's list that the server speaks; empty if there is none.
+std::string chosen_subprotocol(const http::request<http::empty_body>& request) {
+  for (const auto word : http::token_list(request[http::field::sec_websocket_protocol])) {
+    const std::string name(word.data(), word.size());
+    if (is_foxglove_subprotocol(name)) return name;
+  }
+  return {};
+}
+
+/// What a client waits for.
+struct Outgoing {
+  std::array<std::byte, kMessageDataBytes> head;
+  std::shared_ptr<const std::vector<std::byte>> data;  // null: text
+  std::string text;
+
+  [[nodiscard]] std::size_t bytes() const { return data ? data->size() : text.size(); }
+};
+
+class Session;
+
+/// What sessions share; used by the server's thread alone, but for the atomic members.
+struct Hub {
+  ServerLimits limits;
+  std::string session_id;
+  std::string advertisement = advertise_json();
+  std::set<std::shared_ptr<Session>> sessions;
+  std::atomic<std::uint64_t> clients = 0;
+  std::atomic<std::uint64_t> refused = 0;
+  std::atomic<std::uint64_t> lost = 0;
+  std::atomic<unsigned long> subscribed = 0;
+
+  void update_subscribed();
+};
+
+/// A connection. It lives while one of its operations is pending.
+class Session : public std::enable_shared_from_this<Session> {
+ public:
+  Session(tcp::socket socket, Hub& hub)
+      : hub_(hub), socket_(std::move(socket)), pause_(socket_.get_executor()) {}
+
+  void start();
+  /// Queues the messages that the client subscribes to.
+  void send(std::span<const ServerMessage> messages);
+  [[nodiscard]] bool is_idle() const { return queue_.empty(); }
+  [[nodiscard]] const Subscriptions& subscriptions() const { return subscriptions_; }
+  /// Ends the connection in an orderly way.
+  void close(websocket::close_code code);
+
+ private:
+  void accept_upgrade(ErrorCode error);
+  void greet(ErrorCode error);
+  void read();
+  void handle(ErrorCode error);
+  void queue(Outgoing message);
+  void write();
+  void closed(ErrorCode) { end(); }
+  void refuse();
+  void end();
+
+  /// Binds a member function to a result of an operation and the life of the session.
+  auto then(void (Session::*member)(ErrorCode)) {
+    return [self = shared_from_this(), member](ErrorCode error, auto&&...) {
+      (self.get()->*member)(error);
+    };
+  }
+
+  static constexpr std::size_t kMostHeaderBytes = 8192;
+
+  Hub& hub_;
+  websocket::stream<beast::tcp_stream> socket_;
+  asio::steady_timer pause_;
+  http::request<http::empty_body> request_;
+  beast::flat_buffer buffer_;
+  Subscriptions subscriptions_;
+  std::deque<Outgoing> queue_;  // the first is being written
+  std::size_t queued_bytes_ = 0;
+  std::size_t invalid_ = 0;
+  bool is_client_ = false;  // after the handshake
+  bool is_closing_ = false;
+  bool has_ended_ = false;
+};
+
+void Hub::update_subscribed() {
+  TopicSet all;
+  for (const auto& session : sessions) all |= session->subscriptions().topics();
+  subscribed = all.to_ulong();
+}
+
+void Session::start() {
+  ErrorCode ignored;
+  beast::get_lowest_layer(socket_).socket().set_option(tcp::no_delay(true), ignored);
+  beast::get_lowest_layer(socket_).expires_after(milliseconds_of(hub_.limits.handshake_s));
+  buffer_.max_size(kMostHeaderBytes);
+  http::async_read(socket_.next_layer(), buffer_, request_, then(&Session::accept_upgrade));
+}
+
+void Session::accept_upgrade(ErrorCode error) {
+  if (error) return refuse();
+  const std::string subprotocol = chosen_subprotocol(request_);
+  if (!websocket::is_upgrade(request_) || subprotocol.empty()) return refuse();
+  beast::get_lowest_layer(socket_).expires_never();  // The WebSocket has timeouts of its own.
+  websocket::stream_base::timeout timeout;
+  timeout.handshake_timeout = milliseconds_of(hub_.limits.handshake_s);
+  timeout.idle_timeout = milliseconds_of(hub_.limits.silence_s);
+  timeout.keep_alive_pings = true;
+  socket_.set_option(timeout);
+  socket_.set_option(
+      websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
+        response.set(http::field::sec_websocket_protocol, subprotocol);
+        response.set(http::field::server, "pillarfield");
+      }));
+  socket_.read_message_max(hub_.limits.message_bytes);
+  socket_.auto_fragment(false);
+  socket_.async_accept(request_, then(&Session::greet));
+}
+
+void Session::greet(ErrorCode error) {
+  if (error) return refuse();
+  request_ = {};
+  buffer_ = {};
+  is_client_ = true;
+  ++hub_.clients;
+  queue({{}, nullptr, server_info_json(hub_.session_id)});
+  queue({{}, nullptr, hub_.advertisement});
+  read();
+}
+
+void Session::read() { socket_.async_read(buffer_, then(&Session::handle)); }
+
+/// Handles a message of the client, which may hold anything.
+void Session::handle(ErrorCode error) {
+  constexpr std::chrono::milliseconds kPause{1};
+  if (error) {
+    const bool is_excess = error == websocket::error::message_too_big;
+    return is_excess ? refuse() : end();
+  }
+  const auto bytes = buffer_.cdata();
+  const std::string why =
+      socket_.got_text()
+          ? subscriptions_.obey({static_cast<const char*>(bytes.data()), bytes.size()})
+          : "this server takes no binary messages";
+  buffer_.consume(buffer_.size());
+  hub_.update_subscribed();
+  if (!why.empty()) {
+    if (++invalid_ > hub_.limits.invalid_messages) return refuse();
+    queue({{}, nullptr, status_json(2, why)});
+  }
+  pause_.expires_after(kPause);
+  pause_.async_wait([self = shared_from_this()](ErrorCode cancelled) {
+    if (!cancelled && !self->has_ended_) self->read();
+  });
+}
+
+void Session::send(std::span<const ServerMessage> messages) {
+  if (!is_client_ || is_closing_) return;
+  std::size_t bytes = 0;
+  for (const ServerMessage& message : messages) {
+    if (subscriptions_.of(message.topic)) bytes += message.bytes->size();
+  }
+  if (bytes == 0) return;
+  if (!queue_.empty() && queued_bytes_ + bytes > hub_.limits.queue_bytes) {
+    ++hub_.lost;
+    return;
+  }
+  for (const ServerMessage& message : messages) {
+    if (const auto subscription = subscriptions_.of(message.topic)) {
+      queue({message_data_head(*subscription, message.time_ns), message.bytes, {}});
+    }
+  }
+}
+
+void Session::queue(Outgoing message) {
+  queued_bytes_ += message.bytes();
+  queue_.push_back(std::move(message));
+  if (queue_.size() == 1) write();
+}
+
+void Session::write() {
+  const Outgoing& message = queue_.front();
+  const auto written = [self = shared_from_this()](ErrorCode error, std::size_t) {
+    if (error) return self->end();
+    self->queued_bytes_ -= self->queue_.front().bytes();
+    self->queue_.pop_front();
+    if (!self->queue_.empty()) self->write();
+  };
+  socket_.binary(message.data != nullptr);
+  if (message.data != nullptr) {
+    const std::array<asio::const_buffer, 2> buffers = {
+        asio::buffer(message.head.data(), message.head.size()),
+        asio::buffer(message.data->data(), message.data->size())};
+    socket_.async_write(buffers, written);
+  } else {
+    socket_.async_write(asio::buffer(message.text), written);
+  }
+}
+
+void Session::close(websocket::close_code code) {
+  if (std::exchange(is_closing_, true)) return;
+  if (!is_client_) return end();
+  socket_.async_close(code, then(&Session::closed));
+}
+
+/// Ends the connection of a client that broke a limit.
+void Session::refuse() {
+  ++hub_.refused;
+  end();
+}
+
+void Session::end() {
+  if (std::exchange(has_ended_, true)) return;
+  if (is_client_) --hub_.clients;
+  is_closing_ = true;
+  pause_.cancel();
+  beast::get_lowest_layer(socket_).close();
+  hub_.sessions.erase(shared_from_this());
+  hub_.update_subscribed();
+}
+
+}  // namespace
+
+struct FoxgloveServer::State {
+  State(const SocketAddress& address, const std::string& target, const ServerLimits& limits);
+  ~State();
+
+  void accept();
+  void take(tcp::socket socket);
+  /// Runs `action` in the server's thread, and waits for it.
+  void run(const std::function<void()>& action);
+  [[nodiscard]] bool all(bool (*condition)(const Session&));
+
+  Hub hub;
+  asio::io_context context{1};
+  asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(context);
+  tcp::acceptor acceptor{context};
+  asio::steady_timer retry{context};
+  std::uint16_t port = 0;
+  std::thread thread;
+};
+
+FoxgloveServer::State::State(const SocketAddress& address, const std::string& target,
+                             const ServerLimits& limits) {
+  hub.limits = limits;
+  hub.session_id = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
+  try {
+    tcp::endpoint endpoint;
+    endpoint.resize(address.size);
+    std::memcpy(endpoint.data(), address.get(), address.size);
+    acceptor.open(endpoint.protocol());
+    acceptor.set_option(tcp::acceptor::reuse_address(true));
+    acceptor.bind(endpoint);
+    acceptor.listen();
+    port = acceptor.local_endpoint().port();
+  } catch (const boost::system::system_error& error) {
+    throw Error(printable(target), error.code().message(), "choose another address or port");
+  }
+  accept();
+  thread = std::thread([this] { context.run(); });
+}
+
+FoxgloveServer::State::~State() {
+  context.stop();
+  thread.join();
+  hub.sessions.clear();
+}
+
+void FoxgloveServer::State::accept() {
+  acceptor.async_accept([this](ErrorCode error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error) {
+      take(std::move(socket));
+      return accept();
+    }
+    // Such as too many open files, which will not be over at once.
+    constexpr std::chrono::milliseconds kPause{100};
+    retry.expires_after(kPause);
+    retry.async_wait([this](ErrorCode cancelled) {
+      if (!cancelled) accept();
+    });
+  });
+}
+
+void FoxgloveServer::State::take(tcp::socket socket) {
+  if (hub.sessions.size() >= hub.limits.clients) {
+    ++hub.refused;
+    return;  // The destructor closes the socket.
+  }
+  const auto session = std::make_shared<Session>(std::move(socket), hub);
+  hub.sessions.insert(session);
+  session->start();
+}
+
+void FoxgloveServer::State::run(const std::function<void()>& action) {
+  std::binary_semaphore done(0);
+  asio::post(context, [&] {
+    action();
+    done.release();
+  });
+  done.acquire();
+}
+
+bool FoxgloveServer::State::all(bool (*condition)(const Session&)) {
+  bool holds = true;
+  run([&] {
+    for (const auto& session : hub.sessions) holds = holds && condition(*session);
+  });
+  return holds;
+}
+
+FoxgloveServer::FoxgloveServer(const SocketAddress& address, const std::string& target,
+                               const ServerLimits& limits)
+    : state_(std::make_unique<State>(address, target, limits)) {}
+
+FoxgloveServer::~FoxgloveServer() = default;
+
+std::uint16_t FoxgloveServer::port() const { return state_->port; }
+
+TopicSet FoxgloveServer::subscribed() const { return {state_->hub.subscribed.load()}; }
+
+void FoxgloveServer::send(std::span<const ServerMessage> messages) {
+  state_->run([&] {
+    const auto sessions = state_->hub.sessions;  // send() may end one
+    for (const auto& session : sessions) session->send(messages);
+  });
+}
+
+void FoxgloveServer::finish() {
+  constexpr std::chrono::milliseconds kStep{5};
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+  const auto wait_until_all = [&](bool (*condition)(const Session&)) {
+    while (!state_->all(condition) && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(kStep);
+    }
+  };
+  wait_until_all([](const Session& session) { return session.is_idle(); });
+  state_->run([&] {
+    state_->acceptor.close();
+    const auto sessions = state_->hub.sessions;
+    for (const auto& session : sessions) session->close(websocket::close_code::going_away);
+  });
+  wait_until_all([](const Session&) { return false; });  // gone
+}
+
+void FoxgloveServer::add_to(LiveSinkStatistics& statistics) const {
+  const Hub& hub = state_->hub;
+  statistics.clients = hub.clients;
+  statistics.refused = hub.refused;
+  statistics.dropped += hub.lost;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pillarfield/live.h"
+#include "streams/message/topics.h"
+#include "streams/sink/address.h"
+
+namespace pillarfield {
+
+/// Limits on clients, none of which is trusted.
+struct ServerLimits {
+  std::size_t clients = 16;                           ///< connections; the next one is refused
+  std::size_t message_bytes = std::size_t{64} << 10;  ///< of a client
+  std::size_t invalid_messages = 16;                  ///< then the client is disconnected
+  std::size_t queue_bytes = std::size_t{8} << 20;     ///< that wait for one client
+  double handshake_s = 5;
+  double silence_s = 30;  ///< without an answer to pings
+};
+
+/// A message to the clients that subscribe to its topic.
+struct ServerMessage {
+  std::size_t topic = 0;
+  std::uint64_t time_ns = 0;
+  std::shared_ptr<const std::vector<std::byte>> bytes;
+};
+
+/// A WebSocket server of the Foxglove protocol, in a thread of its own. It reads at most 1000
+/// messages a second from a client.
+class FoxgloveServer {
+ public:
+  /// Listens; port 0 is any free one. Throws Error, naming `target`, if it cannot.
+  FoxgloveServer(const SocketAddress& address, const std::string& target,
+                 const ServerLimits& limits = {});
+  /// Disconnects all clients.
+  ~FoxgloveServer();
+  FoxgloveServer(const FoxgloveServer&) = delete;
+  FoxgloveServer& operator=(const FoxgloveServer&) = delete;
+
+  [[nodiscard]] std::uint16_t port() const;
+
+  /// Topics that some client subscribes to; any thread may ask.
+  [[nodiscard]] TopicSet subscribed() const;
+
+  /// Queues the messages of one frame for each client, which loses all of them if its queue is
+  /// full. Waits for the server's thread, never for a client.
+  void send(std::span<const ServerMessage> messages);
+
+  /// Waits up to a second until the clients have received everything, and closes.
+  void finish();
+
+  /// Sets `clients` and `refused`, and adds the frames that clients lost; any thread may ask.
+  void add_to(LiveSinkStatistics& statistics) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace pillarfield

@@ -1,0 +1,93 @@
+#include "streams/sink/foxglove_sink.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "streams/message/encoder.h"
+#include "streams/sink/address.h"
+#include "streams/sink/foxglove_server.h"
+#include "streams/sink/queued_sink.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr std::string_view kFoxglovePrefix = "foxglove:";
+constexpr std::chrono::nanoseconds kPictureInterval{16'000'000};
+
+/// Sends what clients subscribe to: contacts and time of each frame, images, points and arrows at
+/// most about 60 times a second.
+class FoxgloveConsumer final : public SinkConsumer {
+ public:
+  FoxgloveConsumer(std::unique_ptr<FoxgloveServer> server, const LiveSinkInfo& info)
+      : server_(std::move(server)), encoder_(info) {}
+
+  [[nodiscard]] FrameParts wants(const SolvedFrame& frame) override;
+  [[nodiscard]] bool consume(const SolvedFrame& frame) override {
+    encoder_.encode(frame, server_->subscribed(), receiver_);
+    send();
+    return true;
+  }
+  void report(const HealthReport& health) override {
+    if (!server_->subscribed()[topic::kHealth]) return;
+    encoder_.encode(health, receiver_);
+    send();
+  }
+  void finish() override { server_->finish(); }
+  void add_to(LiveSinkStatistics& statistics) const override { server_->add_to(statistics); }
+
+ private:
+  void send() {
+    if (!messages_.empty()) server_->send(messages_);
+    messages_.clear();
+  }
+
+  std::unique_ptr<FoxgloveServer> server_;
+  MessageEncoder encoder_;
+  std::chrono::nanoseconds last_picture_{0};  // its arrival
+  std::vector<ServerMessage> messages_;       // of the frame
+  MessageEncoder::Receiver receiver_ = [this](const EncodedMessage& message) {
+    messages_.push_back({message.topic, static_cast<std::uint64_t>(message.stamp.count()),
+                         std::make_shared<const std::vector<std::byte>>(message.bytes.begin(),
+                                                                        message.bytes.end())});
+  };
+};
+
+FrameParts FoxgloveConsumer::wants(const SolvedFrame& frame) {
+  const TopicSet wanted = server_->subscribed();
+  FrameParts parts;
+  // Contacts come with the time, too, since a frame without parts is skipped.
+  parts.contacts =
+      (wanted & contact_topics()).any() || wanted[topic::kArrows] || wanted[topic::kTime];
+  if (frame.arrived - last_picture_ < kPictureInterval) return parts;
+  parts.forces = wanted[topic::kNormal] || wanted[topic::kForces];
+  parts.readings = wanted[topic::kRaw];
+  if (parts.forces || parts.readings) last_picture_ = frame.arrived;
+  return parts;
+}
+
+std::unique_ptr<LiveSink> create_foxglove_sink(const std::string& target,
+                                               const LiveSinkInfo& info) {
+  std::string_view text = "8765";
+  if (target.size() > kFoxglovePrefix.size()) {
+    text = std::string_view(target).substr(kFoxglovePrefix.size());
+  }
+  auto server = std::make_unique<FoxgloveServer>(address_of(text, target, 0), target);
+  const std::string host = split_address(text).host;
+  const bool is_v6 = host.find(':') != std::string::npos;
+  const std::string name = fmt::format("{}{}{}{}:{}", kFoxglovePrefix, is_v6 ? "[" : "", host,
+                                       is_v6 ? "]" : "", server->port());
+  return std::make_unique<QueuedSink>(name,
+                                      std::make_unique<FoxgloveConsumer>(std::move(server), info));
+}
+
+}  // namespace
+
+LiveSinkKind foxglove_sink_kind() {
+  return {.prefix = kFoxglovePrefix,
+          .form = "foxglove[:[ADDRESS:]PORT]",
+          .create = create_foxglove_sink};
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <span>
+
+#include "streams/source/packet_parser.h"
+#include "streams/source/packet_source.h"
+
+namespace pillarfield {
+
+/// What read_bytes() read: bytes, or why none.
+struct BytesRead {
+  std::size_t bytes = 0;
+  bool ended = false;  ///< end of file, or the device is gone
+};
+
+/// Waits for bytes of a pipe or a device, at most for `timeout`, and reads them.
+[[nodiscard]] BytesRead read_bytes(int descriptor, std::span<std::byte> space,
+                                   std::chrono::nanoseconds timeout);
+
+/// Waits for a descriptor to become readable; false at the timeout and on a signal.
+[[nodiscard]] bool wait_readable(int descriptor, std::chrono::nanoseconds timeout);
+
+}  // namespace pillarfield

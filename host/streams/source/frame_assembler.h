@@ -1,0 +1,110 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "pillarfield/frame_stream.h"
+#include "streams/source/packet.h"
+#include "streams/source/part_history.h"
+#include "streams/source/rate_meter.h"
+#include "streams/source/sensor_clock.h"
+#include "streams/source/sessions.h"
+
+namespace pillarfield {
+
+/// How many frames may be under way at once.
+enum class PacketOrder : std::uint8_t {
+  kept = 1,      ///< packets arrive as they were sent: a later frame ends an incomplete one
+  not_kept = 2,  ///< the frame after the next ends an incomplete one
+};
+
+/// Assembles the packets of a stream to frames, in order, and counts what is wrong with them.
+///
+/// An incomplete frame is given up when a packet of a later frame shows that no more will come
+/// (PacketOrder), or after two frame intervals without a packet. It is delivered if one of its
+/// packets came, and lost otherwise. A stream that starts in the middle of a frame, or after
+/// discard(), does not count that frame. Allocates only at construction.
+class FrameAssembler {
+ public:
+  using Time = std::chrono::nanoseconds;
+
+  FrameAssembler(const FrameShape& shape, PacketOrder order);
+
+  /// Adds a packet; pop() must have returned false before.
+  void add(const Packet& packet);
+
+  /// Takes the next frame that is complete or given up; false without one. Throws Error if the
+  /// frame's buffer has another size.
+  bool pop(StreamedFrame& frame);
+
+  /// When give_up() will give up the oldest frame under way.
+  [[nodiscard]] std::optional<Time> deadline() const;
+
+  /// Gives up all frames under way.
+  void give_up();
+
+  /// Forgets the frames under way, and does not count those up to the next packet.
+  void discard();
+
+  [[nodiscard]] const FrameShape& shape() const { return shape_; }
+  [[nodiscard]] StreamHealth health(Time now) const;
+  void set_counts(const StreamHealth& counts) { counts_ = counts; }
+
+ private:
+  struct Slot {
+    explicit Slot(const FrameShape& shape)
+        : readings(shape.type, shape.rows, shape.cols), marks(marks_of(shape)) {}
+    static std::size_t marks_of(const FrameShape& shape);
+
+    FrameBuffer readings;
+    std::vector<std::uint8_t> marks;  ///< rows or blocks that came
+    PillarfieldPacket header = {};    ///< of its last packet
+    std::uint32_t parts_left = 0;
+    Time arrived{0};
+    std::uint64_t order = 0;  ///< of delivery; 0: under way
+    std::uint64_t epoch = 0;  ///< restarts before it
+    bool used = false;
+    bool first = false;  ///< may have begun before the stream listened
+  };
+
+  [[nodiscard]] bool began_anew(const PillarfieldPacket& header, Time arrived) const;
+  void restart();
+  void add_to_frame(const Packet& packet);
+  void count_late(const PillarfieldPacket& header);
+  Slot* slot_of(std::uint64_t sequence);
+  Slot& new_slot(const PillarfieldPacket& header);
+  void store(Slot& slot, const Packet& packet);
+  void measure_interval(std::uint64_t sequence, Time arrived);
+  void release(Slot& slot);
+  void release_complete();
+  void give_up_before(std::uint64_t sequence);
+  void merge(Slot& slot, std::vector<SenselBlock>& missing);
+  void merge_rows(const Slot& slot, std::vector<SenselBlock>& missing);
+  void merge_blocks(const Slot& slot);
+
+  FrameShape shape_;
+  std::uint64_t window_;
+  std::vector<Slot> slots_;
+  FrameBuffer latest_;  ///< readings of the last frame delivered
+  PartHistory history_;
+  Sessions sessions_;
+  SensorClock clock_;
+  mutable RateMeter rate_;
+  StreamHealth counts_;
+
+  std::optional<std::uint64_t> next_;  ///< the oldest frame neither delivered nor lost
+  std::uint64_t highest_ = 0;          ///< sequence of this session
+  std::uint64_t quiet_until_ = 0;      ///< packets of frames before are not counted
+  std::uint64_t epoch_ = 0;
+  std::uint64_t delivered_epoch_ = 0;
+  bool listening_ = false;  ///< a frame began since construction or discard()
+  bool ended_ = false;      ///< the sensor said so
+  std::uint64_t released_ = 0;
+  Time last_packet_{0};
+  Time frame_began_{0};  ///< arrival of the first packet of `highest_`
+  double interval_ns_ = 0;
+};
+
+}  // namespace pillarfield

@@ -1,0 +1,118 @@
+#include "streams/source/packet.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace pillarfield {
+namespace {
+
+constexpr std::uint32_t kSide = PILLARFIELD_BLOCK_SIDE;
+constexpr std::size_t kBlockHead = 8;
+constexpr std::size_t kChecksumBytes = 4;
+
+std::optional<SenselType> type_of(const PillarfieldPacket& header) {
+  switch (header.type) {
+    case PILLARFIELD_U8:
+      return SenselType::u8;
+    case PILLARFIELD_U16:
+      return SenselType::u16;
+    case PILLARFIELD_F32:
+      return SenselType::f32;
+    default:
+      return std::nullopt;
+  }
+}
+
+bool is_checked(const PillarfieldPacket& header) {
+  return (header.content & PILLARFIELD_CHECKED) != 0;
+}
+
+/// Bytes of readings that a header announces; none if its members contradict each other.
+std::optional<std::size_t> reading_bytes(const PillarfieldPacket& header, const FrameShape& shape) {
+  switch (content_of(header)) {
+    case PILLARFIELD_FRAME:
+      if (header.parts != 1) return std::nullopt;
+      return shape.bytes();
+    case PILLARFIELD_ROWS:
+      if (header.count < 1 || header.count > shape.rows) return std::nullopt;
+      if (header.first > shape.rows - header.count) return std::nullopt;
+      return header.count * shape.row_bytes();
+    case PILLARFIELD_BLOCKS:
+      if (header.count > shape.blocks()) return std::nullopt;
+      return header.count * shape.block_bytes();
+    case PILLARFIELD_END:
+      return 0;
+  }
+  return std::nullopt;
+}
+
+std::uint32_t checksum_of(const PillarfieldPacket& header, std::span<const std::byte> bytes) {
+  const auto* const head = reinterpret_cast<const Bytef*>(&header);
+  const auto* const rest = reinterpret_cast<const Bytef*>(bytes.data());
+  const uLong sum = crc32(0, head, sizeof header);
+  return static_cast<std::uint32_t>(crc32_z(sum, rest, bytes.size()));
+}
+
+bool names_blocks_of_frame(const Packet& packet, const FrameShape& shape) {
+  for (std::uint32_t i = 0; i < packet.header.count; ++i) {
+    std::uint32_t number_and_zero[2];
+    std::memcpy(number_and_zero, &packet.bytes[i * shape.block_bytes()], sizeof number_and_zero);
+    if (number_and_zero[0] >= shape.blocks() || number_and_zero[1] != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::uint32_t FrameShape::block_cols() const { return (cols + kSide - 1) / kSide; }
+
+std::uint32_t FrameShape::blocks() const { return (rows + kSide - 1) / kSide * block_cols(); }
+
+std::size_t FrameShape::block_bytes() const { return kBlockHead + kSide * kSide * size_of(type); }
+
+std::size_t FrameShape::most_packet_bytes() const {
+  return std::max(bytes(), blocks() * block_bytes()) + kChecksumBytes;
+}
+
+SenselBlock sensels_of_block(const FrameShape& shape, std::uint32_t block) {
+  const std::uint32_t row = block / shape.block_cols() * kSide;
+  const std::uint32_t col = block % shape.block_cols() * kSide;
+  return {row, std::min(kSide, shape.rows - row), col, std::min(kSide, shape.cols - col)};
+}
+
+PillarfieldContent content_of(const PillarfieldPacket& header) {
+  return static_cast<PillarfieldContent>(header.content & ~PILLARFIELD_CHECKED);
+}
+
+std::optional<FrameShape> shape_of(const PillarfieldPacket& header) {
+  const auto type = type_of(header);
+  if (header.magic != PILLARFIELD_PACKET_MAGIC || !type || header.patch != 0) return std::nullopt;
+  if ((header.content & ~PILLARFIELD_CHECKED) > PILLARFIELD_END) return std::nullopt;
+  const FrameShape shape = {*type, header.rows, header.cols};
+  if (std::min(shape.rows, shape.cols) < 2 || std::max(shape.rows, shape.cols) > kMaxSensels ||
+      std::size_t{shape.rows} * shape.cols > PILLARFIELD_MAX_SENSELS) {
+    return std::nullopt;
+  }
+  if (header.parts < 1 || header.parts > PILLARFIELD_MAX_PARTS || header.part >= header.parts) {
+    return std::nullopt;
+  }
+  const auto bytes = reading_bytes(header, shape);
+  const std::size_t checksum = is_checked(header) ? kChecksumBytes : 0;
+  if (!bytes || header.bytes != *bytes + checksum) return std::nullopt;
+  return shape;
+}
+
+bool is_intact(const Packet& packet, const FrameShape& shape) {
+  if (packet.bytes.size() != packet.header.bytes) return false;
+  if (is_checked(packet.header)) {
+    const auto readings = packet.bytes.first(packet.bytes.size() - kChecksumBytes);
+    std::uint32_t checksum = 0;
+    std::memcpy(&checksum, packet.bytes.last(kChecksumBytes).data(), kChecksumBytes);
+    if (checksum != checksum_of(packet.header, readings)) return false;
+  }
+  return content_of(packet.header) != PILLARFIELD_BLOCKS || names_blocks_of_frame(packet, shape);
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "pillarfield/frame.h"
+#include "pillarfield/stream_format.h"
+
+namespace pillarfield {
+
+/// Size and type of the frames of a stream.
+struct FrameShape {
+  SenselType type = SenselType::u8;
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+
+  [[nodiscard]] std::size_t row_bytes() const { return cols * size_of(type); }
+  [[nodiscard]] std::size_t bytes() const { return rows * row_bytes(); }
+  [[nodiscard]] std::uint32_t block_cols() const;
+  [[nodiscard]] std::uint32_t blocks() const;
+  /// Bytes of a block in a packet, its number included.
+  [[nodiscard]] std::size_t block_bytes() const;
+  /// The most bytes that follow the header of a packet.
+  [[nodiscard]] std::size_t most_packet_bytes() const;
+  bool operator==(const FrameShape&) const = default;
+};
+
+/// The sensels of a block that are on the skin.
+[[nodiscard]] SenselBlock sensels_of_block(const FrameShape& shape, std::uint32_t block);
+
+/// A packet as received; nothing in it is trusted. `bytes` is valid until the next one is received.
+struct Packet {
+  PillarfieldPacket header = {};
+  std::span<const std::byte> bytes;  ///< after the header
+  std::chrono::nanoseconds arrived{0};
+};
+
+[[nodiscard]] PillarfieldContent content_of(const PillarfieldPacket& header);
+
+/// Size and type of the packet's frame; none if a member of the header is out of range or
+/// contradicts another one.
+[[nodiscard]] std::optional<FrameShape> shape_of(const PillarfieldPacket& header);
+
+/// Whether the packet, whose header has a shape, is as long as the header says, has the right
+/// checksum, and names only blocks of the frame.
+[[nodiscard]] bool is_intact(const Packet& packet, const FrameShape& shape);
+
+}  // namespace pillarfield

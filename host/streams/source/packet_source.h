@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "pillarfield/live.h"
+#include "streams/source/frame_assembler.h"
+#include "streams/source/packet.h"
+
+namespace pillarfield {
+
+[[nodiscard]] inline std::chrono::nanoseconds steady_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+/// Where packets come from.
+class PacketSource {
+ public:
+  PacketSource() = default;
+  virtual ~PacketSource() = default;
+  PacketSource(const PacketSource&) = delete;
+  PacketSource& operator=(const PacketSource&) = delete;
+
+  /// Waits for a packet, at most for `timeout`, and may return earlier. The packet is not checked.
+  [[nodiscard]] virtual Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) = 0;
+
+  /// Allocates the memory for frames of this shape; the last packet received stays valid.
+  virtual void prepare(const FrameShape& /*shape*/) {}
+
+  /// What was received since clear_counts().
+  struct Counts {
+    std::uint64_t invalid = 0;  ///< no packets
+    std::uint64_t overrun = 0;  ///< packets lost because nobody received them in time
+  };
+  [[nodiscard]] virtual Counts counts() const = 0;
+  virtual void clear_counts() = 0;
+};
+
+/// Opens a stream of the frames of a source: waits for its first packet. Null if options.stop gave
+/// up. Throws Error, naming `name`, if the source ends before or the calibration does not fit.
+[[nodiscard]] std::unique_ptr<FrameStream> open_packet_stream(const std::string& name,
+                                                              std::unique_ptr<PacketSource> source,
+                                                              PacketOrder order,
+                                                              const LiveSourceOptions& options);
+
+}  // namespace pillarfield

@@ -1,0 +1,43 @@
+#include <cstring>
+#include <utility>
+
+#include "streams/live_source.h"
+#include "streams/ring/ring_reader.h"
+#include "streams/source/packet_source.h"
+
+namespace pillarfield {
+namespace {
+
+/// Frames of a ring in shared memory.
+class RingSource final : public PacketSource {
+ public:
+  explicit RingSource(const std::string& name) : reader_(name, PILLARFIELD_RING_FRAMES) {}
+
+  [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
+  [[nodiscard]] Counts counts() const override { return {reader_.invalid(), reader_.overrun()}; }
+  void clear_counts() override { reader_.clear_counts(); }
+
+ private:
+  RingReader reader_;
+};
+
+Arrival RingSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
+  const std::byte* const slot = reader_.read(timeout);
+  if (slot == nullptr) return Arrival::timed_out;
+  packet.arrived = steady_now();
+  std::memcpy(&packet.header, slot + offsetof(PillarfieldFrameSlot, packet), sizeof packet.header);
+  const std::size_t bytes = *content_bytes(*reader_.layout()) - sizeof(PillarfieldFrameSlot);
+  packet.bytes = {slot + sizeof(PillarfieldFrameSlot), bytes};
+  return Arrival::arrived;
+}
+
+std::unique_ptr<FrameStream> open_ring(const std::string& rest, const LiveSourceOptions& options) {
+  return open_packet_stream("shm:" + rest, std::make_unique<RingSource>(rest), PacketOrder::kept,
+                            options);
+}
+
+}  // namespace
+
+LiveSourceKind ring_kind() { return {"shm:", "shm:NAME", open_ring}; }
+
+}  // namespace pillarfield

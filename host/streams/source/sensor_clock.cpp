@@ -1,0 +1,24 @@
+#include "streams/source/sensor_clock.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace pillarfield {
+
+double SensorClock::seconds(std::uint64_t time_ns, std::chrono::nanoseconds arrived,
+                            bool restarted) {
+  constexpr std::uint64_t kMostAhead_ns = 1'000'000'000;
+  const std::uint64_t before_ns = std::exchange(last_ns_, time_ns);
+  const auto host =
+      static_cast<std::uint64_t>(std::max<std::int64_t>((arrived - last_arrived_).count(), 0));
+  last_arrived_ = arrived;
+  if (!std::exchange(started_, true)) return 0;
+  const bool comparable = !restarted && time_ns != 0 && before_ns != 0;
+  const bool jumped =
+      comparable && (time_ns < before_ns || time_ns - before_ns > host + kMostAhead_ns);
+  if (jumped) ++jumps_;
+  elapsed_ns_ += comparable && !jumped ? time_ns - before_ns : host;
+  return static_cast<double>(elapsed_ns_) * 1e-9;
+}
+
+}  // namespace pillarfield

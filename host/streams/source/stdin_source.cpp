@@ -1,0 +1,52 @@
+#include <unistd.h>
+
+#include "pillarfield/error.h"
+#include "streams/live_source.h"
+#include "streams/source/byte_source.h"
+
+namespace pillarfield {
+namespace {
+
+/// Packets on standard input, up to its end.
+class StdinSource final : public PacketSource {
+ public:
+  [[nodiscard]] Arrival receive(Packet& packet, std::chrono::nanoseconds timeout) override;
+  void prepare(const FrameShape& shape) override { parser_.prepare(shape); }
+  [[nodiscard]] Counts counts() const override { return {parser_.invalid(), 0}; }
+  void clear_counts() override { parser_.clear_counts(); }
+
+ private:
+  PacketParser parser_;
+  std::chrono::nanoseconds arrived_{0};
+  bool ended_ = false;
+};
+
+Arrival StdinSource::receive(Packet& packet, std::chrono::nanoseconds timeout) {
+  while (!parser_.next(packet)) {
+    if (ended_) return Arrival::ended;
+    const BytesRead read = read_bytes(STDIN_FILENO, parser_.space(), timeout);
+    if (read.bytes == 0 && !read.ended) return Arrival::timed_out;
+    arrived_ = steady_now();
+    parser_.commit(read.bytes);
+    ended_ = read.ended;
+    if (ended_) parser_.finish();
+    timeout = std::chrono::nanoseconds(0);
+  }
+  packet.arrived = arrived_;
+  return Arrival::arrived;
+}
+
+std::unique_ptr<FrameStream> open_stdin(const std::string& /*rest*/,
+                                        const LiveSourceOptions& options) {
+  constexpr const char* kName = "standard input";
+  if (isatty(STDIN_FILENO) != 0) {
+    throw Error(kName, "is a terminal", "pipe the packets of a driver into it: driver | ... -");
+  }
+  return open_packet_stream(kName, std::make_unique<StdinSource>(), PacketOrder::kept, options);
+}
+
+}  // namespace
+
+LiveSourceKind stdin_kind() { return {"-", "-", open_stdin}; }
+
+}  // namespace pillarfield

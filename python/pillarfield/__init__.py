@@ -1,0 +1,24 @@
+"""Fields of three-axis force from frames of a tactile skin.
+
+>>> import numpy as np, pillarfield as pf
+>>> frames = np.zeros((3, 8, 12), np.uint8)     # counts [frames, sensel rows, columns]
+>>> frames[:, 2:4, 4:6] = 80                    # one pillar is pressed
+>>> forces = pf.solve(frames, counts_per_newton=320)
+>>> float(forces.normal[0, 1, 2])               # N
+0.25
+
+docs/python.md is the manual.
+"""
+
+from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, Scene, Skin, Surface,
+                    __version__)
+from ._error import Error
+from ._field import ForceField, Points, Uncertainty
+from ._recording import Recording
+from ._scene import Simulation, scene, simulate
+from ._solve import solve
+from ._status import Region, Status
+
+__all__ = ["Calibration", "Contact", "ContactTotal", "Error", "ForceField", "FrameContacts", "Plan",
+           "Points", "Recording", "Region", "Scene", "Simulation", "Skin", "Status", "Surface",
+           "Uncertainty", "__version__", "scene", "simulate", "solve"]
