@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._error import Error
+from ._frames import Path
 from ._status import REGIONS, Status
 
 if TYPE_CHECKING:
@@ -222,6 +223,20 @@ class ForceField:
         """The same field in memory of its own, writeable."""
         planes = {name: plane.copy() for name, plane in self._planes.items()}
         return self._of(planes, self._times.copy(), self._contacts, self._skin)
+
+    def _batch(self) -> dict[str, Any]:
+        """Dense planes [T, P, Q]."""
+        shape = (-1, *self.shape[-2:])
+        return {name: np.ascontiguousarray(plane).reshape(shape)
+                for name, plane in self._planes.items()}
+
+    def save(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the forces; the extension chooses the format (docs/formats.md): .h5, .csv, .npy.
+
+        overwrite: replace any file, not only other results. Raises Error if it cannot be written.
+        """
+        skin = self._skin or _core.Skin(2 * self.shape[-2], 2 * self.shape[-1])
+        _core.save_forces(path, self._batch(), self._times.reshape(-1), skin, overwrite)
 
     def __repr__(self) -> str:
         frames = len(self)
