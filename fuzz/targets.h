@@ -15,6 +15,10 @@ namespace pillarfield::fuzz {
 /// Reads a recording or a Tekscan export; also solves its frames in C++ and tracks their contacts.
 void read_frames(const std::filesystem::path& path, const ReadOptions& options);
 
+/// Reads plain data, also as frames that lie in lines and as a dataset `raw`, as read_frames()
+/// does.
+void read_plain(const std::filesystem::path& path, const ReadOptions& options);
+
 /// Reads a force file; also compares its frames with themselves.
 void read_forces(const std::filesystem::path& path, const ReadOptions& options);
 
@@ -30,12 +34,13 @@ struct Target {
   void (*read)(const std::filesystem::path& path, const ReadOptions& options);
 };
 
-inline constexpr std::array<Target, 5> kTargets = {{
+inline constexpr std::array<Target, 6> kTargets = {{
     {"recording", read_frames},
     {"forces", read_forces},
     {"calibration", read_calibration},
     {"tekscan", read_frames},
     {"scene", read_scene},
+    {"plain", read_plain},
 }};
 
 }  // namespace pillarfield::fuzz

@@ -69,6 +69,7 @@ PF_CONSTANT uint kRegion3 = 7u;
 PF_CONSTANT uint kRegion4 = 8u;
 PF_CONSTANT uint kOpposite = 9u;
 PF_CONSTANT uint kDetermined = 10u;
+PF_CONSTANT uint kNoReading = 11u;
 
 // Offset of a missing plane.
 PF_CONSTANT uint kNoPlane = 0xffffffffu;

@@ -83,7 +83,7 @@ uint region_colour(uint usable) {
 uint special_of(uint status) {
   const uint usable = status & 15u;
   if (kQuantity == kRegion && usable != 0u) return region_colour(usable);
-  if (is_inconsistent(status)) return kInconsistent;
+  if (is_inconsistent(status)) return is_pressed(status) ? kInconsistent : kNoReading;
   if (is_saturated(status)) return kSaturated;
   if (usable == 0u) return kIdle;
   if (kQuantity != kStatus) return kQuantity == kRegion ? kIdle : kMapped;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <optional>
 
 #include "cli/commands.h"
@@ -19,6 +18,7 @@
 #include "pillarfield/force_file.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/recording.h"
+#include "pillarfield/resultant_comparison.h"
 
 namespace pillarfield::cli {
 namespace {
@@ -38,37 +38,43 @@ std::vector<Row> rows_of(const Comparison& comparison) {
   return rows;
 }
 
-/// The sum of all forces of the skin, frame by frame.
-class Resultant {
- public:
-  void add(const ForceFieldView& solved, const ForceFieldView& truth) {
-    ++frames_;
-    for (const auto plane :
-         {&ForceFieldView::shear_x, &ForceFieldView::shear_y, &ForceFieldView::normal}) {
-      const double of_truth = sum(truth.*plane);
-      truth_ += of_truth * of_truth;
-      error_ += std::pow(sum(solved.*plane) - of_truth, 2);
-    }
-  }
-  [[nodiscard]] double true_rms_n() const { return rms(truth_); }
-  [[nodiscard]] double error_rms_n() const { return rms(error_); }
-
- private:
-  static double sum(std::span<const float> plane) {
-    return std::accumulate(plane.begin(), plane.end(), 0.0);
-  }
-  [[nodiscard]] double rms(double squares) const {
-    return frames_ == 0 ? 0 : std::sqrt(squares / static_cast<double>(frames_));
-  }
-
-  std::uint64_t frames_ = 0;
-  double truth_ = 0;
-  double error_ = 0;
-};
+/// A percentage with one decimal; "> 999%" above, "-" without a true value.
+std::string percentage(double part, double whole) {
+  if (!(whole > 0)) return "-";
+  const double percent = 100 * part / whole;
+  return percent <= 999 ? fmt::format("{:.1f}%", percent) : "> 999%";
+}
 
 constexpr std::array kCoveredRegions = {Region::one, Region::two, Region::three, Region::four};
 
-void print_json(const std::vector<Row>& rows, const Resultant& resultant,
+nlohmann::ordered_json json_of_resultant(const ResultantErrors& errors) {
+  return {{"true_rms_n", errors.force.true_rms},
+          {"error_rms_n", errors.force.rms},
+          {"worst_error_n", errors.force.worst},
+          {"worst_frame", errors.force.worst_frame},
+          {"true_torque_rms_nmm", errors.torque.true_rms},
+          {"torque_error_rms_nmm", errors.torque.rms},
+          {"worst_torque_error_nmm", errors.torque.worst},
+          {"worst_torque_frame", errors.torque.worst_frame}};
+}
+
+nlohmann::ordered_json json_of_contacts(const ContactErrors& errors) {
+  return {{"found", errors.found},
+          {"missed", errors.missed},
+          {"extra", errors.extra},
+          {"missed_normal_n", errors.missed_normal_n},
+          {"extra_normal_n", errors.extra_normal_n},
+          {"true_rms_n", errors.force.true_rms},
+          {"error_rms_n", errors.force.rms},
+          {"worst_error_n", errors.force.worst},
+          {"true_torque_rms_nmm", errors.torque.true_rms},
+          {"torque_error_rms_nmm", errors.torque.rms},
+          {"worst_torque_error_nmm", errors.torque.worst},
+          {"centre_error_rms_mm", errors.centre.rms},
+          {"worst_centre_error_mm", errors.centre.worst}};
+}
+
+void print_json(const std::vector<Row>& rows, const ResultantComparison& resultants,
                 const std::optional<Coverage>& coverage, std::uint64_t frames) {
   nlohmann::ordered_json regions;
   for (const auto& [name, errors] : rows) {
@@ -81,11 +87,10 @@ void print_json(const std::vector<Row>& rows, const Resultant& resultant,
                      {"theta_rms_rad", errors.theta_rms_rad},
                      {"phi_rms_rad", errors.phi_rms_rad}};
   }
-  nlohmann::ordered_json json = {
-      {"frames", frames},
-      {"regions", regions},
-      {"resultant",
-       {{"true_rms_n", resultant.true_rms_n()}, {"error_rms_n", resultant.error_rms_n()}}}};
+  nlohmann::ordered_json json = {{"frames", frames},
+                                 {"regions", regions},
+                                 {"resultant", json_of_resultant(resultants.patch())},
+                                 {"contacts", json_of_contacts(resultants.contacts())}};
   if (coverage) {
     for (const Region region : kCoveredRegions) {
       const RegionCoverage of_region = coverage->region(region);
@@ -100,9 +105,9 @@ void print_json(const std::vector<Row>& rows, const Resultant& resultant,
 }
 
 /// Formats a number with `decimals`, or with an exponent if it exceeds the column.
-std::string fitted(double value, std::size_t width, int decimals, std::string_view unit = "") {
-  std::string text = fmt::format("{:.{}f}{}", value, decimals, unit);
-  if (text.size() > width) text = fmt::format("{:.1e}{}", value, unit);
+std::string fitted(double value, std::size_t width, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.size() > width) text = fmt::format("{:.1e}", value);
   return fmt::format("{:>{}}", text, width);
 }
 
@@ -120,15 +125,41 @@ void print_row(const Row& row) {
   if (row.name == "none") {
     fmt::print(" {:>8} {:>8} {:>9} {:>9}", "-", "-", "-", "-");
   } else {
-    fmt::print(" {} {} {:>9.4f} {:>9.4f}", fitted(100 * errors.rms_relative, 8, 1, "%"),
-               fitted(100 * errors.p95_relative, 8, 1, "%"), errors.theta_rms_rad,
-               errors.phi_rms_rad);
+    fmt::print(" {:>8} {:>8} {:>9.4f} {:>9.4f}", percentage(errors.rms_relative, 1),
+               percentage(errors.p95_relative, 1), errors.theta_rms_rad, errors.phi_rms_rad);
   }
   fmt::print(" {:>9.1f}%\n", mismatches);
 }
 
-void print_text(const std::vector<Row>& rows, const Resultant& resultant, std::uint64_t frames,
-                const CompareOptions& options) {
+void print_errors(const char* name, const VectorErrors& errors) {
+  if (errors.cases == 0) return;
+  const std::string truth = errors.true_rms > 0 ? fitted(errors.true_rms, 9, 4) : "-";
+  fmt::print("{:<26} {:>9} {} {:>8} {} {:>8}\n", name, truth, fitted(errors.rms, 9, 4),
+             percentage(errors.rms, errors.true_rms), fitted(errors.worst, 9, 4),
+             percentage(errors.worst, errors.worst_true));
+}
+
+void print_resultants(const ResultantComparison& resultants) {
+  const ContactErrors& contacts = resultants.contacts();
+  fmt::print("\n{:<26} {:>9} {:>9} {:>8} {:>9} {:>8}\n", "", "true RMS", "RMS error", "of true",
+             "worst", "of true");
+  print_errors("Resultant force, N", resultants.patch().force);
+  print_errors("Resultant torque, N mm", resultants.patch().torque);
+  print_errors("Force of a contact, N", contacts.force);
+  print_errors("Torque of a contact, N mm", contacts.torque);
+  print_errors("Centre of pressure, mm", contacts.centre);
+  fmt::print("Contacts: {} found", grouped(contacts.found));
+  const auto print_others = [](const char* kind, std::uint64_t count, double most_n) {
+    fmt::print(", {} {}", grouped(count), kind);
+    if (count > 0) fmt::print(" (of at most {} N)", rounded(most_n));
+  };
+  print_others("missed", contacts.missed, contacts.missed_normal_n);
+  print_others("extra", contacts.extra, contacts.extra_normal_n);
+  fmt::print("\n");
+}
+
+void print_text(const std::vector<Row>& rows, const ResultantComparison& resultants,
+                std::uint64_t frames, const CompareOptions& options) {
   fmt::print("{} against the truth in {}, {}\n\n", printable(options.forces),
              printable(options.recording), counted(frames, "frame"));
   fmt::print("{:<8} {:>13} {:^19} {:^17} {:^19} {:>10}\n", "true", "", "force error, N",
@@ -136,14 +167,15 @@ void print_text(const std::vector<Row>& rows, const Resultant& resultant, std::u
   fmt::print("{:<8} {:>13} {:>9} {:>9} {:>8} {:>8} {:>9} {:>9} {:>10}\n", "region", "pillars",
              "RMS", "95 %", "RMS", "95 %", "theta", "phi", "differs");
   for (const Row& row : rows) print_row(row);
-  fmt::print("\nResultant force of the skin, RMS over frames: {} N, error {} N\n",
-             rounded(resultant.true_rms_n()),
-             rounded(std::round(1e4 * resultant.error_rms_n()) / 1e4));
+  print_resultants(resultants);
   fmt::print(
       "\nForce error: length of (solved - true). 95 %: the 95th percentile over pillars.\n"
       "phi is weighted by sin(theta). Status differs: the usable sensels differ from those of the "
       "ideal model.\n"
-      "Region 3 is ambiguous: two readings, three unknowns.\n");
+      "Region 3 is ambiguous: two readings, three unknowns.\n"
+      "Resultant torque: about the centre of the patch. Torque of a contact: about the normal "
+      "through "
+      "its\ntrue centre of pressure. Worst: the largest error of a frame or contact.\n");
 }
 
 void print_coverage(const Coverage& coverage) {
@@ -198,7 +230,7 @@ void compare(const CompareOptions& options) {
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
-  Resultant resultant;
+  ResultantComparison resultants(info.pillar_pitch_mm);
   std::optional<Coverage> coverage;
   if (info.uncertainty) coverage.emplace();
   {
@@ -208,16 +240,16 @@ void compare(const CompareOptions& options) {
       forces.read(index, solved);
       recording->read_truth(index, truth);
       comparison.add(solved.view(), truth.view());
-      resultant.add(solved.view(), truth.view());
+      resultants.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());
       progress.show(index + 1);
     }
   }
   const std::vector<Row> rows = rows_of(comparison);
   if (options.json) {
-    print_json(rows, resultant, coverage, frames);
+    print_json(rows, resultants, coverage, frames);
   } else {
-    print_text(rows, resultant, frames, options);
+    print_text(rows, resultants, frames, options);
     if (coverage) print_coverage(*coverage);
   }
 }

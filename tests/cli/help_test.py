@@ -12,7 +12,7 @@ import unittest
 from command import PROGRAM, SOURCE, CommandTest, on_terminal, run, run_json
 
 STEPS = ["wires", "tare", "equilibrate", "load", "shear", "arm", "leak", "memory", "bending", "faults", "apply"]
-COMMANDS = [["simulate"], ["solve"], ["pace"], ["compare"], ["calibrate"],
+COMMANDS = [["simulate"], ["solve"], ["stream"], ["pace"], ["compare"], ["calibrate"],
             *(["calibrate", step] for step in STEPS), ["testbed"], ["info"], ["completion"]]
 
 
@@ -158,6 +158,10 @@ class Numbers(CommandTest):
         recording, output = self.folder / "recording.h5", self.folder / "output.h5"
         run("simulate", scene, "-o", recording)
         needed = {"simulate": [scene, "-o", output], "pace": [recording], "testbed": [],
+                  "stream": [recording], "info": [recording],
+                  "apply": [recording, recording, "-o", output],
+                  "compare": [recording, recording],
+                  "info": [recording], "apply": [recording, recording, "-o", output],
                   "solve": [recording, "-o", output, "--contacts", output]}
         step = [recording, "--calibration", recording, "-o", output]
         needed |= {"tare": step, "faults": step, "equilibrate": [*step, "--pressure-kpa", 10],
@@ -168,7 +172,8 @@ class Numbers(CommandTest):
             text = run(*command, "--help").stdout
             options = re.findall(r"^  (--[\w-]+) ([A-Z][\w,.]*)", text, re.MULTILINE)
             for option in [name for name, kind in options
-                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE")]:
+                           if kind not in ("FILE", "FOLDER", "DEVICE", "WORDS", "SCENE", "NAME", "SINK",
+                                            "SOCKET")]:
                 for value in ("nan", "-inf", "1e999", "x"):
                     with self.subTest(command=command, option=option, value=value):
                         self.assert_fails(*command, *needed[command[-1]], f"{option}={value}",

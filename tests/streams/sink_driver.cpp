@@ -26,7 +26,8 @@ namespace {
 
 constexpr const char* kUsage =
     "sink_driver SCENE [--frames N] [--rate HZ] [--reference FORCES.h5] [--to TARGET]...\n"
-    "            [--record FILE.h5] [--wait-for-clients N] [--linger SECONDS] [--no-contacts]\n"
+    "            [--record FILE.h5] [--wait-for-clients N] [--settle SECONDS] [--linger SECONDS] "
+    "[--no-contacts]\n"
     "            [--abandon]\n";
 
 struct DriverOptions {
@@ -37,6 +38,7 @@ struct DriverOptions {
   std::string record;
   std::vector<std::string> targets;
   std::uint64_t clients = 0;
+  double settle_s = 0;  // before the first frame
   double linger_s = 0;  // before the sinks finish
   bool contacts = true;
   bool abandon = false;  // ends without finish()
@@ -59,6 +61,8 @@ DriverOptions options_of(const std::vector<std::string>& words) {
       options.targets.push_back(value());
     else if (word == "--wait-for-clients")
       options.clients = std::stoull(value());
+    else if (word == "--settle")
+      options.settle_s = std::stod(value());
     else if (word == "--linger")
       options.linger_s = std::stod(value());
     else if (word == "--no-contacts")
@@ -156,6 +160,7 @@ void run(const DriverOptions& options) {
   fmt::print("\n");
   std::fflush(stdout);
   wait_for_clients(sinks, options.clients);
+  std::this_thread::sleep_for(std::chrono::duration<double>(options.settle_s));
 
   const std::uint64_t frames = options.frames > 0 ? options.frames : recording.frames.size();
   const auto start = std::chrono::steady_clock::now();

@@ -225,7 +225,8 @@ void add_stream(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<StreamOptions>(
       parent, work, stream, "stream",
       "Solve live frames of a sensor and send their forces on (docs/streams.md).",
-      "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n");
+      "  pillarfield stream scenes/demo.toml --frames 50 --record live.h5\n"
+      "  pillarfield stream scenes/demo.toml --repeat --seconds 1 --to udp:127.0.0.1:9870\n");
   Group input(command, "Input");
   command
       ->add_option("SOURCE", options->source,

@@ -98,5 +98,6 @@
 // Simulation and its comparison with the truth.
 #include "pillarfield/comparison.h"
 #include "pillarfield/coverage.h"
+#include "pillarfield/resultant_comparison.h"
 #include "pillarfield/scene.h"
 #include "pillarfield/simulator.h"

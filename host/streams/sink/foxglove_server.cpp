@@ -1,6 +1,7 @@
 #include "streams/sink/foxglove_server.h"
 
 #include <atomic>
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -268,6 +269,7 @@ struct FoxgloveServer::State {
 
   Hub hub;
   asio::io_context context{1};
+  asio::executor_work_guard<asio::io_context::executor_type> work = asio::make_work_guard(context);
   tcp::acceptor acceptor{context};
   asio::steady_timer retry{context};
   std::uint16_t port = 0;

@@ -50,15 +50,9 @@ AppState make_state(const MadeField& made, Player& player) {
   state.hovered = a_pillar(made, Region::two);
   for (const PillarIndex pillar :
        {a_pillar(made, Region::one), a_pillar(made, Region::two), a_pillar(made, Region::three)}) {
-    state.pins.push_back({pillar, made_history(values_at(*state.field, pillar), 400)});
+    state.pins.push_back({pillar});
   }
-  state.selection = Selection{{4, 25, 8, 36}, History()};
-  const SelectionSums sums = sums_over(*state.field, state.selection->rect, 1.265);
-  PillarValues total;
-  total.shear_x = static_cast<float>(sums.shear_x);
-  total.shear_y = static_cast<float>(sums.shear_y);
-  total.normal = static_cast<float>(sums.normal);
-  state.selection->history = made_history(total, 400);
+  state.selection = Selection{{4, 25, 8, 36}};
   return state;
 }
 
@@ -155,7 +149,7 @@ class PanelSheet : public testing::Test {
   gpu::Instance instance_{{}, true};
   gpu::Device device_{instance_, {}};
   MadeField made_;
-  Player player_{std::make_unique<OneField>(made_)};
+  FilePlayer player_{std::make_unique<OneField>(made_)};
 };
 
 std::size_t colours_in(const Pixels& pixels) {

@@ -26,6 +26,9 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit);
 /// Switches finding and marking contacts.
 void show_contacts(AppState& state, bool shown);
 
+/// Switches the trails of the centres of pressure.
+void show_trails(AppState& state, bool shown);
+
 /// Fits the view to the whole skin.
 void reset_view(AppState& state, const FieldPlace& place);
 
@@ -43,7 +46,7 @@ void clear_marks(AppState& state);
 /// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);
 
-/// Displays a new field and extends the histories of pins and selection.
+/// Displays a new field and extends the trails.
 void take_field(AppState& state, ShownField field);
 
 }  // namespace pillarfield::viewer

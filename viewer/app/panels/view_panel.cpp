@@ -119,12 +119,15 @@ void choose_layers(AppState& state) {
   labelled("Layers");
   ImGui::Checkbox("arrows", &settings.arrows);
   ImGui::SameLine();
-  ImGui::Checkbox("uncertainty sectors", &settings.sectors);
-  ImGui::SameLine();
-  ImGui::Checkbox("hatch", &settings.hatch);
-  labelled("");
   bool contacts = settings.contacts;
   if (ImGui::Checkbox("contacts", &contacts)) show_contacts(state, contacts);
+  ImGui::SameLine();
+  bool trails = state.show_trails;
+  if (ImGui::Checkbox("trails", &trails)) show_trails(state, trails);
+  labelled("");
+  ImGui::Checkbox("hatch", &settings.hatch);
+  ImGui::SameLine();
+  ImGui::Checkbox("uncertainty sectors", &settings.sectors);
 }
 
 void choose_view(const Command& command) {

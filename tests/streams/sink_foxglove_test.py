@@ -1,0 +1,285 @@
+"""The WebSocket server of live sinks: every value, and clients that nobody should trust."""
+
+import collections
+import json
+import os
+import socket
+import struct
+import threading
+import time
+import unittest
+
+from cdr_reader import stamp_ns
+from expected_messages import Frames, check_message
+from sink_process import SinkTest
+from websocket_client import BINARY, Closed, FoxgloveClient, WebSocket
+
+FAST = ["/skin/time", *(f"/skin/contacts/{slot + 1}" for slot in range(16))]
+SLOW = ["/skin/normal", "/skin/raw", "/skin/forces", "/skin/arrows"]
+
+
+class FoxgloveTest(SinkTest):
+    def serve(self, *arguments):
+        """Starts a server on a free port; returns the process and the port."""
+        process = self.start("--to", "foxglove:0", *arguments)
+        return process, int(process.sinks[0].rsplit(":", 1)[1])
+
+    def serve_with_reference(self, *arguments):
+        return self.serve("--reference", self.folder / "forces.h5", "--record",
+                          self.folder / "raw.h5", *arguments)
+
+    def finish(self, process, frames):
+        """Waits for the end; no frame may be missing in the other sink. Returns the statistics."""
+        results = self.results(process)
+        recorded = results.pop(str(self.folder / "raw.h5"))
+        self.assertEqual((recorded["frames"], recorded["dropped"]), (frames, 0))
+        [result] = results.values()
+        self.assertEqual(result["failure"], "")
+        return result
+
+    def closes(self, client):
+        """Whether the server ends the connection."""
+        try:
+            while True:
+                client.read()
+        except Closed:
+            return True
+
+    def test_every_value_by_both_subprotocols(self):
+        process, port = self.serve_with_reference("--rate", 50, "--wait-for-clients", 3)
+        found = {}
+        clients = []
+        for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
+            client = FoxgloveClient(port, protocols=("other", protocol))
+            self.addCleanup(client.socket.close)
+            self.assertEqual(client.protocol, protocol)
+            client.subscribe(*client.channels)
+            reader = threading.Thread(
+                target=lambda client=client, name=protocol: found.update({name: client.read_all()}))
+            reader.start()
+            clients.append((client, reader))
+        time.sleep(0.2)  # until it has taken the subscriptions
+        last = FoxgloveClient(port)  # starts the frames
+        self.addCleanup(last.socket.close)
+        for _, reader in clients:
+            reader.join(30)
+        result = self.finish(process, 40)
+        self.assertEqual((result["dropped"], result["refused"]), (0, 0))
+        frames = Frames(self.folder / "forces.h5", self.folder / "raw.h5")
+        first, second = found.values()
+        self.assertEqual(first, second)
+        self.check(clients[0][0], first, frames)
+
+    def check(self, client, data, frames):
+        counts = collections.Counter(message.topic for message in data)
+        stamps = sorted({m.time_ns for m in data if m.topic == "/skin/time"})
+        self.assertEqual(len(stamps), len(frames.time))
+        for message in data:
+            decoded = client.decoders[message.topic].decode(message.bytes)
+            if message.topic == "/skin/health":
+                continue
+            if "header" in decoded:
+                self.assertEqual(stamp_ns(decoded["header"]), message.time_ns)
+            check_message(self, frames, message.topic, stamps.index(message.time_ns), decoded)
+        for topic in ("/skin/normal", "/skin/raw", "/skin/forces"):
+            self.assertEqual(counts[topic], len(frames.time))  # 50 a second are below the limit
+        self.assertEqual(counts["/skin/contacts/1"],
+                         sum(slots[0] is not None for slots in frames.slots))
+        self.assertEqual(counts["/skin/health"], len(frames.time) // 10)
+
+    def test_pictures_come_at_most_60_times_a_second(self):
+        process, port = self.serve_with_reference("--rate", 1000, "--frames", 1000,
+                                                  "--wait-for-clients", 2)
+        with FoxgloveClient(port) as client:
+            client.subscribe("/skin/normal", "/skin/time")
+            time.sleep(0.2)
+            with FoxgloveClient(port):
+                counts = collections.Counter(message.topic for message in client.read_all())
+        self.assertEqual(counts["/skin/time"], 1000)
+        self.assertTrue(10 <= counts["/skin/normal"] <= 64, counts)
+        self.finish(process, 1000)
+
+    def test_subscriptions(self):
+        process, port = self.serve("--frames", 100000, "--rate", 100)
+        with FoxgloveClient(port) as client:
+            channel = client.channels["/skin/time"]["id"]
+            for message, words in (
+                    ({"op": "subscribe", "subscriptions": [{"id": 1, "channelId": 999}]}, "no channel"),
+                    ({"op": "subscribe", "subscriptions": [{"id": -1, "channelId": channel}]}, "whole"),
+                    ({"op": "subscribe", "subscriptions": [{"id": 2**32, "channelId": 1}]}, "whole"),
+                    ({"op": "subscribe", "subscriptions": 7}, "no list"),
+                    ({"op": "unsubscribe", "subscriptionIds": [77]}, "no subscription"),
+                    ({"op": "unsubscribe", "subscriptionIds": ["a"]}, "whole"),
+                    ({"op": "advertise", "channels": []}, "only knows"),
+                    ({"op": 3}, "JSON"), ([], "JSON"), (None, "JSON")):
+                client.write(json.dumps(message))
+                status = client.read_json()
+                self.assertEqual((status["op"], status["level"]), ("status", 2))
+                self.assertIn(words, status["message"])
+            client.subscribe("/skin/time", first=5)
+            self.assertEqual(client.read_data().topic, "/skin/time")
+            client.write(json.dumps({"op": "unsubscribe", "subscriptionIds": [5]}))
+            client.subscribe("/skin/arrows", first=5)
+            while client.read_data().topic != "/skin/arrows":
+                pass  # on its way before
+            self.assertEqual(client.read_data().topic, "/skin/arrows")
+        process.kill()
+
+    def test_subprotocol_is_needed(self):
+        _, port = self.serve("--linger", 30)
+        with self.assertRaises(Closed):
+            WebSocket(port, protocols=("other",))
+        with socket.create_connection(("127.0.0.1", port)) as plain:
+            plain.sendall(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+            self.assertEqual(plain.recv(100), b"")
+
+    def test_clients_beyond_the_limit_are_refused(self):
+        process, port = self.serve_with_reference("--linger", 3, "--wait-for-clients", 16)
+        with FoxgloveClient(port) as first:
+            first.subscribe("/skin/time")
+            clients = [FoxgloveClient(port) for _ in range(14)]
+            time.sleep(0.1)
+            clients.append(FoxgloveClient(port))  # the sixteenth
+            refused = 0
+            for _ in range(1000):
+                try:
+                    FoxgloveClient(port)
+                except (Closed, ConnectionError):
+                    refused += 1
+            self.assertEqual(refused, 1000)
+            for client in clients:
+                client.socket.close()
+            self.assertEqual(len(first.read_all()), 40)
+        result = self.finish(process, 40)
+        self.assertEqual(result["refused"], 1000)
+
+    def test_hostile_clients(self):
+        """They read nothing, send garbage, or die; the others receive every frame."""
+        process, port = self.serve_with_reference("--rate", 500, "--frames", 2000,
+                                                  "--wait-for-clients", 3)
+        lazy = FoxgloveClient(port)
+        lazy.subscribe(*lazy.channels)
+        honest = FoxgloveClient(port)
+        honest.subscribe("/skin/time", "/skin/contacts/1")
+        time.sleep(0.2)
+        trigger = FoxgloveClient(port)
+        found = []
+        reader = threading.Thread(target=lambda: found.extend(honest.read_all()))
+        reader.start()
+        attacks = (self.send_too_much, self.send_invalid_messages, self.send_binary_messages,
+                   self.send_wrong_frames, self.send_no_request, self.send_long_request,
+                   self.die_amid_a_message)
+        for attack in attacks:
+            attack(port)
+        reader.join(30)
+        self.assertEqual(sum(message.topic == "/skin/time" for message in found), 2000)
+        result = self.finish(process, 2000)
+        self.assertGreaterEqual(result["refused"], 5)
+        for client in (lazy, honest, trigger):
+            client.socket.close()
+
+    def send_too_much(self, port):
+        with FoxgloveClient(port) as client:
+            client.write(b'"' + b"x" * 70000 + b'"')
+            self.assertTrue(self.closes(client))
+
+    def send_invalid_messages(self, port):
+        for text in ("{", "[" * 30000, '{"op":"subscribe","subscriptions":[{}]}', ""):
+            with FoxgloveClient(port) as client:
+                try:
+                    for _ in range(40):
+                        client.write(text)
+                except ConnectionError:
+                    continue
+                self.assertTrue(self.closes(client))
+
+    def send_binary_messages(self, port):
+        with FoxgloveClient(port) as client:
+            for _ in range(17):
+                client.write(os.urandom(100), BINARY)
+            self.assertTrue(self.closes(client))
+
+    def send_wrong_frames(self, port):
+        for frame in (b"\xff" * 100, b"\x81\x05hello", b"\x81\xff" + b"\xff" * 8 + b"mask",
+                      b"\x81\x82mask\xff\xfe", os.urandom(500)):
+            with FoxgloveClient(port) as client:
+                client.socket.sendall(frame)
+                client.socket.shutdown(socket.SHUT_WR)
+                self.assertTrue(self.closes(client))
+
+    def send_no_request(self, port):
+        with socket.create_connection(("127.0.0.1", port)) as connection:
+            connection.sendall(b"GET / HT")
+
+    def send_long_request(self, port):
+        with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+            try:
+                connection.sendall(b"GET / HTTP/1.1\r\n" + b"X: y\r\n" * 5000)
+                self.assertEqual(connection.recv(1), b"")
+            except ConnectionError:
+                pass
+
+    def die_amid_a_message(self, port):
+        for _ in range(20):
+            client = FoxgloveClient(port)
+            client.subscribe(*client.channels)
+            client.read_data()
+            client.socket.sendall(b"\x81\xfe\x10\x00mask{")
+            reset = struct.pack("ii", 1, 0)
+            client.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, reset)
+            client.socket.close()
+
+    def test_client_that_never_reads_loses_frames(self):
+        large = self.write_scene("large.toml", LARGE)
+        process = self.start("--to", "foxglove:0", "--rate", 60, "--frames", 200,
+                             "--wait-for-clients", 2, "--record", self.folder / "raw.h5", scene=large)
+        port = int(process.sinks[0].rsplit(":", 1)[1])
+        with FoxgloveClient(port) as lazy, FoxgloveClient(port) as honest:
+            lazy.subscribe("/skin/normal", "/skin/raw")
+            honest.subscribe("/skin/time")
+            self.assertGreater(len(honest.read_all()), 150)  # some came before the subscription
+            result = self.finish(process, 200)
+        self.assertGreater(result["dropped"], 20)
+
+    def test_request_that_never_ends(self):
+        process, port = self.serve("--linger", 7)
+        with socket.create_connection(("127.0.0.1", port), timeout=20) as connection:
+            start = time.monotonic()
+            connection.sendall(b"GET / HTTP/1.1\r\n")
+            self.assertEqual(connection.recv(1), b"")
+            self.assertLess(time.monotonic() - start, 7)
+        [result] = self.results(process).values()
+        self.assertEqual(result["refused"], 1)
+
+    def test_addresses(self):
+        _, port = self.serve("--linger", 30)
+        with self.assertRaisesRegex(AssertionError, "in use; choose another"):
+            self.start("--to", f"foxglove:{port}")
+        for target in ("foxglove:x:1", "foxglove:99999", "foxglove:1.2.3:5", "foxglove:-1"):
+            with self.assertRaisesRegex(AssertionError, "sink_driver: foxglove"):
+                self.start("--to", target)
+        process = self.start("--to", "foxglove:[::1]:0", "--linger", 30)
+        self.assertTrue(process.sinks[0].startswith("foxglove:[::1]:"))
+        with FoxgloveClient(int(process.sinks[0].rsplit(":", 1)[1]), host="::1") as client:
+            self.assertEqual(client.info["name"], "pillarfield")
+
+
+LARGE = """
+title = "A large skin"
+[skin]
+pillars = [200, 200]
+[sensor]
+noise_counts = 3
+adc_bits = 8
+[time]
+frames = 2
+[[contact]]
+shape = "sphere"
+motion = "press"
+contact_radius_mm = 9
+load_n = 20
+position_mm = [0, 0]
+"""
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,288 @@
+// Packets to frames: random plans of damage with exact counts, contents, restarts, clocks.
+
+#include "streams/source/frame_assembler.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/streams/source/assembler_run.h"
+
+namespace pillarfield {
+namespace {
+
+using namespace pillarfield::testing;
+
+constexpr FrameShape kShape = {SenselType::u16, 20, 12};
+
+using Sequences = std::vector<std::uint64_t>;
+
+void run_plan(unsigned seed, PacketOrder order) {
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  const auto parts = static_cast<std::uint32_t>(1 + random() % 5);
+  std::vector<std::vector<SentPacket>> frames;
+  for (std::uint64_t i = 0; i < 60; ++i) frames.push_back(row_packets(kShape, 100 + i, parts));
+  if (random() % 2 == 0) {
+    for (auto& frame : frames) std::ranges::transform(frame, frame.begin(), checked);
+  }
+  const auto arriving = damage(frames, random, order == PacketOrder::not_kept);
+  Expected expected = expect(arriving, static_cast<std::uint64_t>(order));
+  for (auto& [sequence, packets] : expected.frames) {
+    for (SentPacket& packet : packets) {
+      packet.readings.resize(packet.header.count * kShape.row_bytes());  // without checksum
+    }
+  }
+  FrameCheck check(kShape, expected);
+  AssemblerRun run(kShape, order);
+  for (const SentPacket& packet : arriving) {
+    run.now += 1ms;
+    run.assembler.add(received(packet, run.now));
+    while (run.assembler.pop(run.frame)) check(run.frame);
+  }
+  run.assembler.give_up();
+  while (run.assembler.pop(run.frame)) check(run.frame);
+  expect_counts(run.health(), expected.health);
+}
+
+TEST(FrameAssembler, CountsEveryDamageOfAPlan) {
+  for (unsigned seed = 0; seed < 300 && !::testing::Test::HasFailure(); ++seed) {
+    run_plan(seed, PacketOrder::not_kept);
+  }
+}
+
+TEST(FrameAssembler, CountsEveryDamageWherePacketsKeepTheirOrder) {
+  for (unsigned seed = 0; seed < 300 && !::testing::Test::HasFailure(); ++seed) {
+    run_plan(seed, PacketOrder::kept);
+  }
+}
+
+TEST(FrameAssembler, PlansHoldEveryKindOfDamage) {
+  StreamHealth all;
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    std::vector<std::vector<SentPacket>> frames;
+    for (std::uint64_t i = 0; i < 60; ++i) frames.push_back(row_packets(kShape, i, 3));
+    const StreamHealth health = expect(damage(frames, random, true), 2).health;
+    all.lost += health.lost;
+    all.incomplete += health.incomplete;
+    all.late += health.late;
+    all.duplicates += health.duplicates;
+    all.reordered += health.reordered;
+    all.invalid += health.invalid;
+  }
+  for (const std::uint64_t count :
+       {all.lost, all.incomplete, all.late, all.duplicates, all.reordered, all.invalid}) {
+    EXPECT_GT(count, 20);
+  }
+}
+
+TEST(FrameAssembler, DeliversAWholeFrameAtOnce) {
+  for (const SenselType type : {SenselType::u8, SenselType::u16, SenselType::f32}) {
+    const FrameShape shape = {type, 9, 7};
+    AssemblerRun run(shape);
+    run.add(frame_packet(shape, 5));
+    run.add(checked(frame_packet(shape, 6)));
+    EXPECT_EQ(run.sequences, (Sequences{5, 6}));
+    EXPECT_EQ(run.readings[0], readings_of(shape, 5));
+    EXPECT_EQ(run.readings[1], readings_of(shape, 6));
+  }
+}
+
+TEST(FrameAssembler, BlocksChangeOnlyTheirSensels) {
+  AssemblerRun run(kShape);  // 3 x 2 blocks, 4 of them beyond the border
+  run.add(frame_packet(kShape, 0));
+  run.add(block_packet(kShape, 1, {3, 4}));
+  run.add(block_packet(kShape, 2, {}));
+  const std::string before = readings_of(kShape, 0);
+  const std::string after = readings_of(kShape, 1);
+  ASSERT_EQ(run.sequences, (Sequences{0, 1, 2}));
+  for (std::uint32_t row = 0; row < kShape.rows; ++row) {
+    for (std::uint32_t col = 0; col < kShape.cols; ++col) {
+      const std::uint32_t block = row / 8 * 2 + col / 8;
+      const std::size_t place = (row * kShape.cols + col) * 2;
+      const std::string& source = block == 3 || block == 4 ? after : before;
+      ASSERT_EQ(run.readings[1].substr(place, 2), source.substr(place, 2)) << row << ' ' << col;
+    }
+  }
+  EXPECT_EQ(run.readings[2], run.readings[1]);
+  EXPECT_EQ(run.health().incomplete, 0);
+}
+
+TEST(FrameAssembler, ALostPartOfBlocksIsCountedAndHealedByARefresh) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 0));
+  SentPacket half = block_packet(kShape, 1, {0});
+  half.header.parts = 2;
+  run.add(half);
+  run.add(block_packet(kShape, 2, {5}));
+  run.add(block_packet(kShape, 3, {0, 1, 2, 3, 4, 5}));
+  EXPECT_EQ(run.sequences, (Sequences{0, 1, 2, 3}));
+  EXPECT_EQ(run.missing, (std::vector<std::size_t>{0, 0, 0, 0}));
+  EXPECT_EQ(run.health().incomplete, 1);
+  EXPECT_EQ(run.readings[3], readings_of(kShape, 3));
+}
+
+TEST(FrameAssembler, RefusesBlocksBeyondTheFrame) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 0));
+  SentPacket packet = block_packet(kShape, 1, {5});
+  packet.readings[0] = 6;
+  run.add(packet);
+  packet = block_packet(kShape, 1, {5});
+  packet.readings[4] = 1;  // one of the four zero bytes
+  run.add(packet);
+  EXPECT_EQ(run.health().invalid, 2);
+  EXPECT_EQ(run.sequences, (Sequences{0}));
+}
+
+TEST(FrameAssembler, RefusesAWrongChecksum) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 0));
+  SentPacket packet = checked(frame_packet(kShape, 1));
+  packet.readings[11] ^= 4;
+  run.add(packet);
+  packet = checked(frame_packet(kShape, 1));
+  packet.header.time_ns ^= 1;
+  run.add(packet);
+  EXPECT_EQ(run.health().invalid, 2);
+  EXPECT_EQ(run.sequences, (Sequences{0}));
+}
+
+TEST(FrameAssembler, GivesUpAfterTwoIntervalsWithoutAPacket) {
+  AssemblerRun run(kShape);
+  for (std::uint64_t i = 0; i < 20; ++i) run.add(frame_packet(kShape, i), 50ms);
+  EXPECT_FALSE(run.assembler.deadline());
+  run.add(row_packets(kShape, 20, 2)[0], 50ms);
+  ASSERT_TRUE(run.assembler.deadline());
+  EXPECT_NEAR(std::chrono::duration<double>(*run.assembler.deadline() - run.now).count(), 0.1,
+              0.001);
+  run.assembler.give_up();
+  run.pop();
+  EXPECT_EQ(run.sequences.back(), 20);
+  EXPECT_EQ(run.missing.back(), 1);
+  run.add(row_packets(kShape, 20, 2)[1]);
+  EXPECT_EQ(run.health().late, 1);
+  EXPECT_EQ(run.health().incomplete, 1);
+}
+
+TEST(FrameAssembler, DoesNotCountTheFrameInWhoseMiddleItStarts) {
+  AssemblerRun run(kShape);
+  run.add(row_packets(kShape, 4, 3)[2]);
+  run.add(frame_packet(kShape, 5));
+  run.add(frame_packet(kShape, 6));
+  EXPECT_EQ(run.sequences, (Sequences{5, 6}));
+  expect_counts(run.health(), {.frames = 2});
+}
+
+TEST(FrameAssembler, FollowsANewSession) {
+  AssemblerRun run(kShape);
+  for (std::uint64_t i = 50; i < 53; ++i) run.add(frame_packet(kShape, i));
+  SentPacket packet = frame_packet(kShape, 51);
+  packet.header.session = 8;
+  packet.header.time_ns = 3;
+  run.add(packet, 20ms);
+  packet.header.sequence = 52;
+  packet.header.time_ns = 4'000'003;
+  run.add(packet);
+  run.add(frame_packet(kShape, 53));  // of the session that was replaced
+  EXPECT_EQ(run.sequences, (Sequences{50, 51, 52, 51, 52}));
+  expect_counts(run.health(), {.frames = 5, .late = 1, .restarts = 1});
+  ASSERT_EQ(run.times_s.size(), 5);
+  EXPECT_NEAR(run.times_s[3] - run.times_s[2], 0.020, 1e-9);  // arrivals across the restart
+  EXPECT_NEAR(run.times_s[4] - run.times_s[3], 0.004, 1e-9);
+}
+
+TEST(FrameAssembler, AReplacedSessionCountsAgainAfterASecondOfSilence) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 5));
+  SentPacket other = frame_packet(kShape, 100);
+  other.header.session = 8;
+  run.add(other);
+  run.add(frame_packet(kShape, 6), 990ms);
+  EXPECT_EQ(run.health().late, 1);
+  run.add(frame_packet(kShape, 7), 20ms);
+  EXPECT_EQ(run.sequences, (Sequences{5, 100, 7}));
+  EXPECT_EQ(run.health().restarts, 2);
+}
+
+TEST(FrameAssembler, FollowsASequenceThatBeginsAnew) {
+  struct Case {
+    std::uint64_t last, next;
+    std::chrono::nanoseconds pause;
+    bool restarts;
+  };
+  for (const Case& each :
+       {Case{100, 0, 1ms, true}, Case{100, 20, 1ms, false}, Case{5000, 3000, 1ms, true},
+        Case{20, 0, 1ms, false}, Case{20, 0, 600ms, true}, Case{20, 5'000'000, 1ms, true}}) {
+    SCOPED_TRACE(each.next);
+    AssemblerRun run(kShape);
+    run.add(frame_packet(kShape, each.last));
+    run.add(frame_packet(kShape, each.next), each.pause);
+    EXPECT_EQ(run.sequences.size(), each.restarts ? 2 : 1);
+    EXPECT_EQ(run.health().restarts, each.restarts ? 1 : 0);
+    EXPECT_EQ(run.health().late, each.restarts ? 0 : 1);
+    EXPECT_EQ(run.health().lost, 0);
+  }
+}
+
+TEST(FrameAssembler, EndDeliversWhatCameAndAllowsARestart) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 3));
+  run.add(row_packets(kShape, 4, 2)[0]);
+  SentPacket end = {header_of(kShape, 4), {}};
+  end.header.content = PILLARFIELD_END;
+  run.add(end);
+  EXPECT_EQ(run.sequences, (Sequences{3, 4}));
+  run.add(frame_packet(kShape, 3));
+  EXPECT_EQ(run.sequences, (Sequences{3, 4, 3}));
+  expect_counts(run.health(), {.frames = 3, .incomplete = 1, .restarts = 1});
+}
+
+TEST(FrameAssembler, TimeNeverGoesBack) {
+  AssemblerRun run(kShape);
+  std::uint64_t sequence = 0;
+  const auto send = [&](std::uint64_t time_ns) {
+    SentPacket packet = frame_packet(kShape, sequence++);
+    packet.header.time_ns = time_ns;
+    run.add(packet, 10ms);
+  };
+  for (const std::uint64_t time_ns :
+       {std::uint64_t{9'000'000'000}, std::uint64_t{9'008'000'000},  // 8 ms
+        std::uint64_t{2'000'000'000}, std::uint64_t{2'012'000'000},  // back: the arrivals' 10 ms
+        std::uint64_t{3'013'000'000},                                // ahead by 1.001 s
+        std::uint64_t{3'900'000'000},                                // by 0.887 s
+        ~std::uint64_t{0}, std::uint64_t{1}, std::uint64_t{0}}) {    // no clock any more
+    send(time_ns);
+  }
+  EXPECT_EQ(run.health().clock_jumps, 3);
+  const std::vector<double> expected = {0, 0.008, 0.018, 0.030, 1.031, 1.918, 1.928, 1.938, 1.948};
+  ASSERT_EQ(run.times_s.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(run.times_s[i], expected[i], 1e-9);
+}
+
+TEST(FrameAssembler, DiscardForgetsWithoutCounting) {
+  AssemblerRun run(kShape);
+  run.add(frame_packet(kShape, 3));
+  run.add(row_packets(kShape, 4, 2)[0]);
+  run.assembler.discard();
+  run.add(row_packets(kShape, 4, 2)[1]);
+  run.add(row_packets(kShape, 90, 2)[1]);
+  run.add(frame_packet(kShape, 91));
+  run.add(frame_packet(kShape, 93));
+  run.add(frame_packet(kShape, 94));
+  EXPECT_EQ(run.sequences, (Sequences{3, 91, 93, 94}));
+  expect_counts(run.health(), {.frames = 4, .lost = 1});
+}
+
+TEST(FrameAssembler, RateIsThatOfTheLastSecond) {
+  AssemblerRun run(kShape);
+  EXPECT_EQ(run.health().rate_hz, 0);
+  for (std::uint64_t i = 0; i < 3000; ++i) run.add(frame_packet(kShape, i), 2ms);
+  EXPECT_NEAR(run.health().rate_hz, 500, 5);
+  for (std::uint64_t i = 3000; i < 3120; ++i) run.add(frame_packet(kShape, i), 10ms);
+  EXPECT_NEAR(run.health().rate_hz, 100, 2);
+  run.now += 5s;
+  EXPECT_EQ(run.health().rate_hz, 0);
+}
+
+}  // namespace
+}  // namespace pillarfield

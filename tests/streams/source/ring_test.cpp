@@ -1,0 +1,383 @@
+// Rings in shared memory: readers and writers in processes that are killed, hostile segments.
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+#include "pillarfield/error.h"
+#include "streams/ring/ring_reader.h"
+#include "streams/ring/ring_writer.h"
+#include "tests/base/message.h"
+#include "tests/streams/source/source_run.h"
+
+namespace pillarfield {
+namespace {
+
+using namespace pillarfield::testing;
+using core_test::message_of;
+
+constexpr FrameShape kShape = {SenselType::u8, 40, 30};
+constexpr RingLayout kLayout = {PILLARFIELD_RING_FRAMES, 40, 30, PILLARFIELD_U8};
+
+/// A name that no other run has; the segment is unlinked at the end.
+class Name {
+ public:
+  Name()
+      : text_("pillarfield-test-" + std::to_string(getpid()) + "-" + std::to_string(++count())) {}
+  ~Name() { shm_unlink(("/" + text_).c_str()); }
+  [[nodiscard]] const std::string& text() const { return text_; }
+  [[nodiscard]] std::string source() const { return "shm:" + text_; }
+  [[nodiscard]] bool exists() const { return std::filesystem::exists("/dev/shm/" + text_); }
+
+ private:
+  static int& count() {
+    static int value = 0;
+    return value;
+  }
+  std::string text_;
+};
+
+void publish(RingWriter& writer, const SentPacket& packet) {
+  std::byte* const slot = writer.begin().data();
+  auto& head = *reinterpret_cast<PillarfieldFrameSlot*>(slot);
+  head.packet = packet.header;
+  std::memcpy(slot + sizeof head, packet.readings.data(), packet.readings.size());
+  writer.publish();
+}
+
+/// A child process, killed at the end.
+class Child {
+ public:
+  template <class Action>
+  explicit Child(Action action) : id_(fork()) {
+    if (id_ != 0) return;
+    action();
+    _exit(0);
+  }
+  ~Child() { stop(SIGKILL); }
+  /// Sends the signal and waits; the status of waitpid().
+  int stop(int signal) {
+    int status = 0;
+    if (id_ <= 0) return status;
+    kill(id_, signal);
+    waitpid(id_, &status, 0);
+    id_ = -1;
+    return status;
+  }
+  int wait() {
+    int status = 0;
+    waitpid(id_, &status, 0);
+    id_ = -1;
+    return status;
+  }
+
+ private:
+  pid_t id_;
+};
+
+TEST(Ring, DeliversFramesAndUnlinksAtTheEnd) {
+  const Name name;
+  {
+    RingWriter writer(name.text(), kLayout, 8);
+    publish(writer, frame_packet(kShape, 3));
+    publish(writer, frame_packet(kShape, 4));
+    const auto stream = open_live_source(name.source(), {});
+    std::vector<std::string> received;
+    const auto take = [&](const StreamedFrame& frame) { received.push_back(bytes_of(frame)); };
+    take_frames(*stream, 5ms, take);
+    publish(writer, frame_packet(kShape, 5));
+    take_frames(*stream, 5ms, take);
+    EXPECT_EQ(received, (std::vector{readings_of(kShape, 4), readings_of(kShape, 5)}));
+    for (std::uint64_t i = 6; i < 40; ++i) publish(writer, frame_packet(kShape, i));
+    take_frames(*stream, 5ms, take);
+    EXPECT_EQ(received.back(), readings_of(kShape, 39));
+    ASSERT_EQ(received.size(), 3);  // A reader that fell behind goes on with the newest.
+    expect_counts(stream->health(), {.frames = 3, .lost = 33});
+    EXPECT_EQ(stream->health().overrun, 33);
+    for (std::uint64_t i = 40; i < 70; ++i) publish(writer, frame_packet(kShape, i));
+    stream->discard_waiting();
+    publish(writer, frame_packet(kShape, 70));
+    take_frames(*stream, 5ms, take);
+    EXPECT_EQ(received.back(), readings_of(kShape, 70));
+    EXPECT_EQ(stream->health().lost, 33);
+    EXPECT_EQ(stream->health().overrun, 33);
+    EXPECT_TRUE(name.exists());
+  }
+  EXPECT_FALSE(name.exists());
+}
+
+TEST(Ring, WakesItsReader) {
+  const Name name;
+  RingWriter writer(name.text(), kLayout, 8);
+  RingReader reader(name.text(), PILLARFIELD_RING_FRAMES);
+  std::atomic<bool> read = false;
+  std::thread waiting([&] { read = reader.read(30s) != nullptr; });
+  std::this_thread::sleep_for(20ms);
+  publish(writer, frame_packet(kShape, 0));
+  waiting.join();
+  EXPECT_TRUE(read);
+}
+
+TEST(Ring, IsWaitedFor) {
+  const Name name;
+  std::optional<RingWriter> writer;
+  int asked = 0;
+  const auto stream = open_live_source(name.source(), {.stop = [&] {
+                                         if (++asked == 2) {
+                                           writer.emplace(name.text(), kLayout, 4);
+                                           publish(*writer, frame_packet(kShape, 0));
+                                         }
+                                         return asked > 50;
+                                       }});
+  EXPECT_NE(stream, nullptr);
+}
+
+TEST(Ring, HasOneWriter) {
+  const Name name;
+  const RingWriter writer(name.text(), kLayout, 4);
+  EXPECT_NE(message_of([&] { RingWriter(name.text(), kLayout, 4); }).find("another program"),
+            std::string::npos);
+}
+
+/// Reads frames until `last` comes or 10 s pass; each must be one that was sent.
+std::uint64_t read_until(FrameStream& stream, std::uint64_t last) {
+  StreamedFrame frame(stream.sensel_type(), stream.skin());
+  std::uint64_t received = 0;
+  const auto until = std::chrono::steady_clock::now() + 10s;
+  while (std::chrono::steady_clock::now() < until) {
+    if (stream.next(frame, 10ms) != Arrival::arrived) continue;
+    EXPECT_EQ(bytes_of(frame), readings_of(kShape, frame.sequence)) << "a torn frame";
+    ++received;
+    if (frame.sequence == last) return received;
+  }
+  ADD_FAILURE() << "frame " << last << " did not come";
+  return received;
+}
+
+/// Publishes frames from `first` on, as fast as it can, until it is killed.
+void write_for_ever(const std::string& name, std::uint64_t session, std::uint64_t first) {
+  RingWriter writer(name, kLayout, 4);
+  for (std::uint64_t i = first;; ++i) {
+    SentPacket packet = frame_packet(kShape, i % 1000 + 1000);
+    packet.header.session = session;
+    publish(writer, packet);
+  }
+}
+
+TEST(Ring, SurvivesKilledWriters) {
+  const Name name;
+  auto first = std::make_optional<Child>([&] { write_for_ever(name.text(), 1, 0); });
+  const auto stream = open_live_source(name.source(), {});
+  std::mt19937 random(1);
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  for (std::uint64_t round = 0; round < 100; ++round) {
+    const auto until =
+        std::chrono::steady_clock::now() + std::chrono::microseconds(random() % 3000);
+    do {
+      if (stream->next(frame, 100us) != Arrival::arrived) continue;
+      ASSERT_EQ(bytes_of(frame), readings_of(kShape, frame.sequence)) << "a torn frame";
+    } while (std::chrono::steady_clock::now() < until);
+    first.emplace([&] { write_for_ever(name.text(), round + 2, 0); });
+  }
+  first.reset();
+  RingWriter writer(name.text(), kLayout, 4);
+  SentPacket packet = frame_packet(kShape, 7);
+  packet.header.session = 1000;
+  publish(writer, packet);
+  EXPECT_GT(read_until(*stream, 7), 0);
+  EXPECT_GT(stream->health().restarts, 10);
+}
+
+TEST(Ring, SurvivesKilledReaders) {
+  const Name name;
+  RingWriter writer(name.text(), kLayout, 4);
+  publish(writer, frame_packet(kShape, 0));
+  std::mt19937 random(1);
+  for (std::uint64_t round = 0; round < 100; ++round) {
+    Child reader([&] {
+      const auto stream = open_live_source(name.source(), {});
+      read_until(*stream, 100'000);
+    });
+    for (std::uint64_t i = 0; i < 20; ++i) {
+      publish(writer, frame_packet(kShape, round * 20 + i));
+      if (random() % 8 == 0) std::this_thread::sleep_for(100us);
+    }
+    reader.stop(SIGKILL);
+  }
+  Child last([&] {
+    const auto stream = open_live_source(name.source(), {});
+    read_until(*stream, 50'000);
+    _exit(::testing::Test::HasFailure() ? 1 : 0);
+  });
+  for (int i = 0; i < 100; ++i) {
+    publish(writer, frame_packet(kShape, 50'000));
+    std::this_thread::sleep_for(1ms);
+  }
+  EXPECT_EQ(last.wait(), 0);
+}
+
+TEST(Ring, FollowsOneThatReplacesIt) {
+  const Name name;
+  auto writer = std::make_optional<RingWriter>(name.text(), kLayout, 4);
+  publish(*writer, frame_packet(kShape, 5));
+  const auto stream = open_live_source(name.source(), {});
+  EXPECT_EQ(read_until(*stream, 5), 1);
+  writer.reset();
+  writer.emplace(name.text(), RingLayout{PILLARFIELD_RING_FRAMES, 40, 31, PILLARFIELD_U8}, 4);
+  take_frames(*stream, 120ms, [](auto&) { ADD_FAILURE() << "a frame of another size"; });
+  EXPECT_EQ(stream->health().invalid, 1);
+  writer.reset();
+  writer.emplace(name.text(), kLayout, 16);
+  SentPacket packet = frame_packet(kShape, 1);
+  packet.header.session = 9;
+  publish(*writer, packet);
+  EXPECT_EQ(read_until(*stream, 1), 1);
+  expect_counts(stream->health(), {.frames = 2, .invalid = 1, .restarts = 1});
+}
+
+TEST(Ring, AnUnlinkedRingWithAnotherSizeIsReplaced) {
+  const Name name;
+  Child([&] {
+    RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);
+    kill(getpid(), SIGKILL);
+  }).wait();
+  ASSERT_TRUE(name.exists());
+  RingWriter writer(name.text(), kLayout, 4);
+  publish(writer, frame_packet(kShape, 0));
+  EXPECT_NE(open_live_source(name.source(), {}), nullptr);
+}
+
+TEST(Ring, RefusesOneOfAnotherKindAndBadNames) {
+  const Name name;
+  const RingWriter writer(name.text(), {PILLARFIELD_RING_RESULTS, 9, 9, 0}, 4);
+  const auto open = [](const std::string& source) {
+    return message_of([&] { (void)open_live_source(source, {}); });
+  };
+  EXPECT_NE(open(name.source()).find("is no ring of frames"), std::string::npos);
+  for (const char* const bad : {"shm:", "shm:a/b", "shm:.", "shm:..", "shm:a b"}) {
+    EXPECT_NE(open(bad).find("is no name of a ring"), std::string::npos) << bad;
+  }
+}
+
+/// A segment that the test writes as it likes.
+class Segment {
+ public:
+  Segment(const Name& name, std::uint64_t bytes)
+      : segment_(shm_open(("/" + name.text()).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    resize(bytes);
+  }
+  void resize(std::uint64_t bytes) {
+    ASSERT_EQ(ftruncate(segment_.get(), static_cast<off_t>(bytes)), 0);
+  }
+  template <class T>
+  void put(std::uint64_t offset, const T& value) {
+    ASSERT_EQ(pwrite(segment_.get(), &value, sizeof value, static_cast<off_t>(offset)),
+              static_cast<ssize_t>(sizeof value));
+  }
+
+ private:
+  Descriptor segment_;
+};
+
+PillarfieldRing ring_of_frames() {
+  PillarfieldRing ring = {};
+  ring.magic = PILLARFIELD_RING_MAGIC;
+  ring.kind = PILLARFIELD_RING_FRAMES;
+  ring.rows = kShape.rows;
+  ring.cols = kShape.cols;
+  ring.type = PILLARFIELD_U8;
+  ring.slots = 4;
+  ring.slot_bytes = 1344;
+  return ring;
+}
+
+TEST(HostileRing, LyingSizesAreRefused) {
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 200; ++round) {
+    const Name name;
+    Segment segment(name, 64 + 4 * 1344);
+    PillarfieldRing ring = ring_of_frames();
+    switch (random() % 6) {
+      case 0:
+        ring.slots = static_cast<std::uint32_t>(random() | 8);
+        break;
+      case 1:
+        ring.slot_bytes = random() | (1U << 20);
+        break;
+      case 2:
+        ring.slot_bytes = random() % 1328;
+        break;
+      case 3:
+        ring.rows = static_cast<std::uint32_t>(random() | 64);
+        break;
+      case 4:
+        ring.cols = static_cast<std::uint32_t>(random() | 64);
+        break;
+      default:
+        ring.slots = 0;
+        break;
+    }
+    segment.put(0, ring);
+    EXPECT_NE(
+        message_of([&] { (void)open_live_source(name.source(), {}); }).find("no ring of frames"),
+        std::string::npos);
+  }
+}
+
+TEST(HostileRing, RandomContentsNeverDeliverAFrameNorHang) {
+  const Name name;
+  Segment segment(name, 64 + 4 * 1344);
+  PillarfieldRing ring = ring_of_frames();
+  ring.published = 1;
+  PillarfieldFrameSlot slot = {};
+  slot.lock = 2;
+  slot.packet = frame_packet(kShape, 0).header;
+  segment.put(64, slot);
+  segment.put(0, ring);
+  const auto stream = open_live_source(name.source(), {});
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  EXPECT_EQ(stream->next(frame, 10ms), Arrival::arrived);
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 2000; ++round) {
+    ring.published = random() % 3 == 0 ? random() : random() % 20;
+    ring.signal = static_cast<std::uint32_t>(random());
+    segment.put(0, ring);
+    for (std::uint64_t i = 0; i < 4; ++i) {
+      slot.lock = random() % 2 == 0 ? random() : 2 * (random() % 20);
+      slot.packet.sequence = random();
+      slot.packet.bytes = static_cast<std::uint32_t>(random());
+      segment.put(64 + i * 1344, slot);
+    }
+    EXPECT_EQ(stream->next(frame, 0ns), Arrival::timed_out);
+  }
+}
+
+TEST(HostileRing, MayShrinkAtAnyMoment) {
+  const Name name;
+  Segment segment(name, 64 + 4 * 1344);
+  PillarfieldRing ring = ring_of_frames();
+  ring.published = 1;
+  PillarfieldFrameSlot slot = {};
+  slot.lock = 2;
+  slot.packet = frame_packet(kShape, 0).header;
+  segment.put(64, slot);
+  segment.put(0, ring);
+  const auto stream = open_live_source(name.source(), {});
+  StreamedFrame frame(stream->sensel_type(), stream->skin());
+  EXPECT_EQ(stream->next(frame, 10ms), Arrival::arrived);
+  for (const std::uint64_t bytes : {3000U, 1000U, 70U, 30U, 0U}) {
+    ring.published += 2;
+    segment.put(0, ring);
+    segment.resize(bytes);
+    EXPECT_EQ(stream->next(frame, 120ms), Arrival::timed_out);
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

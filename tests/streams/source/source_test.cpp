@@ -1,0 +1,293 @@
+// Live sources as a program opens them: standard input, UDP, serial lines.
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include "pillarfield/error.h"
+#include "tests/base/message.h"
+#include "tests/streams/source/source_run.h"
+
+namespace pillarfield {
+namespace {
+
+using namespace pillarfield::testing;
+
+/// `action` must throw an Error that says `text`.
+template <class Action>
+void expect_failure(Action action, const std::string& text) {
+  const std::string message = core_test::message_of(action);
+  EXPECT_NE(message.find(text), std::string::npos) << message;
+}
+
+constexpr FrameShape kShape = {SenselType::u8, 16, 24};
+
+/// A pipe as standard input while it lives.
+class Stdin {
+ public:
+  Stdin() : saved_(dup(STDIN_FILENO)) {
+    std::array<int, 2> ends = {};
+    EXPECT_EQ(pipe2(ends.data(), O_CLOEXEC), 0);
+    dup2(ends[0], STDIN_FILENO);
+    close(ends[0]);
+    input_ = ends[1];
+  }
+  ~Stdin() {
+    end();
+    dup2(saved_, STDIN_FILENO);
+    close(saved_);
+  }
+  void send(const std::string& bytes) const { write_all(input_, bytes); }
+  void end() {
+    if (input_ >= 0) close(input_);
+    input_ = -1;
+  }
+
+ private:
+  int saved_;
+  int input_ = -1;
+};
+
+TEST(StdinSource, DeliversFramesAndEnds) {
+  Stdin input;
+  input.send("rubbish" + frame_packet(kShape, 5).bytes() + frame_packet(kShape, 6).bytes());
+  const auto stream = open_live_source("-", {});
+  EXPECT_EQ(stream->skin().rows, kShape.rows);
+  EXPECT_EQ(stream->skin().cols, kShape.cols);
+  EXPECT_EQ(stream->sensel_type(), SenselType::u8);
+  std::vector<std::string> received;
+  EXPECT_FALSE(
+      take_frames(*stream, 10ms, [&](auto& frame) { received.push_back(bytes_of(frame)); }));
+  input.send(frame_packet(kShape, 8).bytes() + row_packets(kShape, 9, 2)[1].bytes());
+  input.end();
+  EXPECT_TRUE(take_frames(*stream, 1s, [&](auto& frame) { received.push_back(bytes_of(frame)); }));
+  ASSERT_EQ(received.size(), 4);
+  EXPECT_EQ(received[0], readings_of(kShape, 5));
+  EXPECT_EQ(received[2], readings_of(kShape, 8));
+  const std::size_t half = kShape.bytes() / 2;
+  EXPECT_EQ(received[3],
+            readings_of(kShape, 8).substr(0, half) + readings_of(kShape, 9).substr(half));
+  expect_counts(stream->health(), {.frames = 4, .lost = 1, .incomplete = 1, .invalid = 1});
+}
+
+TEST(StdinSource, RefusesAnEndWithoutAFrame) {
+  Stdin input;
+  input.send("no packet at all");
+  input.end();
+  expect_failure([] { (void)open_live_source("-", {}); }, "ended before its first frame");
+}
+
+TEST(StdinSource, GivesUpWhenTold) {
+  const Stdin input;
+  EXPECT_EQ(open_live_source("-", {.stop = [] { return true; }}), nullptr);
+}
+
+TEST(StdinSource, RefusesACalibrationOfAnotherSize) {
+  Stdin input;
+  input.send(frame_packet(kShape, 0).bytes());
+  LiveSourceOptions options;
+  options.calibration.tare.assign(3, 0);
+  expect_failure([&] { (void)open_live_source("-", options); }, "standard input");
+}
+
+/// A socket that sends to a port of this computer that was free.
+class Sender {
+ public:
+  explicit Sender(int family) {
+    const int probe = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    socklen_t size = sizeof address_;
+    address_.ss_family = static_cast<sa_family_t>(family);
+    if (family == AF_INET) {
+      reinterpret_cast<sockaddr_in*>(&address_)->sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    } else {
+      reinterpret_cast<sockaddr_in6*>(&address_)->sin6_addr = in6addr_loopback;
+    }
+    bound_ = bind(probe, reinterpret_cast<sockaddr*>(&address_), size) == 0;
+    getsockname(probe, reinterpret_cast<sockaddr*>(&address_), &size);
+    close(probe);
+    socket_ = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  }
+  ~Sender() { close(socket_); }
+  [[nodiscard]] bool has_port() const { return bound_; }
+  [[nodiscard]] std::string source() const {
+    // The port has the same place in both kinds of address.
+    const int port = ntohs(reinterpret_cast<const sockaddr_in*>(&address_)->sin_port);
+    const char* const host = address_.ss_family == AF_INET ? "127.0.0.1" : "[::1]";
+    return std::string("udp:") + host + ":" + std::to_string(port);
+  }
+  void send(const std::string& bytes) const {
+    sendto(socket_, bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address_),
+           sizeof address_);
+  }
+  /// Opens the source; a packet is sent until it has arrived.
+  [[nodiscard]] std::unique_ptr<FrameStream> open(const SentPacket& first) const {
+    return open_live_source(source(), {.stop = [this, first] {
+                              send(first.bytes());
+                              return false;
+                            }});
+  }
+
+ private:
+  sockaddr_storage address_ = {};
+  int socket_ = -1;
+  bool bound_ = false;
+};
+
+/// The plan is sent before it is received, so that nothing depends on the speed of this computer.
+void run_udp_plan(unsigned seed, int family) {
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::vector<std::vector<SentPacket>> frames;
+  const auto parts = static_cast<std::uint32_t>(1 + random() % 4);
+  for (std::uint64_t i = 0; i < 40; ++i) frames.push_back(row_packets(kShape, i, parts));
+  const auto arriving = damage(frames, random, true);
+  const Expected expected = expect(arriving, 2);
+  const Sender sender(family);
+  if (!sender.has_port()) GTEST_SKIP() << "no loopback of this family";
+  SentPacket stranger = frame_packet(kShape, 500);  // another session, which the plan's replaces
+  stranger.header.session = 99;
+  const auto stream = sender.open(stranger);
+  ASSERT_NE(stream, nullptr);
+  stream->discard_waiting();
+  for (const SentPacket& packet : arriving) sender.send(packet.bytes());
+  FrameCheck check(kShape, expected);
+  take_frames(*stream, 30ms, [&](const StreamedFrame& frame) { check(frame); });
+  StreamHealth health = expected.health;
+  health.restarts = 1;
+  expect_counts(stream->health(), health);
+  EXPECT_EQ(stream->health().overrun, 0);
+}
+
+TEST(UdpSource, CountsEveryDamageOfAPlan) {
+  for (unsigned seed = 0; seed < 12 && !::testing::Test::HasFailure(); ++seed) {
+    run_udp_plan(seed, seed % 2 == 0 ? AF_INET : AF_INET6);
+  }
+}
+
+TEST(UdpSource, DiscardsWhatWaitsWithoutCountingIt) {
+  const Sender sender(AF_INET);
+  const auto stream = sender.open(frame_packet(kShape, 0));
+  for (std::uint64_t i = 10; i < 90; i += 2) sender.send(frame_packet(kShape, i).bytes());
+  sender.send("too short");
+  stream->discard_waiting();
+  sender.send(frame_packet(kShape, 95).bytes());
+  sender.send(frame_packet(kShape, 96).bytes());
+  std::vector<std::uint64_t> sequences;
+  take_frames(*stream, 30ms, [&](auto& frame) { sequences.push_back(frame.sequence); });
+  EXPECT_EQ(sequences, (std::vector<std::uint64_t>{95, 96}));
+  expect_counts(stream->health(), {.frames = 2});
+}
+
+TEST(UdpSource, CountsWhatTheKernelDropped) {
+  const Sender sender(AF_INET);
+  const auto stream = sender.open(frame_packet(kShape, 0));
+  const std::uint64_t sent = 60'000;  // more than any buffer holds
+  const std::string bytes = frame_packet(kShape, 1).bytes();
+  for (std::uint64_t i = 1; i <= sent; ++i) {
+    SentPacket packet = {header_of(kShape, i), {}};
+    packet.header.bytes = static_cast<std::uint32_t>(kShape.bytes());
+    sender.send(packet.bytes() + bytes.substr(64));
+  }
+  const auto count = [](auto&) {};
+  take_frames(*stream, 30ms, count);
+  sender.send(frame_packet(kShape, sent + 1).bytes());  // tells the number of drops
+  sender.send(frame_packet(kShape, sent + 2).bytes());
+  take_frames(*stream, 30ms, count);
+  const StreamHealth health = stream->health();
+  EXPECT_GT(health.lost, 0);
+  EXPECT_EQ(health.lost, health.overrun);
+  EXPECT_EQ(health.frames + health.lost, sent + 3);
+}
+
+TEST(UdpSource, RefusesBadAddresses) {
+  for (const char* const source :
+       {"udp:127.0.0.1:0", "udp:127.0.0.1:65536", "udp:127.0.0.1:", "udp:", "udp:nowhere:99",
+        "udp:127.0.0.1:9x", "udp:192.0.2.1:9999"}) {
+    expect_failure([&] { (void)open_live_source(source, {}); }, "udp:");
+  }
+}
+
+/// A pseudo-terminal, whose other end has a name that the test chooses.
+class Terminal {
+ public:
+  explicit Terminal(const std::filesystem::path& link)
+      : controller_(posix_openpt(O_RDWR | O_NOCTTY)) {
+    grantpt(controller_);
+    unlockpt(controller_);
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(ptsname(controller_), link);
+  }
+  ~Terminal() { close(controller_); }
+  void send(const std::string& bytes) const { write_all(controller_, bytes); }
+
+ private:
+  int controller_;
+};
+
+/// A folder that is removed at the end.
+struct Folder {
+  Folder() {
+    std::string name = std::filesystem::temp_directory_path() / "serial-XXXXXX";
+    path = mkdtemp(name.data());
+  }
+  ~Folder() { std::filesystem::remove_all(path); }
+  std::filesystem::path path;
+};
+
+constexpr FrameShape kSmall = {SenselType::u8, 8, 8};
+
+TEST(SerialSource, FindsPacketsBetweenRubbishAndReopensTheDevice) {
+  const Folder folder;
+  const std::filesystem::path device = folder.path / "tty";
+  std::vector<std::string> received;
+  const auto take = [&](const StreamedFrame& frame) { received.push_back(bytes_of(frame)); };
+  auto terminal = std::make_unique<Terminal>(device);
+  const auto stream = open_live_source("serial:" + device.string(), {.stop = [&] {
+                                         terminal->send(checked(frame_packet(kSmall, 0)).bytes());
+                                         return false;
+                                       }});
+  std::mt19937 random(1);
+  for (std::uint64_t i = 1; i < 30; ++i) {
+    SentPacket packet = checked(frame_packet(kSmall, i));
+    if (i % 3 == 0) terminal->send("\x03\x04\x11\x13\r\n\xff noise");
+    if (i % 7 == 0) packet.readings[random() % 64] ^= 8;
+    terminal->send(packet.bytes());
+    take_frames(*stream, 5ms, take);
+  }
+  // The noise after packet 14 belongs to the same run of rubbish.
+  expect_counts(stream->health(), {.frames = 26, .lost = 4, .invalid = 9 + 4 - 1});
+  terminal.reset();
+  take_frames(*stream, 20ms, take);
+  terminal = std::make_unique<Terminal>(device);
+  take_frames(*stream, 100ms, take);
+  terminal->send(checked(frame_packet(kSmall, 40)).bytes());
+  terminal->send(checked(frame_packet(kSmall, 41)).bytes());
+  take_frames(*stream, 50ms, take);
+  ASSERT_EQ(received.size(), 28);
+  EXPECT_EQ(received.front(), readings_of(kSmall, 0));
+  EXPECT_EQ(received.back(), readings_of(kSmall, 41));
+}
+
+TEST(SerialSource, RefusesWhatIsNoSerialDevice) {
+  for (const char* const source :
+       {"serial:", "serial:/nowhere", "serial:/dev/null", "serial:/tmp"}) {
+    expect_failure([&] { (void)open_live_source(source, {}); }, "serial:");
+  }
+}
+
+TEST(LiveSource, KnowsItsKinds) {
+  for (const char* const source : {"-", "shm:skin", "udp:127.0.0.1:9", "serial:/dev/ttyACM0"}) {
+    EXPECT_TRUE(is_live_source(source)) << source;
+  }
+  for (const char* const source : {"", "-x", "skin.h5", "udp", "./shm:x"}) {
+    EXPECT_FALSE(is_live_source(source)) << source;
+  }
+  expect_failure([] { (void)open_live_source("skin.h5", {}); },
+                 "give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE");
+}
+
+}  // namespace
+}  // namespace pillarfield
