@@ -14,6 +14,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
+#include "python/process.h"
 
 namespace pillarfield::python {
 namespace {
@@ -116,18 +117,20 @@ py::list ended_of(const FrameContacts& self) {
 class Tracker {
  public:
   Tracker(const SolverPlan& plan, std::uint64_t minimum_pillars, double reach_mm)
-      : tracker_(plan.skin.pillar_pitch_mm(), options_of(plan, minimum_pillars, reach_mm)) {}
+      : tracker_(std::make_unique<ContactTracker>(plan.skin.pillar_pitch_mm(),
+                                                  options_of(plan, minimum_pillars, reach_mm))) {}
 
   /// The contacts of each frame.
   std::vector<SharedContacts> update(const py::dict& planes, const std::vector<double>& times) {
     const ForceArrays forces(planes);
     if (times.size() != forces.frames()) throw Error("Contacts", "the times are not one a frame");
+    if (tracker_.is_foreign()) throw_foreign("Contacts");
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(mutex_);
     std::vector<SharedContacts> contacts;
     for (std::size_t i = 0; i < times.size(); ++i) {
       contacts.push_back(
-          std::make_shared<FrameContacts>(tracker_.update(forces.frame(i), times[i])));
+          std::make_shared<FrameContacts>(tracker_.get()->update(forces.frame(i), times[i])));
     }
     return contacts;
   }
@@ -143,7 +146,7 @@ class Tracker {
   }
 
   std::mutex mutex_;
-  ContactTracker tracker_;
+  ProcessBound<ContactTracker> tracker_;
 };
 
 }  // namespace

@@ -18,4 +18,6 @@ PYBIND11_MODULE(_core, module) {
   bind_force_files(module);
   bind_compare(module);
   bind_calibrate(module);
+  bind_live(module);
+  bind_picture(module);
 }

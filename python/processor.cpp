@@ -17,7 +17,7 @@
 #include "pipeline/missing_pillars.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
-#include "python/opencl.h"
+#include "python/process.h"
 
 namespace pillarfield::python {
 namespace {
@@ -28,38 +28,21 @@ constexpr const char* kProcessor =
 /// first_row, rows, first_col, cols of sensels.
 using Block = std::array<std::uint32_t, 4>;
 
-/// Deletes what belongs to the device, except in a fork of its process.
-template <class T>
-struct DeleteUnlessForked {
-  void operator()(T* object) const {
-    if (!is_forked()) delete object;
-  }
-};
-
 /// A received frame in pinned memory of the device, or in a copy.
 struct Received {
   ForceFieldView forces;
-  std::unique_ptr<Processor::PinnedResult> pinned;
+  std::unique_ptr<ProcessBound<Processor::PinnedResult>> pinned;
   std::unique_ptr<ForceCopy> copied;
   std::shared_ptr<FrameContacts> contacts;
   double time_s = 0;
 
   /// Arrays over the memory, which they own from now on.
   [[nodiscard]] py::dict release() {
-    py::dict result = pinned ? lent_planes(forces, owner_of_pin())
+    py::dict result = pinned ? lent_planes(forces, capsule_of(std::move(pinned)))
                              : lent_planes(forces, capsule_of(std::move(copied)));
     result["times"] = time_s;
     if (contacts) result["contacts"] = std::move(contacts);
     return result;
-  }
-
- private:
-  py::capsule owner_of_pin() {
-    py::capsule owner(pinned.get(), [](void* pointer) {
-      DeleteUnlessForked<Processor::PinnedResult>()(static_cast<Processor::PinnedResult*>(pointer));
-    });
-    static_cast<void>(pinned.release());
-    return owner;
   }
 };
 
@@ -76,15 +59,16 @@ class Ring {
                   "give at least 1 and 0, together at most 64");
     }
     const py::gil_scoped_release unlocked;
-    processor_.reset(
-        new Processor(device_named(device), plan, {.frames_in_flight = frames_in_flight + lent}));
+    processor_.emplace(std::make_unique<Processor>(
+        device_named(device), plan,
+        Processor::Options{.frames_in_flight = frames_in_flight + lent}));
     for (int i = 0; i < frames_in_flight; ++i) {
       vacant_.emplace_back(plan.sensel_type, plan.skin.rows, plan.skin.cols);
     }
     if (!contacts) return;
     ContactOptions options;
     set_sensor(options, plan);
-    tracker_.emplace(plan.skin.pillar_pitch_mm(), options);
+    tracker_.emplace(std::make_unique<ContactTracker>(plan.skin.pillar_pitch_mm(), options));
   }
 
   void submit(const py::array& readings, double time_s, const std::vector<Block>& missing) {
@@ -139,9 +123,9 @@ class Ring {
 
   void close() {
     const py::gil_scoped_release unlocked;
-    if (is_forked()) return;
+    if (processor_->is_foreign()) return;
     const std::lock_guard alone(mutex_);
-    processor_.reset();
+    processor_->reset();
     flying_.clear();
   }
 
@@ -157,10 +141,11 @@ class Ring {
   template <class Call>
   void with_processor(Call call) {
     const py::gil_scoped_release unlocked;
-    require_opencl_process();
+    if (processor_->is_foreign()) throw_foreign("Processor");
     const std::lock_guard alone(mutex_);
-    if (!processor_) throw Error("Processor", "it is closed", "make another one");
-    call(*processor_);
+    Processor* const processor = processor_->get();
+    if (processor == nullptr) throw Error("Processor", "it is closed", "make another one");
+    call(*processor);
   }
 
   static std::vector<SenselBlock> blocks_of(const std::vector<Block>& missing) {
@@ -180,11 +165,12 @@ class Ring {
     Received received;
     received.time_s = flown.time_s;
     if (tracker_) {
-      received.contacts = std::make_shared<FrameContacts>(tracker_->update(
+      received.contacts = std::make_shared<FrameContacts>(tracker_->get()->update(
           forces, flown.time_s, is_whole ? processor.contacts() : FoundContacts{}));
     }
     if (is_whole && processor.pinned() < lent_) {
-      received.pinned = std::make_unique<Processor::PinnedResult>(processor.pin());
+      received.pinned = std::make_unique<ProcessBound<Processor::PinnedResult>>(
+          std::make_unique<Processor::PinnedResult>(processor.pin()));
     } else {
       received.copied = std::make_unique<ForceCopy>(forces);
       forces = received.copied->view();
@@ -199,8 +185,8 @@ class Ring {
   std::deque<FrameBuffer> vacant_;
   std::deque<Flying> flying_;
   /// Ends before the frames that it reads.
-  std::unique_ptr<Processor, DeleteUnlessForked<Processor>> processor_;
-  std::optional<ContactTracker> tracker_;
+  std::optional<ProcessBound<Processor>> processor_;
+  std::optional<ProcessBound<ContactTracker>> tracker_;
   MissingPillars missing_;
 };
 

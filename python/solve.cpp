@@ -11,7 +11,7 @@
 #include "python/bindings.h"
 #include "python/force_planes.h"
 #include "python/frames.h"
-#include "python/opencl.h"
+#include "python/process.h"
 #include "python/signals.h"
 
 namespace pillarfield::python {

@@ -16,6 +16,7 @@ from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, Reg
                     SenselFinding, Skin, Surface, __version__)
 from ._error import Error
 from ._field import ForceField, Points, Uncertainty
+from ._live import Frame, LiveSink, LiveSource, live, sink
 from ._processor import Contacts, Processor
 from ._recording import ForceFile, Recording, open
 from ._scene import Simulation, scene, simulate
@@ -23,7 +24,7 @@ from ._solve import save_recording, solve
 from ._status import Region, Status
 
 __all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
-           "ForceFile", "FrameContacts", "Plan", "Points", "Processor", "Recording", "Region",
+           "ForceFile", "Frame", "FrameContacts", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
            "RegionErrors", "Scene", "SenselFinding", "Simulation", "Skin", "Status", "Surface",
-           "Uncertainty", "__version__", "calibrate", "compare", "open", "save_recording", "scene",
-           "simulate", "solve"]
+           "Uncertainty", "__version__", "calibrate", "compare", "live", "open", "save_recording", "scene",
+           "simulate", "sink", "solve"]

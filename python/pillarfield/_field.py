@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._error import Error
 from ._frames import Path
+from ._picture import picture
 from ._status import REGIONS, Status
 
 if TYPE_CHECKING:
@@ -247,6 +248,30 @@ class ForceField:
         share = 100 * self.where(Status.AMBIGUOUS).sum() / max(1, touched.sum())
         return (f"<ForceField: {frames} frame{'s' * (frames != 1)} of {rows} x {cols} pillars, "
                 f"{low:.3g}..{high:.3g} N, {share:.0f} % ambiguous>")
+
+    def picture(self, quantity: str = "normal", *, limits: Optional[tuple[float, float]] = None,
+                theme: str = "dark") -> bytes:
+        """A picture of one frame as PNG: heat map in the viewer's colours, arrows of the shear.
+
+        quantity: normal, shear, shear_x, shear_y, magnitude, theta, phi, region, status, uncertainty
+        limits: ends of the colour bar, N or rad; None: fitting ones
+        theme: 'dark' or 'light'
+
+        Raises Error if the forces are of several frames or lack the quantity.
+        """
+        if len(self.shape) != 2:
+            raise Error("ForceField.picture", "the forces are of several frames", "index one")
+        if theme not in ("dark", "light"):
+            raise Error("ForceField.picture", f"'{theme}' is no theme", "give 'dark' or 'light'")
+        return picture(self._batch(), quantity, limits, theme == "light")
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """For notebooks: the picture of the frame, or of the one with the largest normal force."""
+        if len(self.shape) == 2:
+            return self.picture()
+        if not len(self):
+            return None
+        return self[int(self.normal.sum((1, 2)).argmax())].picture()
 
     def to_xarray(self) -> xarray.Dataset:
         """The planes as an xarray.Dataset with coordinates time (s), y and x (mm); needs xarray."""
