@@ -7,11 +7,14 @@ if((CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION MATCHES 
 endif()
 
 # Programs are position-independent, and the loader searches only the system's directories. (A build
-# directory's RUNPATH would end in an empty entry, which means the current directory.)
+# directory's RUNPATH would end in an empty entry, which means the current directory.) Programs that link
+# shared libraries of the build tree need its path until they are installed.
 include(CheckPIESupported)
 check_pie_supported(LANGUAGES CXX)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
-set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+if(NOT BUILD_SHARED_LIBS)
+  set(CMAKE_BUILD_WITH_INSTALL_RPATH ON)
+endif()
 
 # Language, warnings and the floating-point rules that make host and device agree bit for bit.
 function(pillarfield_compile_options target)
@@ -44,12 +47,21 @@ function(pillarfield_compile_options target)
   endif()
 endfunction()
 
-# A module of the library: pillarfield_<name>, exported as pillarfield::<name>.
+# A module of the library: pillarfield_<name>, exported as pillarfield::<name>; shared with BUILD_SHARED_LIBS.
+# PRIVATE_MODULE: only programs of this project link it, so it is static and not installed.
 function(pillarfield_library name)
-  add_library(pillarfield_${name} STATIC ${ARGN})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "PRIVATE_MODULE" "" "")
+  set(type "")
+  if(arg_PRIVATE_MODULE)
+    set(type STATIC)
+  endif()
+  add_library(pillarfield_${name} ${type} ${arg_UNPARSED_ARGUMENTS})
   add_library(pillarfield::${name} ALIAS pillarfield_${name})
+  # Before 1.0 a minor version may change the interface. Without DEFINE_SYMBOL, static and shared builds
+  # compile the same objects.
   set_target_properties(pillarfield_${name} PROPERTIES
-    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+    EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON DEFINE_SYMBOL ""
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(pillarfield_${name}
     PUBLIC
       $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/host/include>

@@ -1,6 +1,9 @@
+#include <string>
+
 #include "fuzz/some_frames.h"
 #include "fuzz/targets.h"
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/error.h"
 #include "pillarfield/host_solve.h"
 #include "pillarfield/recording.h"
 #include "pillarfield/solver_plan.h"
@@ -17,6 +20,25 @@ SolverPlan plan_of_source(const FrameSource& source) {
 }
 
 }  // namespace
+
+void read_plain(const std::filesystem::path& path, const ReadOptions& options) {
+  ReadOptions untimed = options;
+  untimed.untimed = true;
+  ReadOptions lines = untimed;
+  lines.frame_size = FrameSize{4, 6};
+  ReadOptions named = untimed;
+  named.dataset = "raw";
+  std::string failure;
+  for (const ReadOptions& each : {untimed, lines, named}) {
+    try {
+      read_frames(path, each);
+      return;
+    } catch (const Error& error) {
+      if (failure.empty()) failure = error.what();
+    }
+  }
+  throw Error({}, failure);
+}
 
 void read_frames(const std::filesystem::path& path, [[maybe_unused]] const ReadOptions& options) {
   const auto source = open_frames(path, options);

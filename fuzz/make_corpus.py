@@ -8,14 +8,18 @@ reader. Files damaged by a fuzzer do not change. fuzz/mutants.py makes its seeds
 """
 
 import argparse
+import io
 import pathlib
+import struct
 import subprocess
 import tempfile
+import zipfile
+import zlib
 
 import h5py
 import numpy
 
-KINDS = ("recording", "forces", "calibration", "tekscan", "scene")
+KINDS = ("recording", "forces", "calibration", "tekscan", "scene", "plain")
 
 SCENE = """\
 title = "A ball that slides"
@@ -347,7 +351,88 @@ HOSTILE_RECORDINGS = {
 }
 
 
+def npy(array, version=None):
+    data = io.BytesIO()
+    numpy.lib.format.write_array(data, numpy.asarray(array), version=version)
+    return data.getvalue()
+
+
+def npz(compress=True, **arrays):
+    data = io.BytesIO()
+    (numpy.savez_compressed if compress else numpy.savez)(data, **arrays)
+    return data.getvalue()
+
+
+def table(array, separator=","):
+    return "\n".join(separator.join(f"{value:g}" for value in line) for line in array).encode() + b"\n"
+
+
+def plain_frames():
+    """Three frames of 4 x 6 readings."""
+    random = numpy.random.default_rng(7)
+    return random.integers(0, 256, (3, 4, 6)) * (random.random((3, 4, 6)) < 0.7)
+
+
+def plain_files():
+    frames = plain_frames()
+    real = numpy.where(frames == 0, numpy.nan, frames / 3)
+    lines = frames.reshape(3, -1)
+    times = numpy.arange(3)[:, None] / 100
+    return {
+        "uint8.npy": npy(frames.astype("u1")), "big_endian.npy": npy(frames.astype(">i4"), (2, 0)),
+        "float64.npy": npy(real, (3, 0)), "lines.npy": npy(lines.astype("i2")),
+        "stored.npz": npz(False, raw=frames.astype("u2"), time=times[:, 0]),
+        "deflated.npz": npz(raw=frames.astype(">f4"), rate=numpy.array(100.0), name="text"),
+        "frames.csv": b"\n".join(table(frame) for frame in frames),
+        "lines.csv": b"time;" + b"s;" * 24 + b"\n" + table(numpy.hstack([times, lines]), ";"),
+        "blanks.txt": b"# saved by numpy\n" + table(real[0], " ")}
+
+
+def claim(data, old, new):
+    """Replaces a part of a file by one of equal length."""
+    assert data.count(old) >= 1 and len(old) == len(new), (old, new)
+    return data.replace(old, new)
+
+
+def zip_bomb(claimed=None):
+    """An archive of 64 MiB of zeros, which claims another size if one is given."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
+        header = npy(numpy.zeros((2**20, 8, 8), "u1"))[:128]
+        archive.writestr("raw.npy", header + bytes(2**26))
+    data = data.getvalue()
+    size = struct.pack("<I", 2**26 + 128)
+    return data if claimed is None else claim(data, size, struct.pack("<I", claimed))
+
+
+def hostile_plain_files():
+    frames = plain_frames().astype("u1")
+    good, archive = npy(frames), npz(raw=frames)
+    line = b"1,2,3,4,5,6\n"
+    return {
+        "truncated.npy": good[:-1], "header_cut.npy": good[:60],
+        "2e60_frames.npy": claim(good, b"(3, 4, 6), }" + b" " * 20, b"(1152921504606846976, 4, 6), }  "),
+        "overflow.npy": claim(good, b"(3, 4, 6), }" + b" " * 20, b"(4294967296, 4294967296, 6), }  "),
+        "bool.npy": npy(frames > 9), "complex.npy": npy(frames * 1j), "float16.npy": npy(frames.astype("f2")),
+        "objects.npy": npy(numpy.array([1, "a"], object)), "records.npy": npy(numpy.zeros((1, 4, 6), "u1,f4")),
+        "fortran.npy": npy(numpy.asfortranarray(frames)), "scalar.npy": npy(numpy.float64(3)),
+        "version_9.npy": claim(good, b"NUMPY\x01", b"NUMPY\x09"), "one_row.npy": npy(frames[:, :1]),
+        "beyond_float32.npy": npy(frames.astype("i8") + 2**40),
+        "truncated.npz": archive[:-30], "checksum.npz": claim(archive, archive[60:64], b"\0\0\0\0"),
+        "no_array.npz": npz(name="text"), "two_arrays.npz": npz(a=frames, b=frames),
+        "too_many_times.npz": npz(raw=frames, time=numpy.arange(9)),
+        "times_fall.npz": npz(raw=frames, time=-numpy.arange(3)),
+        "bomb_claims_1_byte.npz": zip_bomb(1), "bomb_claims_3_gib.npz": zip_bomb(3 << 30),
+        "ragged.csv": 3 * line + b"1,2,3,4,5\n", "uneven_frames.csv": 3 * line + b"\n" + 2 * line,
+        "decimal_commas.csv": b"1,5;2,5\n1,5;2,5\n", "words.csv": line + b"1,2,3,four,5,6\n",
+        "one_column.csv": b"1 2\n1\n"}
+
+
 def write_hostile(folder):
+    for old in (folder / "plain").glob("hostile_*"):
+        old.unlink()
+    for name, data in hostile_plain_files().items():
+        (folder / "plain" / f"hostile_{name}").write_bytes(data)
     for old in (folder / "recording").glob("hostile_*"):
         old.unlink()
     for name, change in HOSTILE_RECORDINGS.items():
@@ -382,6 +467,10 @@ def write_seeds(folder, program):
         (folder / "scene" / f"seed_{name}.toml").write_text(text)
     for name, text in tekscan_exports().items():
         (folder / "tekscan" / f"seed_{name}.csv").write_bytes(text.encode())
+    for name, data in plain_files().items():
+        (folder / "plain" / f"seed_{name}").write_bytes(data)
+    with h5py.File(folder / "plain" / "seed_dataset.h5", "w") as file:
+        file["raw"] = plain_frames().astype("i4")
     with tempfile.TemporaryDirectory() as scratch:
         scratch = pathlib.Path(scratch)
         scene = folder / "scene" / "seed_sliding.toml"
@@ -413,6 +502,46 @@ def write_calibration(program, scratch):
         "-o", scratch / "tare.h5")
 
 
+def packet(readings, content=0, shape=(5, 7), kind=1, sequence=0, part=0, parts=1, first=0, count=0, checked=False,
+           **members):
+    """A packet of stream_format.h. `members` gives others than the right ones: rows, cols, bytes."""
+    length = members.get("bytes", len(readings) + 4 * checked)
+    head = struct.pack("<4sHHIIQQQ6I", b"PFR1", content | checked << 8, kind, members.get("rows", shape[0]),
+                       members.get("cols", shape[1]), 1, sequence, 10**6 * (sequence + 1), part, parts, first, count,
+                       0, length)
+    return head + readings + (struct.pack("<I", zlib.crc32(head + readings)) if checked else b"")
+
+
+def packets():
+    """Streams of packets by name."""
+    frame = bytes(range(35))
+    rows = [packet(bytes(28), 1, kind=3, sequence=n, part=part, parts=5, first=part, count=1)
+            for n in range(3) for part in (0, 2, 1, 4, 3)]
+    block = struct.pack("<II", 0, 0) + bytes(128)
+    return {
+        "seed_frames": b"".join(packet(frame, sequence=n) for n in range(4)),
+        "seed_rows": b"".join(rows),
+        "seed_late_rows": b"".join(rows[5:9] + rows[10:] + rows[9:11]),
+        "seed_blocks": b"".join([packet(block, 2, kind=2, sequence=n, count=1, checked=True) for n in range(3)]
+                                + [packet(b"", 2, kind=2, sequence=3), packet(b"", 3, kind=2, sequence=4)]),
+        "hostile_huge": packet(frame, rows=65534, cols=65534, bytes=65534**2 % 2**32),
+        "hostile_claims_bytes": packet(frame, rows=4096, cols=4096, bytes=2**24),
+        "hostile_no_parts": packet(frame, parts=0) + packet(frame),
+        "hostile_row_beyond": packet(frame) + packet(bytes(7), 1, first=2**32 - 1, count=1),
+        "hostile_block_beyond": packet(frame) + packet(struct.pack("<II", 1, 0) + bytes(64), 2, count=1),
+        "hostile_blocks": packet(frame) + packet(b"", 2, count=2**32 - 1, bytes=2**32 - 72),
+        "hostile_checksum": packet(frame) + packet(frame, sequence=1, checked=True)[:-1] + b"x",
+        "hostile_cut_short": packet(frame)[:80] + packet(frame, sequence=1),
+        "hostile_magic": b"PFR1" * 100 + packet(frame),
+    }
+
+
+def write_packets(folder):
+    (folder / "packets").mkdir(parents=True, exist_ok=True)
+    for name, text in packets().items():
+        (folder / "packets" / f"{name}.pfr").write_bytes(text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=pathlib.Path, required=True)
@@ -421,6 +550,7 @@ def main():
     options = parser.parse_args()
     write_seeds(options.folder, options.program)
     write_hostile(options.folder)
+    write_packets(options.folder)
 
 
 if __name__ == "__main__":

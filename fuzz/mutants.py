@@ -47,6 +47,8 @@ COMMANDS = {
     "forces": ["info IN", "solve -q IN -o OUT"],
     "calibration": ["info IN", "solve -q GOOD --calibration IN -o OUT"],
     "tekscan": ["info IN", "solve -q IN -o OUT"],
+    "plain": ["info IN", "solve -q IN -o OUT --rate 100",
+              "solve -q IN -o OUT --rate 100 --shape 4x6"],
     "scene": ["info IN", "simulate -q IN -o OUT.h5", "solve -q GOOD --scene IN -o OUT"],
 }
 MORE = {
@@ -55,6 +57,7 @@ MORE = {
     "forces": ["compare IN GOOD", "info --json IN"],
     "calibration": ["calibrate tare -q GOOD --calibration IN -o OUT.h5", "info --json IN"],
     "tekscan": ["calibrate tare -q IN -o OUT.h5", "info --json IN"],
+    "plain": ["calibrate tare -q IN -o OUT.h5", "info --json IN"],
     "scene": ["info --json IN"],
 }
 ENDINGS = (".h5", ".csv", ".npy")

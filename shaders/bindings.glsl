@@ -25,6 +25,7 @@ uint status_of(uint pillar) {
 
 // The status byte: kernels/pillar/status.h.
 bool is_usable(uint status) { return (status & 15u) != 0u; }
+bool is_pressed(uint status) { return (status & 47u) != 0u; }
 bool is_ambiguous(uint status) { return (status & 16u) != 0u; }
 bool is_saturated(uint status) { return (status & 32u) != 0u; }
 bool is_inconsistent(uint status) { return (status & 64u) != 0u; }

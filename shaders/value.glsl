@@ -59,7 +59,8 @@ float shear_of(uint pillar) {
 
 float value_of(uint pillar, uint status) {
   switch (kQuantity) {
-    case kNormal: return plane_value(scene.force.z, pillar);
+    case kNormal:
+    case kPeak: return plane_value(scene.force.z, pillar);
     case kShear: return shear_of(pillar);
     case kShearX: return plane_value(scene.force.x, pillar);
     case kShearY: return plane_value(scene.force.y, pillar);
@@ -83,7 +84,7 @@ uint region_colour(uint usable) {
 uint special_of(uint status) {
   const uint usable = status & 15u;
   if (kQuantity == kRegion && usable != 0u) return region_colour(usable);
-  if (is_inconsistent(status)) return kInconsistent;
+  if (is_inconsistent(status)) return is_pressed(status) ? kInconsistent : kNoReading;
   if (is_saturated(status)) return kSaturated;
   if (usable == 0u) return kIdle;
   if (kQuantity != kStatus) return kQuantity == kRegion ? kIdle : kMapped;

@@ -6,6 +6,7 @@
 #include "pillarfield/error.h"
 #include "viewer/options.h"
 #include "viewer/render/scene.h"
+#include "viewer/source/selection.h"
 #include "viewer/style/surface.h"
 #include "viewer/style/ticks.h"
 
@@ -52,11 +53,6 @@ double full_arrow(FieldProducer& producer, Quantity quantity) {
   return typical > 0 ? round_ceiling(typical) : 1;
 }
 
-Range in_own_unit(const Range& shown, Quantity quantity) {
-  const auto factor = static_cast<float>(info_of(quantity).factor);
-  return {shown.low / factor, shown.high / factor};
-}
-
 void require_available(Quantity quantity, const SourceInfo& source) {
   if (is_available(quantity, source)) return;
   throw Error(source.name, std::string("it has no data for ") + info_of(quantity).name,
@@ -69,8 +65,33 @@ Surface surface_of(const Options& options, const SourceInfo& source) {
 
 }  // namespace
 
+Range in_unit_of(const Range& shown, Quantity quantity) {
+  const auto factor = static_cast<float>(info_of(quantity).factor);
+  return {shown.low / factor, shown.high / factor};
+}
+
 Range range_that_fits(FieldProducer& producer, Quantity quantity) {
   return fitting_range(quantity, quantile(survey(producer, quantity), kRangeQuantile));
+}
+
+std::uint64_t most_loaded_frame(FieldProducer& producer) {
+  constexpr std::uint64_t kMostCompared = 64;
+  const std::uint64_t frames = producer.info().frames;
+  const std::uint64_t compared = std::min(frames, kMostCompared);
+  std::uint64_t most_loaded = 0;
+  double most_n = 0;
+  for (std::uint64_t i = 0; i < compared; ++i) {
+    const ShownField field = producer.produce((2 * i + 1) * frames / (2 * compared));
+    const ForceFieldView& forces = field.forces;
+    const double total_n =
+        sums_over(field, {0, forces.rows, 0, forces.cols}, producer.info().skin.pillar_pitch_mm())
+            .normal;
+    if (total_n > most_n) {
+      most_n = total_n;
+      most_loaded = field.index;
+    }
+  }
+  return most_loaded;
 }
 
 View first_view(const Options& options, const SourceInfo& source, const Viewport& plot) {
@@ -89,13 +110,10 @@ View first_view(const Options& options, const SourceInfo& source, const Viewport
   return view;
 }
 
-RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
-  const SourceInfo& source = producer.info();
+RenderSettings chosen_settings(const Options& options, const SourceInfo& source, double scale) {
   require_available(options.quantity, source);
   RenderSettings settings;
   settings.quantity = options.quantity;
-  settings.range = options.range ? in_own_unit(*options.range, options.quantity)
-                                 : range_that_fits(producer, options.quantity);
   settings.map = options.map.value_or(default_map(info_of(options.quantity).scale));
   settings.theme = options.theme;
   settings.surface = surface_of(options, source);
@@ -103,8 +121,17 @@ RenderSettings default_settings(const Options& options, FieldProducer& producer,
   settings.sectors = options.sectors;
   settings.hatch = options.hatch;
   settings.contacts = options.contacts;
+  settings.relief = options.relief;
   settings.legend = options.legend;
   settings.scale = scale;
+  return settings;
+}
+
+RenderSettings default_settings(const Options& options, FieldProducer& producer, double scale) {
+  RenderSettings settings = chosen_settings(options, producer.info(), scale);
+  settings.range = options.range ? in_unit_of(*options.range, options.quantity)
+                                 : range_that_fits(producer, options.quantity);
+  settings.relief_full_n = static_cast<double>(range_that_fits(producer, Quantity::normal).high);
   settings.full_force_n = full_arrow(producer, Quantity::magnitude);
   settings.full_shear_n = full_arrow(producer, Quantity::shear);
   return settings;

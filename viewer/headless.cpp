@@ -1,7 +1,10 @@
 #include "viewer/headless.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
@@ -10,9 +13,10 @@
 #include "pillarfield/printable.h"
 #include "viewer/app/export/export.h"
 #include "viewer/app/field_place.h"
-#include "viewer/app/loaded_source.h"
+#include "viewer/app/source/loaded_source.h"
 #include "viewer/render/renderer.h"
 #include "viewer/render/scene.h"
+#include "viewer/source/peak_hold.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -50,9 +54,14 @@ struct FrameRange {
   std::uint64_t end;
 };
 
-FrameRange frames_of(const Options& options, const SourceInfo& source) {
-  const FrameRange span{options.first_frame,
-                        options.end_frame != 0 ? options.end_frame : options.first_frame + 1};
+FrameRange frames_of(const Options& options, FieldProducer& producer) {
+  const SourceInfo& source = producer.info();
+  // Peaks are complete in the last frame.
+  const bool peaks = options.quantity == Quantity::peak;
+  const std::uint64_t first = options.has_frame ? options.first_frame
+                              : peaks           ? source.frames - 1
+                                                : most_loaded_frame(producer);
+  const FrameRange span{first, options.end_frame != 0 ? options.end_frame : first + 1};
   if (span.end <= source.frames) return span;
   throw Error(source.name, fmt::format("it has no frame {}", span.end),
               fmt::format("its frames are 1 to {}", source.frames));
@@ -85,6 +94,48 @@ void check_exports(const Options& options, const std::vector<std::filesystem::pa
   throw Error(options.csv.string(), "a table must end in .csv", "rename it");
 }
 
+/// Pictures a second of a video, and how many each frame of the source has in it, which `speed` and
+/// `fps` determine: the picture k shows the frame floor(k step).
+class VideoPace {
+ public:
+  VideoPace(const Options& options, double rate_hz)
+      : fps_(options.fps.value_or(std::clamp(rate_hz * options.speed, 1.0, kMostFps))),
+        step_(rate_hz * options.speed / fps_) {}
+
+  [[nodiscard]] double fps() const { return fps_; }
+
+  /// `index` counts from the first frame of the video.
+  [[nodiscard]] std::uint64_t pictures_of(std::uint64_t index) const {
+    return pictures_before(index + 1) - pictures_before(index);
+  }
+
+ private:
+  static constexpr double kMostFps = 60;
+
+  [[nodiscard]] std::uint64_t pictures_before(std::uint64_t index) const {
+    constexpr double kTolerance = 1e-9;
+    return static_cast<std::uint64_t>(
+        std::ceil(static_cast<double>(index) / step_ * (1 - kTolerance)));
+  }
+
+  double fps_;
+  double step_;  ///< frames of the source from a picture to the next
+};
+
+void tell_written(const Options& options, const std::vector<std::filesystem::path>& pictures,
+                  const FrameRange& span, std::uint64_t frames) {
+  const auto tell = [](const std::string& words) { fmt::print("Wrote {}\n", printable(words)); };
+  const char* const why = options.quantity == Quantity::peak ? "the last" : "the most loaded";
+  const std::string which =
+      options.has_frame ? "" : fmt::format(": frame {} of {}, {}", span.begin + 1, frames, why);
+  if (!options.csv.empty()) tell(options.csv.string() + which);
+  if (pictures.size() == 1) tell(pictures.front().string() + which);
+  if (pictures.size() > 1) {
+    tell(fmt::format("{} to {}", pictures.front().string(), pictures.back().filename().string()));
+  }
+  if (!options.video.empty()) tell(options.video.string());
+}
+
 /// Complete pictures stay; an incomplete video is removed.
 void stop_if_interrupted(const Options& options, std::uint64_t pictures) {
   if (!is_interrupted()) return;
@@ -100,13 +151,15 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
-  const auto producer = open_producer(options.source, producer_options(options));
+  PeakHold peaks;
+  const bool on_terminal = isatty(STDERR_FILENO) == 1;
+  const auto producer =
+      open_producer(options.source, producer_options(options, [=](const std::string& line) {
+                      if (on_terminal) fmt::print(stderr, "{}\n", printable(line));
+                    }));
   const SourceInfo& source = producer->info();
-  for (const std::string& warning : source.warnings) {
-    fmt::print(stderr, "pillarfield-viewer: {}\n",
-               printable(fmt::format("{}: {}", source.name, warning)));
-  }
-  const FrameRange span = frames_of(options, source);
+  fmt::print(stderr, "{}", warning_lines(source));
+  const FrameRange span = frames_of(options, *producer);
   const Paths pictures = png_names(options, span, source.frames);
   check_exports(options, pictures, replace);
   RenderSettings settings =
@@ -120,12 +173,21 @@ void run_headless(const Options& options) {
     write_csv(options.csv, producer->produce(span.begin),
               visible_pillars({picture, &source}, settings), replace);
   }
-  if (options.png.empty() && options.video.empty()) return;
+  if (options.png.empty() && options.video.empty()) {
+    tell_written(options, pictures, span, source.frames);
+    return;
+  }
   HeadlessRenderer headless(options);
+  const bool with_peaks = settings.quantity == Quantity::peak;
+  for (std::uint64_t frame = 0; with_peaks && frame < span.begin; ++frame) {
+    stop_if_interrupted(options, 0);
+    peaks.add(producer->produce(frame).forces);
+  }
+  const VideoPace pace(options, source.rate_hz);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
-    video = std::make_unique<VideoWriter>(options.video, options.width, options.height,
-                                          source.rate_hz, replace);
+    video = std::make_unique<VideoWriter>(options.video, options.width, options.height, pace.fps(),
+                                          replace);
   }
   for (std::uint64_t frame = span.begin; frame < span.end; ++frame) {
     stop_if_interrupted(options, frame - span.begin);
@@ -133,11 +195,18 @@ void run_headless(const Options& options) {
     if (settings.contacts) {
       field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
     }
+    if (with_peaks) {
+      peaks.add(field.forces);
+      field.peak = peaks.field(field);
+    }
     const Pixels pixels = headless.render(field, source, settings);
     if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace);
-    if (video != nullptr) video->add(pixels);
+    if (video == nullptr) continue;
+    const std::uint64_t repeats = pace.pictures_of(frame - span.begin);
+    for (std::uint64_t i = 0; i < repeats; ++i) video->add(pixels);
   }
   if (video != nullptr) video->finish();
+  tell_written(options, pictures, span, source.frames);
   if (headless.validation_messages() != 0) {
     throw Error("Vulkan", fmt::format("validation had {} messages", headless.validation_messages()),
                 "please report them");

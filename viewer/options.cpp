@@ -4,11 +4,15 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "pillarfield/live.h"
+#include "pillarfield/skin.h"
+#include "pillarfield/tare.h"
 #include "pillarfield/version.h"
 
 namespace pillarfield::viewer {
@@ -17,8 +21,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 constexpr const char* kFooter = R"(
-SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solved while you watch, or
-a file of force fields from `pillarfield solve`. Keys and mouse: press ? in the window.
+SOURCE is a scene (.toml), a recording or a Tekscan ASCII export, which are solved while you watch;
+a file of force fields from `pillarfield solve`; or a sensor: udp:ADDRESS:PORT, shm:NAME,
+serial:DEVICE, or - for standard input. Keys and mouse: press ? in the window.
 
 Try:  pillarfield-viewer scenes/demo.toml
       pillarfield-viewer scenes/sliding.toml --headless --frame 20 --png sliding.png
@@ -124,6 +129,16 @@ void take_frames(Options& options, const std::string& text) {
   options.end_frame = static_cast<std::uint64_t>(frames[1]);
 }
 
+void take_fps(Options& options, const std::string& text) {
+  options.fps = numbers(text, "", 1, "NUMBER")[0];
+  require(*options.fps >= 0.1 && *options.fps <= 1000, "--fps must lie in [0.1, 1000]");
+}
+
+void take_speed(Options& options, const std::string& text) {
+  options.speed = numbers(text, "", 1, "NUMBER")[0];
+  require(options.speed >= 0.001 && options.speed <= 1000, "--speed must lie in [0.001, 1000]");
+}
+
 void take_range(Options& options, const std::string& text) {
   const auto ends = numbers(text, ":", 2, "LOW:HIGH");
   constexpr double kMost = 1e30;  // Well within single precision.
@@ -150,6 +165,43 @@ void take_scale(Options& options, const std::string& text) {
   require(options.scale >= 0.5 && options.scale <= 4, "the scale must lie in [0.5, 4]");
 }
 
+void take_shape(Options& options, const std::string& text) {
+  const auto shape = numbers(text, "x", 2, "ROWSxCOLS, in sensels");
+  for (const double size : shape) {
+    require(is_whole(size) && size >= 2 && size <= kMaxSensels,
+            fmt::format("rows and columns must lie in [2, {}]", kMaxSensels));
+  }
+  options.plain.frame_size =
+      FrameSize{static_cast<std::uint32_t>(shape[0]), static_cast<std::uint32_t>(shape[1])};
+}
+
+/// Adds what files of plain numbers leave open.
+void add_plain_data(CLI::App& app, Options& options) {
+  ReadOptions& plain = options.plain;
+  const auto above = [](double least, double most) { return CLI::Range(least, most); };
+  const auto group = [](CLI::Option* option) { option->group("Plain data"); };
+  group(app.add_option("--dataset", plain.dataset, "Array of frames in an HDF5 file or .npz"));
+  group(app.add_option("--times", plain.times, "Array of their times in that file, s"));
+  group(app.add_option_function<std::string>(
+      "--shape", [&](const std::string& text) { take_shape(options, text); },
+      "Sensels of a frame whose readings lie in one line, ROWSxCOLS"));
+  group(app.add_option("--rate", plain.rate_hz, "Frames per second, if the file has no times")
+            ->check(above(1e-6, 1e9)));
+  group(app.add_option("--pitch-mm", plain.sensel_pitch_mm, "Distance of neighbouring sensels")
+            ->check(above(0.001, 1000)));
+  group(
+      app.add_option("--counts-per-newton", plain.counts_per_newton, "Counts per newton and pillar")
+          ->check(above(kMinCountsPerNewton, kMaxCountsPerNewton)));
+  group(app.add_option("--threshold", plain.threshold_counts, "Readings above this are usable")
+            ->check(above(0, kMaxCounts)));
+  group(app.add_option("--full-scale", plain.full_scale_counts,
+                       "Readings of this or more are saturated")
+            ->check(above(0, kMaxCounts)));
+  group(app.add_option("--tare-frames", plain.tare_frames,
+                       "Measure tare, noise and threshold in the first N frames, without load")
+            ->check(CLI::Range(std::uint64_t{kLeastTareFrames}, std::uint64_t{1} << 32)));
+}
+
 void add_texts(CLI::App& app, Options& options) {
   const auto add = [&](const char* name, const char* help,
                        void (*take)(Options&, const std::string&)) {
@@ -166,9 +218,19 @@ void add_texts(CLI::App& app, Options& options) {
   add("--surface", "In 3-D: plane, cylinder:RADIUS or sphere:RADIUS in mm [that of the source]",
       take_surface);
   add("--frames", "Render frames FIRST:LAST, counted from 1", take_frames);
+  add("--fps", "Pictures a second of the video [rate of the source times --speed, at most 60]",
+      take_fps);
+  add("--speed", "Speed of the video: 0.1 is slow motion [1]", take_speed);
   add("--centre", "Centre of the top view, X,Y in mm [0,0]", take_centre);
   add("--zoom", "Zoom factor [1]", take_zoom);
   add("--scale", "Size of letters and lines [the display's, or 1]", take_scale);
+}
+
+void take_png(Options& options, const std::string& text) {
+  options.png = text;
+  std::string ending = options.png.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  require(ending == ".png", fmt::format("a picture must end in .png, unlike '{}'", text));
 }
 
 void check_together(const Options& options, bool has_frame, bool has_frames) {
@@ -177,6 +239,16 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
   require(options.headless || !has_frames, "--frames needs --headless");
   require(options.headless || !writes,
           "--png, --video and --csv need --headless; the window has keys for them");
+  require(!options.video.empty() || (!options.fps && options.speed == 1),
+          "--fps and --speed need --video");
+  require(!options.headless || !options.source.empty(), "--headless needs a source");
+  require(options.beside.empty() || !options.truth,
+          "a second source and --truth exclude each other");
+  require(options.beside != "-", "only the first source can be standard input");
+  require(!options.headless || (options.beside.empty() && !options.truth),
+          "--headless draws one source, without --truth");
+  require(!options.headless || !is_live_source(options.source.string()),
+          "a sensor needs the window; record it with 'pillarfield stream --record' first");
   require(!options.headless || writes,
           "--headless needs something to write: --png, --video or --csv");
 }
@@ -188,14 +260,23 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                "pillarfield-viewer");
   app.set_version_flag("--version", kVersion, "Print the version and exit");
   app.footer(kFooter);
-  app.add_option("source", options.source, "Scene, recording, Tekscan export or force fields")
-      ->required();
+  app.add_option(
+      "source", options.source,
+      "Scene, recording, Tekscan export, plain data, force fields or live source [start page]");
+  app.add_option("beside", options.beside, "A second source, shown beside the first");
+  app.add_flag("--truth", options.truth,
+               "Show the true forces of a simulation beside those solved");
+  app.add_option("--calibration", options.calibration, "Calibration file of a live sensor")
+      ->check(CLI::ExistingFile);
   app.add_flag("--trust-input", options.trust_input,
                "Read HDF5 files without probing them in a separate process first");
   add_texts(app, options);
+  add_plain_data(app, options);
   std::uint64_t frame = 1;
-  auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1]")
-                        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
+  auto* const one =
+      app.add_option("--frame", frame,
+                     "Frame to show first, counted from 1 [1; headless: the most loaded]")
+          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
   app.add_flag_callback(
       "--light", [&] { options.theme = Theme::light; }, "Dark on white");
   app.add_flag_callback(
@@ -206,13 +287,15 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       "--no-hatch", [&] { options.hatch = false; }, "No hatching of ambiguous pillars");
   app.add_flag("--contacts", options.contacts,
                "Mark contacts: extent, id, force, centre of pressure, shear");
+  app.add_flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
   app.add_flag_callback(
       "--no-legend", [&] { options.legend = false; },
       "Only the field, without axes and colour bar");
 
   app.add_flag("--headless", options.headless, "Write files without a window")->group("Files");
-  app.add_option("--png", options.png,
-                 "Picture to write; NAME_001.png and so on for several frames")
+  app.add_option_function<std::string>(
+         "--png", [&](const std::string& text) { take_png(options, text); },
+         "Picture to write; NAME_001.png and so on for several frames")
       ->group("Files");
   app.add_option("--video", options.video, "Video to write with ffmpeg, .mp4 or .webm")
       ->group("Files");
@@ -241,6 +324,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   if (one->count() > 0) options.first_frame = frame - 1;
+  options.has_frame = one->count() > 0 || options.end_frame != 0;
   return std::nullopt;
 }
 

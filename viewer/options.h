@@ -5,14 +5,19 @@
 #include <optional>
 #include <string>
 
+#include "pillarfield/read_options.h"
 #include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
 /// The command line.
 struct Options {
-  std::filesystem::path source;
+  std::filesystem::path source;  ///< a file, or a live source; empty: the start page
+  std::filesystem::path beside;  ///< a second source, shown at the right; empty: none
+  bool truth = false;            ///< the true forces beside those solved
+  std::filesystem::path calibration;        ///< of a sensor
   bool trust_input = false;
+  ReadOptions plain;   ///< of plain data: array, times, size of a frame, rate, constants, tare
   std::string device;  ///< OpenCL device that solves
   std::string gpu;     ///< Vulkan device that draws
   std::uint32_t width = 1280;
@@ -38,12 +43,16 @@ struct Options {
   bool sectors = false;
   bool hatch = true;
   bool contacts = false;
+  bool relief = false;
   bool legend = true;
 
   std::filesystem::path png;
   std::filesystem::path video;
   std::filesystem::path csv;
   bool overwrite = false;
+  std::optional<double> fps;      ///< pictures a second of the video; unset: rate times speed
+  double speed = 1;               ///< of the video, relative to the source
+  bool has_frame = false;         ///< first_frame was given
   std::uint64_t first_frame = 0;  ///< first frame shown (--frame, --frames)
   std::uint64_t end_frame = 0;    ///< one past the last rendered frame; 0: first_frame + 1
 };
@@ -52,10 +61,21 @@ struct Options {
 /// must end.
 [[nodiscard]] std::optional<int> parse_options(int argc, char** argv, Options& options);
 
+/// Settings of a picture from the options, without what is fitted to a source: ranges, lengths of
+/// arrows, the view. Throws Error where the source lacks the quantity.
+[[nodiscard]] RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
+                                             double scale);
+
+/// A range from the displayed unit to that of the value.
+[[nodiscard]] Range in_unit_of(const Range& shown, Quantity quantity);
+
 /// Settings of the first picture from the options, with defaults fitted to up to 16 evenly spaced
 /// frames; the view is not set. Throws Error where the source lacks the quantity.
 [[nodiscard]] RenderSettings default_settings(const Options& options, FieldProducer& producer,
                                               double scale);
+
+/// The frame with the largest total normal force of up to 64 evenly spaced ones.
+[[nodiscard]] std::uint64_t most_loaded_frame(FieldProducer& producer);
 
 /// Range of the colour bar fitted to up to 16 evenly spaced frames.
 [[nodiscard]] Range range_that_fits(FieldProducer& producer, Quantity quantity);

@@ -29,11 +29,12 @@ std::size_t edits_between(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
+std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates,
+                         std::size_t most_edits) {
   constexpr std::size_t kLongest = 40;  // The table is quadratic, and all names are shorter.
   if (word.size() > kLongest) return {};
   std::string nearest;
-  std::size_t too_many = word.size() / 3 + 2;
+  std::size_t too_many = most_edits + 1;
   for (const std::string& candidate : candidates) {
     const bool begins = word.size() >= 3 && candidate.starts_with(word);
     const std::size_t edits = begins ? 1 : edits_between(word, candidate);
@@ -45,7 +46,7 @@ std::string nearest_word(std::string_view word, const std::vector<std::string>& 
 }
 
 std::string suggestion(std::string_view word, const std::vector<std::string>& candidates) {
-  const std::string nearest = nearest_word(word, candidates);
+  const std::string nearest = nearest_word(word, candidates, word.size() / 3 + 1);
   return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 

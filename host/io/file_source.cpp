@@ -54,14 +54,14 @@ void FileSource::take_constants(const StoredSkin& stored, const ReadOptions& opt
   skin_.power_law = stored.power_law;
 }
 
-void FileSource::assume_times(const ReadOptions& options) {
+void FileSource::assume_times(const ReadOptions& options, const char* failure) {
   if (options.rate_hz && !(*options.rate_hz > 0 && std::isfinite(*options.rate_hz))) {
     throw Error(path_.string(), fmt::format("a rate of {} Hz is given", *options.rate_hz),
                 "it must be above zero");
   }
   rate_hz_ = options.rate_hz;
   if (rate_hz_ || options.untimed || frames_ <= 1) return;
-  throw Error(path_.string(), "has no times of its frames", "give their rate with --rate HZ");
+  throw Error(path_.string(), failure, "give their rate with --rate HZ");
 }
 
 double FileSource::assumed_time(std::uint64_t index) const {
@@ -70,7 +70,7 @@ double FileSource::assumed_time(std::uint64_t index) const {
 }
 
 void FileSource::require_no_rate(const ReadOptions& options) const {
-  if (!options.rate_hz) return;
+  if (!options.rate_hz || options.untimed) return;
   throw Error(path_.string(), "has times of its frames", "leave out --rate");
 }
 

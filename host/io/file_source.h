@@ -40,7 +40,7 @@ class FileSource : public FrameSource {
   void take_constants(const StoredSkin& stored, const ReadOptions& options);
 
   /// Sets the times of a file that stores none. Throws Error if they are used and no rate is given.
-  void assume_times(const ReadOptions& options);
+  void assume_times(const ReadOptions& options, const char* failure = "has no times of its frames");
   [[nodiscard]] double assumed_time(std::uint64_t index) const;
   /// Throws Error if a rate is given to a file with times.
   void require_no_rate(const ReadOptions& options) const;

@@ -12,6 +12,7 @@
 #include "io/hdf5/number_type.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/misspelt_names.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "io/stored_surface.h"
@@ -68,6 +69,7 @@ Recording::Recording(hdf5::File file, const ReadOptions& options)
   count_frames();
   check_times(options);
   warn_of_size();
+  for (std::string& warning : misspelt_names(file_)) warnings_.push_back(std::move(warning));
 }
 
 void Recording::open_times() {
@@ -77,7 +79,7 @@ void Recording::open_times() {
 }
 
 void Recording::check_times(const ReadOptions& options) {
-  if (!time_) return assume_times(options);
+  if (!time_) return assume_times(options, "has no /frames/time");
   require_no_rate(options);
   if (file_.probing) return;
   constexpr std::uint64_t kBlock = 1U << 16U;

@@ -136,7 +136,7 @@ const RecordingDamage kRecordingDamages[] = {
     {"version a text", [](hid_t f) { set_text(f, "/", "version", "1"); }, {"'version'", "number"}},
     {"no frames", [](hid_t f) { remove_link(f, "/frames"); }, {"has no /frames/raw"}},
     {"no raw", [](hid_t f) { remove_link(f, "/frames/raw"); }, {"has no /frames/raw"}},
-    {"no time", [](hid_t f) { remove_link(f, "/frames/time"); }, {"has no times", "--rate"}},
+    {"no time", [](hid_t f) { remove_link(f, "/frames/time"); }, {"has no /frames/time", "--rate"}},
     {"raw of rank 2",
      [](hid_t f) {
        replace(f, "/frames/raw", H5T_STD_U8LE, {6, 6});

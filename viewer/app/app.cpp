@@ -1,5 +1,6 @@
 #include "viewer/app/app.h"
 
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -11,11 +12,16 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
+#include "pillarfield/processor.h"
 #include "viewer/app/export/frame_writer.h"
 #include "viewer/app/input/actions.h"
 #include "viewer/app/input/controls.h"
 #include "viewer/app/input/gui_input.h"
-#include "viewer/app/loaded_source.h"
+#include "viewer/app/input/pins.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/start_page.h"
+#include "viewer/app/source/loading.h"
+#include "viewer/app/source/user_settings.h"
 #include "viewer/app/window/draw_clock.h"
 #include "viewer/app/window/gui.h"
 #include "viewer/app/window/presenter.h"
@@ -39,10 +45,26 @@ double steady_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+Presenter::Place place_in_window(const Viewport& area) {
+  return {{static_cast<int>(area.x), static_cast<int>(area.y)}, extent_of(area)};
+}
+
+/// The first use of OpenCL sets the environment, so it comes before all threads.
+void prepare_devices() {
+  try {
+    static_cast<void>(list_devices());
+  } catch (const Error&) {
+    // Opening a device fails with the same error, where one is needed.
+  }
+}
+
 /// The window and all that it needs; the order of members is the order of construction.
 class Application {
  public:
   explicit Application(const Options& options);
+  ~Application() { close(); }
+  Application(const Application&) = delete;
+  Application& operator=(const Application&) = delete;
   void run();
 
  private:
@@ -50,36 +72,56 @@ class Application {
     return options_.scale > 0 ? options_.scale : window_.scale();
   }
   [[nodiscard]] Command command() { return {state_, place_, pending_}; }
-  void listen_to_player();
+  [[nodiscard]] bool shows_source() const { return state_.player != nullptr && loading_ == nullptr; }
+
+  void open(const std::string& source);
+  void take_loaded();
+  void show(LoadedSource loaded);
+  void close();
+  void set_beside();
+  void listen();
 
   void wait();
   void take_input();
   void route(const InputEvent& event);
+  [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();
+  void take_beside();
+  void take_news();
+  void attend_survey();
+  void attend_sensor();
   void arrange();
   bool fit_to_window();
   void draw();
   void draw_front_frame();
+  void draw_page();
+  void begin_gui_frame();
   void measure(double begin_s, bool new_picture);
   void watch_notice();
 
   void serve();
+  void serve_open();
   void write_picture();
   void write_table();
   void begin_frames(FrameWriter::Kind kind);
   void continue_frames();
+  void toggle_recording();
+  void toggle_truth();
   [[nodiscard]] Pixels pixels() { return read_pixels(device_, presenter_.renderer().image()); }
-  void finish();
   void print_statistics() const;
 
-  const Options& options_;
+  Options options_;  ///< of the open source
+  UserSettings user_;
+  const StartChoices choices_;
   Window window_;
   std::atomic<double> produced_s_ = 0;  ///< time of the newest field, set by the player's thread
-  LoadedSource loaded_;
+  std::atomic<bool> news_ = false;      ///< a thread has progressed
   gpu::Instance instance_;
   vk::raii::SurfaceKHR surface_;
   gpu::Device device_;
   Presenter presenter_;
+  LoadedSource loaded_;
+  std::unique_ptr<Loading> loading_;
 
   AppState state_;
   FieldPlace place_;
@@ -93,52 +135,146 @@ class Application {
   Redraws redraws_;
   DrawClock clock_;
   std::string last_notice_;
+  bool source_was_given_ = false;  ///< on the command line
+  bool source_was_shown_ = false;
+  std::uint64_t live_messages_ = 0;
+  std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::optional<RenderSettings> drawn_settings_;
   bool field_is_new_ = false;
+  bool beside_is_new_ = false;
   double taken_s_ = 0;  ///< produced_s_ of the field on display
   double last_frame_s_ = 0;
 };
 
 Application::Application(const Options& options)
     : options_(options),
-      window_(options.source.filename().string() + " – Pillarfield", options.width, options.height),
-      loaded_(load_source(options, scale())),
+      choices_{user_.recent(), scenes_at_hand()},
+      window_("Pillarfield", options.width, options.height),
       instance_(Window::extensions(), options.validate),
       surface_(window_.make_surface(instance_)),
       device_(instance_, {options.gpu, *surface_, !options.copy_fields}),
       presenter_(instance_, device_, *surface_, scale()) {
-  state_.player = loaded_.player.get();
-  state_.settings = loaded_.settings;
-  state_.view_is_fitted = asks_for_whole_skin(options);
-  place_.source = &state_.player->info();
-  arrange();
-  const Viewport plot = layout_of(place_.area.width, place_.area.height, state_.settings).plot;
-  state_.settings.view = first_view(options, *place_.source, plot);
-  listen_to_player();
+  state_.settings.theme = options.theme;
+  state_.panels = user_.panels;
 }
 
-void Application::listen_to_player() {
+/// Opens Options::source, or a source that the user chose.
+void Application::open(const std::string& source) {
+  options_.source = source;
+  state_.notice.clear();
+  loading_ = std::make_unique<Loading>(options_, scale(), [this] {
+    news_ = true;
+    Window::wake();
+  });
+  redraws_.input(Window::now_s());
+}
+
+void Application::take_loaded() {
+  if (loading_ == nullptr) return;
+  try {
+    if (auto loaded = loading_->take()) {
+      loading_.reset();
+      show(std::move(*loaded));
+    }
+  } catch (const Error& error) {
+    loading_.reset();
+    if (state_.player == nullptr && source_was_given_) throw;
+    state_.notice = error.what();
+    redraws_.input(Window::now_s());
+  }
+}
+
+void Application::show(LoadedSource loaded) {
+  close();
+  loaded_ = std::move(loaded);
+  const SourceInfo& source = loaded_.player->info();
+  fmt::print(stderr, "{}", warning_lines(source));
+  user_.add_recent(loaded_.name);
+  window_.set_title(source.name + " – Pillarfield");
+  AppState next;
+  next.player = loaded_.player.get();
+  next.curves = loaded_.curves.get();
+  next.survey = loaded_.survey.get();
+  next.has_truth = static_cast<bool>(loaded_.open_truth);
+  next.settings = loaded_.settings;
+  if (source_was_shown_) next.settings.theme = state_.settings.theme;
+  next.panels = std::move(state_.panels);
+  next.show_panels = state_.show_panels;
+  next.show_counters = state_.show_counters;
+  next.view_is_fitted = asks_for_whole_skin(options_);
+  state_ = std::move(next);
+  source_was_shown_ = true;
+  place_.source = &source;
+  set_beside();
+  arrange();
+  const Viewport plot = layout_of(place_.area.width, place_.area.height, state_.settings).plot;
+  state_.settings.view = first_view(options_, source, plot);
+  drawn_settings_.reset();
+  listen();
+  if (options_.first_frame != 0) state_.player->seek(options_.first_frame);
+  // After seek(): contacts are tracked from the first shown frame on.
+  state_.player->set_contacts(state_.settings.contacts);
+  if (!options_.paused) state_.player->play();
+  redraws_.input(Window::now_s());
+}
+
+/// Releases the memory of fields before their players.
+void Application::close() {
+  writer_.reset();
+  if (loaded_.player != nullptr) loaded_.player->on_new_field({});
+  if (loaded_.beside != nullptr) loaded_.beside->on_new_field({});
+  if (loaded_.survey != nullptr) loaded_.survey->on_progress({});
+  presenter_.clear();
+  state_.field.reset();
+  state_.beside_field.reset();
+  state_.player = state_.beside = nullptr;
+  state_.curves = nullptr;
+  state_.survey = nullptr;
+  measured_.clear();
+  loaded_ = {};
+}
+
+void Application::set_beside() {
+  state_.beside = loaded_.beside.get();
+  state_.beside_is_truth = loaded_.beside_is_truth;
+  if (state_.beside == nullptr) return;
+  state_.beside->set_contacts(state_.settings.contacts);
+  state_.beside->play();
+  state_.beside->on_new_field([this] {
+    news_ = true;
+    Window::wake();
+  });
+}
+
+void Application::listen() {
   state_.player->on_new_field([this] {
     produced_s_ = steady_s();
+    Window::wake();
+  });
+  if (loaded_.survey == nullptr) return;
+  loaded_.survey->on_progress([this] {
+    news_ = true;
     Window::wake();
   });
 }
 
 void Application::run() {
   window_.show();
-  if (options_.first_frame != 0) state_.player->seek(options_.first_frame);
-  // After seek(): contacts are tracked from the first shown frame on.
-  state_.player->set_contacts(state_.settings.contacts);
-  if (!options_.paused) state_.player->play();
+  source_was_given_ = !options_.source.empty();
+  if (source_was_given_) open(options_.source.string());
   while (!window_.closes() && !pending_.quit && !is_interrupted()) {
     wait();
+    take_loaded();
     take_input();
+    take_news();
     take_newest_field();
     if (redraws_.due(Window::now_s()) && fit_to_window()) draw();
     serve();
   }
-  finish();
+  user_.panels = state_.panels;
+  user_.save();
   if (options_.statistics) print_statistics();
+  loading_.reset();
 }
 
 /// Waits for events; briefly, since a signal does not end a wait.
@@ -162,11 +298,20 @@ void Application::take_input() {
   presenter_.gui().use();
   arrange();
   for (const InputEvent& event : events) route(event);
+  const auto drops = window_.take_drops();
+  if (!drops.empty()) pending_.open = drops.front();
 }
 
-/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups over the
-/// field take the mouse.
+/// Sends an event to the controls or to ImGui. Text input suppresses shortcuts; popups and panels
+/// over the field take the mouse.
 void Application::route(const InputEvent& event) {
+  if (!shows_source()) {
+    gui_input_.take(event);
+    const auto* const key = std::get_if<KeyEvent>(&event);
+    const bool quits = key != nullptr && key->pressed && key->key == GLFW_KEY_Q;
+    if (quits && !ImGui::GetIO().WantTextInput) pending_.quit = true;
+    return;
+  }
   const bool types = ImGui::GetIO().WantTextInput;
   const bool covered = GuiInput::has_open_list();
   if (const auto* key = std::get_if<KeyEvent>(&event)) {
@@ -188,20 +333,89 @@ void Application::route(const InputEvent& event) {
     state_.show_help = false;
     return;
   }
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const bool over_panel =
+      !controls_.is_dragging() && covers(state_.panels, {mouse.x, mouse.y}, scale());
   const auto* const wheel = std::get_if<WheelEvent>(&event);
-  const bool in_field = wheel != nullptr && contains(place_.area, wheel->pixel) && !covered;
+  const bool in_field =
+      wheel != nullptr && contains(screen_.field, wheel->pixel) && !covered && !over_panel;
   if (!in_field) gui_input_.take(event);
-  if (!covered || (button != nullptr && !presses)) controls_.take(event, command());
+  if (over_panel && !std::holds_alternative<MotionEvent>(event)) return;
+  if (!covered || (button != nullptr && !presses)) {
+    controls_.take(over_panel ? LeaveEvent{} : in_first_half(event), command());
+  }
+}
+
+/// The second picture has the view of the first, so a place in it means the one in the first.
+InputEvent Application::in_first_half(InputEvent event) const {
+  if (state_.beside == nullptr) return event;
+  const Viewport second = second_half(screen_.field);
+  std::visit(
+      [&](auto& each) {
+        if constexpr (requires { each.pixel; }) {
+          if (contains(second, each.pixel)) each.pixel.x -= second.x - screen_.field.x;
+        }
+      },
+      event);
+  return event;
 }
 
 void Application::take_newest_field() {
+  if (!shows_source()) return;
+  take_beside();
   const double came_s = produced_s_;
   auto field = state_.player->take();
   if (!field) return;
   take_field(state_, std::move(*field));
+  if (state_.beside != nullptr) state_.beside->seek(state_.field->index);
   taken_s_ = came_s;
   field_is_new_ = true;
   redraws_.field();
+}
+
+void Application::take_beside() {
+  if (state_.beside == nullptr) return;
+  auto field = state_.beside->take();
+  if (!field) return;
+  state_.beside_field = std::move(*field);
+  beside_is_new_ = true;
+  redraws_.field();
+}
+
+/// Progress of other threads, and of a sensor's silence.
+void Application::take_news() {
+  if (news_.exchange(false)) redraws_.field();
+  if (!shows_source()) return;
+  attend_survey();
+  attend_sensor();
+}
+
+/// Passes pins, selection and the state of the play head to the survey.
+void Application::attend_survey() {
+  std::vector<PillarRect> rects;
+  for (const Pin& pin : state_.pins) rects.push_back(rect_of(pin));
+  if (state_.selection && controls_.is_dragging()) return;
+  if (state_.selection) rects.push_back(state_.selection->rect);
+  if (rects != measured_) {
+    loaded_.curves->set_rects(rects);
+    if (loaded_.survey != nullptr) loaded_.survey->look_again();
+    measured_ = std::move(rects);
+  }
+  if (loaded_.survey == nullptr) return;
+  const PlayerState player = state_.player->state();
+  loaded_.survey->set_busy(player.playing);
+  loaded_.survey->set_follow(player.follows);
+}
+
+void Application::attend_sensor() {
+  const LiveControl* const live = state_.player->live();
+  if (live == nullptr) return;
+  const LiveStatus status = live->status();
+  if (std::exchange(live_messages_, status.messages) != status.messages && status.messages > 0) {
+    state_.notice = status.message;
+    redraws_.field();
+  }
+  if (status.silent_s > kSilentSeconds && !status.ended) redraws_.field();
 }
 
 /// Computes the layout for the current window.
@@ -210,44 +424,80 @@ void Application::arrange() {
   if (size.width == 0 || size.height == 0) return;
   state_.settings.scale = scale();
   const Viewport before = place_.area;
-  screen_ = divide(size.width, size.height, scale(), state_.show_panels);
-  place_.area = screen_.field;
+  screen_ = divide(size.width, size.height, scale(), state_.show_panels ? &state_.panels : nullptr);
+  place_.area = state_.beside != nullptr ? first_half(screen_.field) : screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
-  if (moved && state_.view_is_fitted) reset_view(state_, place_);
+  if (moved && state_.view_is_fitted && state_.player != nullptr) reset_view(state_, place_);
 }
 
 bool Application::fit_to_window() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return false;
   arrange();
-  const vk::Extent2D picture = extent_of(screen_.field);
-  const bool fits = !presenter_.stale() && size == sized_for_ &&
-                    picture == presenter_.renderer().image().size() &&
+  std::vector<Presenter::Place> places;
+  if (shows_source()) places.push_back(place_in_window(place_.area));
+  if (shows_source() && state_.beside != nullptr) {
+    places.push_back(place_in_window(second_half(screen_.field)));
+  }
+  const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
                     scale() == presenter_.gui().scale();
   if (fits) return true;
   sized_for_ = size;
   drawn_settings_.reset();
-  return presenter_.resize(size, picture, scale());
+  return presenter_.resize(size, places, scale());
 }
 
 void Application::draw() {
   const double begin_s = Window::now_s();
+  if (!shows_source()) {
+    draw_page();
+    static_cast<void>(presenter_.draw({}));
+    redraws_.drawn(Window::now_s());
+    return;
+  }
   if (state_.hovered && !controls_.is_dragging()) controls_.hover(command());
   draw_front_frame();
-  const bool new_picture = state_.field && (field_is_new_ || drawn_settings_ != state_.settings);
-  std::optional<Presenter::Picture> picture;
+  const bool new_settings = drawn_settings_ != state_.settings;
+  const bool new_picture = state_.field && (field_is_new_ || new_settings);
+  std::vector<std::optional<Presenter::Picture>> pictures(presenter_.places().size());
   if (new_picture) {
-    picture.emplace(Presenter::Picture{*state_.field, *place_.source, state_.settings});
+    pictures[0].emplace(Presenter::Picture{*state_.field, *place_.source, state_.settings});
   }
-  if (!presenter_.draw(picture ? &*picture : nullptr)) return;
+  if (pictures.size() > 1 && state_.beside_field && (beside_is_new_ || new_settings)) {
+    pictures[1].emplace(
+        Presenter::Picture{*state_.beside_field, state_.beside->info(), state_.settings});
+  }
+  if (!presenter_.draw(pictures)) return;
   measure(begin_s, new_picture);
   if (new_picture) drawn_settings_ = state_.settings;
   field_is_new_ = false;
+  beside_is_new_ = false;
   watch_notice();
   if (writer_ != nullptr && writer_->wants_picture()) continue_frames();
 }
 
 void Application::draw_front_frame() {
+  begin_gui_frame();
+  draw_gui(command(), screen_, device_.name());
+  ImGui::Render();
+}
+
+/// The page without a source.
+void Application::draw_page() {
+  begin_gui_frame();
+  const vk::Extent2D size = presenter_.size();
+  const Viewport all{0, 0, static_cast<double>(size.width), static_cast<double>(size.height)};
+  if (loading_ != nullptr) {
+    const std::string name = loading_->options().source.filename().string();
+    loading_page(name, loading_->message(), all);
+  } else if (const std::string chosen = start_page(choices_, all, state_.notice, scale());
+             !chosen.empty()) {
+    pending_.open = chosen;
+  }
+  ImGui::Render();
+}
+
+void Application::begin_gui_frame() {
   presenter_.gui().use();
   set_style(state_.settings.theme, scale());
   const double now_s = Window::now_s();
@@ -257,15 +507,18 @@ void Application::draw_front_frame() {
   ImGui::GetIO().DisplaySize =
       ImVec2(static_cast<float>(size.width), static_cast<float>(size.height));
   ImGui::NewFrame();
-  draw_gui(command(), screen_, device_.name());
-  ImGui::Render();
 }
 
 void Application::measure(double begin_s, bool new_picture) {
   const double now_s = Window::now_s();
   std::optional<double> latency_ms;
-  // The first field may precede on_new_field().
-  if (new_picture && field_is_new_ && taken_s_ > 0) latency_ms = 1e3 * (steady_s() - taken_s_);
+  // From the arrival at a sensor, else from the solved field; the first may precede on_new_field().
+  if (new_picture && field_is_new_ && state_.field->arrived) {
+    latency_ms =
+        1e3 * (steady_s() - std::chrono::duration<double>(*state_.field->arrived).count());
+  } else if (new_picture && field_is_new_ && taken_s_ > 0) {
+    latency_ms = 1e3 * (steady_s() - taken_s_);
+  }
   clock_.add(now_s, 1e3 * (now_s - begin_s), latency_ms);
   state_.draw = clock_.lately(now_s);
   const FieldMemory& memory = presenter_.renderer().memory();
@@ -286,13 +539,17 @@ void Application::watch_notice() {
 
 /// Performs the pending actions; an Error becomes a notice.
 void Application::serve() {
-  const PendingActions asked = std::exchange(pending_, PendingActions{.quit = pending_.quit});
-  if (!state_.field) return;
+  serve_open();
+  const PendingActions asked = std::exchange(pending_, PendingActions{});
+  pending_.quit = asked.quit;
+  if (!state_.field || !shows_source()) return;
   try {
     if (asked.picture) write_picture();
     if (asked.table) write_table();
     if (asked.sequence) begin_frames(FrameWriter::Kind::pictures);
     if (asked.video) begin_frames(FrameWriter::Kind::video);
+    if (asked.record) toggle_recording();
+    if (asked.truth) toggle_truth();
   } catch (const Error& error) {
     state_.notice = error.what();
   }
@@ -300,9 +557,44 @@ void Application::serve() {
     writer_.reset();
     state_.notice = "stopped writing";
   }
-  if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop) {
+  if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop ||
+      asked.record || asked.truth) {
     redraws_.input(Window::now_s());
   }
+}
+
+void Application::serve_open() {
+  if (pending_.open.empty() || loading_ != nullptr) return;
+  options_.beside.clear();
+  options_.truth = false;
+  options_.first_frame = 0;
+  open(std::exchange(pending_.open, {}));
+}
+
+void Application::toggle_recording() {
+  LiveControl* const live = state_.player->live();
+  if (live == nullptr) {
+    throw Error(place_.source->name, "only a sensor can be recorded", "open a live source");
+  }
+  if (!live->status().recording.empty()) return live->stop_recording();
+  const auto path = free_path(*place_.source, "recording", ".h5");
+  live->record(path);
+  state_.notice = "recording " + path.string();
+}
+
+void Application::toggle_truth() {
+  if (loaded_.beside != nullptr) {
+    loaded_.beside->on_new_field({});
+    presenter_.clear();
+    state_.beside_field.reset();
+    loaded_.beside.reset();
+    loaded_.beside_is_truth = false;
+  } else {
+    show_truth(loaded_);
+    loaded_.beside->seek(state_.field->index);
+  }
+  set_beside();
+  drawn_settings_.reset();
 }
 
 void Application::write_picture() {
@@ -323,6 +615,9 @@ void Application::write_table() {
 
 void Application::begin_frames(FrameWriter::Kind kind) {
   if (writer_ != nullptr) return;
+  if (state_.player->live() != nullptr) {
+    throw Error(place_.source->name, "a sensor has no last frame to write", "record it");
+  }
   const std::string quantity = info_of(state_.settings.quantity).name;
   const auto path = kind == FrameWriter::Kind::video ? free_path(*place_.source, quantity, ".mp4")
                                                      : free_sequence_path(*place_.source, quantity);
@@ -345,17 +640,9 @@ void Application::continue_frames() {
   redraws_.field();
 }
 
-/// Releases imported memory of the player before the player is destroyed.
-void Application::finish() {
-  state_.player->on_new_field({});
-  presenter_.finish();
-  writer_.reset();
-  presenter_.renderer().memory().forget();
-  state_.field.reset();
-}
-
 void Application::print_statistics() const {
-  const PlayerStatistics played = state_.player->statistics();
+  const PlayerStatistics played =
+      state_.player == nullptr ? PlayerStatistics{} : state_.player->statistics();
   fmt::print(R"({{"frames":{},"draw_ms_median":{:.3f},"latency_ms_median":{:.3f},"produced":{},)"
              R"("taken":{},"not_shown":{},"in_place":{},"field":[{},{},{},{}],)"
              R"("validation_messages":{}}})"
@@ -368,6 +655,7 @@ void Application::print_statistics() const {
 }  // namespace
 
 int run_window(const Options& options) {
+  prepare_devices();
   Application(options).run();
   return 0;
 }

@@ -5,16 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "viewer/app/panels/time_window.h"
+#include "viewer/app/trails.h"
+#include "viewer/app/window/panel_layout.h"
+#include "viewer/source/live_player.h"
 #include "viewer/source/player.h"
 #include "viewer/source/selection.h"
+#include "viewer/source/survey.h"
 #include "viewer/style/render_settings.h"
 
 namespace pillarfield::viewer {
 
-/// A clicked pillar and its history.
+/// A clicked pillar.
 struct Pin {
   PillarIndex pillar;
-  History history;
   int number = 0;  ///< 1..kMostPins, see number_pins(); 0: not yet numbered
 };
 
@@ -25,10 +29,9 @@ struct CachedSums {
   SelectionSums sums;
 };
 
-/// A dragged rectangle and the history of its total force.
+/// A dragged rectangle.
 struct Selection {
   PillarRect rect;
-  History history;
   std::optional<CachedSums> cached = {};  ///< see selection_sums()
 };
 
@@ -42,15 +45,26 @@ struct DrawStatistics {
 
 /// The state that panels show and actions change. Single-threaded.
 struct AppState {
-  Player* player = nullptr;
+  Player* player = nullptr;  ///< null: no source is open
+  Player* beside = nullptr;  ///< a second source or the truth; null: none
+  bool beside_is_truth = false;
+  bool has_truth = false;    ///< the truth can be shown
+  Curves* curves = nullptr;  ///< of the first source
+  Survey* survey = nullptr;  ///< fills `curves`; null for a sensor
   RenderSettings settings;
-  std::optional<ShownField> field;  ///< field on display
+  std::optional<ShownField> field;         ///< field on display
+  std::optional<ShownField> beside_field;  ///< of the second source
+  TimeWindow time_window;
+  Trails trails;
+  bool show_trails = false;
+  PanelLayout panels = default_layout();
   std::optional<PillarIndex> hovered;
   std::vector<Pin> pins;  ///< at most kMostPins; the last is inspected
   std::optional<Selection> selection;
   DrawStatistics draw;
   bool show_help = false;
   bool show_panels = true;
+  bool show_counters = false;  ///< times and counts of solving and drawing
   /// The last range of each quantity shown so far.
   std::array<std::optional<Range>, kQuantities> ranges;
   bool fit_each_field = false;     ///< fit the range to every field

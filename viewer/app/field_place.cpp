@@ -52,6 +52,15 @@ Viewport FieldPlace::plot(const RenderSettings& settings) const {
   return plot;
 }
 
+Viewport first_half(const Viewport& area) {
+  return {area.x, area.y, std::max(std::floor(0.5 * area.width), 1.0), area.height};
+}
+
+Viewport second_half(const Viewport& area) {
+  const double width = first_half(area).width;
+  return {area.x + width, area.y, std::max(area.width - width, 1.0), area.height};
+}
+
 std::optional<Vec2> sheet_point(const FieldPlace& place, const RenderSettings& settings,
                                 Vec2 pixel) {
   const Viewport plot = place.plot(settings);

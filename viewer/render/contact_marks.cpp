@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kLeastRatio = 0.03;  ///< least shear / normal force with an arrow
 constexpr double kMostRatio = 3;
+constexpr double kLeastArrowLimit = 16;  ///< pixels at scale 1
 
 constexpr ImU32 kEdge = IM_COL32(0, 0, 0, 200);  ///< keeps lines visible on any colour
 constexpr ImU32 kLine = IM_COL32(255, 255, 255, 240);
@@ -47,12 +48,14 @@ std::optional<Vec2> seen(const SourceInfo& source, const RenderSettings& setting
        frame.position.z + right * x.z + up * y.z});
 }
 
+/// `longest`: limit of the arrow, pixels.
 std::optional<Vec2> tip_of(const ContactQuantities& contact, const SourceInfo& source,
-                           const RenderSettings& settings, const Viewport& plot) {
+                           const RenderSettings& settings, const Viewport& plot, double longest) {
   const double shear = std::hypot(contact.shear_x_n, contact.shear_y_n);
   if (!(contact.normal_n > 0) || shear < kLeastRatio * contact.normal_n) return std::nullopt;
-  const double pixels =
-      kContactArrowPixels * settings.scale * std::min(shear / contact.normal_n, kMostRatio);
+  const double pixels = std::min(
+      kContactArrowPixels * settings.scale * std::min(shear / contact.normal_n, kMostRatio),
+      longest);
   const double mm_per_newton = pixels / pixels_per_mm(settings.view, plot) / shear;
   return seen(source, settings, plot, contact.centre_of_pressure, mm_per_newton * contact.shear_x_n,
               mm_per_newton * contact.shear_y_n);
@@ -141,7 +144,7 @@ void write_words(const Brush& brush, const std::vector<ContactMark>& marks, cons
 std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const SourceInfo& source,
                                        const RenderSettings& settings, const Viewport& plot) {
   std::vector<ContactMark> marks;
-  const std::size_t count = std::min(contacts.heaviest.size(), kMostContactsDrawn);
+  const std::size_t count = std::min(contacts.above_noise, kMostContactsDrawn);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t place = contacts.heaviest[i];
     const TrackedContact& contact = contacts.found.contacts[place];
@@ -150,16 +153,20 @@ std::vector<ContactMark> contact_marks(const ShownContacts& contacts, const Sour
     if (outline.empty() || !overlap(box_about(outline), plot)) continue;
     const auto centre = seen(source, settings, plot, quantities.centre_of_pressure, 0, 0);
     if (!centre) continue;
-    marks.push_back({std::move(outline), *centre, tip_of(quantities, source, settings, plot),
+    const Viewport box = box_about(outline);
+    const double longest =
+        std::max(std::hypot(box.width, box.height), kLeastArrowLimit * settings.scale);
+    marks.push_back({std::move(outline), *centre,
+                     tip_of(quantities, source, settings, plot, longest),
                      fmt::format("{}  {} N", contact.track_id, three_digits(quantities.normal_n))});
   }
   return marks;
 }
 
 std::string contacts_left_out(const ShownContacts& contacts) {
-  if (contacts.heaviest.size() <= kMostContactsDrawn) return {};
+  if (contacts.above_noise <= kMostContactsDrawn) return {};
   return fmt::format("{} of {} contacts are drawn, the heaviest", kMostContactsDrawn,
-                     contacts.heaviest.size());
+                     contacts.above_noise);
 }
 
 void draw_contact_marks(ImDrawList& list, const ShownContacts& contacts, const SourceInfo& source,

@@ -62,8 +62,9 @@ void write_title(const Canvas& canvas, const ShownField& field, const SourceInfo
   const double y = layout.plot.y - 25 * canvas.unit();
   const std::string name = canvas.settings.title.empty() ? source.name : canvas.settings.title;
   canvas.text(layout.plot.x, y, name);
-  const std::string frame =
-      fmt::format("frame {} of {}   {:.3f} s", field.index + 1, source.frames, field.time_s);
+  const std::uint64_t frames = std::max(field.frames, source.frames);
+  const std::string of = frames > 0 ? fmt::format(" of {}", frames) : "";
+  const std::string frame = fmt::format("frame {}{}   {:.3f} s", field.index + 1, of, field.time_s);
   const double right = layout.plot.x + layout.plot.width - Canvas::size_of(frame).x;
   if (right > layout.plot.x + Canvas::size_of(name).x + 10 * canvas.unit()) {
     canvas.text(right, y, frame, canvas.faint_colour);
@@ -270,6 +271,7 @@ void write_legend(const Canvas& canvas, const SourceInfo& source, const Layout& 
     list.add(Special::saturated, "saturated");
     list.add(Special::inconsistent, "inconsistent");
   }
+  list.add(Special::no_reading, "no reading");
   list.add(Special::idle, "no contact");
   list.skip(12);
   if (settings.arrows) write_arrow_scale(canvas, source, layout, list.y());

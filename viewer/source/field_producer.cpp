@@ -15,12 +15,14 @@
 #include "viewer/source/frame_provider.h"
 #include "viewer/source/frame_rate.h"
 #include "viewer/source/solved_producer.h"
+#include "viewer/source/truth_producer.h"
 
 namespace pillarfield::viewer {
 namespace {
 
-Processor processor_for(const SolverPlan& plan, const ProducerOptions& options) {
-  return {open_device(options.device),
+Processor processor_for(const Device& device, const SolverPlan& plan,
+                        const ProducerOptions& options) {
+  return {device,
           plan,
           {.memory = options.memory,
            .frames_in_flight = FieldProducer::kMostShown,
@@ -69,13 +71,13 @@ std::uint64_t frames_to_simulate(const Simulator& simulator, const ProducerOptio
 std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
                                           const ProducerOptions& options,
                                           const std::function<void(double)>& progress) {
-  const Simulator simulator(load_scene(path));
-  const Scene& scene = simulator.scene();
+  const auto simulator = std::make_shared<const Simulator>(load_scene(path));
+  const Scene& scene = simulator->scene();
   SourceInfo info;
   info.name = path.filename().string();
   info.kind = "scene";
   info.rate_hz = scene.rate_hz;
-  const std::uint64_t frames = frames_to_simulate(simulator, options, info);
+  const std::uint64_t frames = frames_to_simulate(*simulator, options, info);
   if (scene.baseline_time_s) {
     info.warnings.emplace_back("The baseline is fixed: frames are solved in any order.");
   }
@@ -86,15 +88,30 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   }
   SolverPlan plan;
   plan.skin = scene.skin;
-  plan.sensel_type = simulator.sensel_type();
-  plan.calibration = simulator.calibration();
+  plan.sensel_type = simulator->sensel_type();
+  plan.calibration = simulator->calibration();
   set_solver(plan, scene);
   plan = shown_plan(std::move(plan));
   // Before the simulation, so that errors of the device come at once.
-  Processor processor = processor_for(plan, options);
+  const Device device = open_device(options.device);
+  Processor processor = processor_for(device, plan, options);
   describe(info, plan, processor);
-  return std::make_unique<SolvedProducer>(
-      std::move(info), simulate_frames(simulator, frames, progress), plan, std::move(processor));
+  const std::shared_ptr<FrameProvider> provider = simulate_frames(*simulator, frames, progress);
+  info.frames = frames;
+  auto producer = std::make_unique<SolvedProducer>(info, provider, plan, std::move(processor));
+  producer->open_again = [=]() -> std::unique_ptr<FieldProducer> {
+    // Simulated frames may be read by several threads.
+    return std::make_unique<SolvedProducer>(info, provider, plan,
+                                            processor_for(device, plan, options));
+  };
+  producer->open_truth = [=]() -> std::unique_ptr<FieldProducer> {
+    return std::make_unique<TruthProducer>(info, [=](std::uint64_t index, ForceField& truth) {
+      FrameBuffer readings(plan.sensel_type, plan.skin.rows, plan.skin.cols);
+      simulator->render(index, readings, truth);
+      return simulator->time_of(index);
+    });
+  };
+  return producer;
 }
 
 /// Whether a recording seems to lack its tare: every pillar of its first frame is in contact.
@@ -112,7 +129,7 @@ bool lacks_tare(FrameSource& source, const SolverPlan& plan, Processor& processo
 
 std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
                                               const ProducerOptions& options) {
-  std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});
+  std::unique_ptr<FrameSource> source = open_frames(path, options.read);
   if (source->frames() == 0) {
     throw Error(path.string(), "it has no frames", "give a recording with at least one frame");
   }
@@ -128,15 +145,34 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
       frame_rate(source->frames(), [&](std::uint64_t index) { return source->time(index); });
   plan.frame_interval_s = 1 / info.rate_hz;
   plan = shown_plan(std::move(plan));
-  Processor processor = processor_for(plan, options);
+  const Device device = open_device(options.device);
+  Processor processor = processor_for(device, plan, options);
   describe(info, plan, processor);
   if (lacks_tare(*source, plan, processor)) {
     info.warnings.emplace_back(
         "In the first frame every pillar is in contact, and there is no tare; measure one with "
-        "'pillarfield calibrate tare'.");
+        "'pillarfield calibrate tare', or give --tare-frames.");
   }
-  return std::make_unique<SolvedProducer>(std::move(info), recorded_frames(path, std::move(source)),
-                                          plan, std::move(processor));
+  info.frames = source->frames();
+  ReadOptions read = options.read;
+  read.trust = true;  // It was probed.
+  const bool has_truth = source->has_truth();
+  auto producer = std::make_unique<SolvedProducer>(
+      info, recorded_frames(path, std::move(source), read), plan, std::move(processor));
+  producer->open_again = [=]() -> std::unique_ptr<FieldProducer> {
+    return std::make_unique<SolvedProducer>(info,
+                                            recorded_frames(path, open_frames(path, read), read),
+                                            plan, processor_for(device, plan, options));
+  };
+  if (!has_truth) return producer;
+  producer->open_truth = [=]() -> std::unique_ptr<FieldProducer> {
+    const std::shared_ptr<FrameSource> frames = open_frames(path, read);
+    return std::make_unique<TruthProducer>(info, [=](std::uint64_t index, ForceField& truth) {
+      frames->read_truth(index, truth);
+      return frames->time(index);
+    });
+  };
+  return producer;
 }
 
 }  // namespace
@@ -144,6 +180,10 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
 void throw_all_fields_in_use() {
   throw Error("FieldProducer", fmt::format("all {} fields are in use", FieldProducer::kMostShown),
               "release one before producing another");
+}
+
+std::optional<CurvePoint> FieldProducer::stored_total(std::uint64_t /*index*/) {
+  return std::nullopt;
 }
 
 ShownContacts FieldProducer::contacts_of(const ShownField& field) {
@@ -155,8 +195,13 @@ std::unique_ptr<FieldProducer> open_producer(const std::filesystem::path& path,
                                              const ProducerOptions& options,
                                              const std::function<void(double)>& progress) {
   if (path.extension() == ".toml") return open_scene(path, options, progress);
+  if (!options.read.dataset.empty()) return open_recording(path, options);
   if (!options.read.trust) probe_file(path);
-  if (is_force_file(path, {.trust = true})) return std::make_unique<ForceFileProducer>(path);
+  if (is_force_file(path, {.trust = true})) {
+    auto producer = std::make_unique<ForceFileProducer>(path);
+    producer->open_again = [path] { return std::make_unique<ForceFileProducer>(path); };
+    return producer;
+  }
   return open_recording(path, options);
 }
 

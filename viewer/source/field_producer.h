@@ -12,6 +12,7 @@
 #include "pillarfield/processor.h"
 #include "pillarfield/read_options.h"
 #include "pillarfield/skin.h"
+#include "viewer/source/curves.h"
 #include "viewer/source/shown_contacts.h"
 #include "viewer/source/shown_field.h"
 
@@ -57,6 +58,15 @@ class FieldProducer {
   /// Checks whether a source that is still being written has grown; returns true where
   /// info().frames has changed.
   virtual bool refresh() { return false; }
+
+  /// The total force of a frame where the source stores it.
+  [[nodiscard]] virtual std::optional<CurvePoint> stored_total(std::uint64_t index);
+
+  /// Makes another producer of the same source, or of its true forces; empty where there is none.
+  /// Each producer belongs to one thread; the functions may be called in any.
+  using Opener = std::function<std::unique_ptr<FieldProducer>()>;
+  Opener open_again = {};
+  Opener open_truth = {};
 
  private:
   std::optional<FieldContacts> found_contacts_;

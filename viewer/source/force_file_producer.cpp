@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "pillarfield/error.h"
 #include "pillarfield/solver_plan.h"
-#include "viewer/source/direction.h"
 #include "viewer/source/frame_rate.h"
 
 namespace pillarfield::viewer {
@@ -49,25 +48,8 @@ std::optional<double> direct_point_of(const ForceFileInfo& file) {
   return file.estimator == name_of(Estimator::direct) ? file.segment_point : std::nullopt;
 }
 
-void fill(PlaneBlock& block, const ForceField& forces) {
-  std::ranges::copy(forces.shear_x, block.plane(PlaneBlock::kShearX).begin());
-  std::ranges::copy(forces.shear_y, block.plane(PlaneBlock::kShearY).begin());
-  std::ranges::copy(forces.normal, block.plane(PlaneBlock::kNormal).begin());
-  std::ranges::copy(forces.status, block.status().begin());
-  std::size_t which = PlaneBlock::kUncertainty;
-  for (const auto& plane : forces.uncertainty) {
-    std::ranges::copy(plane, block.plane(which++).begin());
-  }
-  const std::span<float> magnitude = block.plane(PlaneBlock::kMagnitude);
-  const std::span<float> theta = block.plane(PlaneBlock::kTheta);
-  const std::span<float> phi = block.plane(PlaneBlock::kPhi);
-  for (std::size_t i = 0; i < forces.pillars(); ++i) {
-    const Direction direction =
-        direction_of(forces.shear_x[i], forces.shear_y[i], forces.normal[i]);
-    magnitude[i] = direction.magnitude;
-    theta[i] = direction.theta;
-    phi[i] = direction.phi;
-  }
+float nan_unless(bool holds, double value) {
+  return holds ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
 }
 
 }  // namespace
@@ -89,7 +71,7 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
   const std::shared_ptr<PlaneBlock> block = blocks_.acquire();
   if (block == nullptr) throw_all_fields_in_use();
   const double time_s = reader_->read(index, forces_);
-  fill(*block, forces_);
+  block->copy(forces_.view());
   return {
       .forces = block->view(),
       .raw = {},
@@ -104,7 +86,23 @@ ShownField ForceFileProducer::produce(std::uint64_t index) {
 ShownContacts ForceFileProducer::contacts_of(const ShownField& field) {
   if (!reader_->info().contacts) return FieldProducer::contacts_of(field);
   map_.find(field.forces.status, field.forces.rows, field.forces.cols);
-  return with_extents(reader_->read_contacts(field.index), map_);
+  return with_extents(reader_->read_contacts(field.index), map_,
+                      reader_->info().contacts->noise_n);
+}
+
+std::optional<CurvePoint> ForceFileProducer::stored_total(std::uint64_t index) {
+  if (!reader_ || !reader_->info().contacts) return std::nullopt;
+  const FrameContacts found = reader_->read_contacts(index);
+  const ContactQuantities& total = found.total;
+  const bool loaded = total.normal_n > 0;
+  return CurvePoint{.time_s = found.time_s,
+                    .index = index,
+                    .shear_x = static_cast<float>(total.shear_x_n),
+                    .shear_y = static_cast<float>(total.shear_y_n),
+                    .normal = static_cast<float>(total.normal_n),
+                    .torque = nan_unless(loaded, total.torque_nmm),
+                    .centre_x_mm = nan_unless(loaded, total.centre_of_pressure.x_mm),
+                    .centre_y_mm = nan_unless(loaded, total.centre_of_pressure.y_mm)};
 }
 
 void ForceFileProducer::open(const std::filesystem::path& path) {

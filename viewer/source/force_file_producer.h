@@ -22,6 +22,7 @@ class ForceFileProducer final : public FieldProducer {
   [[nodiscard]] ShownField produce(std::uint64_t index) override;
   [[nodiscard]] ShownContacts contacts_of(const ShownField& field) override;
   bool refresh() override;
+  [[nodiscard]] std::optional<CurvePoint> stored_total(std::uint64_t index) override;
 
  private:
   void open(const std::filesystem::path& path);

@@ -35,8 +35,9 @@ class FrameProvider {
 [[nodiscard]] std::unique_ptr<FrameProvider> simulate_frames(
     const Simulator& simulator, std::uint64_t frames, const std::function<void(double)>& progress);
 
-/// Reads frames of a file on demand. `source` was opened from `path`.
+/// Reads frames of a file on demand. `source` was opened from `path` with these options.
 [[nodiscard]] std::unique_ptr<FrameProvider> recorded_frames(const std::filesystem::path& path,
-                                                             std::unique_ptr<FrameSource> source);
+                                                             std::unique_ptr<FrameSource> source,
+                                                             ReadOptions options);
 
 }  // namespace pillarfield::viewer

@@ -1,7 +1,10 @@
 #include "viewer/source/plane_block.h"
 
+#include <algorithm>
 #include <cstring>
 #include <new>
+
+#include "viewer/source/direction.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -47,6 +50,38 @@ std::span<const float> PlaneBlock::plane(std::size_t which) const {
 
 std::span<std::uint8_t> PlaneBlock::status() { return {status_place(), pillars()}; }
 std::span<const std::uint8_t> PlaneBlock::status() const { return {status_place(), pillars()}; }
+
+void PlaneBlock::copy(const ForceFieldView& forces) {
+  std::ranges::copy(forces.shear_x, plane(kShearX).begin());
+  std::ranges::copy(forces.shear_y, plane(kShearY).begin());
+  std::ranges::copy(forces.normal, plane(kNormal).begin());
+  std::ranges::copy(forces.status, status().begin());
+  std::size_t which = kUncertainty;
+  for (const auto& from : forces.uncertainty) {
+    const std::span<float> to = plane(which++);
+    if (!to.empty()) std::ranges::copy(from, to.begin());
+  }
+  if (forces.magnitude.empty()) {
+    set_directions(forces);
+    return;
+  }
+  std::ranges::copy(forces.magnitude, plane(kMagnitude).begin());
+  std::ranges::copy(forces.theta, plane(kTheta).begin());
+  std::ranges::copy(forces.phi, plane(kPhi).begin());
+}
+
+void PlaneBlock::set_directions(const ForceFieldView& forces) {
+  const std::span<float> magnitude = plane(kMagnitude);
+  const std::span<float> theta = plane(kTheta);
+  const std::span<float> phi = plane(kPhi);
+  for (std::size_t i = 0; i < pillars(); ++i) {
+    const Direction direction =
+        direction_of(forces.shear_x[i], forces.shear_y[i], forces.normal[i]);
+    magnitude[i] = direction.magnitude;
+    theta[i] = direction.theta;
+    phi[i] = direction.phi;
+  }
+}
 
 ForceFieldView PlaneBlock::view() const {
   ForceFieldView view = {rows_,          cols_,    plane(kShearX),    plane(kShearY),

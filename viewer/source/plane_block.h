@@ -23,6 +23,10 @@ class PlaneBlock {
   [[nodiscard]] std::span<std::uint8_t> status();
   [[nodiscard]] std::span<const std::uint8_t> status() const;
 
+  /// Copies a field of this size; computes magnitude and angles that it lacks. Its uncertainty is
+  /// copied if both have it.
+  void copy(const ForceFieldView& forces);
+
   [[nodiscard]] ForceFieldView view() const;
   [[nodiscard]] std::span<const std::byte> pages() const { return {pages_.get(), bytes_}; }
 
@@ -30,6 +34,8 @@ class PlaneBlock {
   struct Free {
     void operator()(std::byte* memory) const;
   };
+
+  void set_directions(const ForceFieldView& forces);
 
   /// Begin of plane `which`; the status plane is last.
   [[nodiscard]] float* place(std::size_t which) const;

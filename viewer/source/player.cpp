@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "viewer/source/peak_hold.h"
 #include "viewer/source/recent_times.h"
 
 namespace pillarfield::viewer {
@@ -20,7 +21,7 @@ Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
 }  // namespace
 
-struct Player::State {
+struct FilePlayer::State {
   explicit State(std::unique_ptr<FieldProducer> from)
       : producer(std::move(from)),
         info(producer->info()),
@@ -52,6 +53,7 @@ struct Player::State {
   void wake_display();
 
   const std::unique_ptr<FieldProducer> producer;  ///< used by the thread only, once it runs
+  PeakHold peak;                                  ///< likewise
   const SourceInfo info;
 
   std::mutex mutex;  ///< guards the members up to `failed`
@@ -62,6 +64,8 @@ struct Player::State {
   Time refreshed{0};
   std::unique_ptr<ShownField> waiting;
   bool wants_contacts = false;
+  bool wants_peak = false;
+  bool peak_begins = false;
   bool stopping = false;
   std::exception_ptr failed;
 
@@ -71,7 +75,7 @@ struct Player::State {
   std::thread thread;  ///< last: uses the other members
 };
 
-void Player::State::run() {
+void FilePlayer::State::run() {
   try {
     produce_until_stopped();
     return;
@@ -82,7 +86,7 @@ void Player::State::run() {
   wake_display();
 }
 
-void Player::State::produce_until_stopped() {
+void FilePlayer::State::produce_until_stopped() {
   std::unique_lock lock(mutex);
   while (!stopping) {
     if (playback.follows() && now() >= refreshed + kRefreshEvery) refresh(lock);
@@ -95,7 +99,7 @@ void Player::State::produce_until_stopped() {
   }
 }
 
-void Player::State::wait(std::unique_lock<std::mutex>& lock) {
+void FilePlayer::State::wait(std::unique_lock<std::mutex>& lock) {
   std::optional<Time> until = playback.next_due();
   if (!until && playback.follows()) until = refreshed + kRefreshEvery;
   if (until) {
@@ -105,7 +109,7 @@ void Player::State::wait(std::unique_lock<std::mutex>& lock) {
   }
 }
 
-void Player::State::refresh(std::unique_lock<std::mutex>& lock) {
+void FilePlayer::State::refresh(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   const bool has_grown = producer->refresh();
   lock.lock();
@@ -113,13 +117,21 @@ void Player::State::refresh(std::unique_lock<std::mutex>& lock) {
   if (has_grown) playback.set_frames(producer->info().frames, refreshed);
 }
 
-void Player::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
+void FilePlayer::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& lock) {
   const bool with_contacts = wants_contacts;
+  const bool with_peak = wants_peak;
+  const bool begins_peak = std::exchange(peak_begins, false);
   lock.unlock();
   const Time start = now();
   auto field = std::make_unique<ShownField>(producer->produce(frame));
+  field->frames = producer->info().frames;
   if (with_contacts) {
     field->contacts = std::make_shared<const ShownContacts>(producer->contacts_of(*field));
+  }
+  if (with_peak) {
+    if (begins_peak) peak.reset();
+    peak.add(field->forces);
+    field->peak = peak.field(*field);
   }
   const Time end = now();
   lock.lock();
@@ -133,43 +145,43 @@ void Player::State::produce(std::uint64_t frame, std::unique_lock<std::mutex>& l
   lock.lock();
 }
 
-void Player::State::wake_display() {
+void FilePlayer::State::wake_display() {
   const std::scoped_lock lock(waking);
   if (wake) wake();
 }
 
-Player::Player(std::unique_ptr<FieldProducer> producer)
+FilePlayer::FilePlayer(std::unique_ptr<FieldProducer> producer)
     : state_(std::make_unique<State>(std::move(producer))) {}
 
-Player::~Player() = default;
+FilePlayer::~FilePlayer() = default;
 
-const SourceInfo& Player::info() const { return state_->info; }
+const SourceInfo& FilePlayer::info() const { return state_->info; }
 
-void Player::play() {
+void FilePlayer::play() {
   state_->command([this](Time now) { state_->playback.play(now); });
 }
-void Player::pause() {
+void FilePlayer::pause() {
   state_->command([this](Time) { state_->playback.pause(); });
 }
-void Player::seek(std::uint64_t frame) {
+void FilePlayer::seek(std::uint64_t frame) {
   state_->command([&](Time now) { state_->playback.seek(frame, now); });
 }
-void Player::step(std::int64_t frames) {
+void FilePlayer::step(std::int64_t frames) {
   state_->command([&](Time now) { state_->playback.step(frames, now); });
 }
-void Player::set_speed(double speed) {
+void FilePlayer::set_speed(double speed) {
   state_->command([&](Time now) { state_->playback.set_speed(speed, now); });
 }
-void Player::set_rate(double rate_hz) {
+void FilePlayer::set_rate(double rate_hz) {
   state_->command([&](Time now) { state_->playback.set_rate(rate_hz, now); });
 }
-void Player::set_loop(bool loop) {
+void FilePlayer::set_loop(bool loop) {
   state_->command([&](Time) { state_->playback.set_loop(loop); });
 }
-void Player::set_follow(bool follow) {
+void FilePlayer::set_follow(bool follow) {
   state_->command([&](Time now) { state_->playback.set_follow(follow, now); });
 }
-void Player::set_contacts(bool wanted) {
+void FilePlayer::set_contacts(bool wanted) {
   state_->command([&](Time now) {
     if (wanted == state_->wants_contacts) return;
     state_->wants_contacts = wanted;
@@ -177,7 +189,15 @@ void Player::set_contacts(bool wanted) {
   });
 }
 
-PlayerState Player::state() const {
+void FilePlayer::set_peak(bool wanted) {
+  state_->command([&](Time now) {
+    state_->wants_peak = wanted;
+    state_->peak_begins = wanted;
+    if (wanted) state_->playback.again(now);
+  });
+}
+
+PlayerState FilePlayer::state() const {
   const std::scoped_lock lock(state_->mutex);
   const Playback& playback = state_->playback;
   return {.frame = playback.frame(),
@@ -189,7 +209,7 @@ PlayerState Player::state() const {
           .rate_hz = playback.rate_hz()};
 }
 
-PlayerStatistics Player::statistics() const {
+PlayerStatistics FilePlayer::statistics() const {
   const std::scoped_lock lock(state_->mutex);
   const Time time = now();
   state_->times.forget_before(time);
@@ -203,7 +223,7 @@ PlayerStatistics Player::statistics() const {
   return statistics;
 }
 
-std::optional<ShownField> Player::take() {
+std::optional<ShownField> FilePlayer::take() {
   const std::scoped_lock lock(state_->mutex);
   if (state_->waiting != nullptr) {
     ++state_->counts.taken;
@@ -213,7 +233,7 @@ std::optional<ShownField> Player::take() {
   return std::nullopt;
 }
 
-void Player::on_new_field(std::function<void()> wake) {
+void FilePlayer::on_new_field(std::function<void()> wake) {
   const std::scoped_lock lock(state_->waking);
   state_->wake = std::move(wake);
 }

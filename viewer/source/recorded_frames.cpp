@@ -11,15 +11,20 @@ namespace {
 
 class RecordedFrames final : public FrameProvider {
  public:
-  RecordedFrames(const std::filesystem::path& path, std::unique_ptr<FrameSource> source)
+  RecordedFrames(const std::filesystem::path& path, std::unique_ptr<FrameSource> source,
+                 ReadOptions options)
       : file_(path),
+        options_(std::move(options)),
         source_(std::move(source)),
         skin_(source_->skin()),
         sensel_type_(source_->sensel_type()),
         frames_(source_->frames()),
         buffers_(FieldProducer::kMostShown, [this] {
           return std::make_unique<FrameBuffer>(sensel_type_, skin_.rows, skin_.cols);
-        }) {}
+        }) {
+    options_.trust = true;     // probed before
+    options_.tare_frames = 0;  // The tare stays that of the first opening.
+  }
 
   [[nodiscard]] std::uint64_t frames() const override { return frames_; }
 
@@ -41,7 +46,7 @@ class RecordedFrames final : public FrameProvider {
 
  private:
   void open(const std::filesystem::path& path) {
-    std::unique_ptr<FrameSource> source = open_frames(path, {.trust = true});  // probed before
+    std::unique_ptr<FrameSource> source = open_frames(path, options_);
     const Skin& skin = source->skin();
     if (skin.rows != skin_.rows || skin.cols != skin_.cols ||
         source->sensel_type() != sensel_type_ || source->frames() == 0) {
@@ -51,6 +56,7 @@ class RecordedFrames final : public FrameProvider {
   }
 
   GrowingFile file_;
+  ReadOptions options_;
   std::unique_ptr<FrameSource> source_;  ///< null where reopening failed
   Skin skin_;
   SenselType sensel_type_;
@@ -61,8 +67,9 @@ class RecordedFrames final : public FrameProvider {
 }  // namespace
 
 std::unique_ptr<FrameProvider> recorded_frames(const std::filesystem::path& path,
-                                               std::unique_ptr<FrameSource> source) {
-  return std::make_unique<RecordedFrames>(path, std::move(source));
+                                               std::unique_ptr<FrameSource> source,
+                                               ReadOptions options) {
+  return std::make_unique<RecordedFrames>(path, std::move(source), std::move(options));
 }
 
 }  // namespace pillarfield::viewer

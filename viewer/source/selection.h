@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -22,6 +21,7 @@ struct PillarIndex {
 /// Pillars [row_begin, row_end) x [col_begin, col_end).
 struct PillarRect {
   std::uint32_t row_begin = 0, row_end = 0, col_begin = 0, col_end = 0;
+  friend bool operator==(const PillarRect&, const PillarRect&) = default;
 };
 
 /// Readings and results of one pillar in one frame.
@@ -56,25 +56,5 @@ struct SelectionSums {
 /// Sums over the part of `rect` inside the field.
 [[nodiscard]] SelectionSums sums_over(const ShownField& field, const PillarRect& rect,
                                       double pillar_pitch_mm);
-
-/// Forces of a pinned pillar or a selection over the last `capacity` frames.
-class History {
- public:
-  struct Point {
-    double time_s;
-    std::uint64_t index;
-    float shear_x, shear_y, normal;
-  };
-  explicit History(std::size_t capacity = 4096);  ///< at least 1
-
-  /// Removes points at this time or later first: the play head went back.
-  void add(const Point& point);
-  void clear();
-  [[nodiscard]] const std::deque<Point>& points() const { return points_; }
-
- private:
-  std::size_t capacity_;
-  std::deque<Point> points_;
-};
 
 }  // namespace pillarfield::viewer

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -21,12 +22,15 @@ struct ShownField {
   FrameView raw;                            ///< its readings; no data for a source without
   double time_s = 0;                        ///< time of the frame in its source
   std::uint64_t index = 0;                  ///< index of the frame in its source
+  std::uint64_t frames = 0;                 ///< of the source at that time; 0: not known
   std::optional<double> direct_point = {};  ///< argument of component_ends(), as the next one
   ShearCoefficient shear_coefficient = {};
   /// Whole pages with all planes of `forces`, which a graphics device may import.
   std::span<const std::byte> pages;
   std::shared_ptr<const void> keep_alive;
   std::shared_ptr<const ShownContacts> contacts = {};  ///< null while contacts are off
+  std::shared_ptr<const ShownField> peak = {};         ///< see PeakHold; null while it is off
+  std::optional<std::chrono::nanoseconds> arrived = {};  ///< from a sensor, std::steady_clock
 };
 
 }  // namespace pillarfield::viewer

@@ -30,7 +30,7 @@ SolverPlan shown_plan(SolverPlan plan) {
   return plan;
 }
 
-SolvedProducer::SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> provider,
+SolvedProducer::SolvedProducer(SourceInfo info, std::shared_ptr<FrameProvider> provider,
                                const SolverPlan& plan, Processor processor)
     : info_(std::move(info)), provider_(std::move(provider)), processor_(std::move(processor)) {
   info_.frames = provider_->frames();

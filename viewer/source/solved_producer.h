@@ -24,7 +24,7 @@ namespace pillarfield::viewer {
 class SolvedProducer final : public FieldProducer {
  public:
   /// `processor` is made for `plan`, with kMostShown slots. Sets the number of frames of `info`.
-  SolvedProducer(SourceInfo info, std::unique_ptr<FrameProvider> provider, const SolverPlan& plan,
+  SolvedProducer(SourceInfo info, std::shared_ptr<FrameProvider> provider, const SolverPlan& plan,
                  Processor processor);
 
   [[nodiscard]] const SourceInfo& info() const override { return info_; }
@@ -35,7 +35,7 @@ class SolvedProducer final : public FieldProducer {
   void clear_prior();
 
   SourceInfo info_;
-  std::unique_ptr<FrameProvider> provider_;
+  std::shared_ptr<FrameProvider> provider_;
   Processor processor_;
   std::optional<double> direct_point_;     ///< of the plan, for the estimator `direct`
   std::optional<FrameBuffer> idle_frame_;  ///< zero readings, where friction is carried over

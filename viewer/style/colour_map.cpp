@@ -83,6 +83,8 @@ Colour colour_of(Special special, Theme theme) {
   switch (special) {
     case Special::idle:
       return theme == Theme::dark ? colour_from(0x262a30) : colour_from(0xe3e5e8);
+    case Special::no_reading:
+      return theme == Theme::dark ? colour_from(0x50565e) : colour_from(0xb4b9c0);
     case Special::saturated:
       return kSaturated;
     case Special::inconsistent:
@@ -107,7 +109,7 @@ Colour colour_of(Special special, Theme theme) {
 const char* name_of(Special special) {
   static constexpr std::array<const char*, kSpecials> kNames = {
       "no contact", "saturated", "inconsistent", "ambiguous",        "from neighbours", "region 1",
-      "region 2",   "region 3",  "region 4",     "opposite sensels", "determined"};
+      "region 2",   "region 3",  "region 4",     "opposite sensels", "determined",       "no reading"};
   return kNames.at(static_cast<std::size_t>(special));
 }
 
@@ -120,6 +122,7 @@ std::optional<Special> special_of(Quantity quantity, std::uint8_t status) {
   if (quantity == Quantity::region && region_of(status) != Region::none) {
     return special_of(region_of(status));
   }
+  if (worst == StatusClass::inconsistent && !is_pressed(status)) return Special::no_reading;
   if (is_fault(worst)) return special_of(worst);
   if (!is_pressed(status)) return Special::idle;
   if (quantity == Quantity::status) return special_of(worst);

@@ -29,8 +29,8 @@ inline constexpr std::size_t kColours = 256;
 [[nodiscard]] ColourMap default_map(Scale scale);  ///< cividis for classes, which use no map
 
 /// Colours outside every map, for classes and for pillars without a value. Colours of one legend
-/// differ from each other, also for colour-blind readers, and (except idle) from all entries of the
-/// maps, by at least 10 in CIE dE2000. Region 1 and determined, region 3 and ambiguous, opposite
+/// differ from each other, also for colour-blind readers, and (except the quiet ones, idle and
+/// no_reading) from all entries of the maps, by at least 10 in CIE dE2000. Region 1 and determined, region 3 and ambiguous, opposite
 /// and inconsistent share a colour each.
 enum class Special : std::uint8_t {
   idle,
@@ -43,11 +43,12 @@ enum class Special : std::uint8_t {
   region_3,
   region_4,
   opposite,
-  determined
+  determined,
+  no_reading  ///< a sensel is missing, and the pillar not in contact
 };
-inline constexpr int kSpecials = 11;
+inline constexpr int kSpecials = 12;
 enum class Theme : std::uint8_t { dark, light };
-[[nodiscard]] Colour colour_of(Special special, Theme theme);  ///< only idle depends on the theme
+[[nodiscard]] Colour colour_of(Special special, Theme theme);  ///< quiet ones by theme
 [[nodiscard]] const char* name_of(Special special);            ///< in the legend: "saturated"
 [[nodiscard]] Colour background_of(Theme theme);               ///< around the skin
 

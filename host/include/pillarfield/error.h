@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -14,6 +15,19 @@ class Error : public std::runtime_error {
  public:
   /// `where` names a file, line, device or argument. `where` and `mend` may be empty.
   Error(std::string_view where, std::string_view what_failed, std::string_view mend = {});
+
+  /// The parts of the text, valid as long as the error; empty where they were not given.
+  [[nodiscard]] std::string_view place() const;
+  [[nodiscard]] std::string_view failure() const;
+  [[nodiscard]] std::string_view mend() const;
+
+ private:
+  struct Parts;
+  explicit Error(const Parts& parts);
+
+  std::size_t place_length_;
+  std::size_t failure_begin_;
+  std::size_t failure_length_;
 };
 
 }  // namespace pillarfield

@@ -53,7 +53,12 @@ NumberType number_type_of(const StoredFrames& stored, const File& file) {
                 "store integers, float32 or float64");
   }
   const std::size_t bytes = H5Tget_size(stored.type());
-  if (stored.value_class() == H5T_FLOAT) return {Kind::real, std::max<std::size_t>(4, bytes)};
+  if (stored.value_class() == H5T_FLOAT && bytes == 2) {
+    throw Error(file.path.string(),
+                fmt::format("{} is float16, which is not a type of readings", stored.name()),
+                "store integers, float32 or float64");
+  }
+  if (stored.value_class() == H5T_FLOAT) return {Kind::real, bytes};
   const bool is_signed = H5Tget_sign(stored.type()) != H5T_SGN_NONE;
   return {is_signed ? Kind::signed_integer : Kind::unsigned_integer, bytes};
 }

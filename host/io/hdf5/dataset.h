@@ -9,8 +9,7 @@
 
 namespace pillarfield::hdf5 {
 
-/// The type of a dataset's numbers in memory, where a float of 2 bytes becomes one of 4. Throws
-/// Error for booleans.
+/// The type of a dataset's numbers. Throws Error for booleans and floats of 2 bytes.
 [[nodiscard]] NumberType number_type_of(const StoredFrames& stored, const File& file);
 
 /// HDF5's type of such numbers in memory.

@@ -80,7 +80,7 @@ std::string name_of_kind(char kind, std::string_view size) {
     case 'b':
       return "bool";
     case 'f':
-      return fmt::format("float of {} bytes", size);
+      return size == "2" ? "float16" : fmt::format("float of {:.20} bytes", size);
     case 'c':
       return "complex";
     case 'O':

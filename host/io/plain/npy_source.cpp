@@ -70,7 +70,8 @@ class NpzArchive {
     std::vector<std::string> names;
     for (const NpzArray& array : arrays_) names.push_back(array.name);
     throw Error(path_.string(), fmt::format("has no array '{:.60}'", name),
-                fmt::format("it has {}", fmt::join(names, ", ")));
+                names.empty() ? "it has no array of numbers"
+                              : fmt::format("it has {}", fmt::join(names, ", ")));
   }
 
   [[nodiscard]] std::unique_ptr<NumberArray> open(const NpzArray& array) const {

@@ -10,7 +10,9 @@
 #include <string_view>
 #include <utility>
 
+#include "io/force_sink.h"
 #include "io/frame_source.h"
+#include "io/plain/random_file.h"
 #include "io/plain/source.h"
 #include "io/tekscan/line_reader.h"
 #include "pillarfield/error.h"
@@ -60,15 +62,21 @@ bool read_cell(std::string_view cell, double& value) {
   return error == std::errc{} && end == cell.data() + cell.size();
 }
 
-bool is_numbers(std::string_view line) {
-  std::size_t cells = 0;
-  bool all = true;
+/// Whether a line has names, and no number.
+bool is_names(std::string_view line) {
+  bool has_number = false;
   for_each_cell(line, separator_of(line), [&](std::string_view cell) {
     double value = 0;
-    all = all && read_cell(cell, value);
-    ++cells;
+    has_number = has_number || (!cell.empty() && read_cell(cell, value));
   });
-  return all && cells >= 2;
+  return !has_number;
+}
+
+/// Whether a line has several cells and no letter that numbers lack, for recognising a table.
+bool resembles_numbers(std::string_view line) {
+  return line.find_first_of("0123456789") != std::string_view::npos &&
+         line.find_first_not_of("0123456789+-.,; \teEnaNifIF") == std::string_view::npos &&
+         without_blanks(line).find(separator_of(line)) != std::string_view::npos;
 }
 
 bool is_comment(std::string_view line) { return line.starts_with('#'); }
@@ -95,7 +103,7 @@ class TableParser {
       if (is_comment(line)) continue;
       if (without_blanks(line).empty()) {
         end_block();
-      } else if (!std::exchange(is_first, false) || is_numbers(line)) {
+      } else if (!std::exchange(is_first, false) || !is_names(line)) {
         add(line);
       }
     }
@@ -117,12 +125,15 @@ class TableParser {
                     fmt::format("'{:.30}' in column {} is not a number", cell, cells_.size() + 1),
                     "write numbers with decimal points, and nan for a missing reading");
       }
-      cells_.push_back(value);
+      if (cells_.empty()) has_empty_begin_ = cell.empty();
       has_empty_end_ = cell.empty();
+      cells_.push_back(value);
     });
     // A separator may follow the last cell.
     const bool is_known = line_cells_ != 0;
-    if (has_empty_end_ && (!is_known || cells_.size() == line_cells_ + 1)) cells_.pop_back();
+    if (has_empty_end_ && cells_.size() > 1 && (!is_known || cells_.size() == line_cells_ + 1)) {
+      cells_.pop_back();
+    }
     if (!is_known) begin();
     if (cells_.size() != line_cells_) {
       throw Error(reader_.place(), fmt::format("has {} numbers", cells_.size()),
@@ -133,6 +144,10 @@ class TableParser {
 
   /// Takes the number of cells of the first line.
   void begin() {
+    if (has_empty_begin_) {
+      throw Error(reader_.place(), "begins with an empty cell, as a table with an index does",
+                  "save it without index and header");
+    }
     line_cells_ = cells_.size();
     table_.cells = line_cells_;
     if (!size_) return;
@@ -178,6 +193,7 @@ class TableParser {
   Table table_;
   char separator_ = '\0';
   std::vector<double> cells_;
+  bool has_empty_begin_ = false;
   bool has_empty_end_ = false;
   bool has_times_ = false;
   std::size_t line_cells_ = 0;    // of the first line
@@ -217,9 +233,17 @@ std::vector<std::uint64_t> shape_of(const Table& table, std::uint64_t rows,
               fmt::format("frames of {} rows need a multiple", size->rows));
 }
 
+/// Throws Error for a table of forces or contacts.
+void refuse_output(const std::filesystem::path& path) {
+  const SinkFormat* const format = format_by_beginning(RandomFile(path).text_at(0, 1024));
+  if (format == nullptr) return;
+  throw Error(path.string(), format->content, "give the readings that it was solved from");
+}
+
 std::unique_ptr<FileSource> open_table(const std::filesystem::path& path,
                                        const ReadOptions& options) {
   refuse_dataset(path, options);
+  refuse_output(path);
   TableParser parser(path, options.frame_size);
   Table table = parser.parse();
   std::vector<std::uint64_t> shape = shape_of(table, parser.rows(), path, options.frame_size);
@@ -251,7 +275,7 @@ bool looks_like_table(std::string_view head) {
     const char separator = separator_of(line);
     // The last cell of a line that the head cuts is left out.
     if (is_cut) line = line.substr(0, line.find_last_of(separator));
-    if (is_numbers(line)) return true;
+    if (resembles_numbers(line)) return true;
     // A line of names may be longer than the head.
     constexpr std::ptrdiff_t kManyNames = 100;
     if (is_cut && separator != ' ' && std::ranges::count(line, separator) >= kManyNames)

@@ -59,6 +59,9 @@ Directory find_directory(const RandomFile& archive) {
   const std::size_t at = tail.rfind("PK\5\6");
   if (at == std::string::npos) fail_archive(archive, "has no directory of its members");
   const ZipRecord end(archive, std::string_view(tail).substr(at));
+  if (first + at + kEndBytes + end.number(20, 2) > archive.size()) {
+    fail_archive(archive, "ends within its last record");
+  }
   Directory directory = {end.number(16, 4), end.number(12, 4)};
   if (directory.offset == kIn64Bits || directory.bytes == kIn64Bits) {
     const std::uint64_t end_at = first + at;

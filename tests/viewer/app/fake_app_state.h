@@ -46,7 +46,7 @@ class FakeProducer final : public FieldProducer {
 
 /// The state of a window of 1000 x 700 pixels with a picture of 800 x 600.
 struct FakeAppState {
-  Player player{std::make_unique<FakeProducer>()};
+  FilePlayer player{std::make_unique<FakeProducer>()};
   AppState state;
   FieldPlace place{{0, 0, 800, 600}, &player.info()};
   PendingActions pending;

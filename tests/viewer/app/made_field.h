@@ -23,7 +23,7 @@ struct MadeField {
   std::array<double, 4> read(PillarIndex pillar, const std::array<double, 4>& model);
 };
 
-/// A history of `points` frames at 100 Hz that ends in a force.
-[[nodiscard]] History made_history(const PillarValues& last, std::size_t points);
+/// A curve of `points` frames at 100 Hz that ends in a force.
+[[nodiscard]] std::vector<CurvePoint> made_curve(const PillarValues& last, std::size_t points);
 
 }  // namespace pillarfield::viewer

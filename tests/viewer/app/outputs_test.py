@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import tempfile
@@ -53,8 +54,8 @@ class Outputs(unittest.TestCase):
     def test_the_source_is_never_written(self):
         before = {path: path.read_bytes() for path in self.folder.iterdir()}
         for name in ("ball.toml", "rec.h5", "forces.h5"):
-            for output, option, leave in (("", "--png", ()), ("soft_", "--csv", ("--overwrite",)),
-                                          ("hard_", "--csv", ()), ("./", "--png", ("--overwrite",))):
+            for output, option, leave in (("", "--csv", ()), ("soft_", "--csv", ("--overwrite",)),
+                                          ("hard_", "--csv", ()), ("./", "--csv", ("--overwrite",))):
                 with self.subTest(name=name, output=output, option=option):
                     self.assert_refused(name, option, output + name, *leave,
                                         says="is a file that is read")
@@ -69,7 +70,8 @@ class Outputs(unittest.TestCase):
 
     def test_only_earlier_tables_are_replaced_without_overwrite(self):
         self.assert_refused("forces.h5", "--csv", "rec.h5", says="holds a recording")
-        self.assert_refused("forces.h5", "--png", "rec.h5", says="holds a recording")
+        os.link(self.folder / "rec.h5", self.folder / "rec.png")
+        self.assert_refused("forces.h5", "--png", "rec.png", says="holds a recording")
         notes = self.folder / "notes.csv"
         notes.write_text("mine\n", encoding="utf-8")
         self.assert_refused("forces.h5", "--csv", "notes.csv", says="--overwrite")
@@ -77,6 +79,40 @@ class Outputs(unittest.TestCase):
         for leave in (("--overwrite",), ()):
             self.assertEqual(self.view("forces.h5", "--csv", "notes.csv", *leave).returncode, 0)
             self.assertIn("frame,time_s", notes.read_text(encoding="utf-8"))
+
+    def test_a_picture_is_a_png(self):
+        for name in ("x.jpg", "-", "x"):
+            ended = self.view("forces.h5", "--png", name)
+            self.assertEqual(ended.returncode, 2, ended)
+            self.assertIn("must end in .png", ended.stderr)
+            self.assertFalse((self.folder / name).exists())
+
+    def test_the_default_is_the_most_loaded_frame(self):
+        # The load rises to its maximum in the last frame.
+        ended = self.view("forces.h5", "--png", "x.png")
+        if "Vulkan" in ended.stderr:
+            self.skipTest(ended.stderr)
+        self.assertEqual(ended.stdout, "Wrote x.png: frame 12 of 12, the most loaded\n")
+        self.view("forces.h5", "--png", "last.png", "--frame", "12")
+        self.assertEqual((self.folder / "x.png").read_bytes(),
+                         (self.folder / "last.png").read_bytes())
+
+    @unittest.skipUnless(shutil.which("ffprobe"), "ffprobe is not installed")
+    def test_slow_motion(self):
+        for options, pictures, seconds in (((), 8, 0.12), (("--speed", "0.1"), 12, 1.2),
+                                           (("--speed", "0.1", "--fps", "30"), 36, 1.2),
+                                           (("--speed", "2", "--fps", "25"), 2, 0.08)):
+            ended = self.view("forces.h5", "--frames", "1:12", "--size", "320x240", "--video",
+                              "x.mp4", *options)
+            if "Vulkan" in ended.stderr:
+                self.skipTest(ended.stderr)
+            self.assertEqual(ended.stdout, "Wrote x.mp4\n")
+            probe = subprocess.run(
+                ["ffprobe", "-v", "error", "-show_entries", "stream=nb_frames,duration", "-of",
+                 "csv=p=0", "x.mp4"], cwd=self.folder, check=True, capture_output=True, text=True)
+            duration, count = probe.stdout.strip().split(",")
+            self.assertEqual(int(count), pictures, options)
+            self.assertAlmostEqual(float(duration), seconds, delta=0.02)
 
     def test_hang_up_ends_it_in_one_line(self):
         scene = self.folder / "long.toml"

@@ -32,7 +32,7 @@ class PillarPanel : public testing::Test {
     io.Fonts->GetTexDataAsAlpha8(&pixels, nullptr, nullptr);
     state_.player = &player_;
     state_.field = made_.shown();
-    for (std::uint32_t i = 0; i < 3; ++i) state_.pins.push_back({{10 + i, 20}, History()});
+    for (std::uint32_t i = 0; i < 3; ++i) state_.pins.push_back({{10 + i, 20}});
   }
   ~PillarPanel() override { ImGui::DestroyContext(context_); }
 
@@ -80,7 +80,7 @@ class PillarPanel : public testing::Test {
   ImGuiContext* context_;
   float side_ = 0;
   MadeField made_;
-  Player player_{std::make_unique<NoFields>(made_)};
+  FilePlayer player_{std::make_unique<NoFields>(made_)};
   AppState state_;
 };
 
@@ -105,7 +105,7 @@ TEST_F(PillarPanel, TheCrossRemovesTheInspectedPinUntilNoneIsLeft) {
 }
 
 TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
-  state_.pins.push_back({{1000, 1000}, History()});
+  state_.pins.push_back({{1000, 1000}});
   frame();
   state_.field.reset();
   frame();
@@ -113,7 +113,7 @@ TEST_F(PillarPanel, PinsOutsideTheFieldDoNotBreakIt) {
 }
 
 TEST_F(PillarPanel, SumsOfTheSelectionFollowRectangleAndFrame) {
-  state_.selection = Selection{{4, 20, 8, 30}, History()};
+  state_.selection = Selection{{4, 20, 8, 30}};
   const double pitch_mm = made_.skin.pillar_pitch_mm();
   const double first = selection_sums(state_).normal;
   EXPECT_EQ(first, sums_over(*state_.field, {4, 20, 8, 30}, pitch_mm).normal);

@@ -116,15 +116,16 @@ TEST(DirectionBox, IsNotThereWithoutUncertainty) {
 }
 
 TEST(TrailOf, BreaksWherePhiWrapsAndOmitsIdlePillars) {
-  History history;
+  std::vector<CurvePoint> curve;
   for (int i = 0; i < 40; ++i) {
     const float angle = 0.1f + 0.2f * static_cast<float>(i);
     const bool idle = i == 10;
-    history.add({i * 0.01, static_cast<std::uint64_t>(i), idle ? 0 : std::cos(angle),
-                 idle ? 0 : std::sin(angle), idle ? 0.f : 1.f});
+    curve.push_back({.shear_x = idle ? 0 : std::cos(angle),
+                     .shear_y = idle ? 0 : std::sin(angle),
+                     .normal = idle ? 0.f : 1.f});
   }
   std::size_t points = 0;
-  const auto pieces = trail_of(history, 100);
+  const auto pieces = trail_of(curve);
   for (const auto& piece : pieces) {
     points += piece.size();
     for (std::size_t i = 1; i < piece.size(); ++i) {
@@ -134,8 +135,8 @@ TEST(TrailOf, BreaksWherePhiWrapsAndOmitsIdlePillars) {
   }
   EXPECT_EQ(points, 39u);
   EXPECT_EQ(pieces.size(), 2u);
-  EXPECT_EQ(trail_of(history, 1).size(), 1u);
-  EXPECT_TRUE(trail_of(History(), 10).empty());
+  EXPECT_EQ(trail_of(std::span(curve).last(1)).size(), 1u);
+  EXPECT_TRUE(trail_of({}).empty());
 }
 
 TEST(SectionName, IsThePapers) {
@@ -186,13 +187,13 @@ TEST(FullBar, IsTheFullScaleOrRoomForAllReadings) {
 
 TEST(Pins, KeepTheirNumbersWhileOthersComeAndGo) {
   AppState state;
-  for (std::uint32_t i = 0; i < 4; ++i) state.pins.push_back({{i, i}, History()});
+  for (std::uint32_t i = 0; i < 4; ++i) state.pins.push_back({{i, i}});
   number_pins(state);
   inspect_pin(state, 1);
   EXPECT_EQ(state.pins.back().number, 2);
   EXPECT_EQ(state.pins.back().pillar, (PillarIndex{1, 1}));
   remove_pin(state, 0);
-  state.pins.push_back({{9, 9}, History()});
+  state.pins.push_back({{9, 9}});
   number_pins(state);
   std::vector<int> numbers;
   for (const Pin& pin : state.pins) numbers.push_back(pin.number);

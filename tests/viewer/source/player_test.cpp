@@ -76,7 +76,7 @@ struct Fixture {
   explicit Fixture(double rate_hz = 1e5, std::uint64_t frames = 10)
       : seen(std::make_shared<Seen>()) {
     seen->length = frames;
-    player = std::make_unique<Player>(std::make_unique<FakeProducer>(seen, rate_hz));
+    player = std::make_unique<FilePlayer>(std::make_unique<FakeProducer>(seen, rate_hz));
   }
 
   /// Waits until the thread fulfils a condition.

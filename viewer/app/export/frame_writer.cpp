@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace pillarfield::viewer {
@@ -11,7 +12,10 @@ namespace {
 template <class LookedFor>
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
                                  const char* ending, const LookedFor& looked_for) {
-  std::string stem = std::filesystem::path(source.name).stem().string();
+  // The name of a sensor is no path: "udp:127.0.0.1:4242".
+  std::string stem = source.name == "-" ? "stdin" : source.name;
+  std::ranges::replace(stem, ':', '_');
+  stem = std::filesystem::path(stem).stem().string();
   if (!detail.empty()) stem += "_" + detail;
   std::filesystem::path path = stem + ending;
   for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
@@ -27,7 +31,7 @@ FrameWriter::FrameWriter(AppState& state, Kind kind, std::filesystem::path path,
                          std::uint32_t width, std::uint32_t height)
     : state_(&state), path_(std::move(path)), frames_(state.player->state().frames) {
   if (kind == Kind::video) {
-    const double rate = state.player->info().rate_hz;
+    const double rate = state.player->info().rate_hz * state.player->state().speed;
     video_ = std::make_unique<VideoWriter>(path_, width, height, rate, Replace::nothing);
   }
   state.writing = true;

@@ -26,21 +26,6 @@ View fitted(const AppState& state, const FieldPlace& place, bool orbit) {
   return fit_top(place.skin(), plot);
 }
 
-History::Point point_of(const ShownField& field, double shear_x, double shear_y, double normal) {
-  return {field.time_s, field.index, static_cast<float>(shear_x), static_cast<float>(shear_y),
-          static_cast<float>(normal)};
-}
-
-void follow(Pin& pin, const ShownField& field) {
-  const PillarValues values = values_at(field, pin.pillar);
-  pin.history.add(point_of(field, values.shear_x, values.shear_y, values.normal));
-}
-
-void follow_selection(AppState& state) {
-  const SelectionSums& sums = selection_sums(state);
-  state.selection->history.add(point_of(*state.field, sums.shear_x, sums.shear_y, sums.normal));
-}
-
 }  // namespace
 
 void show_quantity(AppState& state, Quantity quantity) {
@@ -54,6 +39,7 @@ void show_quantity(AppState& state, Quantity quantity) {
   remembered(state) = settings.range;
   settings.quantity = quantity;
   if (!same_scale) settings.map = default_map(info.scale);
+  if (quantity == Quantity::peak && state.field && state.field->peak == nullptr) hold_peak(state);
   if (const auto& range = remembered(state); range && !state.fit_each_field) {
     settings.range = *range;
   } else {
@@ -61,10 +47,19 @@ void show_quantity(AppState& state, Quantity quantity) {
   }
 }
 
+void hold_peak(AppState& state) {
+  state.player->set_peak(true);
+  state.notice = "peaks are held from now on";
+  if (state.beside != nullptr) state.beside->set_peak(true);
+}
+
 void fit_range(AppState& state) {
   RenderSettings& settings = state.settings;
   const float most = state.field ? largest(settings.quantity, *state.field) : 0;
   settings.range = fitting_range(settings.quantity, most);
+  if (settings.quantity == Quantity::normal) {
+    settings.relief_full_n = static_cast<double>(settings.range.high);
+  }
   remembered(state) = settings.range;
 }
 
@@ -100,6 +95,11 @@ void show_contacts(AppState& state, bool shown) {
   state.player->set_contacts(shown);
 }
 
+void show_trails(AppState& state, bool shown) {
+  state.show_trails = shown;
+  state.trails = {};
+}
+
 void reset_view(AppState& state, const FieldPlace& place) {
   state.settings.view = fitted(state, place, shows_orbit(state.settings));
   state.view_is_fitted = true;
@@ -123,14 +123,12 @@ void toggle_pin(AppState& state, PillarIndex pillar) {
     state.notice = fmt::format("{} pins at most; click one to take it away", AppState::kMostPins);
     return;
   }
-  pins.push_back({pillar, History()});
+  pins.push_back({pillar});
   number_pins(state);
-  if (state.field) follow(pins.back(), *state.field);
 }
 
 void select_pillars(AppState& state, const PillarRect& rect) {
-  state.selection = Selection{rect, History()};
-  if (state.field) follow_selection(state);
+  state.selection = Selection{rect};
 }
 
 void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
@@ -169,8 +167,7 @@ void change_speed(AppState& state, int steps) {
 
 void take_field(AppState& state, ShownField field) {
   state.field = std::move(field);
-  for (Pin& pin : state.pins) follow(pin, *state.field);
-  if (state.selection) follow_selection(state);
+  if (state.show_trails) state.trails.add(*state.field);
   if (state.fit_each_field) fit_range(state);
 }
 

@@ -12,6 +12,9 @@ namespace pillarfield::viewer {
 /// source lacks it.
 void show_quantity(AppState& state, Quantity quantity);
 
+/// Holds the peak of the normal force from the frame on display on.
+void hold_peak(AppState& state);
+
 /// Fits the range to the field on display.
 void fit_range(AppState& state);
 
@@ -25,6 +28,9 @@ void show_orbit(AppState& state, const FieldPlace& place, bool orbit);
 
 /// Switches finding and marking contacts.
 void show_contacts(AppState& state, bool shown);
+
+/// Switches the trails of the centres of pressure.
+void show_trails(AppState& state, bool shown);
 
 /// Fits the view to the whole skin.
 void reset_view(AppState& state, const FieldPlace& place);
@@ -43,7 +49,7 @@ void clear_marks(AppState& state);
 /// Changes the speed by `steps` in the series 1, 2, 5, 10.
 void change_speed(AppState& state, int steps);
 
-/// Displays a new field and extends the histories of pins and selection.
+/// Displays a new field and extends the trails.
 void take_field(AppState& state, ShownField field);
 
 }  // namespace pillarfield::viewer

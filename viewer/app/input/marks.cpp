@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
+#include <optional>
 #include <vector>
 
 #include "viewer/app/input/pins.h"
@@ -57,6 +60,26 @@ class Marker {
                   words.c_str());
   }
 
+  /// Older places are fainter.
+  void trail(const std::deque<Trails::Place>& places) const {
+    if (places.empty()) return;
+    const double last_s = places.back().time_s;
+    std::optional<ImVec2> before;
+    for (const Trails::Place& place : places) {
+      const auto pixel = pixel_of(place_, settings_, {place.x_mm, place.y_mm});
+      if (!pixel) continue;
+      const ImVec2 here = to_imgui(*pixel);
+      const double fresh = 1 - (last_s - place.time_s) / Trails::kSeconds;
+      const int alpha = static_cast<int>(std::clamp(255 * fresh, 30.0, 255.0));
+      if (before) {
+        list_.AddLine(*before, here, IM_COL32(0, 0, 0, alpha), 4 * unit_);
+        list_.AddLine(*before, here, IM_COL32(120, 240, 200, alpha), 2 * unit_);
+      }
+      before = here;
+    }
+    if (before) list_.AddCircleFilled(*before, 4 * unit_, IM_COL32(120, 240, 200, 255));
+  }
+
   void clip() const {
     const Viewport plot = place_.plot(settings_);
     list_.PushClipRect(to_imgui({plot.x, plot.y}),
@@ -81,11 +104,35 @@ PillarRect only(const PillarIndex& pillar) {
   return {pillar.row, pillar.row + 1, pillar.col, pillar.col + 1};
 }
 
+/// Of each contact while contacts are shown, else of the whole skin.
+void draw_trails(const AppState& state, const Marker& marker) {
+  for (const Trails::Trail& trail : state.trails.all()) marker.trail(trail.places);
+  if (!state.trails.all().empty() || state.curves == nullptr || !state.field) return;
+  constexpr std::size_t kMostPlaces = 512;
+  const double now_s = state.field->time_s;
+  std::deque<Trails::Place> places;
+  for (const CurvePoint& point :
+       state.curves->total(now_s - Trails::kSeconds, now_s, kMostPlaces)) {
+    if (point.time_s > now_s || std::isnan(point.centre_x_mm)) continue;
+    places.push_back({point.time_s, static_cast<double>(point.centre_x_mm),
+                      static_cast<double>(point.centre_y_mm)});
+  }
+  marker.trail(places);
+}
+
 }  // namespace
+
+FieldPlace beside_place(const AppState& state, const FieldPlace& place) {
+  FieldPlace beside = place;
+  beside.area.x += place.area.width;
+  beside.source = &state.beside->info();
+  return beside;
+}
 
 void draw_marks(const AppState& state, const FieldPlace& place) {
   const Marker marker(state, place);
   marker.clip();
+  if (state.show_trails) draw_trails(state, marker);
   if (state.selection) marker.outline(state.selection->rect, palette_of(Theme::dark).accent);
   if (state.hovered) marker.outline(only(*state.hovered), IM_COL32(255, 255, 255, 230));
   for (std::size_t i = 0; i < state.pins.size(); ++i) {

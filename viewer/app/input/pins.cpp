@@ -33,6 +33,10 @@ void number_pins(AppState& state) {
   }
 }
 
+PillarRect rect_of(const Pin& pin) {
+  return {pin.pillar.row, pin.pillar.row + 1, pin.pillar.col, pin.pillar.col + 1};
+}
+
 void inspect_pin(AppState& state, std::size_t index) {
   if (index >= state.pins.size()) return;
   const auto pin = state.pins.begin() + static_cast<std::ptrdiff_t>(index);

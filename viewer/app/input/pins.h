@@ -8,6 +8,9 @@ namespace pillarfield::viewer {
 /// Gives each unnumbered pin the least free number; a pin keeps its number and colour.
 void number_pins(AppState& state);
 
+/// The pin's pillar alone.
+[[nodiscard]] PillarRect rect_of(const Pin& pin);
+
 /// Makes a pin the inspected one; the others keep their order.
 void inspect_pin(AppState& state, std::size_t index);
 

@@ -78,6 +78,19 @@ void toggle_contacts(const Command& command) {
   show_contacts(command.state, !command.state.settings.contacts);
 }
 
+void take_tare(const Command& command) {
+  if (LiveControl* const live = command.state.player->live()) {
+    live->tare();
+    command.state.notice = "measuring the tare; touch nothing";
+  } else {
+    command.state.notice = "only a sensor has a live tare";
+  }
+}
+
+void toggle_trails(const Command& command) {
+  show_trails(command.state, !command.state.show_trails);
+}
+
 /// Closes help, else stops writing, else clears the marks.
 void escape(const Command& command) {
   if (command.state.show_help) {
@@ -129,6 +142,11 @@ constexpr std::array kShortcuts{
              show<Quantity::uncertainty>},
     Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
 
+    Shortcut{Group::show, plain(GLFW_KEY_E), "E", "peak of the normal force",
+             show<Quantity::peak>},
+    Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
+             [](const Command& command) { hold_peak(command.state); }},
+
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows", toggle<&RenderSettings::arrows>},
     Shortcut{Group::view, plain(GLFW_KEY_U), "U", "uncertainty sectors",
              toggle<&RenderSettings::sectors>},
@@ -136,11 +154,20 @@ constexpr std::array kShortcuts{
              toggle<&RenderSettings::hatch>},
     Shortcut{Group::view, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
     Shortcut{Group::view, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
+    Shortcut{Group::view, plain(GLFW_KEY_B), "B", "height relief in 3-D",
+             toggle<&RenderSettings::relief>},
     Shortcut{Group::view, plain(GLFW_KEY_R), "R", "the whole skin",
              [](const Command& command) { reset_view(command.state, command.place); }},
     Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",
              [](const Command& command) { fit_range(command.state); }},
     Shortcut{Group::view, plain(GLFW_KEY_T), "T", "dark or light", toggle_theme},
+    Shortcut{Group::view, plain(GLFW_KEY_J), "J", "trail of the centre of pressure", toggle_trails},
+    Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
+             ask<&PendingActions::truth>},
+    Shortcut{Group::view, plain(GLFW_KEY_I), "I", "times of solving and drawing",
+             [](const Command& command) {
+               command.state.show_counters = !command.state.show_counters;
+             }},
     Shortcut{
         Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
         [](const Command& command) { command.state.show_panels = !command.state.show_panels; }},
@@ -153,6 +180,9 @@ constexpr std::array kShortcuts{
              ask<&PendingActions::sequence>},
     Shortcut{Group::write, with(kControl, GLFW_KEY_M), "Ctrl+M", "write all frames (video)",
              ask<&PendingActions::video>},
+    Shortcut{Group::write, with(kControl, GLFW_KEY_R), "Ctrl+R", "record a sensor, or stop",
+             ask<&PendingActions::record>},
+    Shortcut{Group::play, plain(GLFW_KEY_Z), "Z", "tare of a sensor", take_tare},
     Shortcut{Group::write, plain(GLFW_KEY_C), "C", "write visible pillars (CSV)",
              ask<&PendingActions::table>},
     Shortcut{Group::write,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
@@ -17,6 +18,9 @@ struct PendingActions {
   bool video = false;     ///< write a video of all frames
   bool table = false;     ///< write the visible pillars as CSV
   bool stop = false;      ///< stop writing
+  bool record = false;    ///< start or stop recording a sensor
+  bool truth = false;     ///< show or hide the truth beside
+  std::string open;       ///< a source to open; empty: none
 };
 
 /// Arguments of an action.

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "viewer/app/input/actions.h"
+#include "viewer/app/panels/panels.h"
 #include "viewer/app/panels/widgets.h"
 
 namespace pillarfield::viewer {
@@ -90,11 +91,49 @@ std::string time_text(const AppState& state, const PlayerState& playback, std::u
   return fmt::format("{:.3f} s   {} / {}", time, shown + 1, playback.frames);
 }
 
+/// The row of a sensor: freeze, record, tare, and the time.
+void live_transport(const Command& command, LiveControl& live) {
+  AppState& state = command.state;
+  Player& player = *state.player;
+  const LiveStatus status = live.status();
+  const bool playing = player.state().playing;
+  const float gap = ImGui::GetFontSize();
+  if (icon_button("play", playing ? icon::pause : icon::play, !playing,
+                  "Freeze the picture, not the sensor (Space)")) {
+    playing ? player.pause() : player.play();
+  }
+  ImGui::SameLine(0, gap / 2);
+  const bool records = !status.recording.empty();
+  if (icon_button("record", icon::record, records, "Record the raw frames (Ctrl+R)")) {
+    command.pending.record = true;
+  }
+  ImGui::SameLine(0, gap / 2);
+  if (icon_button("tare", icon::tare, status.taring,
+                  "Tare: the mean of the next half second becomes zero (Z)")) {
+    live.tare();
+  }
+  ImGui::SameLine(0, gap);
+  const std::string time =
+      state.field ? fmt::format("{:.2f} s   frame {}", state.field->time_s, state.field->index + 1)
+                  : "";
+  const std::string words = status.ended                       ? "ended"
+                            : status.silent_s > kSilentSeconds ? silent_words(status)
+                            : playing                          ? "live"
+                                                               : "frozen";
+  text_in(fmt::format("{}   {}", words, time), 10 * gap, 0);
+  const float side = std::round(ImGui::GetFontSize() * 2);
+  ImGui::SameLine(ImGui::GetWindowWidth() - side - ImGui::GetStyle().WindowPadding.x);
+  if (icon_button("help", icon::question, state.show_help, "Keys and mouse (?)")) {
+    state.show_help = !state.show_help;
+  }
+}
+
 }  // namespace
 
 void transport(const Command& command) {
   AppState& state = command.state;
   Player& player = *state.player;
+  if (LiveControl* const live = player.live()) return live_transport(command, *live);
   const PlayerState playback = player.state();
   const std::uint64_t shown = state.field ? state.field->index : playback.frame;
   const float side = std::round(ImGui::GetFontSize() * 2);

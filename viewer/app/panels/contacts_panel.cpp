@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -62,7 +64,7 @@ bool write_row(const std::string& name, const ContactQuantities& contact) {
 std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
   std::optional<std::size_t> clicked;
   ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(contacts.heaviest.size()));
+  clipper.Begin(static_cast<int>(contacts.above_noise));
   while (clipper.Step()) {
     for (int row = clipper.DisplayStart; row < clipper.DisplayEnd; ++row) {
       const std::size_t place = contacts.heaviest[static_cast<std::size_t>(row)];
@@ -74,7 +76,7 @@ std::optional<std::size_t> contact_rows(const ShownContacts& contacts) {
 }
 
 std::optional<std::size_t> contact_table(const PanelStyle& style, const ShownContacts& contacts) {
-  const std::size_t rows = std::min(contacts.heaviest.size(), kMostRows) + 2;
+  const std::size_t rows = std::min(contacts.above_noise, kMostRows) + 2;
   const ImGuiStyle& imgui_style = ImGui::GetStyle();
   const float row = static_cast<float>(style.line) + 2 * imgui_style.CellPadding.y;
   const float height = row * static_cast<float>(rows) + imgui_style.ScrollbarSize + 2;
@@ -103,6 +105,9 @@ void contacts_panel(AppState& state, const FieldPlace& place) {
   if (const auto clicked = contact_table(style, contacts)) {
     mark_contact(state, place, contacts.found.contacts[*clicked].quantities.centre_of_pressure,
                  contacts.extents[*clicked]);
+  }
+  if (const std::size_t noise = contacts.heaviest.size() - contacts.above_noise; noise > 0) {
+    faint_text(style, fmt::format("{} single pillars at the noise are not listed", noise).c_str());
   }
   if (const std::string warning = contacts_left_out(contacts); !warning.empty()) {
     faint_text(style, warning.c_str());

@@ -26,6 +26,16 @@ std::vector<ShownValue> lines_of(const AppState& state, const PillarValues& valu
   return lines;
 }
 
+/// The same pillar of the second source, if it has one.
+void show_beside(const PanelStyle& style, const AppState& state, PillarIndex pillar) {
+  if (!state.beside_field) return;
+  const ForceFieldView& forces = state.beside_field->forces;
+  if (pillar.row >= forces.rows || pillar.col >= forces.cols) return;
+  leave_gap(style, 4);
+  heading(style, state.beside_is_truth ? "truth" : state.beside->info().name);
+  value_table(style, shown_components(values_at(*state.beside_field, pillar)));
+}
+
 }  // namespace
 
 void hover_panel(const AppState& state) {
@@ -42,9 +52,10 @@ void hover_panel(const AppState& state) {
   if (state.field->raw.data != nullptr) {
     faint_text(style, ("readings 1–4: " + format_readings(values.readings)).c_str());
   }
-  if (values.status == 0) return;
+  if (values.status == 0) return show_beside(style, state, pillar);
   leave_gap(style, 2);
   value_table(style, lines_of(state, values));
+  show_beside(style, state, pillar);
 }
 
 }  // namespace pillarfield::viewer

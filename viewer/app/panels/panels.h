@@ -2,6 +2,7 @@
 
 #include "viewer/app/app_state.h"
 #include "viewer/app/field_place.h"
+#include "viewer/app/input/shortcuts.h"
 
 namespace pillarfield::viewer {
 
@@ -23,7 +24,17 @@ void selection_panel(AppState& state);
 /// extent of a contact.
 void contacts_panel(AppState& state, const FieldPlace& place);
 
-/// Force over time of pinned pillars and the selection, with the play head.
+/// Total force, torque and centre of pressure of the whole skin over time, and the force on pinned
+/// pillars and the selection. The wheel zooms, a drag pans, a click seeks.
 void time_panel(AppState& state);
+
+/// A sensor: record and tare, rate, losses, faulty sensels.
+void sensor_panel(const Command& command);
+
+/// After this time without a frame a sensor counts as silent.
+inline constexpr double kSilentSeconds = 1;
+
+/// "no frames for 3 s".
+[[nodiscard]] std::string silent_words(const LiveStatus& status);
 
 }  // namespace pillarfield::viewer

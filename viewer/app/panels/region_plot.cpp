@@ -15,7 +15,6 @@ namespace pillarfield::viewer {
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
-constexpr std::size_t kTrailPoints = 48;
 constexpr int kBorderPoints = 97;
 
 double in_degrees(float radians) { return static_cast<double>(radians) * kDegreesPerRadian; }
@@ -79,7 +78,7 @@ class Drawing {
   void draw_corners() const;
   void draw_box(const DirectionBox& box, ImU32 colour) const;
   void draw_line(const std::vector<Vec2>& line, ImU32 colour, double width) const;
-  void draw_trail(const History& history, ImU32 colour) const;
+  void draw_trail(std::span<const CurvePoint> points, ImU32 colour) const;
   void draw_point(ImU32 colour) const;
 
  private:
@@ -204,8 +203,8 @@ void Drawing::draw_box(const DirectionBox& box, ImU32 colour) const {
   }
 }
 
-void Drawing::draw_trail(const History& history, ImU32 colour) const {
-  const auto pieces = trail_of(history, kTrailPoints);
+void Drawing::draw_trail(std::span<const CurvePoint> points, ImU32 colour) const {
+  const auto pieces = trail_of(points);
   std::size_t all = 0;
   for (const auto& piece : pieces) all += piece.size();
   std::size_t seen = 0;
@@ -269,12 +268,10 @@ std::vector<Vec2> contour_of(const PillarValues& values) {
   return contour;
 }
 
-std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t points) {
+std::vector<std::vector<Vec2>> trail_of(std::span<const CurvePoint> points) {
   std::vector<std::vector<Vec2>> pieces;
-  const auto& all = history.points();
-  const std::size_t first = all.size() - std::min(all.size(), points);
-  for (std::size_t i = first; i < all.size(); ++i) {
-    const Direction direction = direction_of(all[i].shear_x, all[i].shear_y, all[i].normal);
+  for (const CurvePoint& point : points) {
+    const Direction direction = direction_of(point.shear_x, point.shear_y, point.normal);
     if (!(direction.magnitude > 0)) continue;
     const Vec2 place{in_degrees(direction.phi), in_degrees(direction.theta)};
     if (pieces.empty() || std::abs(place.x - pieces.back().back().x) > 180) pieces.emplace_back();
@@ -305,7 +302,7 @@ RegionLimits region_limits(double phi) {
 }
 
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      const History& history, const PanelStyle& style, ImU32 colour, Theme theme) {
+                      std::span<const CurvePoint> before, const PanelStyle& style, ImU32 colour, Theme theme) {
   const PlotArea area{inside_axes(outer, width_of("90"), style), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
   const Drawing drawing(list, area, style, theme, values);
@@ -315,7 +312,7 @@ void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValue
   drawing.tint();
   drawing.draw_borders();
   drawing.draw_numbers();
-  drawing.draw_trail(history, colour);
+  drawing.draw_trail(before, colour);
   if (const auto directions = direction_box(values)) drawing.draw_box(*directions, colour);
   for (const double turn : {-360.0, 0.0, 360.0}) {
     std::vector<Vec2> contour = contour_of(values);

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "viewer/app/panels/panel_style.h"
 #include "viewer/app/panels/plot.h"
-#include "viewer/source/selection.h"
+#include "viewer/source/curves.h"
 
 namespace pillarfield::viewer {
 
@@ -24,9 +25,9 @@ struct DirectionBox {
 /// regions. Readings follow from the force by the model (2), since only their ratio matters.
 [[nodiscard]] std::vector<Vec2> contour_of(const PillarValues& values);
 
-/// Directions (phi, theta), degrees, of the last points of a history, split where phi wraps;
-/// without points of zero force.
-[[nodiscard]] std::vector<std::vector<Vec2>> trail_of(const History& history, std::size_t points);
+/// Directions (phi, theta), degrees, of the points of a curve, split where phi wraps; without
+/// points of zero force.
+[[nodiscard]] std::vector<std::vector<Vec2>> trail_of(std::span<const CurvePoint> points);
 
 /// Borders of the regions at phi (degrees): theta (degrees) up to which four and three sensels are
 /// usable, and the sensels (1..4) that become inactive there.
@@ -40,8 +41,8 @@ struct RegionLimits {
 /// idle pillars and opposite sensels.
 [[nodiscard]] std::string section_name(std::uint8_t status);
 
-/// Draws the paper's Figure 3 with a pillar in it.
+/// Draws the paper's Figure 3 with a pillar in it, and its directions before.
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      const History& history, const PanelStyle& style, ImU32 colour, Theme theme);
+                      std::span<const CurvePoint> before, const PanelStyle& style, ImU32 colour, Theme theme);
 
 }  // namespace pillarfield::viewer

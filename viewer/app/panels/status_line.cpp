@@ -10,7 +10,9 @@ namespace {
 
 Colour status_colour(std::uint8_t status, Theme theme) {
   if ((status & status::kSaturated) != 0) return colour_of(Special::saturated, theme);
-  if ((status & status::kInconsistent) != 0) return colour_of(Special::inconsistent, theme);
+  if ((status & status::kInconsistent) != 0) {
+    return colour_of(is_pressed(status) ? Special::inconsistent : Special::no_reading, theme);
+  }
   if ((status & status::kFromNeighbours) != 0) return colour_of(Special::from_contact, theme);
   return region_colour(region_of(status), theme);
 }

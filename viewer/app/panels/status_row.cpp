@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "viewer/app/panels/panels.h"
+
 namespace pillarfield::viewer {
 namespace {
 
@@ -62,6 +64,33 @@ void add_measures(Row& row, const AppState& state) {
   row.add("memory", drawn.in_place ? "in place" : "copied", "in place");
 }
 
+std::string plural(std::uint64_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
+/// What a user wants to know of a sensor.
+std::string sensor_words(const LiveStatus& status) {
+  if (status.ended) return "the source has ended";
+  if (status.silent_s > kSilentSeconds) return silent_words(status);
+  std::string words = fmt::format("{:.0f} Hz", status.stream.rate_hz);
+  if (status.stream.lost > 0) words += "   " + plural(status.stream.lost, "frame") + " lost";
+  if (!status.recording.empty()) {
+    words += fmt::format("   recording {}", plural(status.recorded.frames, "frame"));
+  }
+  return words;
+}
+
+std::string source_words(const AppState& state) {
+  Player& player = *state.player;
+  const Skin& skin = player.info().skin;
+  const std::string size = fmt::format("{} × {} pillars", skin.pillar_rows(), skin.pillar_cols());
+  if (const LiveControl* const live = player.live()) {
+    return fmt::format("{}   {}", sensor_words(live->status()), size);
+  }
+  return fmt::format("{} at {:.6g} Hz   {}", plural(player.state().frames, "frame"),
+                     player.state().rate_hz, size);
+}
+
 bool fits_beside_measures(const std::string& words) {
   const float measures = ImGui::CalcTextSize("0").x * 100;
   return ImGui::GetWindowWidth() > measures + ImGui::CalcTextSize(words.c_str()).x;
@@ -72,7 +101,9 @@ bool fits_beside_measures(const std::string& words) {
 void status_row(const AppState& state, const std::string& gpu) {
   Row row;
   const std::string& notice = state.notice;
-  if (notice.empty() || fits_beside_measures(notice)) add_measures(row, state);
+  const bool fits = notice.empty() || fits_beside_measures(notice);
+  if (fits && state.show_counters) add_measures(row, state);
+  if (fits && !state.show_counters) row.begin(source_words(state), ImGuiCol_Text);
   if (!notice.empty()) {
     if (!row.finish(notice, ImGuiCol_CheckMark)) row.begin(notice, ImGuiCol_CheckMark);
     return;

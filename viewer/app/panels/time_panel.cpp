@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,147 +13,247 @@
 namespace pillarfield::viewer {
 namespace {
 
+constexpr double kLiveSeconds = 20;  ///< shown of a sensor at first
+constexpr std::size_t kMostShownPoints = 8192;
+constexpr double kChartHeight = 130;  ///< least, nominal pixels
+constexpr double kChartWidth = 250;   ///< least beside others
+
+using Points = std::vector<CurvePoint>;
+using Component = double (*)(const CurvePoint&);
+
 struct Curve {
-  std::vector<Vec2> points;  ///< s, N
+  std::string name;
+  Points points;
+  Component value;
   ImU32 colour;
 };
 
 struct Chart {
-  const char* title;
+  std::string title;
+  const char* unit;
   std::vector<Curve> curves;
 };
 
-using Component = double (*)(const History::Point&);
-double normal_of(const History::Point& point) { return static_cast<double>(point.normal); }
-double shear_of(const History::Point& point) {
-  return std::hypot(static_cast<double>(point.shear_x), static_cast<double>(point.shear_y));
+double normal_of(const CurvePoint& point) { return static_cast<double>(point.normal); }
+double shear_x_of(const CurvePoint& point) { return static_cast<double>(point.shear_x); }
+double shear_y_of(const CurvePoint& point) { return static_cast<double>(point.shear_y); }
+double torque_of(const CurvePoint& point) { return static_cast<double>(point.torque); }
+double centre_x_of(const CurvePoint& point) { return static_cast<double>(point.centre_x_mm); }
+double centre_y_of(const CurvePoint& point) { return static_cast<double>(point.centre_y_mm); }
+double shear_of(const CurvePoint& point) {
+  return std::hypot(shear_x_of(point), shear_y_of(point));
 }
 
-std::vector<Vec2> curve_of(const History& history, Component component) {
-  std::vector<Vec2> points;
-  points.reserve(history.points().size());
-  for (const History::Point& each : history.points()) {
-    points.push_back({each.time_s, component(each)});
-  }
-  return points;
+struct Colours {
+  ImU32 x, y, normal;
+};
+
+Colours colours_of(const PanelStyle& style, Theme theme) {
+  const bool dark = theme == Theme::dark;
+  return {packed(colour_from(dark ? 0x56b4e9 : 0x0072b2)),
+          packed(colour_from(dark ? 0xe69f00 : 0xb06000)), style.text};
 }
 
-Chart chart_of_pins(const char* title, const AppState& state, Component component) {
-  Chart chart{title, {}};
+/// Total force, torque and centre of pressure of the whole skin.
+void add_total(std::vector<Chart>& charts, const Points& points, const Colours& colours) {
+  charts.push_back({"Force", "N",
+                    {{"x", points, shear_x_of, colours.x},
+                     {"y", points, shear_y_of, colours.y},
+                     {"normal", points, normal_of, colours.normal}}});
+  charts.push_back({"Torque", "N mm", {{"", points, torque_of, colours.normal}}});
+  charts.push_back({"Centre of pressure", "mm",
+                    {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
+}
+
+void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time) {
+  if (state.pins.empty()) return;
+  Chart normal{"Pins, normal", "N", {}};
+  Chart shear{"Pins, |shear|", "N", {}};
   for (const Pin& pin : state.pins) {
-    chart.curves.push_back(
-        {curve_of(pin.history, component), packed(pin_colour(pin.number, state.settings.theme))});
+    const Points points = state.curves->of(rect_of(pin), time.from, time.to, kMostShownPoints);
+    const ImU32 colour = packed(pin_colour(pin.number, state.settings.theme));
+    normal.curves.push_back({std::to_string(pin.number), points, normal_of, colour});
+    shear.curves.push_back({std::to_string(pin.number), points, shear_of, colour});
   }
-  return chart;
+  charts.push_back(std::move(normal));
+  charts.push_back(std::move(shear));
 }
 
-/// The selection has its own charts, since it carries much more than a pillar.
-std::vector<Chart> charts_of(const AppState& state, const PanelStyle& style) {
+void add_selection(std::vector<Chart>& charts, const AppState& state, const Span& time,
+                   const Colours& colours) {
+  if (!state.selection) return;
+  const Points points =
+      state.curves->of(state.selection->rect, time.from, time.to, kMostShownPoints);
+  charts.push_back({"Selection", "N",
+                    {{"x", points, shear_x_of, colours.x},
+                     {"y", points, shear_y_of, colours.y},
+                     {"normal", points, normal_of, colours.normal}}});
+}
+
+std::vector<Chart> charts_of(const AppState& state, const Span& time, const PanelStyle& style) {
+  const Colours colours = colours_of(style, state.settings.theme);
   std::vector<Chart> charts;
-  if (!state.pins.empty()) {
-    charts.push_back(chart_of_pins("Normal of the pins, N", state, normal_of));
-    charts.push_back(chart_of_pins("|Shear| of the pins, N", state, shear_of));
-  }
-  if (state.selection) {
-    const History& history = state.selection->history;
-    charts.push_back({"Normal of the selection, N", {{curve_of(history, normal_of), style.text}}});
-    charts.push_back({"|Shear| of the selection, N", {{curve_of(history, shear_of), style.text}}});
-  }
+  add_total(charts, state.curves->total(time.from, time.to, kMostShownPoints), colours);
+  add_pins(charts, state, time);
+  add_selection(charts, state, time, colours);
   return charts;
 }
 
-/// Common time span of all curves, which aligns the play head.
-Span time_span(const std::vector<Chart>& charts, double now_s) {
-  Span span{now_s, now_s};
-  for (const Chart& chart : charts) {
-    for (const Curve& curve : chart.curves) {
-      if (curve.points.empty()) continue;
-      span.from = std::min(span.from, curve.points.front().x);
-      span.to = std::max(span.to, curve.points.back().x);
-    }
-  }
-  constexpr double kLeast = 0.1;
-  if (span.to - span.from < kLeast) span.to = span.from + kLeast;
-  return span;
+std::vector<Vec2> places_of(const Curve& curve) {
+  std::vector<Vec2> places;
+  places.reserve(curve.points.size());
+  for (const CurvePoint& point : curve.points) places.push_back({point.time_s, curve.value(point)});
+  return places;
 }
 
-Span force_span(const Chart& chart) {
+Span value_span(const Chart& chart) {
   std::vector<double> values;
   for (const Curve& curve : chart.curves) {
-    for (const Vec2& each : curve.points) values.push_back(each.y);
+    for (const CurvePoint& point : curve.points) values.push_back(curve.value(point));
   }
   return round_span(values);
 }
 
-constexpr double kChartHeight = 116;
-
-/// Widest y label of all charts, which aligns their axes.
-double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
-  double widest = 0;
-  for (const Chart& chart : charts) {
-    const PlotArea area{
-        {0, 0, 1, kChartHeight * style.unit - 3 * style.line}, {}, force_span(chart)};
-    for (const Tick& tick : ticks_of(area, style).y)
-      widest = std::max(widest, width_of(tick.label));
-  }
-  return widest;
+/// The point nearest in time; null without points.
+const CurvePoint* nearest(const Points& points, double time_s) {
+  const auto after = std::ranges::lower_bound(points, time_s, {}, &CurvePoint::time_s);
+  if (points.empty()) return nullptr;
+  if (after == points.begin()) return &points.front();
+  if (after == points.end()) return &points.back();
+  return time_s - (after - 1)->time_s < after->time_s - time_s ? &*(after - 1) : &*after;
 }
 
 /// Common properties of all charts.
 struct ChartFrame {
+  AppState& state;
+  Span whole;
   Span time;
-  double now_s = 0;
-  double label_width = 0;
+  double lasts_s;
+  double label_width;
 };
+
+/// Exact values of a frame.
+void show_values(const Chart& chart, double time_s) {
+  const CurvePoint* const at = nearest(chart.curves.front().points, time_s);
+  if (at == nullptr) return;
+  std::string words = fmt::format("frame {}   {:.4f} s", at->index + 1, at->time_s);
+  for (const Curve& curve : chart.curves) {
+    const CurvePoint* const point = nearest(curve.points, time_s);
+    if (point == nullptr) continue;
+    words += fmt::format("\n{}{}{:.6g} {}", curve.name, curve.name.empty() ? "" : "  ",
+                         curve.value(*point), chart.unit);
+  }
+  ImGui::SetTooltip("%s", words.c_str());
+}
+
+/// Wheel zooms, drag pans, click seeks, double click shows the whole.
+void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& frame,
+                const PanelStyle& style) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const double at_s = area.value_at({static_cast<double>(io.MousePos.x), area.box.y}).x;
+  TimeWindow& window = frame.state.time_window;
+  const double per_pixel = (area.x.to - area.x.from) / area.box.width;
+  if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, 3)) {
+    window.pan(frame.whole, frame.lasts_s, -per_pixel * static_cast<double>(io.MouseDelta.x));
+    return;
+  }
+  if (!ImGui::IsItemHovered()) return;
+  ImGui::SetItemUsingMouseWheel();
+  constexpr double kZoomOfNotch = 1.25;
+  if (io.MouseWheel != 0) {
+    const double factor = std::pow(kZoomOfNotch, static_cast<double>(io.MouseWheel));
+    window.zoom(frame.whole, frame.lasts_s, at_s, factor);
+  }
+  const CurvePoint* const point = nearest(chart.curves.front().points, at_s);
+  if (point == nullptr) return;
+  draw_block(*ImGui::GetWindowDrawList(), {area.at({point->time_s, 0}).x, area.box.y, 1, area.box.height},
+             style.faint);
+  show_values(chart, at_s);
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+    window.reset();
+  } else if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+             !ImGui::IsMouseDragPastThreshold(ImGuiMouseButton_Left, 3)) {
+    frame.state.player->seek(point->index);
+  }
+}
+
+/// Title, unit and the names of the curves in their colours.
+void draw_title(ImDrawList& list, const Chart& chart, const Viewport& outer,
+                const PanelStyle& style) {
+  const std::string words = fmt::format("{}, {}", chart.title, chart.unit);
+  draw_text(list, {outer.x, outer.y}, style.faint, words);
+  double x = outer.x + width_of(words) + 12 * style.unit;
+  for (const Curve& curve : chart.curves) {
+    draw_text(list, {x, outer.y}, curve.colour, curve.name);
+    x += width_of(curve.name) + 10 * style.unit;
+  }
+}
 
 void draw_chart(const Chart& chart, const Viewport& outer, const ChartFrame& frame,
                 const PanelStyle& style) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const double title = style.line + 2 * style.unit;
   const Viewport below{outer.x, outer.y + title, outer.width, outer.height - title};
-  const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, force_span(chart)};
-  draw_text(list, {outer.x, outer.y}, style.text, chart.title);
+  const PlotArea area{inside_axes(below, frame.label_width, style), frame.time, value_span(chart)};
+  draw_title(list, chart, outer, style);
   PlotTicks ticks = ticks_of(area, style);
   if (!ticks.x.empty()) ticks.x.back().label += " s";
   draw_axes(list, area, ticks, style);
   for (const Curve& curve : chart.curves) {
-    draw_curve(list, area, curve.points, curve.colour, 1.6 * style.unit);
+    draw_curve(list, area, places_of(curve), curve.colour, 1.6 * style.unit);
   }
-  draw_head(list, area, frame.now_s, style);
+  const double now_s = frame.state.field->time_s;
+  if (now_s >= area.x.from && now_s <= area.x.to) draw_head(list, area, now_s, style);
+  take_mouse(chart, area, frame, style);
 }
 
-void draw_legend(const AppState& state, const PanelStyle& style) {
-  std::vector<const Pin*> pins;
-  for (const Pin& pin : state.pins) pins.push_back(&pin);
-  std::ranges::sort(pins, {}, [](const Pin* pin) { return pin->number; });
-  const double right = static_cast<double>(ImGui::GetWindowContentRegionMax().x);
-  for (std::size_t i = 0; i < pins.size(); ++i) {
-    const std::string words =
-        fmt::format("{}  ({}, {})", pins[i]->number, pins[i]->pillar.row, pins[i]->pillar.col);
-    if (i > 0) {
-      ImGui::SameLine(0, static_cast<float>(16 * style.unit));
-      const double end =
-          static_cast<double>(ImGui::GetCursorPosX()) + width_of(words) + 2 * style.line;
-      if (end > right) ImGui::NewLine();
+/// Widest y label of all charts, which aligns their axes.
+double label_width(const std::vector<Chart>& charts, const PanelStyle& style) {
+  double widest = 0;
+  for (const Chart& chart : charts) {
+    const PlotArea area{{0, 0, 1, kChartHeight * style.unit}, {}, value_span(chart)};
+    for (const Tick& tick : ticks_of(area, style).y) {
+      widest = std::max(widest, width_of(tick.label));
     }
-    swatch(style, packed(pin_colour(pins[i]->number, state.settings.theme)));
-    ImGui::TextUnformatted(words.c_str());
   }
+  return widest;
 }
 
-/// Charts in rows, as many per row as fit.
+/// Charts in rows, as many per row as fit; the rows fill the height that is left.
 void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
                  const PanelStyle& style) {
-  const double available = static_cast<double>(ImGui::GetContentRegionAvail().x);
+  const ImVec2 available = ImGui::GetContentRegionAvail();
+  const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
-  const auto fitting = static_cast<std::size_t>(std::max(available / (300 * style.unit), 1.0));
-  const std::size_t beside =
-      std::min(fitting >= 4 ? 4 : std::min<std::size_t>(fitting, 2), charts.size());
-  const double width =
-      (available - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
+  const auto fitting =
+      static_cast<std::size_t>(std::max(wide / (kChartWidth * style.unit), 1.0));
+  const std::size_t beside = std::min(fitting, charts.size());
+  const std::size_t rows = (charts.size() + beside - 1) / beside;
+  const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);
+  const double height =
+      std::max(static_cast<double>(available.y) / static_cast<double>(rows) - 6 * style.unit,
+               kChartHeight * style.unit);
   for (std::size_t i = 0; i < charts.size(); ++i) {
     if (i % beside != 0) ImGui::SameLine(0, static_cast<float>(gap));
-    draw_chart(charts[i], reserve(width, kChartHeight * style.unit), frame, style);
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::InvisibleButton("chart", ImVec2(static_cast<float>(width), static_cast<float>(height)));
+    draw_chart(charts[i],
+               {static_cast<double>(corner.x), static_cast<double>(corner.y), width, height}, frame,
+               style);
+    ImGui::PopID();
+  }
+}
+
+/// How far the survey of a file is, while it is under way.
+void draw_progress(const AppState& state, const PanelStyle& style) {
+  if (state.survey == nullptr) return;
+  const Survey::Progress progress = state.survey->progress();
+  if (!progress.failure.empty()) {
+    faint_text(style, progress.failure.c_str());
+  } else if (progress.done < progress.frames) {
+    faint_text(style,
+               fmt::format("{} of {} frames measured", progress.done, progress.frames).c_str());
   }
 }
 
@@ -161,14 +262,14 @@ void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
 void time_panel(AppState& state) {
   const PanelStyle style = panel_style(state.settings.scale);
   number_pins(state);
-  const std::vector<Chart> charts = charts_of(state, style);
-  if (charts.empty() || !state.field) {
-    faint_text(style, "Pinned pillars and the selection show their forces over time here.");
-    return;
-  }
-  const double now_s = state.field->time_s;
-  draw_legend(state, style);
-  draw_charts(charts, {time_span(charts, now_s), now_s, label_width(charts, style)}, style);
+  if (state.curves == nullptr || !state.field) return;
+  draw_progress(state, style);
+  const auto [first_s, last_s] = state.curves->time_span();
+  const double lasts_s = state.player->live() != nullptr ? kLiveSeconds : 0;
+  const Span whole{first_s, std::max(last_s, first_s + TimeWindow::kLeastSeconds)};
+  const Span time = state.time_window.of(whole, lasts_s);
+  const std::vector<Chart> charts = charts_of(state, time, style);
+  draw_charts(charts, {state, whole, time, lasts_s, label_width(charts, style)}, style);
 }
 
 }  // namespace pillarfield::viewer

@@ -21,20 +21,25 @@ void tip(const char* help) {
 
 }  // namespace
 
-bool section(const char* title, bool opened) {
+Section section(const char* title) {
   ImGui::Spacing();
   ImGui::PushStyleColor(ImGuiCol_Header, 0);
   ImGui::PushStyleColor(ImGuiCol_HeaderHovered, 0);
   ImGui::PushStyleColor(ImGuiCol_HeaderActive, 0);
   ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_TextDisabled));
-  const bool open = ImGui::CollapsingHeader(title, opened ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  const bool open = ImGui::CollapsingHeader(title);
   ImGui::PopStyleColor(4);
+  constexpr float kLeastDrag = 8;
+  const bool dragged =
+      ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, kLeastDrag);
+  const bool menu = ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Right);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("drag to move, right click for its place");
   const ImVec2 low = ImGui::GetItemRectMin();
   const ImVec2 high = ImGui::GetItemRectMax();
   ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(low.x, high.y), ImVec2(high.x, high.y + 1),
                                             ImGui::GetColorU32(ImGuiCol_Separator));
   if (open) ImGui::Spacing();
-  return open;
+  return {open, dragged, menu};
 }
 
 void labelled(const char* label) {
@@ -150,6 +155,17 @@ void less(ImDrawList& list, const ImVec2& middle, float side, unsigned colour) {
 void more(ImDrawList& list, const ImVec2& middle, float side, unsigned colour) {
   box(list, middle, side * 0.75f, stroke(side), colour);
   box(list, middle, stroke(side), side * 0.75f, colour);
+}
+
+void record(ImDrawList& list, const ImVec2& middle, float side, unsigned /*colour*/) {
+  list.AddCircleFilled(middle, side * 0.42f, IM_COL32(214, 60, 48, 255));
+}
+
+/// A zero.
+void tare(ImDrawList& list, const ImVec2& middle, float side, unsigned colour) {
+  const ImVec2 half(side * 0.28f, side * 0.45f);
+  list.AddRect(ImVec2(middle.x - half.x, middle.y - half.y),
+               ImVec2(middle.x + half.x, middle.y + half.y), colour, half.x, 0, stroke(side));
 }
 
 void question(ImDrawList& list, const ImVec2& middle, float /*side*/, unsigned colour) {

@@ -10,8 +10,15 @@ namespace pillarfield::viewer {
 
 // Widgets that ImGui lacks, in its style, for its current window.
 
-/// A collapsible heading; true while expanded.
-[[nodiscard]] bool section(const char* title, bool opened = true);
+/// State of a heading.
+struct Section {
+  bool open;     ///< expanded
+  bool dragged;  ///< being dragged away
+  bool menu;     ///< right click
+};
+
+/// A collapsible heading.
+[[nodiscard]] Section section(const char* title);
 
 /// A label on the left; the next control takes the rest of the line.
 void labelled(const char* label);
@@ -34,6 +41,8 @@ void loop(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void follow(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void less(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void more(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
+void record(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
+void tare(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 void question(ImDrawList& list, const ImVec2& middle, float side, unsigned colour);
 }  // namespace icon
 

@@ -43,23 +43,33 @@ Presenter::Presenter(const gpu::Instance& instance, const gpu::Device& device,
       device_(&device),
       chain_(device, surface),
       render_pass_(make_gui_pass(device, chain_.format())),
-      renderer_(instance, device, {1, 1}, scale),
       gui_(std::make_unique<GuiContext>(instance, device, *render_pass_, scale)),
       pool_(device.handle(),
             {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
       buffers_(device.handle(),
                vk::CommandBufferAllocateInfo(*pool_, vk::CommandBufferLevel::ePrimary, 1)),
       ready_(device.handle(), vk::SemaphoreCreateInfo()),
-      done_(device.handle(), vk::FenceCreateInfo()) {}
+      done_(device.handle(), vk::FenceCreateInfo()) {
+  parts_.push_back({std::make_unique<Renderer>(instance, device, vk::Extent2D{1, 1}, scale)});
+}
 
-bool Presenter::resize(vk::Extent2D window, vk::Extent2D picture, double scale) {
+bool Presenter::resize(vk::Extent2D window, const std::vector<Place>& places, double scale) {
   // Presentation may still use the semaphores of the old images.
   finish();
   framebuffers_.clear();
   if (!chain_.resize(window)) return false;
   make_framebuffers();
-  if (picture != renderer_.image().size()) has_picture_ = false;
-  renderer_.resize(picture, scale);
+  places_ = places;
+  parts_.resize(std::max<std::size_t>(places.size(), 1));
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Part& part = parts_[i];
+    const vk::Extent2D size = places[i].size;
+    if (part.renderer == nullptr) {
+      part.renderer = std::make_unique<Renderer>(*instance_, *device_, size, scale);
+    }
+    if (size != part.renderer->image().size()) part.has_picture = false;
+    part.renderer->resize(size, scale);
+  }
   if (scale != gui_->scale()) {
     gui_ = std::make_unique<GuiContext>(*instance_, *device_, *render_pass_, scale);
   }
@@ -76,10 +86,18 @@ void Presenter::make_framebuffers() {
   }
 }
 
-bool Presenter::draw(const Picture* picture) {
+void Presenter::clear() {
+  finish();
+  for (Part& part : parts_) {
+    part.has_picture = false;
+    part.renderer->memory().forget();
+  }
+}
+
+bool Presenter::draw(const std::vector<std::optional<Picture>>& pictures) {
   const auto index = chain_.acquire(*ready_);
   if (!index) return false;
-  record(*index, picture);
+  record(*index, pictures);
   submit(*index);
   chain_.present(*index);
   static_cast<void>(device_->handle().waitForFences(*done_, VK_TRUE, UINT64_MAX));
@@ -87,43 +105,64 @@ bool Presenter::draw(const Picture* picture) {
   return true;
 }
 
-void Presenter::record(std::uint32_t index, const Picture* picture) {
+void Presenter::record(std::uint32_t index, const std::vector<std::optional<Picture>>& pictures) {
   const vk::raii::CommandBuffer& commands = buffers_.front();
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-  if (picture != nullptr) {
-    renderer_.record(commands, picture->field, picture->source, picture->settings);
-    has_picture_ = true;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (!pictures[i]) continue;
+    const Picture& picture = *pictures[i];
+    parts_.at(i).renderer->record(commands, picture.field, picture.source, picture.settings);
+    parts_.at(i).has_picture = true;
   }
-  copy_picture(chain_.image(index));
+  copy_pictures(chain_.image(index));
   draw_gui(index);
   commands.end();
 }
 
-/// Discards the old contents: picture and panels cover the whole image, which is blank without a
-/// picture.
-void Presenter::copy_picture(vk::Image image) const {
+/// Discards the old contents: pictures and panels cover the whole image, which is blank where a
+/// picture is missing.
+void Presenter::copy_pictures(vk::Image image) const {
   const vk::raii::CommandBuffer& commands = buffers_.front();
-  const vk::ImageMemoryBarrier to_target({}, Access::eTransferWrite, ImageLayout::eUndefined,
+  const auto wait = [&](vk::AccessFlags before, ImageLayout layout) {
+    const vk::ImageMemoryBarrier barrier(before, Access::eTransferWrite, layout,
                                          ImageLayout::eTransferDstOptimal, VK_QUEUE_FAMILY_IGNORED,
                                          VK_QUEUE_FAMILY_IGNORED, image, kWholeColour);
-  commands.pipelineBarrier(Stage::eTransfer, Stage::eTransfer, {}, nullptr, nullptr, to_target);
-  if (!has_picture_) {
+    commands.pipelineBarrier(Stage::eTransfer, Stage::eTransfer, {}, nullptr, nullptr, barrier);
+  };
+  wait({}, ImageLayout::eUndefined);
+  if (places_.empty() || !std::ranges::all_of(parts_, &Part::has_picture)) {
     commands.clearColorImage(image, ImageLayout::eTransferDstOptimal,
                              vk::ClearColorValue(std::array{0.055f, 0.067f, 0.086f, 1.0f}),
                              kWholeColour);
-    return;
+    wait(Access::eTransferWrite, ImageLayout::eTransferDstOptimal);
   }
-  const gpu::Image& picture = renderer_.image();
-  const vk::Extent2D size{std::min(picture.size().width, chain_.size().width),
-                          std::min(picture.size().height, chain_.size().height)};
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (parts_[i].has_picture) copy_picture(image, parts_[i].renderer->image(), places_[i]);
+  }
+}
+
+void Presenter::copy_picture(vk::Image image, const gpu::Image& picture, const Place& place) const {
+  const vk::raii::CommandBuffer& commands = buffers_.front();
+  const auto room = [](std::uint32_t all, int from) {
+    const auto begin = static_cast<std::uint32_t>(from);
+    return all > begin ? all - begin : 0u;
+  };
+  const vk::Extent2D size{
+      std::min(picture.size().width, room(chain_.size().width, place.corner.x)),
+      std::min(picture.size().height, room(chain_.size().height, place.corner.y))};
+  if (size.width == 0 || size.height == 0) return;
+  const vk::Offset3D corner(place.corner.x, place.corner.y, 0);
   if (chain_.format() == Target::kFormat) {
     commands.copyImage(picture.handle(), ImageLayout::eTransferSrcOptimal, image,
                        ImageLayout::eTransferDstOptimal,
-                       vk::ImageCopy(kColour, {}, kColour, {}, vk::Extent3D(size, 1)));
+                       vk::ImageCopy(kColour, {}, kColour, corner, vk::Extent3D(size, 1)));
   } else {
-    const std::array<vk::Offset3D, 2> box{vk::Offset3D{}, corner_of(size)};
+    const vk::Offset3D end = corner_of(size);
+    const std::array<vk::Offset3D, 2> from{vk::Offset3D{}, end};
+    const std::array<vk::Offset3D, 2> to{corner,
+                                         vk::Offset3D(corner.x + end.x, corner.y + end.y, 1)};
     commands.blitImage(picture.handle(), ImageLayout::eTransferSrcOptimal, image,
-                       ImageLayout::eTransferDstOptimal, vk::ImageBlit(kColour, box, kColour, box),
+                       ImageLayout::eTransferDstOptimal, vk::ImageBlit(kColour, from, kColour, to),
                        vk::Filter::eNearest);
   }
 }

@@ -92,6 +92,9 @@ struct Window::Callbacks {
   static void wheel(GLFWwindow* window, double /*x*/, double y) {
     of(window).events_.emplace_back(WheelEvent{y, of(window).cursor_});
   }
+  static void drop(GLFWwindow* window, int count, const char** names) {
+    of(window).drops_.assign(names, names + count);
+  }
   static void damage(GLFWwindow* window) { of(window).damaged_ = true; }
   static void resize(GLFWwindow* window, int /*width*/, int /*height*/) { damage(window); }
   static void rescale(GLFWwindow* window, float /*x*/, float /*y*/) { damage(window); }
@@ -122,6 +125,7 @@ void Window::listen() {
   glfwSetCursorEnterCallback(window_, Callbacks::enter);
   glfwSetMouseButtonCallback(window_, Callbacks::button);
   glfwSetScrollCallback(window_, Callbacks::wheel);
+  glfwSetDropCallback(window_, Callbacks::drop);
   glfwSetWindowRefreshCallback(window_, Callbacks::damage);
   glfwSetFramebufferSizeCallback(window_, Callbacks::resize);
   glfwSetWindowContentScaleCallback(window_, Callbacks::rescale);
@@ -165,6 +169,8 @@ bool Window::closes() const { return glfwWindowShouldClose(window_) != 0; }
 
 void Window::show() { glfwShowWindow(window_); }
 
+void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
+
 // GLFW polls all windows; only one exists.
 // NOLINTNEXTLINE(readability-convert-member-functions-to-static)
 void Window::poll() { glfwPollEvents(); }
@@ -177,6 +183,8 @@ void Window::wake() { glfwPostEmptyEvent(); }
 double Window::now_s() { return glfwGetTime(); }
 
 std::vector<InputEvent> Window::take_events() { return std::exchange(events_, {}); }
+
+std::vector<std::string> Window::take_drops() { return std::exchange(drops_, {}); }
 
 bool Window::take_damage() { return std::exchange(damaged_, false); }
 

@@ -30,6 +30,7 @@ class Window {
   [[nodiscard]] double scale() const;       ///< scale of the display: 1, 1.5, 2, ...
   [[nodiscard]] bool closes() const;        ///< the user asked to close it
   void show();
+  void set_title(const std::string& title);
 
   void poll();                          ///< collects events
   void wait(double seconds);            ///< waits for an event or the timeout, then collects
@@ -38,6 +39,9 @@ class Window {
 
   /// Returns and clears the collected events.
   [[nodiscard]] std::vector<InputEvent> take_events();
+
+  /// Returns and clears the names of files dropped onto the window.
+  [[nodiscard]] std::vector<std::string> take_drops();
 
   /// True if it must be redrawn: uncovered, resized, or moved to another display.
   [[nodiscard]] bool take_damage();
@@ -48,6 +52,7 @@ class Window {
 
   GLFWwindow* window_ = nullptr;
   std::vector<InputEvent> events_;
+  std::vector<std::string> drops_;
   /// Position of the last motion event; GLFW's query returns the current position.
   Vec2 cursor_;
   bool damaged_ = true;

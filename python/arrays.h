@@ -1,0 +1,68 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "pillarfield/frame.h"
+
+namespace pillarfield::python {
+
+namespace py = pybind11;
+using Shape = std::vector<py::ssize_t>;
+
+/// An array of `shape` over memory that `owner` keeps alive.
+template <class T>
+py::array_t<T> array_over(const T* data, const Shape& shape, const py::object& owner,
+                          bool writeable) {
+  py::array_t<T> array(shape, data, owner);
+  if (!writeable) array.attr("setflags")(false);
+  return array;
+}
+
+/// A capsule that owns `value`.
+template <class T>
+py::capsule capsule_of(std::unique_ptr<T> value) {
+  py::capsule owner(value.get(), [](void* pointer) { delete static_cast<T*>(pointer); });
+  static_cast<void>(value.release());
+  return owner;
+}
+
+/// An array that owns `values`, without a copy.
+template <class T>
+py::array_t<T> array_of(std::vector<T> values, const Shape& shape) {
+  auto owned = std::make_unique<std::vector<T>>(std::move(values));
+  const T* const data = owned->data();
+  return array_over(data, shape, capsule_of(std::move(owned)), true);
+}
+
+/// None for an empty plane, else an array [rows, cols] with a copy of it.
+template <class T>
+py::object plane_or_none(const std::vector<T>& plane, std::uint32_t rows, std::uint32_t cols) {
+  if (plane.empty()) return py::none();
+  return array_of(std::vector<T>(plane), {rows, cols});
+}
+
+/// A copy of an array [rows, cols], converted to T; empty for None. Throws Error, naming `place`,
+/// if it has another shape.
+template <class T>
+std::vector<T> plane_from(const py::object& plane, std::uint32_t rows, std::uint32_t cols,
+                          std::string_view place);
+
+/// The type of readings of an array. Throws Error for types other than uint8, uint16 and float32.
+[[nodiscard]] SenselType sensel_type_of(const py::array& readings);
+/// The NumPy type of readings.
+[[nodiscard]] py::dtype dtype_of(SenselType type);
+
+/// A view of frame `index` of readings [frames, rows, cols], or of readings [rows, cols] for index
+/// 0. Throws Error unless they are dense and aligned.
+[[nodiscard]] FrameView frame_of(const py::array& readings, std::size_t index = 0);
+
+using FloatPlane = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+}  // namespace pillarfield::python

@@ -1,0 +1,185 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/contact_tracker.h"
+#include "pillarfield/error.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/force_planes.h"
+#include "python/process.h"
+
+namespace pillarfield::python {
+namespace {
+
+constexpr const char* kContact =
+    "A contact of a frame: force on the skin, place, friction and slip, with an id that stays.";
+constexpr const char* kTotal = "The total over all loaded pillars of a frame.";
+constexpr const char* kFrameContacts =
+    R"(The contacts of a frame, a sequence of Contact by label.)";
+constexpr const char* kTracker = R"(Finds the contacts of frame after frame and tracks them.
+
+plan: Plan of the solver; it gives pitch, friction and noise of the sensor
+minimum_pillars: smaller contacts are neither listed nor tracked
+reach_mm: how far a contact may move between frames, 0..1000
+
+Raises Error for a value out of range.)";
+
+using Pair = std::pair<double, double>;
+
+/// Adds the members of ContactQuantities to a class; `get` returns them for an object of it.
+template <class Class, class Get>
+void add_quantities(Class& bound, Get get) {
+  using Self = typename Class::type;
+  const auto add = [&](const char* name, auto member, const char* text) {
+    bound.def_property_readonly(
+        name, [get, member](const Self& self) { return get(self).*member; }, text);
+  };
+  const auto add_place = [&](const char* name, PatchPlace ContactQuantities::*member,
+                             const char* text) {
+    bound.def_property_readonly(
+        name,
+        [get, member](const Self& self) {
+          const PatchPlace& place = get(self).*member;
+          return Pair(place.x_mm, place.y_mm);
+        },
+        text);
+  };
+  using Q = ContactQuantities;
+  add("pillars", &Q::pillars, "number of pillars");
+  add("ambiguous", &Q::ambiguous, "of these, ambiguous by their readings alone");
+  add("resolved", &Q::resolved, "of the ambiguous, resolved by friction");
+  add("shear_x_n", &Q::shear_x_n, "force to the right, N");
+  add("shear_y_n", &Q::shear_y_n, "force up, N");
+  add("normal_n", &Q::normal_n, "pressing force, N");
+  add_place("centre_of_pressure_mm", &Q::centre_of_pressure,
+            "(x, y) from the centre of the skin, mm");
+  add_place("centre_mm", &Q::centre, "(x, y) of the mean pillar, mm");
+  add("torque_nmm", &Q::torque_nmm, "about the outward normal, counter-clockwise, N mm");
+  add("area_mm2", &Q::area_mm2, "mm²");
+  add("peak_n", &Q::peak_n, "largest normal force of a pillar, N");
+  add_place("peak_mm", &Q::peak, "(x, y) of that pillar, mm");
+  add("mean_pressure_kpa", &Q::mean_pressure_kpa, "kPa");
+  add("friction", &Q::friction, "friction coefficient, or None");
+  add("friction_deviation", &Q::friction_deviation, "its standard deviation, or None");
+  add("slipping_share", &Q::slipping_share, "slipping fraction of the normal force, 0..1, or None");
+  add("slip_margin", &Q::slip_margin,
+      "1 - |shear| / (friction normal), the reserve before it slides, or None");
+  bound.def_property_readonly(
+      "friction_source", [get](const Self& self) { return name_of(get(self).friction_source); },
+      "'prior', 'given', 'observed' or 'carried_over'");
+  bound.def_property_readonly(
+      "slip", [get](const Self& self) { return name_of(get(self).slip); },
+      "'unknown', 'sticking', 'partial' or 'sliding'");
+  bound.def_property_readonly(
+      "wrench",
+      [get](const Self& self) -> py::object {
+        const auto& wrench = get(self).wrench;
+        if (!wrench) return py::none();
+        const auto& [force, moment] = *wrench;
+        return py::make_tuple(py::make_tuple(force.x, force.y, force.z),
+                              py::make_tuple(moment.x, moment.y, moment.z));
+      },
+      "((force x, y, z in N), (moment x, y, z in N mm)) in the body's frame, or None");
+}
+
+std::string contact_text(const TrackedContact& contact) {
+  const ContactQuantities& q = contact.quantities;
+  return fmt::format("<Contact {}: {} pillars, shear ({:.3g}, {:.3g}) N, normal {:.3g} N, {}>",
+                     contact.track_id, q.pillars, q.shear_x_n, q.shear_y_n, q.normal_n,
+                     name_of(q.slip));
+}
+
+using SharedContacts = std::shared_ptr<FrameContacts>;
+
+TrackedContact contact_at(const FrameContacts& self, py::ssize_t index) {
+  const auto size = static_cast<py::ssize_t>(self.contacts.size());
+  if (index < -size || index >= size) throw py::index_error("contact index out of range");
+  return self.contacts[static_cast<std::size_t>(index < 0 ? index + size : index)];
+}
+
+py::list ended_of(const FrameContacts& self) {
+  py::list ended;
+  for (const EndedContact& contact : self.ended) {
+    ended.append(py::make_tuple(contact.track_id, contact.merged_into));
+  }
+  return ended;
+}
+
+/// A ContactTracker with the plan's constants, used by one thread at a time.
+class Tracker {
+ public:
+  Tracker(const SolverPlan& plan, std::uint64_t minimum_pillars, double reach_mm)
+      : tracker_(std::make_unique<ContactTracker>(plan.skin.pillar_pitch_mm(),
+                                                  options_of(plan, minimum_pillars, reach_mm))) {}
+
+  /// The contacts of each frame.
+  std::vector<SharedContacts> update(const py::dict& planes, const std::vector<double>& times) {
+    const ForceArrays forces(planes);
+    if (times.size() != forces.frames()) throw Error("Contacts", "the times are not one a frame");
+    if (tracker_.is_foreign()) throw_foreign("Contacts");
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(mutex_);
+    std::vector<SharedContacts> contacts;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      contacts.push_back(
+          std::make_shared<FrameContacts>(tracker_.get()->update(forces.frame(i), times[i])));
+    }
+    return contacts;
+  }
+
+ private:
+  static ContactOptions options_of(const SolverPlan& plan, std::uint64_t minimum_pillars,
+                                   double reach_mm) {
+    ContactOptions options;
+    set_sensor(options, plan);
+    options.minimum_pillars = minimum_pillars;
+    options.reach_mm = reach_mm;
+    return options;
+  }
+
+  std::mutex mutex_;
+  ProcessBound<ContactTracker> tracker_;
+};
+
+}  // namespace
+
+void bind_contacts(py::module_& module) {
+  py::class_<ContactQuantities> total(module, "ContactTotal", kTotal);
+  add_quantities(
+      total, [](const ContactQuantities& self) -> const auto& { return self; });
+  py::class_<TrackedContact> contact(module, "Contact", kContact);
+  add_quantities(
+      contact, [](const TrackedContact& self) -> const auto& { return self.quantities; });
+  contact.def_readonly("track_id", &TrackedContact::track_id, "1, 2, ...; never reused")
+      .def_readonly("parent", &TrackedContact::parent, "track_id that it split from, or None")
+      .def_readonly("first_time_s", &TrackedContact::first_time_s, "time of its first frame, s")
+      .def_readonly("age_s", &TrackedContact::age_s, "time since then, s")
+      .def("__repr__", &contact_text);
+  py::class_<FrameContacts, SharedContacts>(module, "FrameContacts", kFrameContacts)
+      .def_readonly("time_s", &FrameContacts::time_s, "time of the frame, s")
+      .def_readonly("total", &FrameContacts::total, "ContactTotal over all loaded pillars")
+      .def_property_readonly("ended", &ended_of,
+                             "[(track_id, track_id that it merged into or None), ...]")
+      .def("__len__", [](const FrameContacts& self) { return self.contacts.size(); })
+      .def("__getitem__", &contact_at, py::arg("index"))
+      .def("__repr__", [](const FrameContacts& self) {
+        return fmt::format("<FrameContacts: {} contacts, {:.3g} N>", self.contacts.size(),
+                           self.total.normal_n);
+      });
+  py::class_<Tracker>(module, "Tracker", kTracker)
+      .def(py::init<const SolverPlan&, std::uint64_t, double>(), py::arg("plan"), py::kw_only(),
+           py::arg("minimum_pillars") = ContactOptions{}.minimum_pillars,
+           py::arg("reach_mm") = ContactOptions{}.reach_mm)
+      .def("update", &Tracker::update, py::arg("planes"), py::arg("times"),
+           "FrameContacts of each of the next frames, from planes [frames, rows, cols].");
+}
+
+}  // namespace pillarfield::python

@@ -1,0 +1,222 @@
+#include "python/frames.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "python/bindings.h"
+#include "python/force_planes.h"
+#include "python/index_range.h"
+#include "python/signals.h"
+
+namespace pillarfield::python {
+namespace {
+
+constexpr const char* kSource =
+    R"(Frames with random access: readings, times, skin and calibration.)";
+constexpr const char* kOpen = R"(Opens a recording or a Tekscan ASCII export.
+
+trust: the file comes from your own programs, so it is not examined first.)";
+constexpr const char* kArray = R"(Frames of an array, without a copy.
+
+readings: uint8, uint16 or float32 [frames, rows, cols], dense
+times: float64 [frames], s
+skin: Skin with constants; its rows and columns are replaced by those of the array
+calibration: Calibration, or None)";
+
+/// Frames of an array. The array must not change meanwhile.
+class ArraySource final : public FrameSource {
+ public:
+  ArraySource(py::array readings, const py::array_t<double, py::array::forcecast>& times,
+              const Skin& skin, const std::optional<SkinCalibration>& calibration)
+      : readings_(std::move(readings)), type_(sensel_type_of(readings_)), skin_(skin) {
+    if (readings_.ndim() != 3 || times.ndim() != 1 || times.shape(0) != readings_.shape(0)) {
+      throw Error("frames", "their shape does not fit the times",
+                  "give readings [frames, rows, cols] and times [frames]");
+    }
+    frames_ = static_cast<std::uint64_t>(readings_.shape(0));
+    times_.assign(times.data(), times.data() + times.size());
+    if (frames_ > 0) {
+      const FrameView frame = frame_of(readings_);
+      skin_.rows = frame.rows;
+      skin_.cols = frame.cols;
+      first_ = static_cast<const std::byte*>(frame.data);
+    }
+    check(skin_, "frames");
+    if (!calibration) return;
+    require_fitting(*calibration, skin_, "frames");
+    apply(*calibration, skin_, calibration_);
+  }
+
+  [[nodiscard]] const std::string& format() const override { return format_; }
+  [[nodiscard]] const Skin& skin() const override { return skin_; }
+  [[nodiscard]] SenselType sensel_type() const override { return type_; }
+  [[nodiscard]] std::uint64_t frames() const override { return frames_; }
+  [[nodiscard]] const Calibration& calibration() const override { return calibration_; }
+  [[nodiscard]] bool has_truth() const override { return false; }
+  double time(std::uint64_t index) override { return times_[index]; }
+  double read(std::uint64_t index, FrameBuffer& frame) override {
+    const std::span<std::byte> bytes = frame.bytes();
+    std::memcpy(bytes.data(), first_ + index * bytes.size(), bytes.size());
+    return times_[index];
+  }
+  void read_truth(std::uint64_t, ForceField&) override {}
+  [[nodiscard]] const std::vector<std::string>& warnings() const override { return warnings_; }
+
+ private:
+  py::array readings_;
+  SenselType type_;
+  Skin skin_;
+  Calibration calibration_;
+  std::uint64_t frames_ = 0;
+  const std::byte* first_ = nullptr;
+  std::vector<double> times_;
+  std::string format_ = "array";
+  std::vector<std::string> warnings_;
+};
+
+/// Readings of `count` frames: [count, rows, cols].
+py::array read_frames(Frames& frames, const IndexRange& range) {
+  FrameSource& source = *frames.source;
+  range.check(source.frames());
+  const Skin& skin = source.skin();
+  py::array readings(dtype_of(source.sensel_type()),
+                     Shape{static_cast<py::ssize_t>(range.count), skin.rows, skin.cols});
+  auto* out = static_cast<std::byte*>(readings.mutable_data());
+  const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(frames.alone);
+  SignalCheck check_signals;
+  FrameBuffer frame(source.sensel_type(), skin.rows, skin.cols);
+  for (std::size_t i = 0; i < range.count; ++i) {
+    check_signals();
+    source.read(range[i], frame);
+    out = std::ranges::copy(frame.bytes(), out).out;
+  }
+  return readings;
+}
+
+py::dict read_truth(Frames& frames, const IndexRange& range) {
+  FrameSource& source = *frames.source;
+  range.check(source.frames());
+  if (!source.has_truth()) {
+    throw Error(source.format(), "it has no true forces", "simulate one that has");
+  }
+  ForceStack stack(source.skin().pillar_rows(), source.skin().pillar_cols());
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(frames.alone);
+    SignalCheck check_signals;
+    ForceField truth(source.skin().pillar_rows(), source.skin().pillar_cols());
+    stack.reserve(range.count);
+    for (std::size_t i = 0; i < range.count; ++i) {
+      check_signals();
+      source.read_truth(range[i], truth);
+      stack.append(truth.view());
+    }
+  }
+  return stack.release();
+}
+
+py::array_t<double> times_of(Frames& frames, std::uint64_t most) {
+  std::vector<double> times;
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(frames.alone);
+    FrameSource& source = *frames.source;
+    for (std::uint64_t i = 0; i < std::min(most, source.frames()); ++i)
+      times.push_back(source.time(i));
+  }
+  const auto size = static_cast<py::ssize_t>(times.size());
+  return array_of(std::move(times), {size});
+}
+
+SkinCalibration calibration_of(const Frames& frames) {
+  SkinCalibration calibration;
+  calibration.rows = frames.source->skin().rows;
+  calibration.cols = frames.source->skin().cols;
+  calibration.planes = frames.source->calibration();
+  return calibration;
+}
+
+std::unique_ptr<Frames> open(const std::filesystem::path& path, bool trust) {
+  const py::gil_scoped_release unlocked;
+  return std::make_unique<Frames>(open_frames(path, {.trust = trust}));
+}
+
+std::unique_ptr<Frames> of_array(const py::array& readings,
+                                 const py::array_t<double, py::array::forcecast>& times,
+                                 const Skin& skin,
+                                 const std::optional<SkinCalibration>& calibration) {
+  return std::make_unique<Frames>(
+      std::make_unique<ArraySource>(readings, times, skin, calibration));
+}
+
+void write(Frames& frames, const std::filesystem::path& path, bool overwrite) {
+  const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(frames.alone);
+  FrameSource& source = *frames.source;
+  const Skin& skin = source.skin();
+  RecordingWriter writer(path, skin, source.sensel_type(), source.calibration(),
+                         {.replace = overwrite ? Replace::anything : Replace::results});
+  FrameBuffer frame(source.sensel_type(), skin.rows, skin.cols);
+  SignalCheck check_signals;
+  for (std::uint64_t i = 0; i < source.frames(); ++i) {
+    check_signals();
+    const double time_s = source.read(i, frame);
+    writer.append(frame.view(), time_s);
+  }
+  writer.finish();
+}
+
+}  // namespace
+
+void bind_frames(py::module_& module) {
+  py::class_<Frames>(module, "FrameSource", kSource)
+      .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("trust") = false, kOpen)
+      .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
+                  py::arg("calibration"), kArray)
+      .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),
+           "Writes all frames as a recording.")
+      .def_property_readonly(
+          "skin", [](const Frames& self) { return self.source->skin(); }, "its Skin")
+      .def_property_readonly("calibration", &calibration_of, "its Calibration")
+      .def_property_readonly(
+          "format", [](const Frames& self) { return self.source->format(); }, "of the file")
+      .def_property_readonly(
+          "has_truth", [](const Frames& self) { return self.source->has_truth(); },
+          "true forces are known")
+      .def_property_readonly(
+          "warnings", [](const Frames& self) { return self.source->warnings(); },
+          "one sentence each")
+      .def_property_readonly(
+          "sensel_type", [](const Frames& self) { return name_of(self.source->sensel_type()); },
+          "'uint8', 'uint16' or 'float32'")
+      .def("times", &times_of, py::arg("most") = std::numeric_limits<std::uint64_t>::max(),
+           "Times of all frames, or of the first `most`, float64 [frames], s.")
+      .def(
+          "read",
+          [](Frames& self, std::int64_t first, std::int64_t step, std::int64_t count) {
+            return read_frames(self, IndexRange(first, step, count));
+          },
+          py::arg("first"), py::arg("step"), py::arg("count"),
+          "Readings of `count` frames, [count, rows, cols].")
+      .def(
+          "read_truth",
+          [](Frames& self, std::int64_t first, std::int64_t step, std::int64_t count) {
+            return read_truth(self, IndexRange(first, step, count));
+          },
+          py::arg("first"), py::arg("step"), py::arg("count"),
+          "Planes of the true forces of `count` frames.")
+      .def("__len__", [](const Frames& self) { return self.source->frames(); });
+}
+
+}  // namespace pillarfield::python

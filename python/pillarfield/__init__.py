@@ -1,0 +1,30 @@
+"""Fields of three-axis force from frames of a tactile skin.
+
+>>> import numpy as np, pillarfield as pf
+>>> frames = np.zeros((3, 8, 12), np.uint8)     # counts [frames, sensel rows, columns]
+>>> frames[:, 2:4, 4:6] = 80                    # one pillar is pressed
+>>> forces = pf.solve(frames, counts_per_newton=320)
+>>> float(forces.normal[0, 1, 2])               # N
+0.25
+
+docs/python.md is the manual.
+"""
+
+from . import calibrate
+from ._compare import Comparison, compare
+from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, RegionErrors, Scene,
+                    SenselFinding, Skin, Surface, __version__)
+from ._error import Error
+from ._field import ForceField, Points, Uncertainty
+from ._live import Frame, LiveSink, LiveSource, live, sink
+from ._processor import Contacts, Processor
+from ._recording import ForceFile, Recording, open
+from ._scene import Simulation, scene, simulate
+from ._solve import save_recording, solve
+from ._status import Region, Status
+
+__all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
+           "ForceFile", "Frame", "FrameContacts", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
+           "RegionErrors", "Scene", "SenselFinding", "Simulation", "Skin", "Status", "Surface",
+           "Uncertainty", "__version__", "calibrate", "compare", "live", "open", "save_recording", "scene",
+           "simulate", "sink", "solve"]

@@ -1,0 +1,310 @@
+"""Fields of three-axis force."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._error import Error
+from ._frames import Path
+from ._picture import picture
+from ._status import REGIONS, Status
+
+if TYPE_CHECKING:
+    import xarray
+
+Floats = npt.NDArray[np.float32]
+Bytes = npt.NDArray[np.uint8]
+Doubles = npt.NDArray[np.float64]
+
+_FORCES = ("shear_x", "shear_y", "normal")
+_ANGLES = ("magnitude", "theta", "phi")
+
+
+@dataclasses.dataclass(frozen=True)
+class Uncertainty:
+    """Uncertainty of the forces, float32 arrays of their shape.
+
+    shear_x, shear_y and normal are standard deviations, N. The others bound direction (rad) and
+    magnitude (N) over the segment of an ambiguous pillar, without noise; phi runs counter-clockwise
+    from low to high. Valid for pillars without missing and saturated sensels.
+    """
+
+    shear_x: Floats
+    shear_y: Floats
+    normal: Floats
+    theta_low: Floats
+    theta_high: Floats
+    phi_low: Floats
+    phi_high: Floats
+    magnitude_low: Floats
+    magnitude_high: Floats
+
+
+@dataclasses.dataclass(frozen=True)
+class Points:
+    """Forces as vectors at points, for simulators and learning.
+
+    force_n: force on the skin in the body's frame, float32 [frames, N, 3] or [N, 3], N
+    position_m: places of the pillars, float64 [N, 3], m
+    normal: outward unit vectors there, float64 [N, 3]
+    """
+
+    force_n: Floats
+    position_m: Doubles
+    normal: Doubles
+
+
+class ForceField:
+    """Forces on the pillars of one frame, planes [P, Q], or of T frames, planes [T, P, Q].
+
+    shear_x, shear_y: tangential force on the skin, + right and + up, float32, N
+    normal: pressing force, float32, N
+    status: bits of Status, uint8
+    times: of the frames, float64 [T], or one number, s
+    skin: Skin, for positions in mm; None: unknown
+
+    Arrays own their memory. Those that a Processor lends are read-only and hold a slot of it until
+    they are dropped; copy() owns what it has. Raises Error if the planes differ in shape.
+
+    >>> import numpy as np, pillarfield as pf
+    >>> one = np.ones((2, 3), np.float32)
+    >>> pf.ForceField(0 * one, 0 * one, one, status=15 * one)
+    <ForceField: 1 frame of 2 x 3 pillars, 1..1 N, 0 % ambiguous>
+    """
+
+    __slots__ = ("_planes", "_times", "_contacts", "_skin")
+
+    def __init__(self, shear_x: npt.ArrayLike, shear_y: npt.ArrayLike, normal: npt.ArrayLike, *,
+                 status: Optional[npt.ArrayLike] = None, times: Optional[npt.ArrayLike] = None,
+                 skin: Optional[_core.Skin] = None) -> None:
+        planes: dict[str, Any] = {
+            name: np.asarray(plane, np.float32)
+            for name, plane in zip(_FORCES, (shear_x, shear_y, normal))}
+        shape = planes["normal"].shape
+        planes["status"] = np.asarray(0 * planes["normal"] if status is None else status, np.uint8)
+        if len(shape) not in (2, 3) or any(plane.shape != shape for plane in planes.values()):
+            raise Error("ForceField", "its planes differ in shape",
+                        "give planes [pillar rows, cols] or [frames, pillar rows, cols]")
+        if times is None:
+            times = np.arange(shape[0]) * 0.01 if len(shape) == 3 else 0.0
+        self._set(planes, np.asarray(times, np.float64), None, skin)
+        if self._times.shape != shape[:-2]:
+            raise Error("ForceField", f"it has {self._times.size} times", "give one a frame")
+
+    def _set(self, planes: Mapping[str, Any], times: Doubles,
+             contacts: Optional[Sequence[_core.FrameContacts]],
+             skin: Optional[_core.Skin]) -> None:
+        self._planes = planes
+        self._times = times
+        self._contacts = contacts
+        self._skin = skin
+
+    @classmethod
+    def _of(cls, planes: Mapping[str, Any], times: Doubles,
+            contacts: Optional[Sequence[_core.FrameContacts]],
+            skin: Optional[_core.Skin]) -> ForceField:
+        field = cls.__new__(cls)
+        field._set(planes, times, contacts, skin)
+        return field
+
+    def _plane(self, name: str, output: str) -> Floats:
+        try:
+            plane: Floats = self._planes[name]
+        except KeyError:
+            raise Error("ForceField", f"it has no {name}",
+                        f"solve with outputs=['{output}']") from None
+        return plane
+
+    @property
+    def shear_x(self) -> Floats:
+        """Tangential force to the right, float32, N."""
+        return self._plane("shear_x", "")
+
+    @property
+    def shear_y(self) -> Floats:
+        """Tangential force up, float32, N."""
+        return self._plane("shear_y", "")
+
+    @property
+    def normal(self) -> Floats:
+        """Pressing force, float32, N."""
+        return self._plane("normal", "")
+
+    @property
+    def status(self) -> Bytes:
+        """Bits of Status, uint8."""
+        status: Bytes = self._planes["status"]
+        return status
+
+    @property
+    def region(self) -> Bytes:
+        """Values of Region, uint8."""
+        return REGIONS[self.status]
+
+    @property
+    def magnitude(self) -> Floats:
+        """Size of the force, float32, N; with the output 'angles'."""
+        return self._plane("magnitude", "angles")
+
+    @property
+    def theta(self) -> Floats:
+        """Angle from the outward normal, float32, rad, 0..pi; with the output 'angles'."""
+        return self._plane("theta", "angles")
+
+    @property
+    def phi(self) -> Floats:
+        """Direction in the plane that the force comes from, float32, rad, -pi..pi; with 'angles'."""
+        return self._plane("phi", "angles")
+
+    @property
+    def uncertainty(self) -> Uncertainty:
+        """Standard deviations and bounds; with the output 'uncertainty'."""
+        return Uncertainty(*(self._plane(f"uncertainty_{field.name}", "uncertainty")
+                             for field in dataclasses.fields(Uncertainty)))
+
+    @property
+    def outputs(self) -> list[str]:
+        """The optional outputs that it has: of 'angles' and 'uncertainty'."""
+        names = {"theta": "angles", "uncertainty_normal": "uncertainty"}
+        return [output for plane, output in names.items() if plane in self._planes]
+
+    @property
+    def times(self) -> Doubles:
+        """Times of the frames, float64 [T], or [] for one frame, s."""
+        return self._times
+
+    @property
+    def skin(self) -> Optional[_core.Skin]:
+        """Skin of the pillars, or None."""
+        return self._skin
+
+    @property
+    def contacts(self) -> Any:
+        """FrameContacts of one frame, or a list of them; with contacts=True."""
+        if self._contacts is None:
+            raise Error("ForceField", "it has no contacts", "solve with contacts=True")
+        return self._contacts if self.normal.ndim == 3 else self._contacts[0]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """(T, P, Q), or (P, Q) for one frame."""
+        return self.normal.shape
+
+    def where(self, status: int) -> npt.NDArray[np.bool_]:
+        """True where a pillar has any of these bits of Status."""
+        return (self.status & np.uint8(status)) != 0
+
+    def __len__(self) -> int:
+        """The number of frames."""
+        return self.shape[0] if len(self.shape) == 3 else 1
+
+    def __getitem__(self, frames: Union[int, slice]) -> ForceField:
+        """One frame, or a slice of frames, over the same memory."""
+        if len(self.shape) != 3:
+            raise TypeError("this ForceField is one frame; index its arrays")
+        if not isinstance(frames, slice):
+            frames = range(len(self))[frames]
+        contacts = self._contacts
+        if contacts is not None:
+            contacts = contacts[frames] if isinstance(frames, slice) else [contacts[frames]]
+        planes = {name: plane[frames] for name, plane in self._planes.items()}
+        return self._of(planes, np.asarray(self._times[frames]), contacts, self._skin)
+
+    def __iter__(self) -> Iterator[ForceField]:
+        """The frames."""
+        return (self[frame] for frame in range(len(self)))
+
+    def copy(self) -> ForceField:
+        """The same field in memory of its own, writeable."""
+        planes = {name: plane.copy() for name, plane in self._planes.items()}
+        return self._of(planes, self._times.copy(), self._contacts, self._skin)
+
+    def _batch(self) -> dict[str, Any]:
+        """Dense planes [T, P, Q]."""
+        shape = (-1, *self.shape[-2:])
+        return {name: np.ascontiguousarray(plane).reshape(shape)
+                for name, plane in self._planes.items()}
+
+    def save(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the forces; the extension chooses the format (docs/formats.md): .h5, .csv, .npy.
+
+        overwrite: replace any file, not only other results. Raises Error if it cannot be written.
+        """
+        skin = self._skin or _core.Skin(2 * self.shape[-2], 2 * self.shape[-1])
+        _core.save_forces(path, self._batch(), self._times.reshape(-1), skin, overwrite)
+
+    def __repr__(self) -> str:
+        frames = len(self)
+        rows, cols = self.shape[-2:]
+        size = np.sqrt(self.shear_x**2 + self.shear_y**2 + self.normal**2)
+        low, high = (size.min(), size.max()) if size.size else (0, 0)
+        touched = self.where(Status.USABLE)
+        share = 100 * self.where(Status.AMBIGUOUS).sum() / max(1, touched.sum())
+        return (f"<ForceField: {frames} frame{'s' * (frames != 1)} of {rows} x {cols} pillars, "
+                f"{low:.3g}..{high:.3g} N, {share:.0f} % ambiguous>")
+
+    def picture(self, quantity: str = "normal", *, limits: Optional[tuple[float, float]] = None,
+                theme: str = "dark") -> bytes:
+        """A picture of one frame as PNG: heat map in the viewer's colours, arrows of the shear.
+
+        quantity: normal, shear, shear_x, shear_y, magnitude, theta, phi, region, status, uncertainty
+        limits: ends of the colour bar, N or rad; None: fitting ones
+        theme: 'dark' or 'light'
+
+        Raises Error if the forces are of several frames or lack the quantity.
+        """
+        if len(self.shape) != 2:
+            raise Error("ForceField.picture", "the forces are of several frames", "index one")
+        if theme not in ("dark", "light"):
+            raise Error("ForceField.picture", f"'{theme}' is no theme", "give 'dark' or 'light'")
+        return picture(self._batch(), quantity, limits, theme == "light")
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """For notebooks: the picture of the frame, or of the one with the largest normal force."""
+        if len(self.shape) == 2:
+            return self.picture()
+        if not len(self):
+            return None
+        return self[int(self.normal.sum((1, 2)).argmax())].picture()
+
+    def to_xarray(self) -> xarray.Dataset:
+        """The planes as an xarray.Dataset with coordinates time (s), y and x (mm); needs xarray."""
+        import xarray
+
+        rows, cols = self.shape[-2:]
+        pitch_mm = self._skin.pillar_pitch_mm if self._skin else 1.0
+        coordinates: dict[str, Any] = {
+            "y": ("y", (np.arange(rows)[::-1] - (rows - 1) / 2) * pitch_mm, {"units": "mm"}),
+            "x": ("x", (np.arange(cols) - (cols - 1) / 2) * pitch_mm, {"units": "mm"})}
+        axes = ("y", "x")
+        if len(self.shape) == 3:
+            axes = ("time", *axes)  # type: ignore[assignment]
+            coordinates["time"] = ("time", self._times, {"units": "s"})
+
+        def unit(name: str) -> dict[str, str]:
+            if name == "status":
+                return {}
+            return {"units": "rad" if "theta" in name or "phi" in name else "N"}
+
+        return xarray.Dataset({name: (axes, plane, unit(name))
+                               for name, plane in self._planes.items()}, coordinates)
+
+    def to_points(self) -> Points:
+        """The forces as vectors in the body's frame at the places of the pillars.
+
+        The body's frame has its origin at the middle of the skin; x points right, y up, z outwards.
+        Raises Error without a skin.
+        """
+        if self._skin is None:
+            raise Error("ForceField.to_points", "the skin is unknown", "solve with skin=Skin(...)")
+        position, tangent_x, tangent_y, normal = _core.poses(self._skin).reshape(4, -1, 3)
+        shape = (*self.shape[:-2], -1, 1)
+        force = (self.shear_x.reshape(shape) * tangent_x + self.shear_y.reshape(shape) * tangent_y
+                 - self.normal.reshape(shape) * normal)
+        return Points(force.astype(np.float32), position / 1000, normal)

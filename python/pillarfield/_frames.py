@@ -1,0 +1,69 @@
+"""Frames from what users have: paths, arrays, iterators, and the objects of this package."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._error import Error
+
+Readings = npt.NDArray[Any]
+Path = Union[str, os.PathLike[str]]
+
+_TYPES = (np.uint8, np.uint16, np.float32)
+
+
+def readings_of(frames: npt.ArrayLike, kind: Optional[str] = None) -> Readings:
+    """Readings as a dense array of uint8, uint16 or float32; of type `kind` if given.
+
+    Whole numbers of other types become uint16 if they fit, else float32; other numbers float32.
+    """
+    array = np.asarray(frames)
+    if array.dtype.kind not in "buif":
+        raise Error("frames", f"their type is {array.dtype}", "give numbers")
+    if kind is not None:
+        wanted = np.dtype(kind)
+        if not np.can_cast(array.dtype, wanted) and wanted.kind == "u":
+            _require_range(array, int(np.iinfo(wanted).max), kind)
+    elif array.dtype.newbyteorder("=") in _TYPES:
+        wanted = array.dtype.newbyteorder("=")
+    elif array.dtype.kind in "bui" and _lies_within(array, 65535):
+        wanted = np.dtype(np.uint16)
+    else:
+        wanted = np.dtype(np.float32)
+    return np.require(array, wanted, ["C", "A"])
+
+
+def _lies_within(array: Readings, most: int) -> bool:
+    return array.size == 0 or (bool(array.min() >= 0) and bool(array.max() <= most))
+
+
+def _require_range(array: Readings, most: int, kind: str) -> None:
+    if array.dtype.kind == "f" or not _lies_within(array, most):
+        raise Error("frames", f"their type is {array.dtype}, but the plan's is {kind}",
+                    f"give whole numbers, 0..{most}, or plan with sensel_type='float32'")
+
+
+def times_of(count: int, times: Optional[npt.ArrayLike], rate_hz: float) -> npt.NDArray[np.float64]:
+    """Times of frames, from given ones or from a rate."""
+    if times is None:
+        if not rate_hz > 0:
+            raise Error("frames", f"rate_hz is {rate_hz}", "give a rate above 0")
+        return np.arange(count) / rate_hz
+    given = np.asarray(times, np.float64)
+    if given.shape != (count,):
+        raise Error("frames", f"there are {given.size} times for {count} frames", "give one a frame")
+    return given
+
+
+def timed(frames: Iterable[Any], kind: str, rate_hz: float) -> Iterator[tuple[Readings, float]]:
+    """Readings and time of each frame of an iterable of arrays or of Frame objects."""
+    for index, frame in enumerate(frames):
+        time_s = getattr(frame, "time_s", None)
+        yield (readings_of(getattr(frame, "readings", frame), kind),
+               index / rate_hz if time_s is None else time_s)

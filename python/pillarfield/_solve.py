@@ -1,0 +1,153 @@
+"""pillarfield.solve."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Iterable
+from typing import Any, Optional, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._error import Error
+from ._field import ForceField
+from ._frames import Path, readings_of, timed, times_of
+from ._recording import Recording
+from ._scene import Simulation
+
+
+def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulation], *,
+          skin: Optional[_core.Skin] = None,
+          calibration: Union[_core.Calibration, Path, None] = None,
+          times: Optional[npt.ArrayLike] = None, rate_hz: float = 100.0, contacts: bool = False,
+          device: str = "", **options: Any) -> ForceField:
+    """Solves frames of readings into forces.
+
+    frames: path of a recording or Tekscan export; readings, counts, [T, R, C] or [R, C]; an iterator
+        of arrays [R, C]; a Recording or a Simulation
+    skin: constants of the skin; by default those of the file, or Skin() for arrays
+    calibration: replaces that of the file
+    times: of the frames of an array, s; by default from rate_hz
+    contacts: find and track the contacts too
+    device: OpenCL device, by its index or a part of its name; '': the best one
+    options: those of Plan: estimator, outputs, noise_counts, threshold_counts, ...
+
+    Returns the forces of all frames, planes [T, R // 2, C // 2], or of the frame [R, C]. Arrays of
+    uint8, uint16 and float32 are read in place; others are converted (docs/python.md). Python's lock
+    is released meanwhile; Ctrl+C ends it. Raises Error if a file or an option is wrong.
+
+    >>> import numpy as np, pillarfield as pf
+    >>> forces = pf.solve(np.full((5, 8, 12), 32, np.uint8), counts_per_newton=320)
+    >>> forces
+    <ForceField: 5 frames of 4 x 6 pillars, 0.1..0.1 N, 0 % ambiguous>
+    """
+    if isinstance(frames, Simulation):
+        options = {"scene": frames.scene, **options}
+        calibration = calibration or frames.calibration
+    if _is_iterator(frames):
+        return _solve_iterator(frames, skin, calibration, rate_hz, contacts, device, options)
+    if isinstance(frames, (list, tuple)):
+        frames = np.asarray(frames)
+    source = source_of(frames, skin, times, rate_hz)
+    forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
+                           device, options)
+    return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+
+
+def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
+                   times: Optional[npt.ArrayLike] = None, rate_hz: float = 100.0,
+                   calibration: Optional[_core.Calibration] = None,
+                   overwrite: bool = False) -> None:
+    """Writes frames as a recording, for the viewer and the command line.
+
+    frames: readings, counts, [T, R, C], or what solve() takes but iterators
+    skin, times, rate_hz, calibration: as in solve()
+    overwrite: replace an existing recording. Raises Error if it cannot be written.
+    """
+    source_of(frames, skin, times, rate_hz, calibration).write(path, overwrite=overwrite)
+
+
+def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
+              rate_hz: float = 100.0,
+              calibration: Optional[_core.Calibration] = None) -> _core.FrameSource:
+    """Frames with random access from a path, an array, a Recording or a Simulation."""
+    if isinstance(frames, (str, os.PathLike)):
+        return _core.FrameSource.open(frames)
+    if isinstance(frames, Recording):
+        return frames._source
+    if isinstance(frames, Simulation):
+        skin, calibration = skin or frames.skin, calibration or frames.calibration
+        times = frames.times if times is None else times
+        frames = frames.frames
+    readings = readings_of(frames)
+    if readings.ndim not in (2, 3):
+        raise Error("frames", f"the array has {readings.ndim} axes",
+                    "give [rows, cols] for a frame, [frames, rows, cols] for several")
+    readings = readings.reshape(-1, *readings.shape[-2:]) if readings.ndim == 2 else readings
+    return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
+                                      skin_of(skin, readings.shape[-2:]), calibration)
+
+
+def _is_iterator(frames: Any) -> bool:
+    return (isinstance(frames, Iterable) and not hasattr(frames, "__array__")
+            and not isinstance(frames, (str, list, tuple, os.PathLike, Simulation)))
+
+
+def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:
+    """The skin of frames of this shape; raises Error if a given one has another size."""
+    if skin is None:
+        return _core.Skin(*shape)
+    if (skin.rows, skin.cols) != shape:
+        raise Error("frames", f"they are {shape[0]} x {shape[1]}",
+                    f"the skin has {skin.rows} x {skin.cols} sensels")
+    return skin
+
+
+def _needs_interval(options: dict[str, Any], calibration: Any) -> bool:
+    if "frame_interval_s" in options:
+        return False
+    if isinstance(calibration, (str, os.PathLike)):
+        return True
+    return ("baseline_time_s" in options or "scene" in options
+            or (calibration is not None and "memory" in calibration.effects))
+
+
+def _interval_of(source: _core.FrameSource) -> float:
+    """Seconds between frames: the median of the first ones, so that a gap does not count."""
+    times = source.times(101)
+    interval = float(np.median(np.diff(times))) if len(times) > 1 else 0.01
+    if not interval > 0:
+        raise Error("frames", "their times do not rise", "give times that do, or frame_interval_s")
+    return interval
+
+
+def _solve_source(source: _core.FrameSource, skin: _core.Skin, calibration: Any, contacts: bool,
+                  device: str, options: dict[str, Any]) -> ForceField:
+    if _needs_interval(options, calibration):
+        options = {"frame_interval_s": _interval_of(source), **options}
+    plan = _core.Plan(skin, sensel_type=source.sensel_type, calibration=calibration, **options)
+    return _field_of(_core.solve_source(source, plan, contacts, device), plan)
+
+
+def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibration: Any,
+                    rate_hz: float, contacts: bool, device: str,
+                    options: dict[str, Any]) -> ForceField:
+    iterator = iter(frames)
+    try:
+        first = next(iterator)
+    except StopIteration:
+        raise Error("frames", "the iterator has none", "give at least one") from None
+    readings = readings_of(getattr(first, "readings", first))
+    if readings.ndim != 2:
+        raise Error("frames", f"the iterator's array has {readings.ndim} axes",
+                    "give frames [rows, cols]")
+    plan = _core.Plan(skin_of(skin, readings.shape), sensel_type=str(readings.dtype),
+                      calibration=calibration, **{"frame_interval_s": 1 / rate_hz, **options})
+    stream = timed(itertools.chain([first], iterator), str(readings.dtype), rate_hz)
+    return _field_of(_core.solve_iterator(stream, plan, contacts, device), plan)
+
+
+def _field_of(planes: dict[str, Any], plan: _core.Plan) -> ForceField:
+    return ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), plan.skin)

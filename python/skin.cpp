@@ -1,0 +1,162 @@
+#include "pillarfield/skin.h"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/status.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+
+namespace pillarfield::python {
+namespace {
+
+constexpr const char* kSurface = R"(The surface that a skin covers: a plane unless made otherwise.
+
+The body's frame has its origin at the middle of the skin; x points right, y up, z outwards.)";
+
+constexpr const char* kSkin =
+    R"(A patch of skin: its size and the constants that all its sensels share.
+
+Sensels are counted in rows from the top (+y) and in columns from the left (-x). The pillar at (r, c)
+stands on the sensels (2r..2r+1, 2c..2c+1).
+
+rows, cols: sensels, 2..65534
+sensel_pitch_mm: distance of sensels, mm
+counts_per_newton: counts that a sensel reads per newton on its pillar, 1e-2..1e6
+threshold_counts: a sensel is usable if its reading is above
+full_scale_counts: a reading is saturated from here on; None: never
+power_law: (exponent, reference_counts) of sensels whose response is a power of the force, or None
+surface: Surface under the skin; None: unknown
+
+Raises Error for a value out of range.)";
+
+using Law = std::pair<double, double>;
+
+std::optional<PowerLaw> law_of(const std::optional<Law>& law) {
+  if (!law) return std::nullopt;
+  return PowerLaw{law->first, law->second};
+}
+
+Surface height_map(const FloatPlane& heights_mm) {
+  if (heights_mm.ndim() != 2) {
+    throw Error("Surface.height_map", "the heights are no plane", "give [pillar rows, cols], mm");
+  }
+  Surface surface;
+  surface.shape = SurfaceShape::height_map;
+  surface.heights_mm.assign(heights_mm.data(), heights_mm.data() + heights_mm.size());
+  return surface;
+}
+
+Skin make_skin(std::uint32_t rows, std::uint32_t cols, double sensel_pitch_mm,
+               double counts_per_newton, double threshold_counts,
+               std::optional<double> full_scale_counts, const std::optional<Law>& power_law,
+               std::optional<Surface> surface) {
+  Skin skin;
+  skin.rows = rows;
+  skin.cols = cols;
+  skin.sensel_pitch_mm = sensel_pitch_mm;
+  skin.counts_per_newton = counts_per_newton;
+  skin.threshold_counts = threshold_counts;
+  skin.full_scale_counts = full_scale_counts;
+  skin.power_law = law_of(power_law);
+  skin.surface = std::move(surface);
+  check(skin, "Skin");
+  return skin;
+}
+
+std::string skin_text(const Skin& skin) {
+  return fmt::format("Skin({}, {}, counts_per_newton={:.6g}, threshold_counts={:.6g})", skin.rows,
+                     skin.cols, skin.counts_per_newton, skin.threshold_counts);
+}
+
+/// Position, tangent_x, tangent_y and normal of each pillar: [4, rows, cols, 3], mm and unit
+/// vectors.
+py::array_t<double> poses(const Skin& skin) {
+  std::vector<double> values;
+  const std::vector<Pose> all = poses_of(skin.surface.value_or(Surface{}), skin.pillar_layout());
+  for (const auto part : {&Pose::position_mm, &Pose::tangent_x, &Pose::tangent_y, &Pose::normal}) {
+    for (const Pose& pose : all) {
+      const Vector3& vector = pose.*part;
+      values.insert(values.end(), {vector.x, vector.y, vector.z});
+    }
+  }
+  return array_of(std::move(values), {4, skin.pillar_rows(), skin.pillar_cols(), 3});
+}
+
+/// The region of each status byte.
+py::bytes regions() {
+  std::string all;
+  for (int status = 0; status < 256; ++status) {
+    all += static_cast<char>(region_of(static_cast<std::uint8_t>(status)));
+  }
+  return all;
+}
+
+void bind_surface(py::module_& module) {
+  py::class_<Surface>(module, "Surface", kSurface)
+      .def(py::init([] { return Surface{}; }))
+      .def_static(
+          "cylinder",
+          [](double radius_mm, double axis_deg) {
+            return Surface{SurfaceShape::cylinder, radius_mm, axis_deg, {}};
+          },
+          py::arg("radius_mm"), py::kw_only(), py::arg("axis_deg") = 90.0,
+          "A cylinder. radius_mm: |radius| 1..1e6, positive with the skin outside; axis_deg: "
+          "direction of its axis on the skin, from +x towards +y.")
+      .def_static(
+          "sphere",
+          [](double radius_mm) {
+            return Surface{SurfaceShape::sphere, radius_mm, 90, {}};
+          },
+          py::arg("radius_mm"),
+          "A sphere. radius_mm: |radius| 1..1e6, positive with the skin outside.")
+      .def_static("height_map", &height_map, py::arg("heights_mm"),
+                  "A surface of given heights of pillars, [pillar rows, cols], mm.")
+      .def_property_readonly(
+          "shape", [](const Surface& self) { return name_of(self.shape); },
+          "'plane', 'cylinder', 'sphere' or 'height_map'")
+      .def_readonly("radius_mm", &Surface::radius_mm, "radius of cylinder or sphere, mm")
+      .def_readonly("axis_deg", &Surface::axis_deg, "direction of the cylinder's axis, degrees");
+}
+
+}  // namespace
+
+void bind_skin(py::module_& module) {
+  bind_surface(module);
+  const Skin usual;
+  py::class_<Skin>(module, "Skin", kSkin)
+      .def(py::init(&make_skin), py::arg("rows"), py::arg("cols"), py::kw_only(),
+           py::arg("sensel_pitch_mm") = usual.sensel_pitch_mm,
+           py::arg("counts_per_newton") = usual.counts_per_newton,
+           py::arg("threshold_counts") = usual.threshold_counts,
+           py::arg("full_scale_counts") = py::none(), py::arg("power_law") = py::none(),
+           py::arg("surface") = py::none())
+      .def_readonly("rows", &Skin::rows, "sensel rows")
+      .def_readonly("cols", &Skin::cols, "sensel columns")
+      .def_readonly("sensel_pitch_mm", &Skin::sensel_pitch_mm, "distance of sensels, mm")
+      .def_readonly("counts_per_newton", &Skin::counts_per_newton, "counts per newton on a pillar")
+      .def_readonly("threshold_counts", &Skin::threshold_counts, "usable above, counts")
+      .def_readonly("full_scale_counts", &Skin::full_scale_counts, "saturated from here on, counts")
+      .def_readonly("surface", &Skin::surface, "Surface under the skin, or None")
+      .def_property_readonly(
+          "power_law",
+          [](const Skin& self) {
+            return self.power_law ? std::optional<Law>({self.power_law->exponent,
+                                                        self.power_law->reference_counts})
+                                  : std::nullopt;
+          },
+          "(exponent, reference_counts), or None")
+      .def_property_readonly("pillar_rows", &Skin::pillar_rows, "pillar rows")
+      .def_property_readonly("pillar_cols", &Skin::pillar_cols, "pillar columns")
+      .def_property_readonly("pillar_pitch_mm", &Skin::pillar_pitch_mm, "distance of pillars, mm")
+      .def("__repr__", &skin_text);
+  module.def("regions", &regions, "The Region of each status byte, 256 bytes.");
+  module.def("poses", &poses, py::arg("skin"),
+             "Position (mm), tangents and normal of each pillar: [4, pillar rows, cols, 3].");
+}
+
+}  // namespace pillarfield::python

@@ -1,0 +1,139 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "pillarfield/pipeline.h"
+#include "pillarfield/processor.h"
+#include "python/bindings.h"
+#include "python/force_planes.h"
+#include "python/frames.h"
+#include "python/process.h"
+#include "python/signals.h"
+
+namespace pillarfield::python {
+namespace {
+
+constexpr int kSlots = 3;
+
+/// Frames of a Python iterator of (readings, time), which it converted to the plan's type.
+class IteratorStream final : public FrameStream {
+ public:
+  IteratorStream(py::iterator frames, const SolverPlan& plan)
+      : frames_(std::move(frames)), plan_(plan) {}
+
+  [[nodiscard]] const Skin& skin() const override { return plan_.skin; }
+  [[nodiscard]] SenselType sensel_type() const override { return plan_.sensel_type; }
+
+  [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds) override {
+    const py::gil_scoped_acquire locked;
+    const auto item = py::reinterpret_steal<py::object>(PyIter_Next(frames_.ptr()));
+    if (!item) {
+      if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+      return Arrival::ended;
+    }
+    const auto [readings, time_s] = item.cast<std::pair<py::array, double>>();
+    const FrameView view = frame_of(readings);
+    check(view, plan_.skin, plan_.sensel_type, "frames");
+    const std::span<std::byte> bytes = frame.buffer.bytes();
+    std::memcpy(bytes.data(), view.data, bytes.size());
+    frame.readings = frame.buffer.view();
+    frame.time_s = time_s;
+    frame.sequence = next_++;
+    frame.missing.clear();
+    return Arrival::arrived;
+  }
+
+ private:
+  py::iterator frames_;
+  const SolverPlan& plan_;
+  std::uint64_t next_ = 0;
+};
+
+/// Collects planes, times and contacts.
+class Collector final : public ForceSink {
+ public:
+  explicit Collector(const Skin& skin) : planes_(skin.pillar_rows(), skin.pillar_cols()) {}
+
+  void reserve(std::size_t frames) {
+    planes_.reserve(frames);
+    times_.reserve(frames);
+  }
+  void append(const SolvedFrame& frame) override {
+    planes_.append(frame.forces);
+    times_.push_back(frame.time_s);
+    if (frame.contacts != nullptr) {
+      contacts_.push_back(std::make_shared<FrameContacts>(*frame.contacts));
+    }
+  }
+  [[nodiscard]] py::dict release(bool with_contacts) {
+    py::dict result = planes_.release();
+    const auto size = static_cast<py::ssize_t>(times_.size());
+    result["times"] = array_of(std::move(times_), {size});
+    if (with_contacts) result["contacts"] = py::cast(std::move(contacts_));
+    return result;
+  }
+
+ private:
+  ForceStack planes_;
+  std::vector<double> times_;
+  std::vector<std::shared_ptr<FrameContacts>> contacts_;
+};
+
+/// Solves all frames; called without Python's lock.
+void run(FrameStream& stream, const SolverPlan& plan, bool contacts, const Device& device,
+         Collector& collector) {
+  Processor processor(device, plan, {.frames_in_flight = kSlots});
+  std::optional<ContactTracker> tracker;
+  if (contacts) {
+    ContactOptions options;
+    set_sensor(options, plan);
+    tracker.emplace(plan.skin.pillar_pitch_mm(), options);
+  }
+  SignalCheck check_signals;
+  Pipeline pipeline(stream, processor, {&collector},
+                    {.frames_in_flight = kSlots,
+                     .contacts = tracker ? &*tracker : nullptr,
+                     .stop = [&] { return check_signals(), false; }});
+  pipeline.run();
+}
+
+py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
+                      const std::string& device) {
+  Collector collector(plan.skin);
+  {
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(frames.alone);
+    collector.reserve(frames.source->frames());
+    const auto stream = file_stream(*frames.source);
+    run(*stream, plan, contacts, device_named(device), collector);
+  }
+  return collector.release(contacts);
+}
+
+py::dict solve_iterator(const py::iterator& frames, const SolverPlan& plan, bool contacts,
+                        const std::string& device) {
+  Collector collector(plan.skin);
+  IteratorStream stream(frames, plan);
+  {
+    const py::gil_scoped_release unlocked;
+    run(stream, plan, contacts, device_named(device), collector);
+  }
+  return collector.release(contacts);
+}
+
+}  // namespace
+
+void bind_solve(py::module_& module) {
+  constexpr const char* kText =
+      "Solves all frames: planes of forces, 'times' and, if wanted, 'contacts' of each frame.";
+  module.def("solve_source", &solve_source, py::arg("source"), py::arg("plan"), py::arg("contacts"),
+             py::arg("device"), kText);
+  module.def("solve_iterator", &solve_iterator, py::arg("frames"), py::arg("plan"),
+             py::arg("contacts"), py::arg("device"), kText);
+}
+
+}  // namespace pillarfield::python

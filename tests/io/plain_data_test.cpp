@@ -1,0 +1,200 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "pillarfield/recording.h"
+#include "tests/io/sample_files.h"
+
+// The corpus of fuzz/ holds plain data written by NumPy and h5py; tests/cli/plain_data_test.py
+// compares their values.
+
+namespace pillarfield {
+namespace {
+
+using io_test::bytes_of;
+using io_test::error_of;
+using io_test::has_all;
+using io_test::number_at;
+using io_test::TemporaryDirectory;
+using io_test::write_bytes;
+
+const std::filesystem::path kPlainFiles =
+    std::filesystem::path(PILLARFIELD_DAMAGED_FILES) / "plain";
+
+ReadOptions untimed() { return {.untimed = true}; }
+
+/// The readings of all frames as floats.
+std::vector<float> all_readings(FrameSource& source) {
+  std::vector<float> all;
+  FrameBuffer frame(source.sensel_type(), source.skin().rows, source.skin().cols);
+  for (std::uint64_t index = 0; index < source.frames(); ++index) {
+    source.read(index, frame);
+    const auto append = [&](const auto& readings) {
+      for (const auto reading : readings) all.push_back(static_cast<float>(reading));
+    };
+    if (source.sensel_type() == SenselType::u8) append(frame.readings<std::uint8_t>());
+    if (source.sensel_type() == SenselType::u16) append(frame.readings<std::uint16_t>());
+    if (source.sensel_type() == SenselType::f32) append(frame.readings<float>());
+  }
+  return all;
+}
+
+class PlainTable : public testing::Test {
+ protected:
+  std::unique_ptr<FrameSource> open(const std::string& text, ReadOptions options = untimed()) {
+    write_bytes(path_, text);
+    return open_frames(path_, options);
+  }
+  std::string refused(const std::string& text, const ReadOptions& options = untimed()) {
+    return error_of([&] { (void)open(text, options); });
+  }
+
+  TemporaryDirectory directory_;
+  std::filesystem::path path_ = directory_ / "table.csv";
+};
+
+TEST_F(PlainTable, TakesEverySeparatorAndLineEnd) {
+  for (const char* const text :
+       {"1,2,3\n4,5,6\n", "1;2;3\r\n4;5;6\r\n", "1\t2\t3\n4\t5\t6", " 1  2 3\n4 5   6 \n",
+        "\xef\xbb\xbf# comment\na,b,c\n1, 2 ,3\n4,+5,6.0\n\n\n", "1,2,3,\n4,5,6,\n",
+        "\n\n1e0,20e-1,3\n4,5,6"}) {
+    SCOPED_TRACE(text);
+    const auto source = open(text);
+    EXPECT_EQ(source->frames(), 1u);
+    EXPECT_EQ(source->sensel_type(), SenselType::u16);
+    EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(source->time(0), 0);
+  }
+}
+
+TEST_F(PlainTable, OtherNumbersAreFloats) {
+  const auto source = open("1,nan,-3\n4.5,,70000\n");
+  EXPECT_EQ(source->sensel_type(), SenselType::f32);
+  const auto readings = all_readings(*source);
+  EXPECT_TRUE(std::isnan(readings[1]) && std::isnan(readings[4]));
+  EXPECT_EQ(readings[2], -3);
+  EXPECT_EQ(readings[3], 4.5f);
+}
+
+TEST_F(PlainTable, BlankLinesSeparateFrames) {
+  const auto source = open("1,2\n3,4\n\n5,6\n7,8\n \n\n9,1\n2,3", {.rate_hz = 4});
+  EXPECT_EQ(source->frames(), 3u);
+  EXPECT_EQ(source->time(2), 0.5);
+  EXPECT_EQ(all_readings(*source), (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 2, 3}));
+}
+
+TEST_F(PlainTable, AFrameMayLieInALineAfterItsTime) {
+  const ReadOptions shape = {.frame_size = FrameSize{2, 2}, .untimed = true};
+  EXPECT_EQ(all_readings(*open("1,2,3,4\n5,6,7,8\n", shape)),
+            (std::vector<float>{1, 2, 3, 4, 5, 6, 7, 8}));
+  EXPECT_EQ(open("1,2\n3,4\n5,6\n7,8\n", shape)->frames(), 2u);
+  const auto timed = open("t,a,b,c,d\n0.5,1,2,3,4\n0.75,5,6,7,8\n", shape);
+  EXPECT_EQ(timed->frames(), 2u);
+  EXPECT_EQ(timed->time(1), 0.75);
+  EXPECT_EQ(all_readings(*timed)[4], 5);
+}
+
+TEST_F(PlainTable, MistakesNameTheirLine) {
+  const ReadOptions shape = {.frame_size = FrameSize{2, 2}, .untimed = true};
+  EXPECT_TRUE(has_all(refused("1,2\n3\n"), {"table.csv:2", "has 1 numbers", "2"}));
+  EXPECT_TRUE(has_all(refused("1,2\n3,x\n"), {"table.csv:2", "'x' in column 2"}));
+  EXPECT_TRUE(has_all(refused(",0,1\n0,5,6\n1,7,8\n"), {"empty cell", "without index"}));
+  EXPECT_TRUE(has_all(refused("1,2\n3,4\n\n5,6\n"), {"a frame of 1 rows", "2"}));
+  EXPECT_TRUE(has_all(refused("1,2\n3,4\n5,6\n", shape), {"holds 3 rows"}));
+  EXPECT_TRUE(has_all(refused("1,2,3\n", shape), {"has 3 numbers", "2 x 2 needs 4"}));
+  EXPECT_TRUE(has_all(refused("1,1,2,3,4\n1,1,2,3,4\n", shape), {"frame 1 has the time 1"}));
+  EXPECT_TRUE(has_all(refused("1,2\n"), {"1 x 2", "2 to 65534"}));
+  EXPECT_TRUE(has_all(refused("1,2\n3,4\n\n5,6\n7,8\n", {}), {"no times", "--rate"}));
+  EXPECT_TRUE(has_all(refused("frame,time_s,row,col,shear_x_n,shear_y_n,normal_n,status\n"
+                              "0,0,1,1,0.5,0.5,1,15\n"),
+                      {"forces"}));
+  std::string line;
+  for (int i = 0; i < (1 << 19); ++i) line += "1,1,";
+  EXPECT_TRUE(has_all(refused(line), {"table.csv:1", "longer", ".npy"}));
+}
+
+TEST(PlainData, OptionsThatAFileContradictsAreRefused) {
+  const auto refused = [](const char* file, const ReadOptions& options) {
+    return error_of([&] { (void)open_frames(kPlainFiles / file, options); });
+  };
+  EXPECT_TRUE(has_all(refused("seed_stored.npz", {.rate_hz = 5}), {"has times", "--rate"}));
+  EXPECT_TRUE(has_all(refused("seed_uint8.npy", {.dataset = "a"}), {"--dataset"}));
+  EXPECT_TRUE(has_all(refused("seed_uint8.npy", {.frame_size = FrameSize{9, 9}, .rate_hz = 5}),
+                      {"frames are 4 x 6", "--shape"}));
+  EXPECT_TRUE(has_all(refused("seed_lines.npy", {.frame_size = FrameSize{4, 7}, .rate_hz = 5}),
+                      {"lines of 24 numbers", "28"}));
+  EXPECT_TRUE(has_all(refused("seed_uint8.npy", {.rate_hz = -5}), {"-5 Hz"}));
+  EXPECT_TRUE(has_all(refused("seed_dataset.h5", {.rate_hz = 5}), {"--dataset", "/raw"}));
+  EXPECT_TRUE(
+      has_all(refused("seed_dataset.h5", {.dataset = "b", .rate_hz = 5}), {"no dataset /b"}));
+  EXPECT_TRUE(has_all(refused("seed_uint8.npy", {.rate_hz = 5, .tare_frames = 10}),
+                      {"has 3 frames", "--tare-frames"}));
+}
+
+TEST(PlainData, ConstantsOfTheOptionsNeedNoWarning) {
+  const auto source = open_frames(kPlainFiles / "seed_uint8.npy", {.untimed = true,
+                                                                   .sensel_pitch_mm = 0.5,
+                                                                   .counts_per_newton = 100,
+                                                                   .threshold_counts = 3,
+                                                                   .full_scale_counts = 255});
+  EXPECT_TRUE(source->warnings().empty());
+  EXPECT_EQ(source->skin().sensel_pitch_mm, 0.5);
+  EXPECT_EQ(source->skin().counts_per_newton, 100);
+  EXPECT_EQ(source->skin().threshold_counts, 3);
+  EXPECT_EQ(source->skin().full_scale_counts, 255);
+  EXPECT_TRUE(std::isnan(source->time(1)));
+}
+
+/// Reads a file as every kind of plain data.
+void read_in_all_ways(const std::filesystem::path& path) {
+  const ReadOptions lines = {.frame_size = FrameSize{4, 6}, .untimed = true};
+  for (const ReadOptions& options : {untimed(), lines}) {
+    try {
+      const auto source = open_frames(path, options);
+      if (source->skin().sensels() > 10000 || source->frames() > 1000) continue;
+      (void)all_readings(*source);
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {path.filename().string()}));
+    }
+  }
+}
+
+TEST(PlainData, TruncatedAndChangedFilesEndInAnError) {
+  const TemporaryDirectory directory;
+  for (const auto& entry : std::filesystem::directory_iterator(kPlainFiles)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("seed_") || name.ends_with(".h5")) continue;
+    SCOPED_TRACE(name);
+    const std::string whole = bytes_of(entry.path());
+    const auto path = directory / name;
+    for (std::size_t size = 1; size < whole.size(); size += 1 + whole.size() / 30) {
+      write_bytes(path, whole.substr(0, size));
+      read_in_all_ways(path);
+    }
+    for (std::uint64_t trial = 0; trial < 60; ++trial) {
+      std::string changed = whole;
+      for (std::uint64_t place = 0; place <= trial % 3; ++place) {
+        const std::size_t at = number_at(trial, 2 * place) % changed.size();
+        changed[at] = static_cast<char>(number_at(trial, 2 * place + 1));
+      }
+      write_bytes(path, changed);
+      read_in_all_ways(path);
+    }
+  }
+}
+
+TEST(PlainData, ATruncatedArrayIsRefused) {
+  const TemporaryDirectory directory;
+  for (const char* const name :
+       {"seed_uint8.npy", "seed_float64.npy", "seed_stored.npz", "seed_deflated.npz"}) {
+    const std::string whole = bytes_of(kPlainFiles / name);
+    for (const std::size_t size : {whole.size() - 1, whole.size() / 2, std::size_t{20}}) {
+      write_bytes(directory / name, whole.substr(0, size));
+      EXPECT_NE(error_of([&] { (void)open_frames(directory / name, untimed()); }), "") << name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace pillarfield

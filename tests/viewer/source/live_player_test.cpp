@@ -1,0 +1,225 @@
+// A sensor on display: every frame is solved, whatever the display does.
+#include "viewer/source/live_player.h"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <thread>
+
+#include "pillarfield/error.h"
+#include "pillarfield/recording.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr std::uint32_t kSide = 16;  ///< sensels
+
+Skin live_skin() {
+  Skin skin;
+  skin.rows = skin.cols = kSide;
+  skin.counts_per_newton = 100;
+  skin.threshold_counts = 2;
+  return skin;
+}
+
+/// What a test makes its sensor send.
+struct Wire {
+  std::mutex mutex;
+  std::condition_variable came;
+  std::deque<std::vector<std::uint8_t>> frames;
+  std::uint64_t sent = 0;
+  std::uint64_t partial = 0;  ///< the next frames lack the upper left block
+  bool ended = false;
+
+  void send(std::uint8_t reading) {
+    std::vector<std::uint8_t> frame(std::size_t{kSide} * kSide, 0);
+    for (std::size_t row = 4; row < 8; ++row) {
+      for (std::size_t col = 4; col < 8; ++col) frame[row * kSide + col] = reading;
+    }
+    const std::scoped_lock lock(mutex);
+    frames.push_back(std::move(frame));
+    came.notify_one();
+  }
+  void end() {
+    const std::scoped_lock lock(mutex);
+    ended = true;
+    came.notify_one();
+  }
+};
+
+class FakeSensor final : public FrameStream {
+ public:
+  explicit FakeSensor(std::shared_ptr<Wire> wire) : wire_(std::move(wire)) {}
+  [[nodiscard]] const Skin& skin() const override { return skin_; }
+  [[nodiscard]] SenselType sensel_type() const override { return SenselType::u8; }
+  [[nodiscard]] StreamHealth health() const override { return {.frames = sent_, .lost = 3}; }
+  [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) override {
+    std::unique_lock lock(wire_->mutex);
+    wire_->came.wait_for(lock, timeout, [&] { return !wire_->frames.empty() || wire_->ended; });
+    if (wire_->frames.empty()) return wire_->ended ? Arrival::ended : Arrival::timed_out;
+    std::ranges::copy(wire_->frames.front(), frame.buffer.readings<std::uint8_t>().begin());
+    wire_->frames.pop_front();
+    frame.readings = frame.buffer.view();
+    frame.missing.clear();
+    if (wire_->partial > 0) {
+      frame.missing.push_back({0, 8, 0, 8});
+      --wire_->partial;
+    }
+    frame.time_s = 0.001 * static_cast<double>(sent_);
+    frame.sequence = sent_++;
+    frame.arrived = std::chrono::steady_clock::now().time_since_epoch();
+    return Arrival::arrived;
+  }
+
+ private:
+  Skin skin_ = live_skin();
+  std::shared_ptr<Wire> wire_;
+  std::uint64_t sent_ = 0;
+};
+
+struct LiveFixture {
+  LiveFixture() {
+    auto sensor = std::make_unique<FakeSensor>(wire);
+    const SolverPlan plan = live_plan(*sensor, {});
+    curves = std::make_shared<Curves>(plan.skin.pillar_pitch_mm());
+    player = std::make_unique<LivePlayer>(std::move(sensor), "fake", plan,
+                                          Processor(open_device(), plan), curves);
+  }
+  template <class Condition>
+  static void wait_until(Condition condition) {
+    bool holds = condition();
+    for (int i = 0; i < 20'000 && !holds; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      holds = condition();
+    }
+    ASSERT_TRUE(holds);
+  }
+  void send(std::uint8_t reading, int count = 1) {
+    sent += static_cast<std::uint64_t>(count);
+    for (int i = 0; i < count; ++i) wire->send(reading);
+    wait_until([&] { return player->status().solved == sent; });
+  }
+  ShownField newest() {
+    std::optional<ShownField> newest;
+    wait_until([&] { return (newest = player->take()).has_value(); });
+    return *newest;
+  }
+
+  std::shared_ptr<Wire> wire = std::make_shared<Wire>();
+  std::shared_ptr<Curves> curves;
+  std::unique_ptr<LivePlayer> player;
+  std::uint64_t sent = 0;
+};
+
+TEST(LivePlayer, SolvesEveryFrameAndShowsTheNewest) {
+  LiveFixture live;
+  live.send(50, 100);
+  live.send(100);
+  const ShownField field = live.newest();
+  EXPECT_EQ(field.forces.normal[2 * 8 + 2], 1);
+  EXPECT_EQ(static_cast<const std::uint8_t*>(field.raw.data)[4 * kSide + 4], 100);
+  EXPECT_TRUE(field.arrived);
+  const PlayerStatistics statistics = live.player->statistics();
+  EXPECT_EQ(statistics.produced, 101U);
+  EXPECT_EQ(statistics.taken + statistics.not_shown + statistics.waiting, 101U);
+  const auto points = live.curves->total(-1, 1e9, 1000);
+  ASSERT_EQ(points.size(), 101U);
+  EXPECT_FLOAT_EQ(points.front().normal, 2);
+  EXPECT_FLOAT_EQ(points.back().normal, 4);
+  EXPECT_EQ(live.player->status().stream.lost, 3U);
+  EXPECT_EQ(live.player->state().frames, 0U);
+}
+
+TEST(LivePlayer, PauseFreezesThePictureNotTheSensor) {
+  LiveFixture live;
+  live.send(50);
+  static_cast<void>(live.newest());
+  live.player->pause();
+  live.send(80, 5);
+  EXPECT_FALSE(live.player->take());
+  EXPECT_EQ(live.curves->total(-1, 1e9, 1000).size(), 6U);
+  live.player->play();
+  live.send(100);
+  EXPECT_EQ(live.newest().forces.normal[2 * 8 + 2], 1);
+}
+
+TEST(LivePlayer, MissingReadingsGiveNoForce) {
+  LiveFixture live;
+  live.wire->partial = 1;
+  live.send(100);
+  const ShownField field = live.newest();
+  EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0);
+  EXPECT_NE(field.forces.status[2 * 8 + 2] & status::kInconsistent, 0);
+}
+
+TEST(LivePlayer, ContactsAndPeaksComeWhenAskedFor) {
+  LiveFixture live;
+  live.send(100);
+  EXPECT_EQ(live.newest().contacts, nullptr);
+  live.player->set_contacts(true);
+  live.player->set_peak(true);
+  live.send(100, 2);
+  ShownField field;
+  live.wait_until([&] {
+    live.send(50);
+    field = live.newest();
+    return field.contacts != nullptr && field.peak != nullptr;
+  });
+  ASSERT_EQ(field.contacts->found.contacts.size(), 1U);
+  EXPECT_FLOAT_EQ(static_cast<float>(field.contacts->found.total.normal_n), 2);
+  EXPECT_EQ(field.forces.normal[2 * 8 + 2], 0.5F);
+  EXPECT_EQ(field.peak->forces.normal[2 * 8 + 2], 1);
+}
+
+TEST(LivePlayer, ATareIsTakenFromUntouchedReadingsOnly) {
+  LiveFixture live;
+  live.player->tare();
+  EXPECT_TRUE(live.player->status().taring);
+  live.wait_until([&] {
+    live.send(0, 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    return !live.player->status().taring;
+  });
+  EXPECT_EQ(live.player->status().message, "tare taken");
+  EXPECT_EQ(live.player->status().messages, 1U);
+}
+
+TEST(LivePlayer, RecordsTheRawFrames) {
+  LiveFixture live;
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("live_player_" + std::to_string(::getpid()) + ".h5");
+  live.send(10);
+  live.player->record(path);
+  EXPECT_EQ(live.player->status().recording, path.string());
+  live.send(20, 30);
+  live.player->stop_recording();
+  live.wait_until([&] { return live.player->status().messages == 1; });
+  live.send(30);
+  const auto recorded = open_frames(path);
+  EXPECT_EQ(recorded->frames(), 30U);
+  FrameBuffer frame(SenselType::u8, kSide, kSide);
+  static_cast<void>(recorded->read(29, frame));
+  EXPECT_EQ(frame.readings<std::uint8_t>()[4 * kSide + 4], 20);
+  EXPECT_THROW(live.player->record(path), Error) << "it exists";
+  std::filesystem::remove(path);
+}
+
+TEST(LivePlayer, ASensorMayStopAndEnd) {
+  LiveFixture live;
+  live.send(100);
+  std::this_thread::sleep_for(std::chrono::milliseconds(120));
+  EXPECT_GT(live.player->status().silent_s, 0.1);
+  live.send(100);
+  EXPECT_LT(live.player->status().silent_s, 0.1);
+  EXPECT_FALSE(live.player->status().ended);
+  live.wire->end();
+  live.wait_until([&] { return live.player->status().ended; });
+  EXPECT_EQ(live.newest().forces.normal[2 * 8 + 2], 1);
+}
+
+}  // namespace
+}  // namespace pillarfield::viewer

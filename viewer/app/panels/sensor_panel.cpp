@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "viewer/app/input/actions.h"
+#include "viewer/app/panels/panel_style.h"
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/value_table.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+void count_line(std::vector<ShownValue>& lines, const char* label, std::uint64_t count) {
+  if (count > 0) lines.push_back({label, fmt::format("{}", count), {}, ""});
+}
+
+/// Rate and losses; counts that are zero are left out, but for lost frames.
+std::vector<ShownValue> health_lines(const LiveStatus& status) {
+  const StreamHealth& stream = status.stream;
+  std::vector<ShownValue> lines{{"rate", fmt::format("{:.1f}", stream.rate_hz), {}, "Hz"},
+                                {"frames", fmt::format("{}", status.solved), {}, ""},
+                                {"lost", fmt::format("{}", stream.lost), {}, ""}};
+  count_line(lines, "of these, too fast", stream.overrun);
+  count_line(lines, "incomplete", stream.incomplete);
+  count_line(lines, "late", stream.late);
+  count_line(lines, "duplicates", stream.duplicates);
+  count_line(lines, "reordered", stream.reordered);
+  count_line(lines, "invalid", stream.invalid);
+  count_line(lines, "restarts", stream.restarts);
+  count_line(lines, "clock jumps", stream.clock_jumps);
+  count_line(lines, "dead sensels", status.sensels.dead);
+  count_line(lines, "stuck sensels", status.sensels.stuck);
+  count_line(lines, "drifting sensels", status.sensels.drifting);
+  return lines;
+}
+
+std::string state_words(const LiveStatus& status) {
+  if (status.ended) return "the source has ended";
+  if (status.silent_s > kSilentSeconds) return silent_words(status);
+  return fmt::format("newest frame {:.0f} ms old", 1e3 * status.silent_s);
+}
+
+}  // namespace
+
+std::string silent_words(const LiveStatus& status) {
+  return fmt::format("no frames for {:.0f} s", status.silent_s);
+}
+
+void sensor_panel(const Command& command) {
+  const PanelStyle style = panel_style(command.state.settings.scale);
+  LiveControl* const live = command.state.player->live();
+  if (live == nullptr) return;
+  const LiveStatus status = live->status();
+  const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  const bool records = !status.recording.empty();
+  if (ImGui::Button(records ? "Stop recording" : "Record", ImVec2(half, 0))) {
+    command.pending.record = true;
+  }
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Record the raw frames (Ctrl+R)");
+  ImGui::SameLine();
+  if (ImGui::Button(status.taring ? "Measuring ..." : "Tare", ImVec2(half, 0))) live->tare();
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("The mean of the next half second becomes zero; touch nothing (Z)");
+  }
+  faint_text(style, state_words(status).c_str());
+  if (records) {
+    const std::string name = std::filesystem::path(status.recording).filename().string();
+    faint_text(style, fmt::format("{}: {} frames", name, status.recorded.frames).c_str());
+  }
+  value_table(style, health_lines(status));
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,115 @@
+#include "viewer/app/source/loaded_source.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "pillarfield/error.h"
+#include "pillarfield/interrupt.h"
+#include "pillarfield/printable.h"
+#include "viewer/source/live_player.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+/// A sensor begins with a range that a user widens or fits; there are no frames to fit it to.
+RenderSettings live_settings(const Options& options, const SourceInfo& source, double scale) {
+  constexpr float kFirstRangeN = 1;
+  RenderSettings settings = chosen_settings(options, source, scale);
+  settings.range = options.range ? in_unit_of(*options.range, options.quantity)
+                                 : fitting_range(options.quantity, kFirstRangeN);
+  settings.full_force_n = settings.full_shear_n = static_cast<double>(kFirstRangeN) / 2;
+  return settings;
+}
+
+LoadedSource load_sensor(const Options& options, const std::string& name, double scale,
+                         const LoadProgress& tell) {
+  LoadedSource loaded;
+  loaded.name = name;
+  tell(fmt::format("waiting for frames from {}", printable(name)));
+  const auto stop = [&] {
+    try {
+      tell(fmt::format("waiting for frames from {}", printable(name)));
+      return is_interrupted();
+    } catch (const Error&) {
+      return true;
+    }
+  };
+  OpenedSensor opened = open_sensor(name, {.producer = producer_options(options, tell),
+                                           .counts_per_newton = options.plain.counts_per_newton,
+                                           .calibration = options.calibration,
+                                           .stop = stop});
+  if (opened.player == nullptr) throw Error(name, "interrupted", "start again");
+  loaded.curves = std::move(opened.curves);
+  loaded.settings = live_settings(options, opened.player->info(), scale);
+  loaded.player = std::move(opened.player);
+  return loaded;
+}
+
+LoadedSource load_file(const Options& options, const std::filesystem::path& path, double scale,
+                       const LoadProgress& tell) {
+  auto producer = open_producer(path, producer_options(options, tell), [&](double share) {
+    tell(fmt::format("simulating {:.0f} %", std::floor(100 * share)));
+  });
+  LoadedSource loaded;
+  loaded.name = path.string();
+  tell("looking at the forces");
+  loaded.settings = default_settings(options, *producer, scale);
+  loaded.open_truth = producer->open_truth;
+  loaded.curves = std::make_shared<Curves>(producer->info().skin.pillar_pitch_mm());
+  loaded.survey = std::make_unique<Survey>(producer->open_again, loaded.curves);
+  loaded.player = std::make_unique<FilePlayer>(std::move(producer));
+  return loaded;
+}
+
+LoadedSource load_one(const Options& options, const std::filesystem::path& source, double scale,
+                      const LoadProgress& tell) {
+  return is_live_source(source.string()) ? load_sensor(options, source.string(), scale, tell)
+                                         : load_file(options, source, scale, tell);
+}
+
+}  // namespace
+
+ProducerOptions producer_options(const Options& options, LoadProgress tell) {
+  ProducerOptions wanted;
+  wanted.device = options.device;
+  wanted.read = options.plain;
+  wanted.read.trust = options.trust_input;
+  if (!tell) return wanted;
+  wanted.on_compiling = [tell = std::move(tell)](const std::string& line) {
+    try {
+      tell(line);
+    } catch (const Error&) {
+      // The next message stops the opening in its own thread.
+    }
+  };
+  return wanted;
+}
+
+LoadedSource load_source(const Options& options, double scale, const LoadProgress& tell) {
+  LoadedSource loaded = load_one(options, options.source, scale, tell);
+  if (options.truth) show_truth(loaded);
+  if (options.beside.empty()) return loaded;
+  loaded.beside = std::move(load_one(options, options.beside, scale, tell).player);
+  return loaded;
+}
+
+void show_truth(LoadedSource& source) {
+  if (!source.open_truth) {
+    throw Error(source.player->info().name, "its true forces are not known",
+                "show a scene, or a recording of 'pillarfield simulate --truth'");
+  }
+  source.beside = std::make_unique<FilePlayer>(source.open_truth());
+  source.beside_is_truth = true;
+}
+
+std::string warning_lines(const SourceInfo& info) {
+  std::string lines;
+  for (const std::string& warning : info.warnings) {
+    lines += printable(fmt::format("pillarfield-viewer: {}: {}", info.name, warning)) + "\n";
+  }
+  return lines;
+}
+
+}  // namespace pillarfield::viewer

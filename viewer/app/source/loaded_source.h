@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "viewer/options.h"
+#include "viewer/source/player.h"
+#include "viewer/source/survey.h"
+
+namespace pillarfield::viewer {
+
+/// A source ready to play, with its initial settings; the view is not set.
+struct LoadedSource {
+  std::string name;  ///< as given: a path, or a live source
+  std::shared_ptr<Curves> curves;
+  std::unique_ptr<Survey> survey;           ///< fills `curves`; null for a sensor
+  FieldProducer::Opener open_truth;         ///< empty where the truth is not known
+  std::unique_ptr<Player> player;           ///< null: nothing is open
+  std::unique_ptr<Player> beside;           ///< shown at the right; may be null
+  bool beside_is_truth = false;
+  RenderSettings settings;
+};
+
+/// Receives what the user waits for: "simulating 43 %". May throw to stop.
+using LoadProgress = std::function<void(const std::string& words)>;
+
+/// Options for opening a file; `tell` reports the compilation of kernels, from another thread.
+[[nodiscard]] ProducerOptions producer_options(const Options& options, LoadProgress tell);
+
+/// Opens Options::source, and Options::beside or the truth where they are asked for. Throws Error.
+[[nodiscard]] LoadedSource load_source(const Options& options, double scale,
+                                       const LoadProgress& tell);
+
+/// Opens the truth of a source beside it.
+void show_truth(LoadedSource& source);
+
+/// Warnings of a source, as lines for standard error.
+[[nodiscard]] std::string warning_lines(const SourceInfo& info);
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "viewer/app/window/panel_layout.h"
+
+namespace pillarfield::viewer {
+
+/// What the window remembers between runs, in $XDG_CONFIG_HOME/pillarfield/viewer.conf, else below
+/// ~/.config. Without a folder that can be written it remembers nothing.
+class UserSettings {
+ public:
+  static constexpr std::size_t kMostRecent = 8;
+
+  UserSettings();  ///< reads the file; damaged lines are ignored
+  void save() const noexcept;
+
+  PanelLayout panels;
+
+  /// Sources opened last, newest first; files that are gone are left out.
+  [[nodiscard]] const std::vector<std::string>& recent() const { return recent_; }
+  void add_recent(const std::string& source);
+
+ private:
+  std::filesystem::path path_;  ///< empty: none
+  std::vector<std::string> recent_;
+};
+
+/// Scenes of the working folder, of an installed copy or of the source tree.
+[[nodiscard]] std::vector<std::filesystem::path> scenes_at_hand();
+
+}  // namespace pillarfield::viewer

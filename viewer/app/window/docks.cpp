@@ -1,0 +1,258 @@
+#include "viewer/app/window/docks.h"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "viewer/app/panels/panels.h"
+#include "viewer/app/panels/view_panel.h"
+#include "viewer/app/panels/widgets.h"
+#include "viewer/app/window/panel_layout.h"
+#include "viewer/app/window/style.h"
+#include "viewer/render/imgui_point.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr double kLeastDock = 160;  ///< nominal pixels
+constexpr float kGrip = 6;          ///< width of an edge that can be dragged, nominal pixels
+
+void draw_panel(PanelId id, const Command& command) {
+  AppState& state = command.state;
+  switch (id) {
+    case PanelId::sensor:
+      return sensor_panel(command);
+    case PanelId::view:
+      return view_panel(command);
+    case PanelId::write:
+      return write_panel(command);
+    case PanelId::contacts:
+      return contacts_panel(state, command.place);
+    case PanelId::cursor:
+      return hover_panel(state);
+    case PanelId::pillar:
+      return pillar_panel(state);
+    case PanelId::selection:
+      return selection_panel(state);
+    case PanelId::curves:
+      break;
+  }
+  time_panel(state);
+}
+
+bool is_shown(const PanelPlace& place, const AppState& state) {
+  return place.id != PanelId::sensor || state.player->live() != nullptr;
+}
+
+/// Where a panel goes, chosen from a list.
+void choose_dock(PanelLayout& layout, PanelId id) {
+  for (std::size_t i = 0; i < kDocks; ++i) {
+    const auto dock = static_cast<Dock>(i);
+    if (ImGui::Selectable(title_of(dock), place_of(layout, id).dock == dock)) {
+      move_panel(layout, id, dock);
+    }
+  }
+}
+
+/// A heading that folds its panel, and that can be dragged to another dock; true while open.
+bool panel_heading(PanelLayout& layout, PanelId id) {
+  ImGui::SetNextItemOpen(place_of(layout, id).open);
+  const Section heading = section(title_of(id));
+  place_of(layout, id).open = heading.open;
+  if (heading.dragged) layout.dragged = id;
+  if (heading.menu) ImGui::OpenPopup("dock");
+  if (ImGui::BeginPopup("dock")) {
+    choose_dock(layout, id);
+    ImGui::EndPopup();
+  }
+  return heading.open;
+}
+
+void docked_panel(const Command& command, PanelId id) {
+  PanelLayout& layout = command.state.panels;
+  ImGui::PushID(static_cast<int>(id));
+  if (panel_heading(layout, id)) draw_panel(id, command);
+  ImGui::PopID();
+}
+
+/// Panels of a dock, copied: drawing may move them.
+std::vector<PanelId> panels_in(const AppState& state, Dock dock) {
+  std::vector<PanelId> ids;
+  for (const PanelPlace& place : state.panels.places) {
+    if (place.dock == dock && is_shown(place, state)) ids.push_back(place.id);
+  }
+  return ids;
+}
+
+void begin_dock(const char* name, const Viewport& box, int flags = 0) {
+  ImGui::SetNextWindowPos(to_imgui({box.x, box.y}));
+  ImGui::SetNextWindowSize(to_imgui({box.width, box.height}));
+  ImGui::Begin(name, nullptr, fixed_window_flags() | flags);
+}
+
+void draw_column(const Command& command, const char* name, Dock dock, const Viewport& box) {
+  if (box.width < 1) return;
+  begin_dock(name, box);
+  for (const PanelId id : panels_in(command.state, dock)) docked_panel(command, id);
+  ImGui::End();
+}
+
+/// Panels side by side.
+void draw_row(const Command& command, const Viewport& box) {
+  if (box.height < 1) return;
+  begin_dock("bottom", box, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
+  const std::vector<PanelId> ids = panels_in(command.state, Dock::bottom);
+  const float gap = ImGui::GetStyle().ItemSpacing.x;
+  const auto count = static_cast<float>(std::max<std::size_t>(ids.size(), 1));
+  const float width = (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count;
+  for (const PanelId id : ids) {
+    if (id != ids.front()) ImGui::SameLine();
+    ImGui::BeginChild(title_of(id), ImVec2(width, 0), false,
+                      id == PanelId::curves ? ImGuiWindowFlags_NoScrollWithMouse : 0);
+    docked_panel(command, id);
+    ImGui::EndChild();
+  }
+  ImGui::End();
+}
+
+void draw_window(const Command& command, PanelId id, double scale) {
+  PanelLayout& layout = command.state.panels;
+  Viewport& box = place_of(layout, id).window;
+  ImGui::SetNextWindowPos(to_imgui({box.x * scale, box.y * scale}), ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize(to_imgui({box.width * scale, box.height * scale}),
+                           ImGuiCond_Appearing);
+  bool stays = true;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4);
+  if (ImGui::Begin(title_of(id), &stays, ImGuiWindowFlags_NoSavedSettings)) {
+    draw_panel(id, command);
+  }
+  const ImVec2 corner = ImGui::GetWindowPos();
+  const ImVec2 size = ImGui::GetWindowSize();
+  const auto nominal = [&](float pixels) { return static_cast<double>(pixels) / scale; };
+  box = {nominal(corner.x), nominal(corner.y), nominal(size.x), nominal(size.y)};
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+  if (!stays) move_panel(layout, id, Dock::right);
+}
+
+/// An edge of a dock; returns how far it is dragged, pixels.
+ImVec2 drag_edge(const char* name, const Viewport& box, Theme theme) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+  begin_dock(name, box, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar);
+  ImGui::InvisibleButton("edge", to_imgui({box.width, box.height}));
+  const bool held = ImGui::IsItemActive();
+  if (held || ImGui::IsItemHovered()) {
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
+        palette_of(theme).accent);
+  }
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+  return held ? ImGui::GetIO().MouseDelta : ImVec2(0, 0);
+}
+
+void draw_edges(AppState& state, const Screen& screen) {
+  const double scale = state.settings.scale;
+  const double grip = static_cast<double>(kGrip) * scale;
+  const Theme theme = state.settings.theme;
+  PanelLayout& layout = state.panels;
+  const auto change = [&](double& size, float pixels) {
+    size = std::max(size + static_cast<double>(pixels) / scale, kLeastDock);
+  };
+  const Viewport& left = screen.left;
+  const Viewport& right = screen.right;
+  const Viewport& bottom = screen.bottom;
+  if (left.width > grip) {
+    change(layout.left_width,
+           drag_edge("left edge", {left.width - grip, 0, grip, left.height}, theme).x);
+  }
+  if (right.width > grip) {
+    change(layout.right_width, -drag_edge("right edge", {right.x, 0, grip, right.height}, theme).x);
+  }
+  if (bottom.height > grip) {
+    change(layout.bottom_height,
+           -drag_edge("bottom edge", {bottom.x, bottom.y, bottom.width, grip}, theme).y);
+  }
+}
+
+/// The dock under the mouse; a margin of the field stands for a dock without panels.
+Dock dock_at(const Screen& screen, Vec2 mouse) {
+  constexpr double kMargin = 0.12;
+  const Viewport& field = screen.field;
+  if (contains(screen.left, mouse) || mouse.x < field.x + kMargin * field.width) return Dock::left;
+  if (contains(screen.right, mouse) || mouse.x > field.x + (1 - kMargin) * field.width) {
+    return Dock::right;
+  }
+  return mouse.y > field.y + (1 - kMargin) * field.height ? Dock::bottom : Dock::floating;
+}
+
+/// The part of the window that a dropped panel will take.
+Viewport target_of(const Screen& screen, Dock dock, Vec2 mouse) {
+  const Viewport& field = screen.field;
+  constexpr double kPart = 0.25;
+  switch (dock) {
+    case Dock::left:
+      if (screen.left.width > 0) return screen.left;
+      return {field.x, field.y, kPart * field.width, field.height};
+    case Dock::right:
+      if (screen.right.width > 0) return screen.right;
+      return {field.x + (1 - kPart) * field.width, field.y, kPart * field.width, field.height};
+    case Dock::bottom:
+      if (screen.bottom.height > 0) return screen.bottom;
+      return {field.x, field.y + (1 - kPart) * field.height, field.width, kPart * field.height};
+    case Dock::floating:
+      break;
+  }
+  return {mouse.x - 30, mouse.y - 10, kPart * field.width, kPart * field.height};
+}
+
+/// Shows the place of a dragged panel, and moves it at the end.
+void drop_panel(AppState& state, const Screen& screen) {
+  PanelLayout& layout = state.panels;
+  if (!layout.dragged) return;
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  const Vec2 mouse{static_cast<double>(at.x), static_cast<double>(at.y)};
+  const Dock dock = dock_at(screen, mouse);
+  const Viewport target = target_of(screen, dock, mouse);
+  const ImU32 accent = palette_of(state.settings.theme).accent;
+  ImDrawList& list = *ImGui::GetForegroundDrawList();
+  const ImVec2 corner = to_imgui({target.x, target.y});
+  const ImVec2 end = to_imgui({target.x + target.width, target.y + target.height});
+  list.AddRectFilled(corner, end, (accent & 0x00ffffffu) | 0x40000000u);
+  list.AddRect(corner, end, accent, 0, 0, 2);
+  list.AddText(ImVec2(at.x + 14, at.y), palette_of(state.settings.theme).text,
+               title_of(*layout.dragged));
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
+  const double scale = state.settings.scale;
+  Viewport& box = place_of(layout, *layout.dragged).window;
+  if (dock == Dock::floating) {
+    box.x = target.x / scale;
+    box.y = target.y / scale;
+  }
+  move_panel(layout, *layout.dragged, dock);
+  layout.dragged.reset();
+}
+
+}  // namespace
+
+int fixed_window_flags() {
+  return ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+         ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings |
+         ImGuiWindowFlags_NoNavFocus | ImGuiWindowFlags_NoBringToFrontOnFocus;
+}
+
+void draw_docks(const Command& command, const Screen& screen) {
+  AppState& state = command.state;
+  draw_column(command, "left", Dock::left, screen.left);
+  draw_column(command, "right", Dock::right, screen.right);
+  draw_row(command, screen.bottom);
+  draw_edges(state, screen);
+  for (const PanelId id : panels_in(state, Dock::floating)) {
+    draw_window(command, id, state.settings.scale);
+  }
+  drop_panel(state, screen);
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "viewer/app/input/shortcuts.h"
+#include "viewer/app/window/screen.h"
+
+namespace pillarfield::viewer {
+
+/// Draws all panels in their docks, and moves those that the user drags; the edges of docks can be
+/// dragged too.
+void draw_docks(const Command& command, const Screen& screen);
+
+/// Flags of a fixed part of the window.
+[[nodiscard]] int fixed_window_flags();
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,122 @@
+#include "viewer/app/window/panel_layout.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <sstream>
+
+#include "viewer/app/window/screen.h"
+
+namespace pillarfield::viewer {
+namespace {
+
+constexpr std::array<const char*, kPanels> kPanelTitles{
+    "Sensor", "View", "Write", "Contacts", "Under the cursor", "Pillar", "Selection", "Over time"};
+constexpr std::array<const char*, kPanels> kPanelNames{
+    "sensor", "view", "write", "contacts", "cursor", "pillar", "selection", "curves"};
+constexpr std::array<const char*, kDocks> kDockTitles{"Left", "Right", "Bottom", "Window"};
+constexpr std::array<const char*, kDocks> kDockNames{"left", "right", "bottom", "floating"};
+
+constexpr double kLeastSize = 120;
+constexpr double kMostSize = 2000;
+
+template <std::size_t size>
+std::optional<std::size_t> place_in(const std::array<const char*, size>& names,
+                                    const std::string& name) {
+  const auto found = std::ranges::find_if(names, [&](const char* each) { return name == each; });
+  if (found == names.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+/// A line "panel NAME DOCK OPEN X Y WIDTH HEIGHT".
+std::optional<PanelPlace> panel_from(std::istream& line) {
+  std::string name;
+  std::string dock;
+  PanelPlace place;
+  Viewport& box = place.window;
+  if (!(line >> name >> dock >> place.open >> box.x >> box.y >> box.width >> box.height)) return {};
+  const auto id = place_in(kPanelNames, name);
+  const auto where = place_in(kDockNames, dock);
+  if (!id || !where) return {};
+  place.id = static_cast<PanelId>(*id);
+  place.dock = static_cast<Dock>(*where);
+  box = {std::clamp(box.x, 0.0, kMostSize), std::clamp(box.y, 0.0, kMostSize),
+         std::clamp(box.width, kLeastSize, kMostSize), std::clamp(box.height, kLeastSize, kMostSize)};
+  return place;
+}
+
+void take_size(PanelLayout& layout, const std::string& name, double size) {
+  size = std::clamp(size, kLeastSize, kMostSize);
+  if (name == "left_width") layout.left_width = size;
+  if (name == "right_width") layout.right_width = size;
+  if (name == "bottom_height") layout.bottom_height = size;
+}
+
+}  // namespace
+
+const char* title_of(PanelId id) { return kPanelTitles.at(static_cast<std::size_t>(id)); }
+const char* title_of(Dock dock) { return kDockTitles.at(static_cast<std::size_t>(dock)); }
+
+PanelLayout default_layout() {
+  PanelLayout layout;
+  for (std::size_t i = 0; i < kPanels; ++i) layout.places.push_back({static_cast<PanelId>(i)});
+  place_of(layout, PanelId::curves).dock = Dock::bottom;
+  return layout;
+}
+
+PanelPlace& place_of(PanelLayout& layout, PanelId id) {
+  return *std::ranges::find(layout.places, id, &PanelPlace::id);
+}
+
+void move_panel(PanelLayout& layout, PanelId id, Dock dock) {
+  const auto found = std::ranges::find(layout.places, id, &PanelPlace::id);
+  found->dock = dock;
+  std::rotate(found, found + 1, layout.places.end());
+}
+
+bool has_panels(const PanelLayout& layout, Dock dock) {
+  return std::ranges::find(layout.places, dock, &PanelPlace::dock) != layout.places.end();
+}
+
+bool covers(const PanelLayout& layout, Vec2 pixel, double scale) {
+  return std::ranges::any_of(layout.places, [&](const PanelPlace& place) {
+    const Viewport& box = place.window;
+    return place.dock == Dock::floating &&
+           contains({box.x * scale, box.y * scale, box.width * scale, box.height * scale}, pixel);
+  });
+}
+
+std::string text_of(const PanelLayout& layout) {
+  std::string text;
+  for (const PanelPlace& place : layout.places) {
+    const Viewport& box = place.window;
+    text += fmt::format("panel {} {} {:d} {:.0f} {:.0f} {:.0f} {:.0f}\n",
+                        kPanelNames.at(static_cast<std::size_t>(place.id)),
+                        kDockNames.at(static_cast<std::size_t>(place.dock)), place.open, box.x,
+                        box.y, box.width, box.height);
+  }
+  return text + fmt::format("left_width {:.0f}\nright_width {:.0f}\nbottom_height {:.0f}\n",
+                            layout.left_width, layout.right_width, layout.bottom_height);
+}
+
+PanelLayout layout_from(std::string_view text) {
+  PanelLayout layout = default_layout();
+  std::istringstream lines{std::string(text)};
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string name;
+    words >> name;
+    double size = 0;
+    if (name == "panel") {
+      const auto place = panel_from(words);
+      if (!place) continue;
+      move_panel(layout, place->id, place->dock);
+      layout.places.back() = *place;
+    } else if (words >> size) {
+      take_size(layout, name, size);
+    }
+  }
+  return layout;
+}
+
+}  // namespace pillarfield::viewer

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "viewer/style/view.h"
+
+namespace pillarfield::viewer {
+
+enum class PanelId : std::uint8_t {
+  sensor,
+  view,
+  write,
+  contacts,
+  cursor,
+  pillar,
+  selection,
+  curves
+};
+inline constexpr std::size_t kPanels = 8;
+[[nodiscard]] const char* title_of(PanelId id);
+
+/// Where a panel is: in a column, in the row below the field, or a window of its own.
+enum class Dock : std::uint8_t { left, right, bottom, floating };
+inline constexpr std::size_t kDocks = 4;
+[[nodiscard]] const char* title_of(Dock dock);
+
+struct PanelPlace {
+  PanelId id = PanelId::view;
+  Dock dock = Dock::right;
+  bool open = true;                      ///< not folded
+  Viewport window{160, 120, 360, 300};  ///< while floating, nominal pixels
+};
+
+/// Places of all panels, in their order in each dock, and sizes in nominal pixels.
+struct PanelLayout {
+  std::vector<PanelPlace> places;
+  double left_width = 300;
+  double right_width = 340;
+  double bottom_height = 210;
+  std::optional<PanelId> dragged = {};  ///< its heading is being dragged
+};
+
+/// Curves below the field, the others at the right.
+[[nodiscard]] PanelLayout default_layout();
+
+[[nodiscard]] PanelPlace& place_of(PanelLayout& layout, PanelId id);
+
+/// Moves a panel to the end of a dock.
+void move_panel(PanelLayout& layout, PanelId id, Dock dock);
+
+[[nodiscard]] bool has_panels(const PanelLayout& layout, Dock dock);
+
+/// True if a floating panel covers a pixel.
+[[nodiscard]] bool covers(const PanelLayout& layout, Vec2 pixel, double scale);
+
+/// One line for each panel and size; layout_from() takes the lines that it understands, within
+/// limits, and the default for the rest.
+[[nodiscard]] std::string text_of(const PanelLayout& layout);
+[[nodiscard]] PanelLayout layout_from(std::string_view text);
+
+}  // namespace pillarfield::viewer
