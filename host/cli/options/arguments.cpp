@@ -242,6 +242,7 @@ void add_stream(CLI::App& parent, Work& work) {
   input.flag("--repeat", options->repeat, "Replay a file again and again");
   input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
               100'000'000);
+  add_plain_data(command, options->plan.read, false);
   add_stream_ends(command, *options);
   add_sensor(command, options->plan);
   add_solver(command, options->plan);
