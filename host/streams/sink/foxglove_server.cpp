@@ -293,7 +293,10 @@ FoxgloveServer::State::State(const SocketAddress& address, const std::string& ta
     throw Error(printable(target), error.code().message(), "choose another address or port");
   }
   accept();
-  thread = std::thread([this] { context.run(); });
+  thread = std::thread([this] {
+    yield_to_other_threads();
+    context.run();
+  });
 }
 
 FoxgloveServer::State::~State() {
