@@ -84,24 +84,4 @@ FrameView frame_of(const py::array& readings, std::size_t index) {
   return {data + index * bytes, type, rows, cols, cols};
 }
 
-ForceFieldView forces_of(const FloatPlane& shear_x, const FloatPlane& shear_y,
-                         const FloatPlane& normal, const BytePlane& status) {
-  const auto fits = [&](const py::array& plane) {
-    return plane.ndim() == 2 && plane.shape(0) == shear_x.shape(0) &&
-           plane.shape(1) == shear_x.shape(1);
-  };
-  if (!fits(shear_x) || !fits(shear_y) || !fits(normal) || !fits(status)) {
-    throw Error("ForceField", "its planes differ in shape", "give four planes [rows, cols]");
-  }
-  const auto size = static_cast<std::size_t>(shear_x.size());
-  ForceFieldView view;
-  view.rows = length_of(shear_x, 0);
-  view.cols = length_of(shear_x, 1);
-  view.shear_x = {shear_x.data(), size};
-  view.shear_y = {shear_y.data(), size};
-  view.normal = {normal.data(), size};
-  view.status = {status.data(), size};
-  return view;
-}
-
 }  // namespace pillarfield::python

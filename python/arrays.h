@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
 
 namespace pillarfield::python {
@@ -64,10 +63,6 @@ std::vector<T> plane_from(const py::object& plane, std::uint32_t rows, std::uint
 /// 0. Throws Error unless they are dense and aligned.
 [[nodiscard]] FrameView frame_of(const py::array& readings, std::size_t index = 0);
 
-/// A view of planes [rows, cols] of forces. Throws Error if they differ in shape.
 using FloatPlane = py::array_t<float, py::array::c_style | py::array::forcecast>;
-using BytePlane = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
-[[nodiscard]] ForceFieldView forces_of(const FloatPlane& shear_x, const FloatPlane& shear_y,
-                                       const FloatPlane& normal, const BytePlane& status);
 
 }  // namespace pillarfield::python

@@ -56,12 +56,13 @@ py::object plane_of_calibration(const SkinCalibration& self) {
   return plane_or_none(self.planes.*plane, self.rows, self.cols);
 }
 
-SkinCalibration load(const std::filesystem::path& path, bool trust) {
+SkinCalibration load_calibration(const std::filesystem::path& path, bool trust) {
   const py::gil_scoped_release unlocked;
   return read_calibration_file(path, {.trust = trust});
 }
 
-void save(const SkinCalibration& self, const std::filesystem::path& path, bool overwrite) {
+void save_calibration(const SkinCalibration& self, const std::filesystem::path& path,
+                      bool overwrite) {
   const py::gil_scoped_release unlocked;
   write_calibration_file(path, self, overwrite ? Replace::anything : Replace::results);
 }
@@ -115,9 +116,10 @@ void bind_calibration(py::module_& module) {
            py::arg("dead_zone") = py::none(), py::arg("mask") = py::none(),
            py::arg("noise") = py::none(), py::arg("threshold_counts") = py::none(),
            py::arg("counts_per_newton") = py::none())
-      .def_static("load", &load, py::arg("path"), py::kw_only(), py::arg("trust") = false,
+      .def_static("load", &load_calibration, py::arg("path"), py::kw_only(),
+                  py::arg("trust") = false,
                   "Reads a calibration file. trust: it comes from your own programs.")
-      .def("save", &save, py::arg("path"), py::kw_only(), py::arg("overwrite") = false,
+      .def("save", &save_calibration, py::arg("path"), py::kw_only(), py::arg("overwrite") = false,
            "Writes a calibration file. overwrite: replace an existing one.")
       .def_readonly("rows", &SkinCalibration::rows, "sensel rows")
       .def_readonly("cols", &SkinCalibration::cols, "sensel columns")

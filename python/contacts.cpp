@@ -7,10 +7,14 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "pillarfield/contact_tracker.h"
+#include "pillarfield/error.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/force_planes.h"
+#include "python/process.h"
 
 namespace pillarfield::python {
 namespace {
@@ -113,14 +117,22 @@ py::list ended_of(const FrameContacts& self) {
 class Tracker {
  public:
   Tracker(const SolverPlan& plan, std::uint64_t minimum_pillars, double reach_mm)
-      : tracker_(plan.skin.pillar_pitch_mm(), options_of(plan, minimum_pillars, reach_mm)) {}
+      : tracker_(std::make_unique<ContactTracker>(plan.skin.pillar_pitch_mm(),
+                                                  options_of(plan, minimum_pillars, reach_mm))) {}
 
-  FrameContacts update(const FloatPlane& shear_x, const FloatPlane& shear_y,
-                       const FloatPlane& normal, const BytePlane& status, double time_s) {
-    const ForceFieldView forces = forces_of(shear_x, shear_y, normal, status);
+  /// The contacts of each frame.
+  std::vector<SharedContacts> update(const py::dict& planes, const std::vector<double>& times) {
+    const ForceArrays forces(planes);
+    if (times.size() != forces.frames()) throw Error("Contacts", "the times are not one a frame");
+    if (tracker_.is_foreign()) throw_foreign("Contacts");
     const py::gil_scoped_release unlocked;
     const std::lock_guard alone(mutex_);
-    return tracker_.update(forces, time_s);
+    std::vector<SharedContacts> contacts;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      contacts.push_back(
+          std::make_shared<FrameContacts>(tracker_.get()->update(forces.frame(i), times[i])));
+    }
+    return contacts;
   }
 
  private:
@@ -134,7 +146,7 @@ class Tracker {
   }
 
   std::mutex mutex_;
-  ContactTracker tracker_;
+  ProcessBound<ContactTracker> tracker_;
 };
 
 }  // namespace
@@ -166,9 +178,8 @@ void bind_contacts(py::module_& module) {
       .def(py::init<const SolverPlan&, std::uint64_t, double>(), py::arg("plan"), py::kw_only(),
            py::arg("minimum_pillars") = ContactOptions{}.minimum_pillars,
            py::arg("reach_mm") = ContactOptions{}.reach_mm)
-      .def("update", &Tracker::update, py::arg("shear_x"), py::arg("shear_y"), py::arg("normal"),
-           py::arg("status"), py::arg("time_s"),
-           "The contacts of the next frame from its planes [rows, cols].");
+      .def("update", &Tracker::update, py::arg("planes"), py::arg("times"),
+           "FrameContacts of each of the next frames, from planes [frames, rows, cols].");
 }
 
 }  // namespace pillarfield::python

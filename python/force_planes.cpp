@@ -5,6 +5,9 @@
 #include <new>
 #include <utility>
 
+#include "pillarfield/error.h"
+#include "pillarfield/skin.h"
+
 namespace pillarfield::python {
 
 void ForceStack::Plane::resize(std::size_t frames) {
@@ -72,6 +75,65 @@ py::dict lent_planes(const ForceFieldView& forces, const py::object& owner) {
   }
   planes["status"] = array_over(forces.status.data(), shape, owner, false);
   return planes;
+}
+
+ForceCopy::ForceCopy(const ForceFieldView& forces)
+    : status_(forces.status.begin(), forces.status.end()), view_(forces) {
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) values += plane_of(forces, i).size();
+  values_.reserve(values);
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    const auto plane = plane_of(forces, i);
+    plane_of(view_, i) = {values_.data() + values_.size(), plane.size()};
+    values_.insert(values_.end(), plane.begin(), plane.end());
+  }
+  view_.status = status_;
+}
+
+template <class T>
+const T* ForceArrays::data_of(const py::dict& planes, const std::string& name) {
+  if (!planes.contains(name.c_str())) return nullptr;
+  const py::object given = planes[name.c_str()];
+  const bool is_dense = py::isinstance<py::array_t<T, py::array::c_style>>(given);
+  const auto array = is_dense ? py::array(given) : py::array();
+  if (!is_dense || array.ndim() != 3 || array.shape(0) != static_cast<py::ssize_t>(frames_) ||
+      array.shape(1) != rows_ || array.shape(2) != cols_) {
+    throw Error("ForceField", "its plane " + name + " does not fit the others",
+                "make a ForceField of planes of one shape");
+  }
+  arrays_.push_back(array);
+  return static_cast<const T*>(array.data());
+}
+
+ForceArrays::ForceArrays(const py::dict& planes) {
+  const py::array normal = planes.contains("normal") ? py::array(planes["normal"]) : py::array();
+  if (normal.ndim() != 3 || normal.shape(1) > kMaxSensels || normal.shape(2) > kMaxSensels) {
+    throw Error("ForceField", "it has no plane normal [frames, rows, cols]", "make one");
+  }
+  frames_ = static_cast<std::size_t>(normal.shape(0));
+  rows_ = static_cast<std::uint32_t>(normal.shape(1));
+  cols_ = static_cast<std::uint32_t>(normal.shape(2));
+  for (const ResultPlane& plane : kResultPlanes) {
+    if (plane.index >= kSolvedPlanes) break;
+    planes_[plane.index] = data_of<float>(planes, plane.field());
+  }
+  status_ = data_of<std::uint8_t>(planes, "status");
+  if (status_ == nullptr || std::find(planes_.begin(), planes_.begin() + kForcePlanes, nullptr) !=
+                                planes_.begin() + kForcePlanes) {
+    throw Error("ForceField", "a plane is missing", "give shear_x, shear_y, normal and status");
+  }
+}
+
+ForceFieldView ForceArrays::frame(std::size_t index) const {
+  const std::size_t pillars = std::size_t{rows_} * cols_;
+  ForceFieldView view;
+  view.rows = rows_;
+  view.cols = cols_;
+  for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
+    if (planes_[i] != nullptr) plane_of(view, i) = {planes_[i] + index * pillars, pillars};
+  }
+  view.status = {status_ + index * pillars, pillars};
+  return view;
 }
 
 }  // namespace pillarfield::python

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdlib>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "python/arrays.h"
 #include "solve/result_planes.h"
@@ -45,7 +47,44 @@ class ForceStack {
   Plane status_;
 };
 
-/// The planes of one frame as arrays [rows, cols] over memory that `owner` keeps alive.
+/// The planes of one frame as read-only arrays [rows, cols] over memory that `owner` keeps alive.
 [[nodiscard]] py::dict lent_planes(const ForceFieldView& forces, const py::object& owner);
+
+/// A copy of the planes of one frame.
+class ForceCopy {
+ public:
+  explicit ForceCopy(const ForceFieldView& forces);
+  [[nodiscard]] const ForceFieldView& view() const { return view_; }
+
+ private:
+  std::vector<float> values_;
+  std::vector<std::uint8_t> status_;
+  ForceFieldView view_;
+};
+
+/// Arrays of planes that came from Python: {"shear_x": float32 [frames, rows, cols], ...,
+/// "status": uint8}.
+class ForceArrays {
+ public:
+  /// Throws Error if a plane of the forces or the status is missing, or one has another type or
+  /// shape or is not dense.
+  explicit ForceArrays(const py::dict& planes);
+
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  [[nodiscard]] std::uint32_t rows() const { return rows_; }
+  [[nodiscard]] std::uint32_t cols() const { return cols_; }
+  [[nodiscard]] ForceFieldView frame(std::size_t index) const;
+
+ private:
+  template <class T>
+  const T* data_of(const py::dict& planes, const std::string& name);
+
+  std::vector<py::array> arrays_;
+  std::array<const float*, kSolvedPlanes> planes_{};
+  const std::uint8_t* status_ = nullptr;
+  std::size_t frames_ = 0;
+  std::uint32_t rows_ = 0;
+  std::uint32_t cols_ = 0;
+};
 
 }  // namespace pillarfield::python

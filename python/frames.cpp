@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "pillarfield/error.h"
-#include "pillarfield/force_file.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"
+#include "python/index_range.h"
 #include "python/signals.h"
 
 namespace pillarfield::python {
@@ -84,61 +84,54 @@ class ArraySource final : public FrameSource {
   std::vector<std::string> warnings_;
 };
 
-/// Throws IndexError unless all frames first, first + step, ... exist.
-void check_range(const FrameSource& source, std::int64_t first, std::int64_t step,
-                 std::int64_t count) {
-  const auto frames = static_cast<std::int64_t>(source.frames());
-  const auto exists = [&](std::int64_t index) { return index >= 0 && index < frames; };
-  if (count < 0 || count > frames || (count > 0 && !exists(first)) ||
-      (count > 1 &&
-       (step == 0 || step > frames || step < -frames || !exists(first + (count - 1) * step)))) {
-    throw py::index_error("frame index out of range");
-  }
-}
-
 /// Readings of `count` frames: [count, rows, cols].
-py::array read_frames(FrameSource& source, std::int64_t first, std::int64_t step,
-                      std::int64_t count) {
-  check_range(source, first, step, count);
+py::array read_frames(Frames& frames, const IndexRange& range) {
+  FrameSource& source = *frames.source;
+  range.check(source.frames());
   const Skin& skin = source.skin();
-  py::array readings(dtype_of(source.sensel_type()), Shape{count, skin.rows, skin.cols});
+  py::array readings(dtype_of(source.sensel_type()),
+                     Shape{static_cast<py::ssize_t>(range.count), skin.rows, skin.cols});
   auto* out = static_cast<std::byte*>(readings.mutable_data());
   const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(frames.alone);
   SignalCheck check_signals;
   FrameBuffer frame(source.sensel_type(), skin.rows, skin.cols);
-  for (std::int64_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < range.count; ++i) {
     check_signals();
-    source.read(static_cast<std::uint64_t>(first + i * step), frame);
+    source.read(range[i], frame);
     out = std::ranges::copy(frame.bytes(), out).out;
   }
   return readings;
 }
 
-py::dict read_truth(FrameSource& source, std::int64_t first, std::int64_t step,
-                    std::int64_t count) {
-  check_range(source, first, step, count);
+py::dict read_truth(Frames& frames, const IndexRange& range) {
+  FrameSource& source = *frames.source;
+  range.check(source.frames());
   if (!source.has_truth()) {
     throw Error(source.format(), "it has no true forces", "simulate one that has");
   }
   ForceStack stack(source.skin().pillar_rows(), source.skin().pillar_cols());
   {
     const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(frames.alone);
     SignalCheck check_signals;
     ForceField truth(source.skin().pillar_rows(), source.skin().pillar_cols());
-    stack.reserve(static_cast<std::size_t>(count));
-    for (std::int64_t i = 0; i < count; ++i) {
+    stack.reserve(range.count);
+    for (std::size_t i = 0; i < range.count; ++i) {
       check_signals();
-      source.read_truth(static_cast<std::uint64_t>(first + i * step), truth);
+      source.read_truth(range[i], truth);
       stack.append(truth.view());
     }
   }
   return stack.release();
 }
 
-py::array_t<double> times_of(FrameSource& source, std::uint64_t most) {
+py::array_t<double> times_of(Frames& frames, std::uint64_t most) {
   std::vector<double> times;
   {
     const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(frames.alone);
+    FrameSource& source = *frames.source;
     for (std::uint64_t i = 0; i < std::min(most, source.frames()); ++i)
       times.push_back(source.time(i));
   }
@@ -146,48 +139,84 @@ py::array_t<double> times_of(FrameSource& source, std::uint64_t most) {
   return array_of(std::move(times), {size});
 }
 
-}  // namespace
-
-SkinCalibration calibration_of(const FrameSource& source) {
+SkinCalibration calibration_of(const Frames& frames) {
   SkinCalibration calibration;
-  calibration.rows = source.skin().rows;
-  calibration.cols = source.skin().cols;
-  calibration.planes = source.calibration();
+  calibration.rows = frames.source->skin().rows;
+  calibration.cols = frames.source->skin().cols;
+  calibration.planes = frames.source->calibration();
   return calibration;
 }
 
+std::unique_ptr<Frames> open(const std::filesystem::path& path, bool trust) {
+  const py::gil_scoped_release unlocked;
+  return std::make_unique<Frames>(open_frames(path, {.trust = trust}));
+}
+
+std::unique_ptr<Frames> of_array(const py::array& readings,
+                                 const py::array_t<double, py::array::forcecast>& times,
+                                 const Skin& skin,
+                                 const std::optional<SkinCalibration>& calibration) {
+  return std::make_unique<Frames>(
+      std::make_unique<ArraySource>(readings, times, skin, calibration));
+}
+
+void write(Frames& frames, const std::filesystem::path& path, bool overwrite) {
+  const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(frames.alone);
+  FrameSource& source = *frames.source;
+  const Skin& skin = source.skin();
+  RecordingWriter writer(path, skin, source.sensel_type(), source.calibration(),
+                         {.replace = overwrite ? Replace::anything : Replace::results});
+  FrameBuffer frame(source.sensel_type(), skin.rows, skin.cols);
+  SignalCheck check_signals;
+  for (std::uint64_t i = 0; i < source.frames(); ++i) {
+    check_signals();
+    const double time_s = source.read(i, frame);
+    writer.append(frame.view(), time_s);
+  }
+  writer.finish();
+}
+
+}  // namespace
+
 void bind_frames(py::module_& module) {
-  py::class_<FrameSource>(module, "FrameSource", kSource)
-      .def_static(
-          "open",
-          [](const std::filesystem::path& path, bool trust) {
-            const py::gil_scoped_release unlocked;
-            return open_frames(path, {.trust = trust});
-          },
-          py::arg("path"), py::kw_only(), py::arg("trust") = false, kOpen)
-      .def_static(
-          "of_array",
-          [](const py::array& readings, const py::array_t<double, py::array::forcecast>& times,
-             const Skin& skin,
-             const std::optional<SkinCalibration>& calibration) -> std::unique_ptr<FrameSource> {
-            return std::make_unique<ArraySource>(readings, times, skin, calibration);
-          },
-          py::arg("readings"), py::arg("times"), py::arg("skin"), py::arg("calibration"), kArray)
-      .def_property_readonly("skin", &FrameSource::skin, "its Skin")
-      .def_property_readonly("calibration", &calibration_of, "its Calibration")
-      .def_property_readonly("format", &FrameSource::format, "of the file")
-      .def_property_readonly("has_truth", &FrameSource::has_truth, "true forces are known")
-      .def_property_readonly("warnings", &FrameSource::warnings, "one sentence each")
+  py::class_<Frames>(module, "FrameSource", kSource)
+      .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("trust") = false, kOpen)
+      .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
+                  py::arg("calibration"), kArray)
+      .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),
+           "Writes all frames as a recording.")
       .def_property_readonly(
-          "sensel_type", [](const FrameSource& self) { return name_of(self.sensel_type()); },
+          "skin", [](const Frames& self) { return self.source->skin(); }, "its Skin")
+      .def_property_readonly("calibration", &calibration_of, "its Calibration")
+      .def_property_readonly(
+          "format", [](const Frames& self) { return self.source->format(); }, "of the file")
+      .def_property_readonly(
+          "has_truth", [](const Frames& self) { return self.source->has_truth(); },
+          "true forces are known")
+      .def_property_readonly(
+          "warnings", [](const Frames& self) { return self.source->warnings(); },
+          "one sentence each")
+      .def_property_readonly(
+          "sensel_type", [](const Frames& self) { return name_of(self.source->sensel_type()); },
           "'uint8', 'uint16' or 'float32'")
       .def("times", &times_of, py::arg("most") = std::numeric_limits<std::uint64_t>::max(),
            "Times of all frames, or of the first `most`, float64 [frames], s.")
-      .def("read", &read_frames, py::arg("first"), py::arg("step"), py::arg("count"),
-           "Readings of `count` frames, [count, rows, cols].")
-      .def("read_truth", &read_truth, py::arg("first"), py::arg("step"), py::arg("count"),
-           "Planes of the true forces of `count` frames.")
-      .def("__len__", &FrameSource::frames);
+      .def(
+          "read",
+          [](Frames& self, std::int64_t first, std::int64_t step, std::int64_t count) {
+            return read_frames(self, IndexRange(first, step, count));
+          },
+          py::arg("first"), py::arg("step"), py::arg("count"),
+          "Readings of `count` frames, [count, rows, cols].")
+      .def(
+          "read_truth",
+          [](Frames& self, std::int64_t first, std::int64_t step, std::int64_t count) {
+            return read_truth(self, IndexRange(first, step, count));
+          },
+          py::arg("first"), py::arg("step"), py::arg("count"),
+          "Planes of the true forces of `count` frames.")
+      .def("__len__", [](const Frames& self) { return self.source->frames(); });
 }
 
 }  // namespace pillarfield::python

@@ -3,7 +3,8 @@
 #include <pybind11/numpy.h>
 
 #include <memory>
-#include <vector>
+#include <mutex>
+#include <utility>
 
 #include "pillarfield/recording.h"
 #include "pillarfield/skin_calibration.h"
@@ -11,7 +12,12 @@
 
 namespace pillarfield::python {
 
-/// The calibration of a source of frames.
-[[nodiscard]] SkinCalibration calibration_of(const FrameSource& source);
+/// A source of frames, used by one thread at a time.
+struct Frames {
+  explicit Frames(std::unique_ptr<FrameSource> frames) : source(std::move(frames)) {}
+
+  std::unique_ptr<FrameSource> source;
+  std::mutex alone;
+};
 
 }  // namespace pillarfield::python

@@ -15,4 +15,9 @@ PYBIND11_MODULE(_core, module) {
   bind_frames(module);
   bind_solve(module);
   bind_processor(module);
+  bind_force_files(module);
+  bind_compare(module);
+  bind_calibrate(module);
+  bind_live(module);
+  bind_picture(module);
 }

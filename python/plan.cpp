@@ -166,6 +166,7 @@ void bind_plan(py::module_& module) {
       .def_property_readonly(
           "sensel_type", [](const SolverPlan& plan) { return name_of(plan.sensel_type); },
           "'uint8', 'uint16' or 'float32'")
+      .def_readonly("frame_interval_s", &SolverPlan::frame_interval_s, "s")
       .def_property_readonly(
           "estimator", [](const SolverPlan& plan) { return name_of(plan.estimator); },
           "'direct', 'paper' or 'contact'")

@@ -11,7 +11,7 @@
 #include "python/bindings.h"
 #include "python/force_planes.h"
 #include "python/frames.h"
-#include "python/opencl.h"
+#include "python/process.h"
 #include "python/signals.h"
 
 namespace pillarfield::python {
@@ -101,13 +101,14 @@ void run(FrameStream& stream, const SolverPlan& plan, bool contacts, const Devic
   pipeline.run();
 }
 
-py::dict solve_source(FrameSource& source, const SolverPlan& plan, bool contacts,
+py::dict solve_source(Frames& frames, const SolverPlan& plan, bool contacts,
                       const std::string& device) {
   Collector collector(plan.skin);
   {
     const py::gil_scoped_release unlocked;
-    collector.reserve(source.frames());
-    const auto stream = file_stream(source);
+    const std::lock_guard alone(frames.alone);
+    collector.reserve(frames.source->frames());
+    const auto stream = file_stream(*frames.source);
     run(*stream, plan, contacts, device_named(device), collector);
   }
   return collector.release(contacts);

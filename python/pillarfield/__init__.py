@@ -10,15 +10,21 @@
 docs/python.md is the manual.
 """
 
-from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, Scene, Skin, Surface,
-                    __version__)
+from . import calibrate
+from ._compare import Comparison, compare
+from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, RegionErrors, Scene,
+                    SenselFinding, Skin, Surface, __version__)
 from ._error import Error
 from ._field import ForceField, Points, Uncertainty
-from ._recording import Recording
+from ._live import Frame, LiveSink, LiveSource, live, sink
+from ._processor import Contacts, Processor
+from ._recording import ForceFile, Recording, open
 from ._scene import Simulation, scene, simulate
-from ._solve import solve
+from ._solve import save_recording, solve
 from ._status import Region, Status
 
-__all__ = ["Calibration", "Contact", "ContactTotal", "Error", "ForceField", "FrameContacts", "Plan",
-           "Points", "Recording", "Region", "Scene", "Simulation", "Skin", "Status", "Surface",
-           "Uncertainty", "__version__", "scene", "simulate", "solve"]
+__all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
+           "ForceFile", "Frame", "FrameContacts", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
+           "RegionErrors", "Scene", "SenselFinding", "Simulation", "Skin", "Status", "Surface",
+           "Uncertainty", "__version__", "calibrate", "compare", "live", "open", "save_recording", "scene",
+           "simulate", "sink", "solve"]

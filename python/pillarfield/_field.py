@@ -11,6 +11,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._error import Error
+from ._frames import Path
+from ._picture import picture
 from ._status import REGIONS, Status
 
 if TYPE_CHECKING:
@@ -223,6 +225,20 @@ class ForceField:
         planes = {name: plane.copy() for name, plane in self._planes.items()}
         return self._of(planes, self._times.copy(), self._contacts, self._skin)
 
+    def _batch(self) -> dict[str, Any]:
+        """Dense planes [T, P, Q]."""
+        shape = (-1, *self.shape[-2:])
+        return {name: np.ascontiguousarray(plane).reshape(shape)
+                for name, plane in self._planes.items()}
+
+    def save(self, path: Path, *, overwrite: bool = False) -> None:
+        """Writes the forces; the extension chooses the format (docs/formats.md): .h5, .csv, .npy.
+
+        overwrite: replace any file, not only other results. Raises Error if it cannot be written.
+        """
+        skin = self._skin or _core.Skin(2 * self.shape[-2], 2 * self.shape[-1])
+        _core.save_forces(path, self._batch(), self._times.reshape(-1), skin, overwrite)
+
     def __repr__(self) -> str:
         frames = len(self)
         rows, cols = self.shape[-2:]
@@ -232,6 +248,30 @@ class ForceField:
         share = 100 * self.where(Status.AMBIGUOUS).sum() / max(1, touched.sum())
         return (f"<ForceField: {frames} frame{'s' * (frames != 1)} of {rows} x {cols} pillars, "
                 f"{low:.3g}..{high:.3g} N, {share:.0f} % ambiguous>")
+
+    def picture(self, quantity: str = "normal", *, limits: Optional[tuple[float, float]] = None,
+                theme: str = "dark") -> bytes:
+        """A picture of one frame as PNG: heat map in the viewer's colours, arrows of the shear.
+
+        quantity: normal, shear, shear_x, shear_y, magnitude, theta, phi, region, status, uncertainty
+        limits: ends of the colour bar, N or rad; None: fitting ones
+        theme: 'dark' or 'light'
+
+        Raises Error if the forces are of several frames or lack the quantity.
+        """
+        if len(self.shape) != 2:
+            raise Error("ForceField.picture", "the forces are of several frames", "index one")
+        if theme not in ("dark", "light"):
+            raise Error("ForceField.picture", f"'{theme}' is no theme", "give 'dark' or 'light'")
+        return picture(self._batch(), quantity, limits, theme == "light")
+
+    def _repr_png_(self) -> Optional[bytes]:
+        """For notebooks: the picture of the frame, or of the one with the largest normal force."""
+        if len(self.shape) == 2:
+            return self.picture()
+        if not len(self):
+            return None
+        return self[int(self.normal.sum((1, 2)).argmax())].picture()
 
     def to_xarray(self) -> xarray.Dataset:
         """The planes as an xarray.Dataset with coordinates time (s), y and x (mm); needs xarray."""

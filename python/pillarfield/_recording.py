@@ -96,3 +96,64 @@ class Recording:
     def __repr__(self) -> str:
         frames, rows, cols = self.shape
         return f"<Recording: {frames} frames of {rows} x {cols} sensels, {self.dtype}>"
+
+
+class ForceFile:
+    """A file of forces, read when it is indexed.
+
+    file[10] is the ForceField of a frame, file[1000:2000:10] that of several. trust: the file comes
+    from your own programs, so it is not examined first. Raises Error if it is of another format, or
+    damaged.
+    """
+
+    def __init__(self, path: Path, *, trust: bool = False) -> None:
+        self._reader = _core.ForceReader(path, trust=trust)
+
+    @property
+    def skin(self) -> _core.Skin:
+        """Skin, as far as the file tells: size, pitch and surface."""
+        return self._reader.skin
+
+    @property
+    def estimator(self) -> str:
+        """The estimator that solved it."""
+        return self._reader.estimator
+
+    @property
+    def source(self) -> str:
+        """Name of the file of frames."""
+        return self._reader.source
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings about the file, one sentence each."""
+        return self._reader.warnings
+
+    def __len__(self) -> int:
+        """The number of frames."""
+        return len(self._reader)
+
+    def __getitem__(self, frames: Union[int, slice]) -> ForceField:
+        """Forces of a frame, planes [P, Q], or of a slice, [T, P, Q]."""
+        planes = self._reader.read(*range_of(frames, len(self)))
+        field = ForceField._of(planes, planes.pop("times"), planes.pop("contacts", None), self.skin)
+        return field if isinstance(frames, slice) else field[0]
+
+    def __iter__(self) -> Iterator[ForceField]:
+        """The frames."""
+        return (self[frame] for frame in range(len(self)))
+
+    def __repr__(self) -> str:
+        rows, cols = self.skin.pillar_rows, self.skin.pillar_cols
+        return f"<ForceFile: {len(self)} frames of {rows} x {cols} pillars, {self.estimator}>"
+
+
+def open(path: Path, *, trust: bool = False) -> Union[Recording, ForceFile, _core.Calibration]:
+    """Opens a file by its content: a Recording, a ForceFile or a Calibration.
+
+    trust: it comes from your own programs, so it is not examined first.
+    """
+    kind = _core.kind_of(path)
+    if kind == "calibration":
+        return _core.Calibration.load(path, trust=trust)
+    return ForceFile(path, trust=trust) if kind == "forces" else Recording(path, trust=trust)

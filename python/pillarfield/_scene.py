@@ -42,7 +42,7 @@ def scene(source: Union[Path, Mapping[str, Any], _core.Scene]) -> _core.Scene:
     """A scene from the path of a TOML file or from a dict of the same keys (docs/scenes.md).
 
     >>> import pillarfield as pf
-    >>> pf.scene({"skin": {"rows": 16, "cols": 24}, "time": {"frames": 3}})
+    >>> pf.scene({"skin": {"pillars": [8, 12]}, "time": {"frames": 3}})
     <Scene '': 3 frames of 16 x 24 sensels>
     """
     if isinstance(source, _core.Scene):

@@ -43,30 +43,56 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     >>> forces
     <ForceField: 5 frames of 4 x 6 pillars, 0.1..0.1 N, 0 % ambiguous>
     """
-    if isinstance(frames, (str, os.PathLike)):
-        frames = Recording(frames)
     if isinstance(frames, Simulation):
         options = {"scene": frames.scene, **options}
-        skin = skin or frames.skin
         calibration = calibration or frames.calibration
+    if _is_iterator(frames):
+        return _solve_iterator(frames, skin, calibration, rate_hz, contacts, device, options)
+    if isinstance(frames, (list, tuple)):
+        frames = np.asarray(frames)
+    source = source_of(frames, skin, times, rate_hz)
+    forces = _solve_source(source, skin or source.skin, calibration or source.calibration, contacts,
+                           device, options)
+    return forces[0] if getattr(frames, "ndim", 3) == 2 else forces
+
+
+def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
+                   times: Optional[npt.ArrayLike] = None, rate_hz: float = 100.0,
+                   calibration: Optional[_core.Calibration] = None,
+                   overwrite: bool = False) -> None:
+    """Writes frames as a recording, for the viewer and the command line.
+
+    frames: readings, counts, [T, R, C], or what solve() takes but iterators
+    skin, times, rate_hz, calibration: as in solve()
+    overwrite: replace an existing recording. Raises Error if it cannot be written.
+    """
+    source_of(frames, skin, times, rate_hz, calibration).write(path, overwrite=overwrite)
+
+
+def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
+              rate_hz: float = 100.0,
+              calibration: Optional[_core.Calibration] = None) -> _core.FrameSource:
+    """Frames with random access from a path, an array, a Recording or a Simulation."""
+    if isinstance(frames, (str, os.PathLike)):
+        return _core.FrameSource.open(frames)
+    if isinstance(frames, Recording):
+        return frames._source
+    if isinstance(frames, Simulation):
+        skin, calibration = skin or frames.skin, calibration or frames.calibration
         times = frames.times if times is None else times
         frames = frames.frames
-    if isinstance(frames, Recording):
-        source = frames._source
-        calibration = calibration or frames.calibration
-        return _solve_source(source, skin or source.skin, calibration, contacts, device, options)
-    if isinstance(frames, Iterable) and not hasattr(frames, "__array__") and not isinstance(
-            frames, (list, tuple)):
-        return _solve_iterator(frames, skin, calibration, rate_hz, contacts, device, options)
     readings = readings_of(frames)
     if readings.ndim not in (2, 3):
         raise Error("frames", f"the array has {readings.ndim} axes",
                     "give [rows, cols] for a frame, [frames, rows, cols] for several")
-    batch = readings.reshape(-1, *readings.shape[-2:]) if readings.ndim == 2 else readings
-    skin = skin_of(skin, batch.shape[-2:])
-    source = _core.FrameSource.of_array(batch, times_of(len(batch), times, rate_hz), skin, None)
-    forces = _solve_source(source, skin, calibration, contacts, device, options)
-    return forces[0] if readings.ndim == 2 else forces
+    readings = readings.reshape(-1, *readings.shape[-2:]) if readings.ndim == 2 else readings
+    return _core.FrameSource.of_array(readings, times_of(len(readings), times, rate_hz),
+                                      skin_of(skin, readings.shape[-2:]), calibration)
+
+
+def _is_iterator(frames: Any) -> bool:
+    return (isinstance(frames, Iterable) and not hasattr(frames, "__array__")
+            and not isinstance(frames, (str, list, tuple, os.PathLike, Simulation)))
 
 
 def skin_of(skin: Optional[_core.Skin], shape: tuple[int, ...]) -> _core.Skin:

@@ -11,7 +11,7 @@ class Status(enum.IntFlag):
     """Bits of a status byte: usable readings of a pillar and the reliability of its force.
 
     >>> Status(17)
-    <Status.AMBIGUOUS|SENSEL_1: 17>
+    <Status.SENSEL_1|AMBIGUOUS: 17>
     """
 
     SENSEL_1 = 1  #: the upper right sensel is usable

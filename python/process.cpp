@@ -1,6 +1,4 @@
-#include "python/opencl.h"
-
-#include <unistd.h>
+#include "python/process.h"
 
 #include <atomic>
 #include <map>
@@ -9,31 +7,23 @@
 #include "pillarfield/error.h"
 
 namespace pillarfield::python {
-namespace {
 
-std::atomic<pid_t> opencl_process{0};
-
-}  // namespace
-
-bool is_forked() {
-  const pid_t process = opencl_process;
-  return process != 0 && process != getpid();
-}
-
-void require_opencl_process() {
-  if (!is_forked()) return;
-  throw Error("device", "this process was forked after it opened OpenCL",
-              "start it with multiprocessing's 'spawn' or 'forkserver', or fork before solving");
+void throw_foreign(const std::string& what) {
+  throw Error(what, "it belongs to the process that this one was forked from",
+              "make one here; start the process with multiprocessing's 'spawn' or 'forkserver'");
 }
 
 Device device_named(const std::string& name) {
-  require_opencl_process();
+  static std::atomic<pid_t> process{0};
+  pid_t before = 0;
+  if (!process.compare_exchange_strong(before, getpid()) && before != getpid()) {
+    throw_foreign("the OpenCL device");
+  }
   // Never destroyed: drivers may end before static objects do.
   static auto& opened = *new std::map<std::string, Device>;
   static auto& alone = *new std::mutex;
   const std::lock_guard lock(alone);
   if (const auto found = opened.find(name); found != opened.end()) return found->second;
-  opencl_process = getpid();
   return opened.emplace(name, open_device(name)).first->second;
 }
 

@@ -1,0 +1,131 @@
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/calibration_file.h"
+#include "pillarfield/force_file.h"
+#include "python/bindings.h"
+#include "python/force_planes.h"
+#include "python/index_range.h"
+#include "python/signals.h"
+
+namespace pillarfield::python {
+namespace {
+
+constexpr const char* kReader = "Reads a file of forces; one thread at a time.";
+
+class ForceReader {
+ public:
+  ForceReader(const std::filesystem::path& path, bool trust) {
+    const py::gil_scoped_release unlocked;
+    reader_ = std::make_unique<ForceFileReader>(path, ReadOptions{.trust = trust});
+  }
+
+  [[nodiscard]] const ForceFileInfo& info() const { return reader_->info(); }
+  [[nodiscard]] std::uint64_t frames() const { return reader_->frames(); }
+  [[nodiscard]] const std::vector<std::string>& warnings() const { return reader_->warnings(); }
+
+  [[nodiscard]] py::dict read(const IndexRange& range) {
+    range.check(reader_->frames());
+    ForceStack planes(info().rows, info().cols);
+    std::vector<double> times;
+    std::vector<std::shared_ptr<FrameContacts>> contacts;
+    {
+      const py::gil_scoped_release unlocked;
+      const std::lock_guard alone(mutex_);
+      planes.reserve(range.count);
+      SignalCheck check_signals;
+      ForceField forces;
+      for (std::size_t i = 0; i < range.count; ++i) {
+        check_signals();
+        times.push_back(reader_->read(range[i], forces));
+        planes.append(forces.view());
+        if (!info().contacts) continue;
+        contacts.push_back(std::make_shared<FrameContacts>(reader_->read_contacts(range[i])));
+      }
+    }
+    py::dict result = planes.release();
+    const auto count = static_cast<py::ssize_t>(range.count);
+    result["times"] = array_of(std::move(times), {count});
+    if (info().contacts) result["contacts"] = std::move(contacts);
+    return result;
+  }
+
+ private:
+  std::unique_ptr<ForceFileReader> reader_;
+  std::mutex mutex_;
+};
+
+/// The skin of a file of forces, as far as the file tells.
+Skin skin_of(const ForceReader& reader) {
+  Skin skin;
+  skin.rows = 2 * reader.info().rows;
+  skin.cols = 2 * reader.info().cols;
+  skin.sensel_pitch_mm = reader.info().pillar_pitch_mm / 2;
+  skin.surface = reader.info().surface;
+  return skin;
+}
+
+/// Writes forces in the format of the path's extension.
+void save_forces(const std::filesystem::path& path, const py::dict& planes,
+                 const std::vector<double>& times, const Skin& skin, bool overwrite) {
+  const ForceArrays forces(planes);
+  ForceFileInfo info;
+  info.rows = forces.rows();
+  info.cols = forces.cols();
+  info.pillar_pitch_mm = skin.pillar_pitch_mm();
+  info.angles = planes.contains("theta");
+  info.uncertainty = planes.contains("uncertainty_normal");
+  info.surface = skin.surface;
+  const py::gil_scoped_release unlocked;
+  const auto sink = create_force_sink(path, info, overwrite ? Replace::anything : Replace::results);
+  SignalCheck check_signals;
+  for (std::size_t i = 0; i < forces.frames(); ++i) {
+    check_signals();
+    sink->append({.forces = forces.frame(i), .time_s = times.at(i), .sequence = i});
+  }
+  sink->finish();
+}
+
+}  // namespace
+
+void bind_force_files(py::module_& module) {
+  py::class_<ForceReader>(module, "ForceReader", kReader)
+      .def(py::init<const std::filesystem::path&, bool>(), py::arg("path"), py::kw_only(),
+           py::arg("trust") = false)
+      .def_property_readonly("skin", &skin_of, "its Skin, as far as the file tells")
+      .def_property_readonly(
+          "estimator", [](const ForceReader& self) { return self.info().estimator; },
+          "that solved it")
+      .def_property_readonly(
+          "source", [](const ForceReader& self) { return self.info().source; },
+          "name of the file of frames")
+      .def_property_readonly("warnings", &ForceReader::warnings, "one sentence each")
+      .def(
+          "read",
+          [](ForceReader& self, std::int64_t first, std::int64_t step, std::int64_t count) {
+            return self.read(IndexRange(first, step, count));
+          },
+          py::arg("first"), py::arg("step"), py::arg("count"),
+          "Planes, times and contacts of `count` frames.")
+      .def("__len__", &ForceReader::frames);
+  module.def("save_forces", &save_forces, py::arg("path"), py::arg("planes"), py::arg("times"),
+             py::arg("skin"), py::arg("overwrite"), "Writes forces as a file.");
+  module.def(
+      "kind_of",
+      [](const std::filesystem::path& path) {
+        const py::gil_scoped_release unlocked;
+        return is_force_file(path)         ? "forces"
+               : is_calibration_file(path) ? "calibration"
+                                           : "frames";
+      },
+      py::arg("path"), "'forces', 'calibration' or 'frames': what a file seems to hold.");
+}
+
+}  // namespace pillarfield::python

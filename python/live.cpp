@@ -1,0 +1,254 @@
+#include "pillarfield/live.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "python/bindings.h"
+#include "python/force_planes.h"
+#include "python/process.h"
+#include "python/signals.h"
+
+namespace pillarfield::python {
+namespace {
+
+constexpr const char* kLiveSource = "Frames of a sensor as they come.";
+constexpr const char* kLiveSink = "Passes forces on without ever waiting for who receives them.";
+
+/// A live source, used by one thread at a time.
+class LiveFrames {
+ public:
+  LiveFrames(const std::string& source, const Skin& skin, std::uint32_t serial_baud) {
+    const py::gil_scoped_release unlocked;
+    LiveSourceOptions options;
+    options.skin = skin;
+    options.serial_baud = serial_baud;
+    SignalCheck check_signals;
+    options.stop = [&] { return check_signals(), false; };
+    stream_.emplace(open_live_source(source, options));
+    skin_ = stream_->get()->skin();
+    sensel_type_ = stream_->get()->sensel_type();
+    frame_ = std::make_unique<StreamedFrame>(sensel_type_, skin_);
+  }
+
+  /// The next frame as (readings, time, sequence, missing); None where none came in time. Throws
+  /// StopIteration at the end.
+  py::object next(double timeout_s) {
+    py::array readings(dtype_of(sensel_type_), Shape{skin_.rows, skin_.cols});
+    auto* const copy = static_cast<std::byte*>(readings.mutable_data());
+    Arrival arrival = Arrival::timed_out;
+    std::vector<std::array<std::uint32_t, 4>> missing;
+    double time_s = 0;
+    std::uint64_t sequence = 0;
+    with_stream([&](FrameStream& stream) {
+      arrival = wait(stream, timeout_s);
+      if (arrival != Arrival::arrived) return;
+      copy_readings(copy);
+      time_s = frame_->time_s;
+      sequence = frame_->sequence;
+      for (const auto& [first_row, rows, first_col, cols] : frame_->missing) {
+        missing.push_back({first_row, rows, first_col, cols});
+      }
+    });
+    if (arrival == Arrival::ended) throw py::stop_iteration();
+    if (arrival == Arrival::timed_out) return py::none();
+    return py::make_tuple(readings, time_s, sequence, missing);
+  }
+
+  [[nodiscard]] py::dict health() {
+    StreamHealth health;
+    with_stream([&](FrameStream& stream) { health = stream.health(); });
+    py::dict counts;
+    counts["frames"] = health.frames;
+    counts["lost"] = health.lost;
+    counts["incomplete"] = health.incomplete;
+    counts["late"] = health.late;
+    counts["duplicates"] = health.duplicates;
+    counts["reordered"] = health.reordered;
+    counts["invalid"] = health.invalid;
+    counts["restarts"] = health.restarts;
+    counts["clock_jumps"] = health.clock_jumps;
+    counts["overrun"] = health.overrun;
+    counts["rate_hz"] = health.rate_hz;
+    return counts;
+  }
+
+  void discard_waiting() {
+    with_stream([](FrameStream& stream) { stream.discard_waiting(); });
+  }
+
+  void close() {
+    const py::gil_scoped_release unlocked;
+    if (stream_->is_foreign()) return;
+    const std::lock_guard alone(mutex_);
+    stream_->reset();
+  }
+
+  [[nodiscard]] const Skin& skin() const { return skin_; }
+  [[nodiscard]] SenselType sensel_type() const { return sensel_type_; }
+
+ private:
+  template <class Call>
+  void with_stream(Call call) {
+    if (stream_->is_foreign()) throw_foreign("the live source");
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(mutex_);
+    FrameStream* const stream = stream_->get();
+    if (stream == nullptr) throw Error("the live source", "it is closed", "open it again");
+    call(*stream);
+  }
+
+  Arrival wait(FrameStream& stream, double timeout_s) {
+    constexpr std::chrono::nanoseconds kPatience = std::chrono::milliseconds(100);
+    constexpr double kMostSeconds = 1e9;
+    const auto start = std::chrono::steady_clock::now();
+    const double seconds =
+        std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
+    const auto end = start + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+    SignalCheck check_signals;
+    for (;;) {
+      const std::chrono::nanoseconds left = end - std::chrono::steady_clock::now();
+      const auto pause = std::clamp(left, std::chrono::nanoseconds(0), kPatience);
+      const Arrival arrival = stream.next(*frame_, pause);
+      if (arrival != Arrival::timed_out || left <= std::chrono::nanoseconds(0)) return arrival;
+      check_signals();
+    }
+  }
+
+  void copy_readings(std::byte* copy) const {
+    const FrameView& view = frame_->readings;
+    const std::size_t row_bytes = view.cols * size_of(view.type);
+    const auto* const data = static_cast<const std::byte*>(view.data);
+    for (std::size_t row = 0; row < view.rows; ++row) {
+      copy = std::copy_n(data + row * view.row_stride * size_of(view.type), row_bytes, copy);
+    }
+  }
+
+  std::mutex mutex_;
+  std::optional<ProcessBound<FrameStream>> stream_;
+  Skin skin_;
+  SenselType sensel_type_ = SenselType::u8;
+  std::unique_ptr<StreamedFrame> frame_;
+};
+
+LiveSinkInfo info_of(const SolverPlan& plan, bool contacts, const std::string& device,
+                     const std::string& source, bool overwrite) {
+  LiveSinkInfo info;
+  info.skin = plan.skin;
+  info.sensel_type = plan.sensel_type;
+  info.calibration = plan.calibration;
+  info.replace = overwrite ? Replace::anything : Replace::results;
+  info.forces.rows = plan.skin.pillar_rows();
+  info.forces.cols = plan.skin.pillar_cols();
+  info.forces.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
+  info.forces.estimator = name_of(plan.estimator);
+  if (plan.estimator != Estimator::paper) info.forces.segment_point = plan.segment_point;
+  info.forces.device = device;
+  info.forces.source = source;
+  info.forces.angles = plan.angles;
+  info.forces.uncertainty = plan.uncertainty;
+  info.forces.effects = plan.calibration.effects;
+  info.forces.surface = plan.skin.surface;
+  if (contacts) set_sensor(info.forces.contacts.emplace(), plan);
+  return info;
+}
+
+/// A live sink, used by one thread at a time.
+class Sink {
+ public:
+  Sink(const std::string& target, const SolverPlan& plan, bool contacts, const std::string& source,
+       bool overwrite)
+      : target_(target), plan_(plan) {
+    const py::gil_scoped_release unlocked;
+    const LiveSinkInfo info = info_of(plan, contacts, "", source, overwrite);
+    sink_.emplace(create_live_sink(target, info));
+  }
+
+  void send(const py::dict& planes, const std::shared_ptr<FrameContacts>& contacts, double time_s,
+            std::uint64_t sequence) {
+    const ForceArrays forces(planes);
+    if (forces.frames() != 1 || forces.rows() != plan_.skin.pillar_rows() ||
+        forces.cols() != plan_.skin.pillar_cols() || planes.contains("theta") < plan_.angles ||
+        planes.contains("uncertainty_normal") < plan_.uncertainty) {
+      throw Error(target_, "the forces do not fit its plan",
+                  "send one frame of the plan's size and outputs");
+    }
+    with_sink([&](LiveSink& sink) {
+      sink.append({.forces = forces.frame(0),
+                   .contacts = contacts.get(),
+                   .time_s = time_s,
+                   .sequence = sequence,
+                   .arrived = std::chrono::steady_clock::now().time_since_epoch()});
+    });
+  }
+
+  [[nodiscard]] py::dict statistics() {
+    LiveSinkStatistics done;
+    with_sink([&](LiveSink& sink) { done = sink.statistics(); });
+    py::dict counts;
+    counts["frames"] = done.frames;
+    counts["dropped"] = done.dropped;
+    counts["clients"] = done.clients;
+    counts["refused"] = done.refused;
+    counts["failure"] = done.failure;
+    return counts;
+  }
+
+  void close(bool finish) {
+    const py::gil_scoped_release unlocked;
+    if (sink_->is_foreign()) return;
+    const std::lock_guard alone(mutex_);
+    if (finish && sink_->get() != nullptr) sink_->get()->finish();
+    sink_->reset();
+  }
+
+ private:
+  template <class Call>
+  void with_sink(Call call) {
+    if (sink_->is_foreign()) throw_foreign(target_);
+    const py::gil_scoped_release unlocked;
+    const std::lock_guard alone(mutex_);
+    LiveSink* const sink = sink_->get();
+    if (sink == nullptr) throw Error(target_, "it is closed", "open it again");
+    call(*sink);
+  }
+
+  std::mutex mutex_;
+  std::string target_;
+  SolverPlan plan_;
+  std::optional<ProcessBound<LiveSink>> sink_;
+};
+
+}  // namespace
+
+void bind_live(py::module_& module) {
+  py::class_<LiveFrames>(module, "LiveFrames", kLiveSource)
+      .def(py::init<const std::string&, const Skin&, std::uint32_t>(), py::arg("source"),
+           py::arg("skin"), py::arg("serial_baud"))
+      .def("next", &LiveFrames::next, py::arg("timeout_s"))
+      .def("health", &LiveFrames::health)
+      .def("discard_waiting", &LiveFrames::discard_waiting)
+      .def("close", &LiveFrames::close)
+      .def_property_readonly("skin", &LiveFrames::skin, "Skin with the rows and columns of frames")
+      .def_property_readonly(
+          "sensel_type", [](const LiveFrames& self) { return name_of(self.sensel_type()); },
+          "'uint8', 'uint16' or 'float32'");
+  py::class_<Sink>(module, "LiveSink", kLiveSink)
+      .def(py::init<const std::string&, const SolverPlan&, bool, const std::string&, bool>(),
+           py::arg("target"), py::arg("plan"), py::arg("contacts"), py::arg("source"),
+           py::arg("overwrite"))
+      .def("send", &Sink::send, py::arg("planes"), py::arg("contacts"), py::arg("time_s"),
+           py::arg("sequence"))
+      .def("statistics", &Sink::statistics)
+      .def("close", &Sink::close, py::arg("finish"));
+}
+
+}  // namespace pillarfield::python

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pillarfield/error.h"
+#include "python/bindings.h"
+#include "python/force_planes.h"
+#include "viewer/style/colour_map.h"
+#include "viewer/style/quantity.h"
+
+namespace pillarfield::python {
+namespace {
+
+using viewer::Colour;
+using viewer::Quantity;
+
+Quantity quantity_of(const std::string& name, const py::dict& planes) {
+  const std::optional<Quantity> quantity = viewer::quantity_named(name);
+  viewer::SourceInfo source;
+  source.has_angles = planes.contains("theta");
+  source.has_uncertainty = planes.contains("uncertainty_normal");
+  if (!quantity || *quantity == Quantity::parity) {
+    throw Error("picture", "'" + name + "' is no quantity",
+                "give normal, shear, shear_x, shear_y, magnitude, theta, phi, region, status or "
+                "uncertainty");
+  }
+  if (!viewer::is_available(*quantity, source)) {
+    throw Error("picture", "the forces have no " + name,
+                "solve with outputs=['angles', 'uncertainty']");
+  }
+  return *quantity;
+}
+
+void add(std::vector<std::uint8_t>& pixels, const Colour& colour) {
+  pixels.insert(pixels.end(), {colour.red, colour.green, colour.blue});
+}
+
+Colour colour_at(Quantity quantity, const viewer::ShownField& field, const viewer::Range& range,
+                 viewer::Theme theme, std::uint32_t row, std::uint32_t col) {
+  const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
+  if (const auto special = viewer::special_of(quantity, status)) {
+    return viewer::colour_of(*special, theme);
+  }
+  const viewer::Scale scale = viewer::info_of(quantity).scale;
+  const float value = viewer::value_of(quantity, field, row, col);
+  return viewer::table_of(viewer::default_map(scale))[viewer::entry_of(value, range, scale)];
+}
+
+/// Colours of the pillars of one frame as the viewer shows them: (uint8 [rows, cols, 3], low, high,
+/// unit); low and high are the ends of the colour bar, those given or fitting ones.
+py::tuple paint(const py::dict& planes, const std::string& name,
+                const std::optional<std::pair<float, float>>& range, bool light) {
+  const ForceArrays forces(planes);
+  if (forces.frames() != 1) throw Error("picture", "the forces are of several frames", "give one");
+  const Quantity quantity = quantity_of(name, planes);
+  viewer::ShownField field;
+  field.forces = forces.frame(0);
+  viewer::Range ends = viewer::fitting_range(quantity, viewer::largest(quantity, field));
+  if (range) ends = {range->first, range->second};
+  if (!(ends.low < ends.high)) throw Error("picture", "its range is empty", "give low < high");
+  const auto theme = light ? viewer::Theme::light : viewer::Theme::dark;
+  std::vector<std::uint8_t> pixels;
+  for (std::uint32_t row = 0; row < forces.rows(); ++row) {
+    for (std::uint32_t col = 0; col < forces.cols(); ++col) {
+      add(pixels, colour_at(quantity, field, ends, theme, row, col));
+    }
+  }
+  const auto& info = viewer::info_of(quantity);
+  return py::make_tuple(array_of(std::move(pixels), {forces.rows(), forces.cols(), 3}),
+                        info.factor * double{ends.low}, info.factor * double{ends.high}, info.unit);
+}
+
+/// The colour bar of a quantity, low to high, then the background: uint8 [257, 3].
+py::array_t<std::uint8_t> colours(const std::string& name, bool light) {
+  const auto quantity = viewer::quantity_named(name).value_or(Quantity::normal);
+  std::vector<std::uint8_t> pixels;
+  for (const Colour& colour :
+       viewer::table_of(viewer::default_map(viewer::info_of(quantity).scale))) {
+    add(pixels, colour);
+  }
+  add(pixels, viewer::background_of(light ? viewer::Theme::light : viewer::Theme::dark));
+  return array_of(std::move(pixels), {static_cast<py::ssize_t>(viewer::kColours) + 1, 3});
+}
+
+}  // namespace
+
+void bind_picture(py::module_& module) {
+  module.def("paint", &paint, py::arg("planes"), py::arg("quantity"), py::arg("range"),
+             py::arg("light"),
+             "Colours of the pillars of a frame, [rows, cols, 3], and low, high, unit of the bar.");
+  module.def("colours", &colours, py::arg("quantity"), py::arg("light"),
+             "The colour bar from low to high and the background, [257, 3].");
+}
+
+}  // namespace pillarfield::python

@@ -1,0 +1,146 @@
+"""Live sources of frames and live sinks of forces (docs/streams.md)."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from types import TracebackType
+from typing import Any, Optional
+
+from . import _core
+from ._field import ForceField
+from ._frames import Readings
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """A frame of a live source.
+
+    readings: counts, uint8, uint16 or float32 [R, C]
+    time_s: time of the sensor, s
+    sequence: its number; a gap means lost frames
+    missing: (first_row, rows, first_col, cols) of sensels whose readings did not arrive
+    """
+
+    readings: Readings
+    time_s: float
+    sequence: int
+    missing: list[tuple[int, int, int, int]]
+
+
+class LiveSource:
+    """Frames of a sensor as they come, an iterator of Frame; live() opens one."""
+
+    def __init__(self, source: str, *, skin: Optional[_core.Skin] = None,
+                 serial_baud: int = 2_000_000) -> None:
+        self._frames = _core.LiveFrames(source, skin or _core.Skin(2, 2), serial_baud)
+
+    @property
+    def skin(self) -> _core.Skin:
+        """Skin with the rows and columns of the frames, for a Plan."""
+        return self._frames.skin
+
+    @property
+    def sensel_type(self) -> str:
+        """'uint8', 'uint16' or 'float32', for a Plan."""
+        return self._frames.sensel_type
+
+    @property
+    def health(self) -> dict[str, Any]:
+        """What came and what did not: frames, lost, incomplete, late, ..., rate_hz."""
+        return self._frames.health()
+
+    def receive(self, timeout_s: float) -> Optional[Frame]:
+        """The next frame, or None if none comes in time; raises StopIteration at the end."""
+        item = self._frames.next(timeout_s)
+        return None if item is None else Frame(*item)
+
+    def discard_waiting(self) -> None:
+        """Discards the frames that wait, without counting them as lost."""
+        self._frames.discard_waiting()
+
+    def close(self) -> None:
+        """Closes the source."""
+        self._frames.close()
+
+    def __iter__(self) -> Iterator[Frame]:
+        return self
+
+    def __next__(self) -> Frame:
+        frame = self.receive(math.inf)
+        assert frame is not None
+        return frame
+
+    def __enter__(self) -> LiveSource:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self.close()
+
+
+def live(source: str, *, skin: Optional[_core.Skin] = None,
+         serial_baud: int = 2_000_000) -> LiveSource:
+    """Opens a live source and waits for its first frame; Ctrl+C gives up.
+
+    source: 'udp:ADDRESS:PORT', 'shm:NAME', 'serial:DEVICE', or '-' for standard input
+    skin: constants of the skin; rows and columns come from the frames
+    serial_baud: of 'serial:'
+
+    Raises Error for another source or one that cannot be opened. What a sensor sends never raises:
+    invalid packets are counted in health.
+
+    >>> import pillarfield as pf
+    >>> pf.live("press.h5")
+    Traceback (most recent call last):
+    pillarfield.Error: press.h5: it names no live source; give one of -, shm:NAME, udp:ADDRESS:PORT, serial:DEVICE
+    """
+    return LiveSource(source, skin=skin, serial_baud=serial_baud)
+
+
+class LiveSink:
+    """Passes forces on without waiting for who receives them; sink() opens one."""
+
+    def __init__(self, target: str, plan: _core.Plan, *, contacts: bool = False, source: str = "",
+                 overwrite: bool = False) -> None:
+        self._sink = _core.LiveSink(target, plan, contacts, source, overwrite)
+        self._contacts = contacts
+        self._sent = 0
+
+    def send(self, forces: ForceField) -> None:
+        """Sends the forces of one frame, with their contacts if the sink has contacts."""
+        contacts = forces.contacts if self._contacts else None
+        self._sink.send(forces._batch(), contacts, float(forces.times), self._sent)
+        self._sent += 1
+
+    @property
+    def statistics(self) -> dict[str, Any]:
+        """frames, dropped, clients, refused, and the failure that stopped it, or ''."""
+        return self._sink.statistics()
+
+    def close(self, finish: bool = True) -> None:
+        """Closes the sink. finish: complete its file; else it stays a part."""
+        self._sink.close(finish)
+
+    def __enter__(self) -> LiveSink:
+        return self
+
+    def __exit__(self, kind: Optional[type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self.close(finish=kind is None)
+
+
+def sink(target: str, plan: _core.Plan, *, contacts: bool = False, source: str = "",
+         overwrite: bool = False) -> LiveSink:
+    """Opens a live sink for the forces of a Processor of this plan.
+
+    target: 'foxglove:[ADDRESS:]PORT', 'udp:ADDRESS:PORT', 'shm:NAME', a .mcap file or a file of
+        forces such as .h5
+    contacts: forces come with contacts
+    source: name of the frames' source, for files
+    overwrite: replace any file, not only other results
+
+    Raises Error for another target or one that cannot be opened.
+    """
+    return LiveSink(target, plan, contacts=contacts, source=source, overwrite=overwrite)
