@@ -10,8 +10,6 @@
 namespace pillarfield::streams_test {
 namespace {
 
-using namespace pillarfield::streams_test;
-
 constexpr FrameShape kShape = {SenselType::u16, 20, 12};
 
 using Sequences = std::vector<std::uint64_t>;

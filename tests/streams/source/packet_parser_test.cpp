@@ -9,8 +9,6 @@
 namespace pillarfield::streams_test {
 namespace {
 
-using namespace pillarfield::streams_test;
-
 constexpr FrameShape kParsed = {SenselType::u8, 18, 14};
 
 /// Feeds bytes in pieces of random length, and calls `found` for each packet.

@@ -15,8 +15,6 @@
 namespace pillarfield::streams_test {
 namespace {
 
-using namespace pillarfield::streams_test;
-
 std::string results_name() { return "pillarfield-results-" + std::to_string(getpid()); }
 
 LiveSinkInfo info_of_skin(std::uint32_t rows, std::uint32_t cols) {

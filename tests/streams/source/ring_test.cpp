@@ -19,7 +19,6 @@
 namespace pillarfield::streams_test {
 namespace {
 
-using namespace pillarfield::streams_test;
 using core_test::message_of;
 
 constexpr FrameShape kShape = {SenselType::u8, 40, 30};

@@ -14,8 +14,6 @@
 namespace pillarfield::streams_test {
 namespace {
 
-using namespace pillarfield::streams_test;
-
 /// `action` must throw an Error that says `text`.
 template <class Action>
 void expect_failure(Action action, const std::string& text) {
