@@ -20,6 +20,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/thread_priority.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/sink/foxglove_protocol.h"
@@ -295,7 +296,10 @@ FoxgloveServer::State::State(const SocketAddress& address, const std::string& ta
     throw Error(printable(target), error.code().message(), "choose another address or port");
   }
   accept();
-  thread = std::thread([this] { serve(); });
+  thread = std::thread([this] {
+    yield_to_other_threads();
+    serve();
+  });
 }
 
 FoxgloveServer::State::~State() {

@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "base/thread_priority.h"
+
 namespace pillarfield {
 
 QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
@@ -15,7 +17,10 @@ QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
       slots_(std::max<std::size_t>(limits.frames, 1)) {
   free_.reserve(slots_.size());
   for (Slot& slot : slots_) free_.push_back(&slot);
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::thread([this] {
+    yield_to_other_threads();
+    run();
+  });
 }
 
 QueuedSink::~QueuedSink() { end_thread(End::abandoned); }
