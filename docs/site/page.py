@@ -93,6 +93,8 @@ def headed(path, lines):
 def convert(path, lines):
     for fixed, block in itertools.groupby(headed(path, lines), key=lambda pair: pair[1]):
         text = "".join(line for line, _ in block)
+        # Doxygen finds no emphasis that begins with code.
+        text = re.sub(r"^\*(?=`)((?:.|\n(?!\n))+?)\*$", r"<em>\1</em>", text, flags=re.MULTILINE)
         yield text if fixed else TOKEN.sub(lambda match: convert_token(path, match), text)
 
 
