@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Measures `pillarfield stream` from outside: latency and losses of frames that come and go through
 shared memory and UDP, with all sinks attached and a client at each, and what hostile clients of the
 WebSocket server change.

@@ -63,7 +63,7 @@ class RawClient {
   /// The content of the next message; none if the server closed.
   std::optional<std::string> message() {
     if (!need(2)) return std::nullopt;
-    auto size = static_cast<std::uint64_t>(received_[1]);
+    std::uint64_t size = static_cast<unsigned char>(received_[1]);
     const std::size_t more = size == 126 ? 2 : size == 127 ? 8 : 0;
     if (!need(2 + more)) return std::nullopt;
     if (more > 0) size = 0;
@@ -234,7 +234,7 @@ TEST(Subscriptions, SurviveAnyText) {
                                            R"("subscriptionIds")"};
   Subscriptions subscriptions;
   for (int i = 0; i < 20'000; ++i) {
-    std::string text = i % 2 == 0 ? "{\"op\":\"subscribe\",\"subscriptions\":[{\"id\":" : "";
+    std::string text = i % 2 == 0 ? R"({"op":"subscribe","subscriptions":[{"id":)" : "";
     for (auto piece = random() % 20; piece > 0; --piece) {
       text += pieces[random() % pieces.size()];
     }

@@ -13,7 +13,10 @@ QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
       limits_(limits),
       consumer_(std::move(consumer)),
       slots_(std::max<std::size_t>(limits.frames, 1)),
-      thread_([this] { run(); }) {}
+      thread_([this] {
+        yield_to_other_threads();
+        run();
+      }) {}
 
 QueuedSink::~QueuedSink() { end_thread(End::abandoned); }
 
