@@ -4,6 +4,7 @@ Headings get the anchors that GitHub gives them, links between pages lead to the
 are no page become plain text, and $...$ and $$...$$ become formulas.
 """
 
+import html
 import itertools
 import os
 import pathlib
@@ -46,6 +47,9 @@ def link(path, words, target):
 
 
 def convert_token(path, match):
+    # A bar in code within a table.
+    if match[0].startswith("`") and r"\|" in match[0]:
+        return f"<code>{html.escape(match[0].strip('`'), quote=False)}</code>"
     if match["display"]:
         return rf"\f[{match['display']}\f]"
     if match["inline"]:
