@@ -19,6 +19,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/thread_priority.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/sink/foxglove_protocol.h"

@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "base/thread_priority.h"
+
 namespace pillarfield {
 
 QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
