@@ -193,7 +193,6 @@ void Application::show(LoadedSource loaded) {
   const SourceInfo& source = loaded_.player->info();
   fmt::print(stderr, "{}", warning_lines(source));
   user_.add_recent(loaded_.name);
-  window_.set_title(source.name + " – Pillarfield");
   AppState next;
   next.player = loaded_.player.get();
   next.curves = loaded_.curves.get();
@@ -243,7 +242,6 @@ void Application::set_beside() {
   state_.beside_is_truth = loaded_.beside_is_truth;
   if (state_.beside == nullptr) return;
   state_.beside->set_contacts(state_.settings.contacts);
-  state_.beside->play();
   state_.beside->on_new_field([this] {
     news_ = true;
     Window::wake();
@@ -497,6 +495,8 @@ void Application::draw() {
         Presenter::Picture{*state_.beside_field, state_.beside->info(), state_.settings});
   }
   if (!presenter_.draw(pictures)) return;
+  // Not before there is something to see, for who waits for it.
+  if (new_picture && !drawn_settings_) window_.set_title(place_.source->name + " – Pillarfield");
   measure(begin_s, new_picture);
   if (new_picture) drawn_settings_ = state_.settings;
   field_is_new_ = false;

@@ -12,10 +12,11 @@ namespace {
 template <class LookedFor>
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
                                  const char* ending, const LookedFor& looked_for) {
-  // The name of a sensor is no path: "udp:127.0.0.1:4242".
-  std::string stem = source.name == "-" ? "stdin" : source.name;
-  std::ranges::replace(stem, ':', '_');
-  stem = std::filesystem::path(stem).stem().string();
+  std::string stem = std::filesystem::path(source.name).stem().string();
+  if (source.kind == "sensor") {  // No path: "udp:127.0.0.1:4242".
+    stem = source.name == "-" ? "stdin" : source.name;
+    std::ranges::replace_if(stem, [](char c) { return c == ':' || c == '.' || c == '/'; }, '_');
+  }
   if (!detail.empty()) stem += "_" + detail;
   std::filesystem::path path = stem + ending;
   for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
