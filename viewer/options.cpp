@@ -203,7 +203,8 @@ void check_together(const Options& options, bool has_frame, bool has_frames) {
   require(!options.video.empty() || (!options.fps && options.speed == 1),
           "--fps and --speed need --video");
   require(!options.headless || !options.source.empty(), "--headless needs a source");
-  require(options.beside.empty() || !options.truth, "a second source and --truth exclude each other");
+  require(options.beside.empty() || !options.truth,
+          "a second source and --truth exclude each other");
   require(options.beside != "-", "only the first source can be standard input");
   require(!options.headless || (options.beside.empty() && !options.truth),
           "--headless draws one source, without --truth");
@@ -223,7 +224,8 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
   app.add_option("source", options.source,
                  "Scene, recording, Tekscan export, force fields or live source [start page]");
   app.add_option("beside", options.beside, "A second source, shown beside the first");
-  app.add_flag("--truth", options.truth, "Show the true forces of a simulation beside those solved");
+  app.add_flag("--truth", options.truth,
+               "Show the true forces of a simulation beside those solved");
   app.add_option("--counts-per-newton", options.counts_per_newton, "Response of a live sensor")
       ->check(CLI::PositiveNumber);
   app.add_option("--calibration", options.calibration, "Calibration file of a live sensor")
@@ -232,8 +234,10 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
                "Read HDF5 files without probing them in a separate process first");
   add_texts(app, options);
   std::uint64_t frame = 1;
-  auto* const one = app.add_option("--frame", frame, "Frame to show first, counted from 1 [1; headless: the most loaded]")
-                        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
+  auto* const one =
+      app.add_option("--frame", frame,
+                     "Frame to show first, counted from 1 [1; headless: the most loaded]")
+          ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 50));
   app.add_flag_callback(
       "--light", [&] { options.theme = Theme::light; }, "Dark on white");
   app.add_flag_callback(

@@ -114,8 +114,7 @@ void draw_window(const Command& command, PanelId id, double scale) {
   PanelLayout& layout = command.state.panels;
   Viewport& box = place_of(layout, id).window;
   ImGui::SetNextWindowPos(to_imgui({box.x * scale, box.y * scale}), ImGuiCond_Appearing);
-  ImGui::SetNextWindowSize(to_imgui({box.width * scale, box.height * scale}),
-                           ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize(to_imgui({box.width * scale, box.height * scale}), ImGuiCond_Appearing);
   bool stays = true;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4);
@@ -139,9 +138,9 @@ ImVec2 drag_edge(const char* name, const Viewport& box, Theme theme) {
   ImGui::InvisibleButton("edge", to_imgui({box.width, box.height}));
   const bool held = ImGui::IsItemActive();
   if (held || ImGui::IsItemHovered()) {
-    ImGui::GetWindowDrawList()->AddRectFilled(
-        to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
-        palette_of(theme).accent);
+    ImGui::GetWindowDrawList()->AddRectFilled(to_imgui({box.x, box.y}),
+                                              to_imgui({box.x + box.width, box.y + box.height}),
+                                              palette_of(theme).accent);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);
@@ -241,8 +240,12 @@ void begin_part(const char* name, const Viewport& box, Theme theme, int flags) {
   const auto line = [&](double x, double y, double width, double height) {
     list.AddRectFilled(to_imgui({x, y}), to_imgui({x + width, y + height}), palette_of(theme).line);
   };
-  line(box.x, box.y, box.width, box.y > 0 ? 1 : 0);
-  line(box.x > 0 ? box.x : box.width - 1, box.y, 1, box.height);
+  list.PushClipRect(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}));
+  if (box.y > 0) line(box.x, box.y, box.width, 1);
+  const bool is_left_column = box.x == 0 && box.y == 0;
+  if (box.x > 0 || is_left_column)
+    line(is_left_column ? box.width - 1 : box.x, box.y, 1, box.height);
+  list.PopClipRect();
 }
 
 int fixed_window_flags() {
