@@ -9,6 +9,7 @@ import random
 import subprocess
 import sys
 import threading
+import warnings
 
 import numpy as np
 
@@ -202,6 +203,7 @@ def run(choices, calls, known, endings):
         try:
             result = call(choices, known)
         except Exception as error:  # Whatever it is: it is an exception.
+            assert "Internal error" not in str(error), error
             endings[type(error).__name__] = endings.get(type(error).__name__, 0) + 1
             continue
         endings["done"] = endings.get("done", 0) + 1
@@ -213,6 +215,7 @@ def run(choices, calls, known, endings):
 
 def child(seed, calls):
     os.chdir(WORK)
+    warnings.simplefilter("ignore")
     choices, known, endings = Choices(seed), functions(), {}
     choices.made, choices.good = good_objects(), templates()
     threads = []
