@@ -31,10 +31,11 @@ configure_file(packaging/changelog.in ${changelog} @ONLY)
 execute_process(COMMAND gzip -9nf ${changelog})
 
 # pillarfield_package(<component> <package> SECTION <section> SUMMARY <words> DESCRIPTION <text>
-#   [DEPENDS <packages>] [RECOMMENDS <packages>] [SUGGESTS <packages>] [ALL])
-# ALL: it holds nothing of one architecture.
+#   [DEPENDS <packages>] [RECOMMENDS <packages>] [SUGGESTS <packages>] [CONTAINS <packages...>] [ALL])
+# CONTAINS: Debian packages of headers whose code is compiled in; their licences are installed. ALL: it holds
+# nothing of one architecture.
 function(pillarfield_package component package)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "ALL" "SECTION;SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;SUGGESTS" "")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "ALL" "SECTION;SUMMARY;DESCRIPTION;DEPENDS;RECOMMENDS;SUGGESTS" "CONTAINS")
   get_cmake_property(installed COMPONENTS)
   if(NOT component IN_LIST installed)
     return()
@@ -53,6 +54,10 @@ function(pillarfield_package component package)
   if(BUILD_SHARED_LIBS)
     install(FILES packaging/copyright ${changelog}.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}
       COMPONENT ${component})
+    foreach(headers IN LISTS arg_CONTAINS)
+      install(FILES /usr/share/doc/${headers}/copyright COMPONENT ${component} OPTIONAL
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package}/contains RENAME ${headers})
+    endforeach()
   endif()
 endfunction()
 
@@ -63,20 +68,21 @@ force: shear and normal force in newtons on every pillar, and each
 contact's force, torque, friction and slip. It simulates, calibrates,
 solves, streams and compares."
   DEPENDS "libpillarfield${abi} ${same}, pocl-opencl-icd | opencl-icd"
-  RECOMMENDS "pillarfield-viewer, pillarfield-doc" SUGGESTS "gnuplot-nox | gnuplot")
+  RECOMMENDS "pillarfield-viewer, pillarfield-doc" SUGGESTS "gnuplot-nox | gnuplot"
+  CONTAINS libcli11-dev nlohmann-json3-dev)
 pillarfield_package(viewer pillarfield-viewer SECTION science
   SUMMARY "forces on a tactile skin from its frames - viewer"
   DESCRIPTION "Draws fields of three-axis force as heat maps and arrows by Vulkan: in a
 window while they are solved, or without a display as pictures and
 videos."
   DEPENDS "libpillarfield${abi} ${same}, mesa-vulkan-drivers | vulkan-icd, pocl-opencl-icd | opencl-icd, fonts-dejavu-core"
-  SUGGESTS "ffmpeg")
+  SUGGESTS "ffmpeg" CONTAINS libcli11-dev libimgui-dev)
 pillarfield_package(library libpillarfield${abi} SECTION libs
   SUMMARY "forces on a tactile skin from its frames - shared libraries"
   DESCRIPTION "Solves frames of a tactile skin on an OpenCL device or on the host,
 tracks contacts, calibrates, simulates, reads and writes files, and
 streams live."
-  RECOMMENDS "pocl-opencl-icd | opencl-icd")
+  RECOMMENDS "pocl-opencl-icd | opencl-icd" CONTAINS libkissfft-dev nlohmann-json3-dev)
 pillarfield_package(development libpillarfield-dev SECTION libdevel
   SUMMARY "forces on a tactile skin from its frames - headers"
   DESCRIPTION "Headers, files for CMake and pkg-config, and examples, for C++20
@@ -87,10 +93,12 @@ pillarfield_package(python python3-pillarfield SECTION python
   DESCRIPTION "Solves NumPy arrays, recordings and live frames of a tactile skin from
 Python."
   DEPENDS "libpillarfield${abi} ${same}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy"
-  RECOMMENDS "pocl-opencl-icd | opencl-icd, python3-h5py" SUGGESTS "python3-matplotlib, pillarfield-doc")
+  RECOMMENDS "pocl-opencl-icd | opencl-icd, python3-h5py" SUGGESTS "python3-matplotlib, pillarfield-doc"
+  CONTAINS pybind11-dev)
 pillarfield_package(documentation pillarfield-doc SECTION doc ALL
   SUMMARY "forces on a tactile skin from its frames - manual and scenes"
   DESCRIPTION "The manual with tutorial, gallery and reference of the library as HTML,
-and ready-made scenes to simulate.")
+and ready-made scenes to simulate."
+  RECOMMENDS libjs-mathjax)
 
 include(CPack)

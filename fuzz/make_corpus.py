@@ -14,6 +14,7 @@ import struct
 import subprocess
 import tempfile
 import zipfile
+import zlib
 
 import h5py
 import numpy
@@ -501,6 +502,46 @@ def write_calibration(program, scratch):
         "-o", scratch / "tare.h5")
 
 
+def packet(readings, content=0, shape=(5, 7), kind=1, sequence=0, part=0, parts=1, first=0, count=0, checked=False,
+           **members):
+    """A packet of stream_format.h. `members` gives others than the right ones: rows, cols, bytes."""
+    length = members.get("bytes", len(readings) + 4 * checked)
+    head = struct.pack("<4sHHIIQQQ6I", b"PFR1", content | checked << 8, kind, members.get("rows", shape[0]),
+                       members.get("cols", shape[1]), 1, sequence, 10**6 * (sequence + 1), part, parts, first, count,
+                       0, length)
+    return head + readings + (struct.pack("<I", zlib.crc32(head + readings)) if checked else b"")
+
+
+def packets():
+    """Streams of packets by name."""
+    frame = bytes(range(35))
+    rows = [packet(bytes(28), 1, kind=3, sequence=n, part=part, parts=5, first=part, count=1)
+            for n in range(3) for part in (0, 2, 1, 4, 3)]
+    block = struct.pack("<II", 0, 0) + bytes(128)
+    return {
+        "seed_frames": b"".join(packet(frame, sequence=n) for n in range(4)),
+        "seed_rows": b"".join(rows),
+        "seed_late_rows": b"".join(rows[5:9] + rows[10:] + rows[9:11]),
+        "seed_blocks": b"".join([packet(block, 2, kind=2, sequence=n, count=1, checked=True) for n in range(3)]
+                                + [packet(b"", 2, kind=2, sequence=3), packet(b"", 3, kind=2, sequence=4)]),
+        "hostile_huge": packet(frame, rows=65534, cols=65534, bytes=65534**2 % 2**32),
+        "hostile_claims_bytes": packet(frame, rows=4096, cols=4096, bytes=2**24),
+        "hostile_no_parts": packet(frame, parts=0) + packet(frame),
+        "hostile_row_beyond": packet(frame) + packet(bytes(7), 1, first=2**32 - 1, count=1),
+        "hostile_block_beyond": packet(frame) + packet(struct.pack("<II", 1, 0) + bytes(64), 2, count=1),
+        "hostile_blocks": packet(frame) + packet(b"", 2, count=2**32 - 1, bytes=2**32 - 72),
+        "hostile_checksum": packet(frame) + packet(frame, sequence=1, checked=True)[:-1] + b"x",
+        "hostile_cut_short": packet(frame)[:80] + packet(frame, sequence=1),
+        "hostile_magic": b"PFR1" * 100 + packet(frame),
+    }
+
+
+def write_packets(folder):
+    (folder / "packets").mkdir(parents=True, exist_ok=True)
+    for name, text in packets().items():
+        (folder / "packets" / f"{name}.pfr").write_bytes(text)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", type=pathlib.Path, required=True)
@@ -509,6 +550,7 @@ def main():
     options = parser.parse_args()
     write_seeds(options.folder, options.program)
     write_hostile(options.folder)
+    write_packets(options.folder)
 
 
 if __name__ == "__main__":

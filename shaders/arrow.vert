@@ -4,6 +4,7 @@
 // Lengths in the quad are pixels.
 #include "bindings.glsl"
 #include "surface.glsl"
+#include "relief.glsl"
 
 layout(std430, binding = kCellsBinding) readonly buffer CellsBlock { Cell cells[]; };
 layout(location = 0) noperspective out vec2 local;        // along and across, from the tail
@@ -17,8 +18,9 @@ void main() {
   const Cell cell = cells[gl_InstanceIndex];
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // Outside: no arrow.
   if (cell.force.w == 0.0) return;
-  const vec3 place = surface_position(cell.place.xy, scene.surface);
   const mat3 basis = surface_basis(cell.place.xy, scene.surface);
+  const float height = relief_of(cell.force.z / cell.force.w);
+  const vec3 place = surface_position(cell.place.xy, scene.surface) + height * basis[2];
   // A top view shows only shear; a normal force would put half of the arrow under the skin.
   const float pressing = scene.block.y != 0u ? 0.0 : cell.force.z;
   const vec3 way = basis * vec3(cell.force.xy, -pressing) * scene.arrow.x;

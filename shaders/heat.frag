@@ -3,7 +3,10 @@
 // The heat map: colours each pixel by the value of its pillar.
 #include "value.glsl"
 
+layout(constant_id = kReliefConstant) const bool kRelief = false;
+
 layout(location = 0) in vec2 sheet_mm;
+layout(location = 1) in vec3 place_mm;
 layout(location = 0) out vec4 colour;
 
 const float kMostSamples = 6.0;
@@ -43,6 +46,13 @@ bool on_hatch() {
   return along - period * floor((along + 0.5) / period) < floor((period + 3.0) / 4.0);
 }
 
+// Light from the upper left, on either side of the surface; 1 where it lies flat.
+float shade() {
+  const vec3 light = normalize(vec3(-0.5, 0.45, 0.74));
+  const vec3 normal = normalize(cross(dFdx(place_mm), dFdy(place_mm)));
+  return clamp(0.3 + 0.7 * abs(dot(normal, light)) / light.z, 0.3, 1.25);
+}
+
 void main() {
   const vec2 place = pillar_place(sheet_mm);
   const uint pillar = pillar_at(place);
@@ -57,4 +67,5 @@ void main() {
   if (special == kMapped && is_ambiguous(status) && scene.shown.x != 0u && on_hatch()) {
     colour = mix(colour, special_colour(kAmbiguous), 0.6);
   }
+  if (kRelief) colour.rgb *= shade();
 }

@@ -37,6 +37,7 @@ PF_CONSTANT uint kQuantityConstant = 0u;  // kNormal, ...
 PF_CONSTANT uint kScaleConstant = 1u;     // kSequential, ...
 PF_CONSTANT uint kReadingsConstant = 2u;  // kReadings8, ...
 PF_CONSTANT uint kMeansConstant = 3u;     // true: a pixel may show the mean of several pillars
+PF_CONSTANT uint kReliefConstant = 4u;    // true: the surface is raised by the normal force
 
 // Quantities, in the order of Quantity in viewer/style/quantity.h.
 PF_CONSTANT uint kNormal = 0u;
@@ -50,6 +51,7 @@ PF_CONSTANT uint kRegion = 7u;
 PF_CONSTANT uint kStatus = 8u;
 PF_CONSTANT uint kUncertainty = 9u;
 PF_CONSTANT uint kParity = 10u;
+PF_CONSTANT uint kPeak = 11u;
 
 // Scales, in the order of Scale in viewer/style/quantity.h.
 PF_CONSTANT uint kSequential = 0u;
@@ -99,6 +101,7 @@ struct Scene {
   vec4 arrow;           // mm per newton; least length, half width: pixels; fraction of the length
                         // before the anchor
   uvec4 layer_colours;  // colours of an arrow's fill, its outline, a sector; none
+  vec4 relief;          // height: mm per newton of normal force, 0 without; largest: mm; none, none
 };
 
 // 256 colours of the map and, from kFirstSpecial on, those of Special, for a single look-up. Each
@@ -117,7 +120,7 @@ struct Cell {
 #ifdef __cplusplus
 #undef PF_CONSTANT
 #undef PF_ARRAY
-static_assert(sizeof(Scene) == 64 + 16 * 16);
+static_assert(sizeof(Scene) == 64 + 17 * 16);
 static_assert(sizeof(Colours) == 272 * 16);
 static_assert(sizeof(Cell) == 32);
 

@@ -59,7 +59,8 @@ float shear_of(uint pillar) {
 
 float value_of(uint pillar, uint status) {
   switch (kQuantity) {
-    case kNormal: return plane_value(scene.force.z, pillar);
+    case kNormal:
+    case kPeak: return plane_value(scene.force.z, pillar);
     case kShear: return shear_of(pillar);
     case kShearX: return plane_value(scene.force.x, pillar);
     case kShearY: return plane_value(scene.force.y, pillar);

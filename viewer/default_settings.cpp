@@ -121,6 +121,7 @@ RenderSettings chosen_settings(const Options& options, const SourceInfo& source,
   settings.sectors = options.sectors;
   settings.hatch = options.hatch;
   settings.contacts = options.contacts;
+  settings.relief = options.relief;
   settings.legend = options.legend;
   settings.scale = scale;
   return settings;
@@ -130,6 +131,7 @@ RenderSettings default_settings(const Options& options, FieldProducer& producer,
   RenderSettings settings = chosen_settings(options, producer.info(), scale);
   settings.range = options.range ? in_unit_of(*options.range, options.quantity)
                                  : range_that_fits(producer, options.quantity);
+  settings.relief_full_n = static_cast<double>(range_that_fits(producer, Quantity::normal).high);
   settings.full_force_n = full_arrow(producer, Quantity::magnitude);
   settings.full_shear_n = full_arrow(producer, Quantity::shear);
   return settings;

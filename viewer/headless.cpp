@@ -16,6 +16,7 @@
 #include "viewer/app/source/loaded_source.h"
 #include "viewer/render/renderer.h"
 #include "viewer/render/scene.h"
+#include "viewer/source/peak_hold.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -55,7 +56,11 @@ struct FrameRange {
 
 FrameRange frames_of(const Options& options, FieldProducer& producer) {
   const SourceInfo& source = producer.info();
-  const std::uint64_t first = options.has_frame ? options.first_frame : most_loaded_frame(producer);
+  // Peaks are complete in the last frame.
+  const bool peaks = options.quantity == Quantity::peak;
+  const std::uint64_t first = options.has_frame ? options.first_frame
+                              : peaks           ? source.frames - 1
+                                                : most_loaded_frame(producer);
   const FrameRange span{first, options.end_frame != 0 ? options.end_frame : first + 1};
   if (span.end <= source.frames) return span;
   throw Error(source.name, fmt::format("it has no frame {}", span.end),
@@ -120,8 +125,9 @@ class VideoPace {
 void tell_written(const Options& options, const std::vector<std::filesystem::path>& pictures,
                   const FrameRange& span, std::uint64_t frames) {
   const auto tell = [](const std::string& words) { fmt::print("Wrote {}\n", printable(words)); };
+  const char* const why = options.quantity == Quantity::peak ? "the last" : "the most loaded";
   const std::string which =
-      options.has_frame ? "" : fmt::format(": frame {} of {}, the most loaded", span.begin + 1, frames);
+      options.has_frame ? "" : fmt::format(": frame {} of {}, {}", span.begin + 1, frames, why);
   if (!options.csv.empty()) tell(options.csv.string() + which);
   if (pictures.size() == 1) tell(pictures.front().string() + which);
   if (pictures.size() > 1) {
@@ -145,6 +151,7 @@ void run_headless(const Options& options) {
   const bool names_are_known = !options.png.empty() && !asks_for_sequence(options);
   using Paths = std::vector<std::filesystem::path>;
   check_exports(options, names_are_known ? Paths{options.png} : Paths{}, replace);
+  PeakHold peaks;
   const bool on_terminal = isatty(STDERR_FILENO) == 1;
   const auto producer =
       open_producer(options.source, producer_options(options, [=](const std::string& line) {
@@ -171,6 +178,11 @@ void run_headless(const Options& options) {
     return;
   }
   HeadlessRenderer headless(options);
+  const bool with_peaks = settings.quantity == Quantity::peak;
+  for (std::uint64_t frame = 0; with_peaks && frame < span.begin; ++frame) {
+    stop_if_interrupted(options, 0);
+    peaks.add(producer->produce(frame).forces);
+  }
   const VideoPace pace(options, source.rate_hz);
   std::unique_ptr<VideoWriter> video;
   if (!options.video.empty()) {
@@ -182,6 +194,10 @@ void run_headless(const Options& options) {
     ShownField field = producer->produce(frame);
     if (settings.contacts) {
       field.contacts = std::make_shared<const ShownContacts>(producer->contacts_of(field));
+    }
+    if (with_peaks) {
+      peaks.add(field.forces);
+      field.peak = peaks.field(field);
     }
     const Pixels pixels = headless.render(field, source, settings);
     if (!pictures.empty()) write_png(pictures[frame - span.begin], pixels, replace);

@@ -287,6 +287,7 @@ std::optional<int> parse_options(int argc, char** argv, Options& options) {
       "--no-hatch", [&] { options.hatch = false; }, "No hatching of ambiguous pillars");
   app.add_flag("--contacts", options.contacts,
                "Mark contacts: extent, id, force, centre of pressure, shear");
+  app.add_flag("--relief", options.relief, "In 3-D, raise the surface by the normal force");
   app.add_flag_callback(
       "--no-legend", [&] { options.legend = false; },
       "Only the field, without axes and colour bar");

@@ -43,6 +43,7 @@ struct Options {
   bool sectors = false;
   bool hatch = true;
   bool contacts = false;
+  bool relief = false;
   bool legend = true;
 
   std::filesystem::path png;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/thread_priority.h"
 #include "pillarfield/error.h"
 #include "pillarfield/fault_finder.h"
 #include "pillarfield/tuning.h"
@@ -71,6 +72,7 @@ struct SenselWatch::State {
 };
 
 void SenselWatch::State::run(const std::stop_token& stop) {
+  yield_to_other_threads();
   std::optional<FaultFinder> finder;
   WatchClock::time_point start;
   while (!stop.stop_requested()) {

@@ -77,6 +77,7 @@ struct StreamOptions : PrintOptions {
   double tare_s = 0;  ///< duration of a tare at the start; 0: none
   std::optional<double> seconds;
   std::optional<std::uint64_t> frames;
+  std::optional<double> most_idle_s;  ///< end when no frame came for this time
   double health_interval_s = 1;
   int frames_in_flight = 2;
   ContactOptions contacts;

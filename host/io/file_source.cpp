@@ -70,7 +70,7 @@ double FileSource::assumed_time(std::uint64_t index) const {
 }
 
 void FileSource::require_no_rate(const ReadOptions& options) const {
-  if (!options.rate_hz) return;
+  if (!options.rate_hz || options.untimed) return;
   throw Error(path_.string(), "has times of its frames", "leave out --rate");
 }
 

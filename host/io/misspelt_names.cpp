@@ -67,15 +67,18 @@ struct KnownGroup {
 };
 
 std::vector<KnownGroup> known_groups() {
-  using namespace recording_format;
+  namespace format = recording_format;
   return {
       {"/", {"format", "version"}, {"frames", "skin", "calibration", "truth", "surface"}},
-      {kFrames, {}, {"raw", "time"}},
-      {kSkin, {kPitch, kCountsPerNewton, kThreshold, kFullScale, kExponent, kReference}, {}},
-      {kCalibration,
+      {format::kFrames, {}, {"raw", "time"}},
+      {format::kSkin,
+       {format::kPitch, format::kCountsPerNewton, format::kThreshold, format::kFullScale,
+        format::kExponent, format::kReference},
+       {}},
+      {format::kCalibration,
        {},
        {"tare", "gain", "dead_zone", "mask", "noise", "bend_x", "bend_y", "bend_xy", "effects"}},
-      {kEffects, effect_parameter_names(), {}}};
+      {format::kEffects, effect_parameter_names(), {}}};
 }
 
 }  // namespace

@@ -1,0 +1,194 @@
+"""Plain data: .npy, .npz, tables of numbers and HDF5 datasets give the forces of the same recording."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from command import CommandTest, run, run_json
+
+CONSTANTS = ("--counts-per-newton", 200, "--threshold", 2, "--pitch-mm", 0.5)
+
+
+def readings(dtype="u2"):
+    """Five frames of 6 x 8 readings; with an odd row and column none is left over."""
+    random = np.random.default_rng(3)
+    frames = random.integers(1, 250, (5, 6, 8)) * (random.random((5, 6, 8)) < 0.7)
+    return frames.astype(dtype)
+
+
+class PlainData(CommandTest):
+    def setUp(self):
+        super().setUp()
+        self.recording = self.folder / "recording.h5"
+        with h5py.File(self.recording, "w") as file:
+            file.attrs["format"], file.attrs["version"] = "pillarfield-recording", 1
+            file["frames/raw"], file["frames/time"] = readings(), np.arange(5) / 100
+            skin = file.create_group("skin")
+            skin.attrs["counts_per_newton"], skin.attrs["threshold_counts"] = 200, 2
+            skin.attrs["sensel_pitch_mm"] = 0.5
+        self.expected = self.solve(self.recording)
+
+    def solve(self, path, *options):
+        """Forces (T, P, Q, 3), status and times."""
+        forces = self.folder / "forces.h5"
+        run("solve", path, "-o", forces, "-q", *options)
+        with h5py.File(forces) as file:
+            force = np.stack([file["force"][name][:] for name in ("shear_x", "shear_y", "normal")], -1)
+            return force, file["force/status"][:], file["force/time"][:]
+
+    def assert_solved(self, path, *options, frames=slice(None), times=None):
+        found = self.solve(path, *CONSTANTS, *options)
+        np.testing.assert_array_equal(found[0], self.expected[0][frames])
+        np.testing.assert_array_equal(found[1], self.expected[1][frames])
+        np.testing.assert_allclose(found[2], self.expected[2][frames] if times is None else times)
+
+    def path(self, name):
+        return self.folder / name
+
+    def test_arrays_of_every_type(self):
+        types = ("u1", "u2", "<f4", "f8", ">f4", ">f8", "i2", ">i2", "i4", ">u4", "i8", "u8")
+        for dtype, version in [(dtype, (1, 0)) for dtype in types] + [("u2", (2, 0)), ("u2", (3, 0))]:
+            with self.subTest(dtype=dtype, version=version), self.path("a.npy").open("wb") as file:
+                np.lib.format.write_array(file, readings(dtype), version=version)
+                file.flush()
+                self.assert_solved(self.path("a.npy"), "--rate", 100)
+        np.save(self.path("a.npy"), readings()[2])
+        self.assert_solved(self.path("a.npy"), frames=slice(2, 3), times=[0])
+        np.save(self.path("a.npy"), readings().reshape(5, -1))
+        self.assert_solved(self.path("a.npy"), "--rate", 100, "--shape", "6x8")
+
+    def test_signed_and_missing_readings(self):
+        frames = readings("i2")
+        frames[:, ::2] *= -1
+        np.save(self.path("a.npy"), frames)
+        below = self.solve(self.path("a.npy"), "--rate", 1, *CONSTANTS)[1]
+        self.assertFalse((below & 3).any())  # sensels 1 and 2 are in the even rows
+        frames = readings("f8")
+        frames[1, 2, 3] = np.nan
+        np.save(self.path("a.npy"), frames)
+        status = self.solve(self.path("a.npy"), "--rate", 1, *CONSTANTS)[1]
+        self.assertTrue(status[1, 1, 1] & 64)
+
+    def test_archives(self):
+        other = np.ones((5, 6, 8))
+        for save in (np.savez, np.savez_compressed):
+            save(self.path("a.npz"), raw=readings(">u2"), time=np.arange(5) / 100, note="text", k=3.0)
+            self.assert_solved(self.path("a.npz"))
+            save(self.path("a.npz"), raw=readings("i4"), other=other, t=np.arange(5.) * 3, u=[1, 2])
+            self.assert_fails("solve", self.path("a.npz"), "-o", self.path("f.h5"),
+                              names=["raw, other", "--dataset"])
+            self.assert_solved(self.path("a.npz"), "--dataset", "raw", "--times", "t",
+                               times=np.arange(5.) * 3)
+            self.assert_fails("solve", self.path("a.npz"), "-o", self.path("f.h5"), "--dataset", "raw",
+                              "--times", "u", names=["5 frames and 2 times"])
+
+    def test_datasets(self):
+        path = self.path("own.h5")
+        with h5py.File(path, "w") as file:
+            file["group/raw"] = readings("i4")
+            file.create_dataset("packed", data=readings("f8"), chunks=(2, 5, 4), compression="gzip")
+            file["lines"], file["frame"] = readings(">u2").reshape(5, -1), readings()[3]
+            file["stamps"], file["mask"] = np.arange(5) / 100, readings() > 0
+            file["elsewhere"] = h5py.ExternalLink("other.h5", "/raw")
+        self.assert_fails("solve", path, "-o", self.path("f.h5"), names=["--dataset", "/group/raw"])
+        self.assert_fails("info", path, names=["--dataset"])
+        for options in (("group/raw",), ("/packed",), ("lines", "--shape", "6x8")):
+            self.assert_solved(path, "--times", "stamps", "--dataset", *options)
+        self.assert_solved(path, "--dataset", "frame", frames=slice(3, 4), times=[0])
+        for name, words in (("mask", "booleans"), ("group", "no dataset"), ("nix", "/group/raw"),
+                            ("stamps", "shape 5"), ("elsewhere", "another file")):
+            self.assert_fails("solve", path, "-o", self.path("f.h5"), "--rate", 1, "--dataset", name,
+                              names=[words])
+        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), "--dataset", "frames/raw",
+                          names=["is a pillarfield-recording", "leave out"])
+
+    def test_tables(self):
+        frames, path = readings(), self.path("table.csv")
+        np.savetxt(path, frames[1], fmt="%d", delimiter=",", header="one frame")
+        self.assert_solved(path, frames=slice(1, 2), times=[0])
+        with path.open("w") as file:
+            for frame in frames:
+                np.savetxt(file, frame)
+                file.write("\n")
+        self.assert_solved(path, "--rate", 100)
+        np.savetxt(path, np.hstack([np.arange(5)[:, None] / 100, frames.reshape(5, -1)]), delimiter=";",
+                   header="time;" + ";".join(f"s{i}" for i in range(48)), comments="")
+        self.assert_solved(path, "--shape", "6x8")
+        np.savetxt(path, frames.reshape(5, -1), delimiter="\t", fmt="%d")
+        self.assert_solved(path, "--shape", "6x8", "--rate", 100)
+
+    def test_a_recording_without_times(self):
+        with h5py.File(self.recording, "r+") as file:
+            times = file["frames/time"][:]
+            del file["frames/time"]
+        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), names=["--rate"])
+        np.testing.assert_array_equal(self.solve(self.recording, "--rate", 100)[2], times)
+        with h5py.File(self.recording, "r+") as file:
+            file["frames/time"] = [0, 1, 3, 2, 4.0]
+        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"),
+                          names=["frame 3 has the time 2"])
+
+    def test_recordings_of_other_types(self):
+        for dtype in ("i2", "i4", "f8", ">i8"):
+            with h5py.File(self.recording, "r+") as file:
+                del file["frames/raw"]
+                file["frames/raw"] = readings(dtype)
+            np.testing.assert_array_equal(self.solve(self.recording)[0], self.expected[0])
+        with h5py.File(self.recording, "r+") as file:
+            del file["frames/raw"]
+            file["frames/raw"] = readings() > 0
+        self.assert_fails("solve", self.recording, "-o", self.path("f.h5"), names=["booleans"])
+
+    def test_tare_of_the_first_frames(self):
+        random = np.random.default_rng(5)
+        frames = np.concatenate([np.zeros((20, 6, 8)), readings("f8")])
+        tared = frames + 40 + np.arange(48).reshape(6, 8) + random.normal(0, 0.5, frames.shape)
+        np.save(self.path("a.npy"), tared.round().astype("i2"))
+        options = (self.path("a.npy"), "--rate", 1, "--counts-per-newton", 200)
+        warned = run("solve", *options, "-o", self.path("f.h5"), "-q").stderr
+        self.assertIn("no tare", warned)
+        self.assertIn("--tare-frames", warned)
+        force, status, _ = self.solve(*options, "--tare-frames", 20)
+        self.assertLess((status[:20] > 0).mean(), 0.05)
+        both = (status[20:] & 15 == 15) & (self.expected[1] & 15 == 15)
+        self.assertGreater(both.sum(), 10)
+        np.testing.assert_allclose(force[20:][both], self.expected[0][both], atol=2 / 200)
+        self.assert_fails("solve", *options, "--tare-frames", 26, "-o", self.path("g.h5"),
+                          names=["25 frames"])
+
+    def test_every_command_reads_plain_data(self):
+        array = self.path("idle.npy")
+        np.save(array, np.random.default_rng(1).normal(20, 1, (30, 6, 8)))
+        self.assertEqual(run_json("info", array)["frames"], 30)
+        run("calibrate", "tare", array, "-o", self.path("tare.h5"))
+        self.assert_fails("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"),
+                          names=["--rate"])
+        run("calibrate", "apply", self.path("tare.h5"), array, "-o", self.path("r.h5"), "--rate", 50)
+        self.assertAlmostEqual(run_json("info", self.path("r.h5"))["seconds"], 29 / 50)
+        self.assertEqual(run_json("pace", array, "--seconds", 0.05)["dropped"], 0)
+        self.assert_fails("stream", array, "--record", self.path("s.h5"), names=["--rate"])
+        run("stream", array, "--rate", 200, "--record", self.path("s.h5"), "-q")
+        self.assertEqual(run_json("info", self.path("s.h5"))["frames"], 30)
+
+    def test_misspelt_names_are_warned_of(self):
+        with h5py.File(self.recording, "r+") as file:
+            skin = file["skin"].attrs
+            skin["treshold_counts"], skin["colour"] = skin["threshold_counts"], "blue"
+            del skin["threshold_counts"]
+            file["calibration/taer"] = np.zeros((6, 8))
+        warnings = " ".join(run_json("info", self.recording)["warnings"])
+        self.assertIn("treshold_counts of /skin is ignored; did you mean threshold_counts?", warnings)
+        self.assertIn("/calibration/taer is ignored; did you mean tare?", warnings)
+        self.assertNotIn("colour", warnings)
+
+    def test_a_dash_is_no_file(self):
+        for arguments in (("solve", "-", "-o", "f.h5"), ("solve", self.recording, "-o", "-"),
+                          ("info", "-"), ("pace", "-"), ("compare", "-", self.recording),
+                          ("calibrate", "tare", "-", "-o", "c.h5"), ("simulate", "-", "-o", "r.h5"),
+                          ("simulate", "a.toml", "-o", "-")):
+            self.assert_fails(*arguments, status=2, names=["'-' is no file"])
+
+
+if __name__ == "__main__":
+    unittest.main()

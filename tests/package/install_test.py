@@ -4,6 +4,7 @@ PILLARFIELD_BUILD is the installed build tree, PILLARFIELD_WORK the folder of th
 """
 
 import csv
+import gzip
 import io
 import os
 import pathlib
@@ -12,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import unittest
+from xml.etree import ElementTree
 
 SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
 WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
@@ -93,6 +95,58 @@ class Examples(unittest.TestCase):
             "-DCMAKE_DISABLE_FIND_PACKAGE_OpenCL=ON", "-DCMAKE_DISABLE_FIND_PACKAGE_HDF5=ON")
         run("cmake", "--build", "core/build")
         run("core/build/core")
+
+
+    def test_pkg_config_compiles_a_program(self):
+        place = next(PREFIX.glob("lib*/**/pillarfield.pc")).parent
+        flags = run("env", f"PKG_CONFIG_PATH={place}", "pkg-config", "--cflags", "--libs", "pillarfield").split()
+        run(os.environ["CXX"], "-std=c++20", SOURCE / "examples/solve_frame.cpp", *flags, "-o", "with_pkg_config")
+        self.assertEqual(run("./with_pkg_config"), run("examples/solve_frame"))
+
+
+class Desktop(unittest.TestCase):
+    def test_man_pages_of_all_commands(self):
+        if not shutil.which("help2man"):
+            self.skipTest("no help2man")
+        commands = [line.split("\t")[0] for line in run("pillarfield", "completion", "words", "--").splitlines()]
+        wanted = {"pillarfield", *(f"pillarfield-{name}" for name in commands if not name.startswith("--"))}
+        pages = {path.name.removesuffix(".1.gz"): gzip.open(path, "rt").read()
+                 for path in (PREFIX / "share/man/man1").iterdir()}
+        self.assertEqual(wanted - pages.keys(), set())
+        self.assertIn("pillarfield-calibrate-tare", pages)
+        for name, text in pages.items():
+            with self.subTest(page=name):
+                self.assertIn(f".TH {name.upper()} ", text)
+                self.assertIn(name.replace("-", "\\-") + " \\- ", text)
+                if shutil.which("groff"):
+                    done = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-z"], input=text, text=True,
+                                          capture_output=True)
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_completion(self):
+        script = PREFIX / "share/bash-completion/completions/pillarfield"
+        self.assertEqual(run("bash", "-c", f". {script}; COMP_WORDS=(pillarfield sol); COMP_CWORD=1; _pillarfield; "
+                             "echo ${COMPREPLY[@]}"), "solve\n")
+
+    def test_desktop_entry_and_icon(self):
+        entry = PREFIX / "share/applications/pillarfield-viewer.desktop"
+        if not entry.exists():
+            self.skipTest("no viewer")
+        if shutil.which("desktop-file-validate"):
+            self.assertEqual(run("desktop-file-validate", entry), "")
+        icon = re.search("^Icon=(.*)$", entry.read_text(), re.MULTILINE)[1]
+        drawing = ElementTree.parse(PREFIX / f"share/icons/hicolor/scalable/apps/{icon}.svg")
+        self.assertEqual(drawing.getroot().tag, "{http://www.w3.org/2000/svg}svg")
+
+
+class Version(unittest.TestCase):
+    def test_citation_changelog_and_program_agree(self):
+        version = run("pillarfield", "--version").split()[1]
+        keys = dict(re.findall(r"^([a-z-]+): *(.*)$", (SOURCE / "CITATION.cff").read_text(), re.MULTILINE))
+        self.assertLessEqual({"cff-version", "message", "title", "type", "authors", "license"}, keys.keys())
+        self.assertEqual(keys["version"], version)
+        newest = re.search(r"^## \[(\d.*?)\] - (.*)$", (SOURCE / "CHANGELOG.md").read_text(), re.MULTILINE)
+        self.assertEqual((newest[1], newest[2]), (version, keys["date-released"]))
 
 
 class Readme(unittest.TestCase):

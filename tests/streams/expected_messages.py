@@ -10,9 +10,11 @@ SLOTS = 16
 
 
 class Frames:
-    """The frames of a force file with contacts and of a recording."""
+    """The frames of a force file with contacts and of a recording; on a cylinder along y if it has a
+    radius."""
 
-    def __init__(self, forces, recording):
+    def __init__(self, forces, recording, radius_mm=None):
+        self.radius_mm = radius_mm
         with h5py.File(forces) as file:
             self.pitch = float(file.attrs["pillar_pitch_mm"])
             self.planes = {name: file["force"][name][()]
@@ -28,6 +30,15 @@ class Frames:
         self.contacts = [[row for row in rows if row["frame"] == frame]
                          for frame in range(len(self.time))]
         self.slots = list(self.assigned_slots())
+
+    def place(self, x_mm, y_mm):
+        """Places of points of the skin in space, m."""
+        x_mm, y_mm = np.asarray(x_mm), np.asarray(y_mm)
+        if self.radius_mm is None:
+            return 1e-3 * np.array([x_mm, y_mm, 0 * x_mm])
+        angle = x_mm / self.radius_mm
+        return 1e-3 * np.array([self.radius_mm * np.sin(angle), y_mm,
+                                self.radius_mm * (np.cos(angle) - 1)])
 
     def assigned_slots(self):
         """For each frame, the contact of each slot, or None; False if it has just ended."""
@@ -84,9 +95,8 @@ def check_points(frames, index, points):
         np.testing.assert_array_equal(points[name], plane[touched])
     rows, cols = planes["status"].shape
     row, col = np.nonzero(touched)
-    np.testing.assert_allclose(points["x"], (col - (cols - 1) / 2) * frames.pitch * 1e-3, atol=1e-9)
-    np.testing.assert_allclose(points["y"], ((rows - 1) / 2 - row) * frames.pitch * 1e-3, atol=1e-9)
-    np.testing.assert_array_equal(points["z"], 0)
+    place = frames.place((col - (cols - 1) / 2) * frames.pitch, ((rows - 1) / 2 - row) * frames.pitch)
+    np.testing.assert_allclose([points[axis] for axis in "xyz"], place, atol=1e-8)
 
 
 def check_arrows(test, frames, index, markers):
@@ -99,7 +109,7 @@ def check_arrows(test, frames, index, markers):
             test.assertEqual(arrows[contact["id"]]["ns"], f"/skin/contacts/{slot + 1}")
     for track, contact in contacts.items():
         start, tip = ([*point.values()] for point in arrows[track]["points"])
-        np.testing.assert_allclose(tip[:2], [1e-3 * contact["centre_of_pressure_x_mm"],
-                                             1e-3 * contact["centre_of_pressure_y_mm"]], atol=1e-15)
+        np.testing.assert_allclose(tip, frames.place(contact["centre_of_pressure_x_mm"],
+                                                     contact["centre_of_pressure_y_mm"]), atol=1e-14)
         np.testing.assert_allclose(np.subtract(tip, start), 0.01 * np.array(wrench_of(contact)[:3]),
                                    atol=1e-15)

@@ -113,7 +113,7 @@ TEST_F(QueuedSinkTest, DropsWhatDoesNotFitAndCountsIt) {
 
 TEST_F(QueuedSinkTest, LimitsBytes) {
   constexpr std::uint32_t kPillars = 100;
-  constexpr std::size_t kBytes = 13 * kPillars;  // three floats and a status byte each
+  constexpr std::size_t kBytes = std::size_t{13} * kPillars;  // three floats and a status byte each
   open({.frames = 100, .bytes = 3 * kBytes + 1});
   for (std::uint64_t sequence = 0; sequence < 5; ++sequence) append(sequence, kPillars);
   EXPECT_EQ(sink_->statistics().dropped, 2u);

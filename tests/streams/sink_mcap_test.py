@@ -76,6 +76,15 @@ class McapTest(SinkTest):
                 file.unlink()
             (self.folder / "a.mcap").unlink()
 
+    def test_curved_skin(self):
+        curved = SCENE.format(bits=8).replace(
+            "[sensor]", "[surface]\nshape = \"cylinder\"\nradius_mm = 40\naxis_deg = 90\n[sensor]")
+        data, _ = self.record("--frames", 20, scene=self.write_scene("curved.toml", curved))
+        frames = Frames(self.folder / "forces.h5", self.folder / "raw.h5", radius_mm=40)
+        self.assertIn("moment_z_nmm", frames.contacts[10][0])
+        counts = self.check(data, frames)
+        self.assertGreater(min(counts["/skin/forces"], counts["/skin/contacts/2"]), 10)
+
     def test_index(self):
         # Several chunks of 1 MiB.
         data, _ = self.record("--rate", 2000, "--frames", 400)

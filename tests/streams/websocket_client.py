@@ -123,6 +123,11 @@ class FoxgloveClient(WebSocket):
         self.subscriptions.update({each["id"]: topic for each, topic in zip(wanted, topics)})
         self.write(json.dumps({"op": "subscribe", "subscriptions": wanted}))
 
+    def settle(self):
+        """Waits until the server has obeyed; before the first data."""
+        self.write(b"settled", PING)
+        assert self.read() == (PONG, b"settled")
+
     def read_data(self):
         kind, content = self.read()
         assert kind == BINARY and content[0] == 1, content[:100]

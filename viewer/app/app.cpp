@@ -87,6 +87,8 @@ class Application {
   [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();
   void take_beside();
+  [[nodiscard]] std::optional<ShownField> taken_field();
+  void fit_first_load();
   void take_news();
   void attend_survey();
   void attend_sensor();
@@ -140,6 +142,7 @@ class Application {
   std::uint64_t live_messages_ = 0;
   std::vector<PillarRect> measured_;  ///< rectangles that have curves
   std::optional<RenderSettings> drawn_settings_;
+  bool fits_first_load_ = false;  ///< of a sensor
   bool field_is_new_ = false;
   bool beside_is_new_ = false;
   double taken_s_ = 0;  ///< produced_s_ of the field on display
@@ -201,6 +204,7 @@ void Application::show(LoadedSource loaded) {
   next.panels = std::move(state_.panels);
   next.show_panels = state_.show_panels;
   next.show_counters = state_.show_counters;
+  fits_first_load_ = next.player->live() != nullptr && !options_.range;
   next.view_is_fitted = asks_for_whole_skin(options_);
   state_ = std::move(next);
   source_was_shown_ = true;
@@ -364,13 +368,38 @@ void Application::take_newest_field() {
   if (!shows_source()) return;
   take_beside();
   const double came_s = produced_s_;
-  auto field = state_.player->take();
+  auto field = taken_field();
   if (!field) return;
   take_field(state_, std::move(*field));
+  if (fits_first_load_) fit_first_load();
   if (state_.beside != nullptr) state_.beside->seek(state_.field->index);
   taken_s_ = came_s;
   field_is_new_ = true;
   redraws_.field();
+}
+
+/// A sensor that fails leaves its picture; the failure of a file ends the program.
+std::optional<ShownField> Application::taken_field() {
+  try {
+    return state_.player->take();
+  } catch (const Error& error) {
+    if (state_.player->live() == nullptr) throw;
+    state_.notice = error.what();
+    redraws_.input(Window::now_s());
+    return std::nullopt;
+  }
+}
+
+/// Ranges of a sensor, by the first frame with a load.
+void Application::fit_first_load() {
+  const float most = largest(Quantity::normal, *state_.field);
+  if (!(most > 0)) return;
+  fits_first_load_ = false;
+  const Range range = fitting_range(Quantity::normal, 2 * most);
+  RenderSettings& settings = state_.settings;
+  settings.full_force_n = settings.full_shear_n = static_cast<double>(most) / 2;
+  settings.relief_full_n = static_cast<double>(range.high);
+  if (settings.quantity == Quantity::normal) set_range(state_, range);
 }
 
 void Application::take_beside() {

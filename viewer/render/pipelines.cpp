@@ -65,7 +65,7 @@ vk::raii::Pipeline make_pipeline(const gpu::Device& device, vk::PipelineLayout l
                                  const vk::raii::ShaderModule& fragment, Depth depth,
                                  const vk::SpecializationInfo* constants = nullptr) {
   const std::array stages{
-      vk::PipelineShaderStageCreateInfo({}, ShaderStage::eVertex, *vertex, "main"),
+      vk::PipelineShaderStageCreateInfo({}, ShaderStage::eVertex, *vertex, "main", constants),
       vk::PipelineShaderStageCreateInfo({}, ShaderStage::eFragment, *fragment, "main", constants)};
   const vk::PipelineVertexInputStateCreateInfo no_vertices;
   const vk::PipelineInputAssemblyStateCreateInfo triangles({},
@@ -121,11 +121,12 @@ vk::Pipeline Pipelines::heat(const HeatKind& kind) {
   const auto known = heat_.find(kind);
   if (known != heat_.end()) return *known->second;
   constexpr std::size_t kWord = sizeof(std::uint32_t);
-  const std::array<vk::SpecializationMapEntry, 4> entries{{
+  const std::array<vk::SpecializationMapEntry, 5> entries{{
       {shader::kQuantityConstant, offsetof(HeatKind, quantity), kWord},
       {shader::kScaleConstant, offsetof(HeatKind, scale), kWord},
       {shader::kReadingsConstant, offsetof(HeatKind, readings), kWord},
       {shader::kMeansConstant, offsetof(HeatKind, means), kWord},
+      {shader::kReliefConstant, offsetof(HeatKind, relief), kWord},
   }};
   const vk::SpecializationInfo constants(entries.size(), entries.data(), sizeof kind, &kind);
   auto made = make_pipeline(*device_, *layout_, render_pass_, heat_vertex_, heat_fragment_,

@@ -22,6 +22,7 @@ struct HeatKind {
   std::uint32_t scale;
   std::uint32_t readings;
   vk::Bool32 means;
+  vk::Bool32 relief;
 
   // NOLINTNEXTLINE(modernize-use-nullptr): defaulted comparison
   friend auto operator<=>(const HeatKind&, const HeatKind&) = default;

@@ -17,6 +17,20 @@ constexpr float kSmallestForceFraction =
 /// 1 / 1.5.
 constexpr double kSinglePillarPixels = 0.7;
 
+constexpr std::uint32_t kMostReliefTiles = 256;  ///< along a side of the skin
+constexpr double kMostRelief = 1.5;  ///< of the height of RenderSettings::relief_full_n
+
+bool shows_relief(const RenderSettings& settings) {
+  return settings.relief && std::holds_alternative<OrbitView>(settings.view);
+}
+
+/// Height of the relief for RenderSettings::relief_full_n; its peaks lie before the far and behind
+/// the near plane.
+double relief_mm(const SkinSize& size) {
+  constexpr double kShare = 0.12;
+  return std::min(kShare * std::min(size.width_mm, size.height_mm), kArrowMarginMm / kMostRelief);
+}
+
 uint pack(const Colour& colour, unsigned alpha = 255) {
   return static_cast<uint>(colour.red) | static_cast<uint>(colour.green) << 8u |
          static_cast<uint>(colour.blue) << 16u | alpha << 24u;
@@ -90,7 +104,11 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   const double pitch = source.skin.pillar_pitch_mm();
   const Surface surface = from_above ? Surface{} : settings.surface;
   const std::uint32_t block = arrow_block_of(settings, plot, pitch);
+  const bool relief = shows_relief(settings);
   const std::uint32_t mesh = surface.kind == SurfaceKind::plane ? 1 : 96;
+  const auto tiles = [&](std::uint32_t pillars, std::uint32_t flat) {
+    return relief ? std::min(pillars, kMostReliefTiles) : flat;
+  };
   const auto plane = [&](Uncertainty kind) {
     return plane_of(field, field.forces.uncertainty[kind]);
   };
@@ -101,7 +119,8 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   scene.sheet = {narrow(size.width_mm), narrow(size.height_mm), narrow(pitch), 0};
   const auto [along_x, along_y, radius_mm, kind] = shader_surface(surface);
   scene.surface = {along_x, along_y, radius_mm, kind};
-  scene.grid = {field.forces.rows, field.forces.cols, mesh, 1};
+  scene.grid = {field.forces.rows, field.forces.cols, tiles(field.forces.cols, mesh),
+                tiles(field.forces.rows, 1)};
   scene.force = {plane_of(field, field.forces.shear_x), plane_of(field, field.forces.shear_y),
                  plane_of(field, field.forces.normal), plane_of(field, field.forces.status)};
   scene.angles = {plane_of(field, field.forces.magnitude), plane_of(field, field.forces.theta),
@@ -125,6 +144,9 @@ shader::Scene scene_of(const ShownField& field, const SourceInfo& source,
   const Colour white{255, 255, 255};
   const Colour black{12, 14, 18};
   scene.layer_colours = {pack(white), pack(black), pack(white, 110), 0};
+  const double most_mm = relief_mm(size);
+  scene.relief = {relief ? narrow(most_mm / settings.relief_full_n) : 0,
+                  narrow(kMostRelief * most_mm), 0, 0};
   return scene;
 }
 
@@ -137,7 +159,7 @@ HeatKind heat_kind_of(const ShownField& field, const SourceInfo& source,
   const bool has_mean = scale == Scale::sequential || scale == Scale::diverging;
   return {static_cast<uint>(settings.quantity), static_cast<uint>(scale),
           settings.quantity == Quantity::parity ? static_cast<uint>(field.raw.type) : 0u,
-          has_mean && !near ? VK_TRUE : VK_FALSE};
+          has_mean && !near ? VK_TRUE : VK_FALSE, shows_relief(settings) ? VK_TRUE : VK_FALSE};
 }
 
 shader::Colours colours_of(const RenderSettings& settings) {

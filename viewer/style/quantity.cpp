@@ -28,6 +28,7 @@ constexpr std::array<QuantityInfo, kQuantities> kInfos = {{
     {"status", "Status", "", 1, Scale::classes},
     {"uncertainty", "Uncertainty", "N", 1, Scale::sequential},
     {"parity", "Parity residual", "counts", 1, Scale::diverging},
+    {"peak", "Peak normal force", "N", 1, Scale::sequential},
 }};
 
 float root_of_squares(float x, float y) { return std::sqrt(x * x + y * y); }
@@ -93,6 +94,7 @@ float pressed_value(Quantity quantity, const ShownField& field, std::uint32_t ro
   const std::size_t pillar = std::size_t{row} * forces.cols + col;
   switch (quantity) {
     case Quantity::normal:
+    case Quantity::peak:
       return forces.normal[pillar];
     case Quantity::shear:
       return root_of_squares(forces.shear_x[pillar], forces.shear_y[pillar]);
@@ -167,12 +169,18 @@ bool is_available(Quantity quantity, const SourceInfo& source) {
     case Quantity::shear_y:
     case Quantity::region:
     case Quantity::status:
+    case Quantity::peak:
       break;
   }
   return true;
 }
 
-float largest(Quantity quantity, const ShownField& field) {
+const ShownField& field_with(Quantity quantity, const ShownField& field) {
+  return quantity == Quantity::peak && field.peak != nullptr ? *field.peak : field;
+}
+
+float largest(Quantity quantity, const ShownField& shown) {
+  const ShownField& field = field_with(quantity, shown);
   float largest = 0;
   for (std::uint32_t row = 0; row < field.forces.rows; ++row) {
     const std::size_t first = std::size_t{row} * field.forces.cols;
@@ -196,7 +204,8 @@ Range fitting_range(Quantity quantity, float largest_value) {
   return {info_of(quantity).scale == Scale::diverging ? -high : 0, high};
 }
 
-float value_of(Quantity quantity, const ShownField& field, std::uint32_t row, std::uint32_t col) {
+float value_of(Quantity quantity, const ShownField& shown, std::uint32_t row, std::uint32_t col) {
+  const ShownField& field = field_with(quantity, shown);
   const std::uint8_t status = field.forces.status[std::size_t{row} * field.forces.cols + col];
   const bool has_status_class = quantity == Quantity::region || quantity == Quantity::status;
   if (!has_status_class && !is_pressed(status)) return kNothing;

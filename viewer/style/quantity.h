@@ -23,8 +23,9 @@ enum class Quantity : std::uint8_t {
   uncertainty,  ///< root of the summed variances of the components, N; for ambiguous pillars at
                 ///< least half the interval of the magnitude
   parity,       ///< V1 + V3 - V2 - V4 of the readings, counts
+  peak,         ///< largest normal force since it is held, N; the normal force where it is not
 };
-inline constexpr int kQuantities = 11;
+inline constexpr int kQuantities = 12;
 
 enum class Scale : std::uint8_t { sequential, diverging, cyclic, classes };
 
@@ -62,6 +63,9 @@ struct Range {
   float high = 1;
   friend bool operator==(const Range&, const Range&) = default;
 };
+
+/// The field that holds the quantity: the held peaks, or `field` itself.
+[[nodiscard]] const ShownField& field_with(Quantity quantity, const ShownField& field);
 
 /// Largest finite |value| over pillars that are neither idle, saturated nor inconsistent; 0 for
 /// none.

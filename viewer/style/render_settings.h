@@ -20,6 +20,8 @@ struct RenderSettings {
   bool sectors = false;   ///< uncertainty sectors of ambiguous shear, once cells are single pillars
   bool hatch = true;      ///< hatch ambiguous pillars
   bool contacts = false;  ///< marks of contacts
+  bool relief = false;    ///< in 3-D, the surface is raised by the normal force
+  double relief_full_n = 1;  ///< normal force whose height is 12 % of the skin's shorter side
   /// Mean force per pillar whose arrow is 1.5 cells long; top views use the shear.
   double full_force_n = 1;
   double full_shear_n = 1;

@@ -209,6 +209,8 @@ void add_stream_ends(CLI::App* command, StreamOptions& options) {
              1e-3, 1e9);
   run.whole("--frames", options.frames, "N", "End after this many frames", 1,
             std::numeric_limits<std::int64_t>::max());
+  run.number("--end-when-idle", options.most_idle_s, "SECONDS",
+             "End when no frame came for this time [wait for the sensor]", 0.01, 1e9);
   run.number("--tare", options.tare_s, "SECONDS",
              "Measure the tare of the untouched skin over this time at the start [0]", 0, 60);
   command
@@ -240,6 +242,7 @@ void add_stream(CLI::App& parent, Work& work) {
   input.flag("--repeat", options->repeat, "Replay a file again and again");
   input.whole("--baud", options->serial_baud, "BAUD", "Bits per second of serial: [2000000]", 300,
               100'000'000);
+  add_plain_data(command, options->plan.read, false);
   add_stream_ends(command, *options);
   add_sensor(command, options->plan);
   add_solver(command, options->plan);

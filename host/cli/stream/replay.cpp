@@ -105,7 +105,10 @@ std::unique_ptr<FrameStream> replayed_file(const std::string& file, const ReadOp
   if (is_scene(file)) {
     stream = replayed_scene(file, repeat, quiet);
   } else {
-    auto source = open_frames(file, options);
+    ReadOptions read = options;
+    read.rate_hz = rate_hz;
+    read.untimed = rate_hz.has_value();
+    auto source = open_frames(file, read);
     print_file_warnings(file, source->warnings());
     if (source->frames() == 0) {
       throw Error(file, "it has no frames", "give a recording with at least one");

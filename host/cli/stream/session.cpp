@@ -174,7 +174,8 @@ bool StreamSession::should_stop() {
   const auto now = Clock::now();
   if (now >= next_report_) report_health();
   return quit_ || is_interrupted() || (options_.frames && solved_ >= *options_.frames) ||
-         (options_.seconds && now - start_ >= nanoseconds_of(*options_.seconds));
+         (options_.seconds && now - start_ >= nanoseconds_of(*options_.seconds)) ||
+         (options_.most_idle_s && now - last_arrival_ >= nanoseconds_of(*options_.most_idle_s));
 }
 
 void StreamSession::take_tare(const FrameView& frame, std::chrono::nanoseconds arrived) {

@@ -20,8 +20,8 @@ namespace {
 
 std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   if (!is_live_source(options.source)) {
-    return replayed_file(options.source, options.plan.read, options.rate_hz, options.repeat,
-                         options.quiet);
+    return replayed_file(options.source, frame_options(options.plan), options.rate_hz,
+                         options.repeat, options.quiet);
   }
   if (const auto say = terminal_line(options.quiet)) {
     say(fmt::format("Waiting for frames from {} ...", options.source));

@@ -28,9 +28,9 @@ struct ReadOptions {
   std::optional<FrameSize> frame_size = {};
 
   /// Frames per second, for a file without times: frame i has the time i / rate_hz. Throws Error
-  /// for a file with times.
+  /// for a file with times, unless `untimed`.
   std::optional<double> rate_hz = {};
-  /// The caller uses no times: a file without times needs no rate, and its times are NaN.
+  /// The caller needs no times: without a rate, those of a file without times are NaN.
   bool untimed = false;
 
   /// Constants of the skin, in place of those in the file.

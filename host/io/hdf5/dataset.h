@@ -16,7 +16,7 @@ namespace pillarfield::hdf5 {
 [[nodiscard]] hid_t memory_type_of(NumberType type);
 
 /// A dataset of 1 to 3 dimensions.
-[[nodiscard]] std::unique_ptr<NumberArray> open_dataset(const std::shared_ptr<const File>& file,
+[[nodiscard]] std::unique_ptr<NumberArray> open_dataset(const std::shared_ptr<const File>& opened,
                                                         const std::string& name);
 
 /// The paths of datasets of two or three dimensions, at most ten.

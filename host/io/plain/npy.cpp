@@ -95,7 +95,8 @@ std::string name_of_kind(char kind, std::string_view size) {
 
 /// Sets type and byte order from a `descr` such as "<u2".
 void take_type(std::string_view descr, NpyHeader& header, const std::string& place) {
-  const bool has_order = !descr.empty() && std::string_view("<>|=").find(descr[0]) != descr.npos;
+  const bool has_order =
+      !descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos;
   const char order = has_order ? descr[0] : '=';
   if (has_order) descr.remove_prefix(1);
   const char kind = descr.empty() ? '?' : descr[0];
@@ -191,7 +192,7 @@ NpyHeader parse_npy_header(std::string_view head, const std::string& place) {
   if (!head.starts_with(kNpyMagic) || head.size() < kLengthAt + 4) {
     throw Error(place, "does not begin as a NumPy array", kDamagedHeader);
   }
-  const int version = head[kVersionAt];
+  const int version = static_cast<unsigned char>(head[kVersionAt]);
   if (version < 1 || version > 3) {
     throw Error(place, fmt::format("is a NumPy array of version {}", version),
                 "versions 1 to 3 are read");

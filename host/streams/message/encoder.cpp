@@ -86,7 +86,7 @@ void MessageEncoder::list_arrows(const FrameContacts& contacts, const Slots& slo
     arrows_.resize(kMostArrows);
   }
   for (message::Arrow& arrow : arrows_) {
-    const auto slot = std::ranges::find(slots, arrow.contact, &ContactSlots::Slot::contact);
+    const auto* const slot = std::ranges::find(slots, arrow.contact, &ContactSlots::Slot::contact);
     if (slot == slots.end()) continue;
     const auto place = static_cast<std::size_t>(slot - slots.begin());
     arrow.name_space = topics()[topic::kContacts + place].name;

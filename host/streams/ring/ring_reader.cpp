@@ -145,7 +145,6 @@ const std::byte* RingReader::read(Time timeout) {
       wait(signal, left);
       continue;
     }
-    if (published - next_ > ring_.slots) skip_to(published - 1);
     if (copy_next()) {
       ++next_;
       return slot_.data();

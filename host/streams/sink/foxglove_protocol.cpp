@@ -114,7 +114,7 @@ std::string Subscriptions::subscribe(std::uint32_t id, std::uint32_t topic) {
 }
 
 std::string Subscriptions::unsubscribe(std::uint32_t id) {
-  const auto found = std::ranges::find(ids_, std::optional(id));
+  auto* const found = std::ranges::find(ids_, std::optional(id));
   if (found == ids_.end()) return fmt::format("there is no subscription {}", id);
   found->reset();
   return {};

@@ -19,6 +19,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/thread_priority.h"
 #include "pillarfield/error.h"
 #include "pillarfield/printable.h"
 #include "streams/sink/foxglove_protocol.h"
@@ -40,7 +41,7 @@ std::chrono::milliseconds milliseconds_of(double seconds) {
 /// The first subprotocol of the client's list that the server speaks; empty if there is none.
 std::string chosen_subprotocol(const http::request<http::empty_body>& request) {
   for (const auto word : http::token_list(request[http::field::sec_websocket_protocol])) {
-    const std::string name(word.data(), word.size());
+    std::string name(word.data(), word.size());
     if (is_foxglove_subprotocol(name)) return name;
   }
   return {};
@@ -138,11 +139,10 @@ void Session::accept_upgrade(ErrorCode error) {
   const std::string subprotocol = chosen_subprotocol(request_);
   if (!websocket::is_upgrade(request_) || subprotocol.empty()) return refuse();
   beast::get_lowest_layer(socket_).expires_never();  // The WebSocket has timeouts of its own.
-  websocket::stream_base::timeout timeout;
-  timeout.handshake_timeout = milliseconds_of(hub_.limits.handshake_s);
-  timeout.idle_timeout = milliseconds_of(hub_.limits.silence_s);
-  timeout.keep_alive_pings = true;
-  socket_.set_option(timeout);
+  socket_.set_option(
+      websocket::stream_base::timeout{.handshake_timeout = milliseconds_of(hub_.limits.handshake_s),
+                                      .idle_timeout = milliseconds_of(hub_.limits.silence_s),
+                                      .keep_alive_pings = true});
   socket_.set_option(
       websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
         response.set(http::field::sec_websocket_protocol, subprotocol);
@@ -168,7 +168,8 @@ void Session::read() { socket_.async_read(buffer_, then(&Session::handle)); }
 
 /// Handles a message of the client, which may hold anything.
 void Session::handle(ErrorCode error) {
-  constexpr std::chrono::milliseconds kPause{1};
+  constexpr std::chrono::microseconds kPause{1000};
+  constexpr std::chrono::microseconds kPausePerByte{16};
   if (error) {
     const bool is_excess = error == websocket::error::message_too_big;
     return is_excess ? refuse() : end();
@@ -178,13 +179,13 @@ void Session::handle(ErrorCode error) {
       socket_.got_text()
           ? subscriptions_.obey({static_cast<const char*>(bytes.data()), bytes.size()})
           : "this server takes no binary messages";
+  pause_.expires_after(kPause + bytes.size() * kPausePerByte);
   buffer_.consume(buffer_.size());
   hub_.update_subscribed();
   if (!why.empty()) {
     if (++invalid_ > hub_.limits.invalid_messages) return refuse();
     queue({{}, nullptr, status_json(2, why)});
   }
-  pause_.expires_after(kPause);
   pause_.async_wait([self = shared_from_this()](ErrorCode cancelled) {
     if (!cancelled && !self->has_ended_) self->read();
   });
@@ -293,7 +294,10 @@ FoxgloveServer::State::State(const SocketAddress& address, const std::string& ta
     throw Error(printable(target), error.code().message(), "choose another address or port");
   }
   accept();
-  thread = std::thread([this] { context.run(); });
+  thread = std::thread([this] {
+    yield_to_other_threads();
+    context.run();
+  });
 }
 
 FoxgloveServer::State::~State() {

@@ -30,8 +30,8 @@ struct ServerMessage {
   std::shared_ptr<const std::vector<std::byte>> bytes;
 };
 
-/// A WebSocket server of the Foxglove protocol, in a thread of its own. It reads at most 1000
-/// messages a second from a client.
+/// A WebSocket server of the Foxglove protocol, in a thread of its own. From a client it reads
+/// at most 1000 messages and 64 kB a second.
 class FoxgloveServer {
  public:
   /// Listens; port 0 is any free one. Throws Error, naming `target`, if it cannot.

@@ -30,7 +30,7 @@ class FoxgloveConsumer final : public SinkConsumer {
     return true;
   }
   void report(const HealthReport& health) override {
-    if (!server_->subscribed()[topic::kHealth]) return;
+    if (!server_->subscribed().test(topic::kHealth)) return;
     encoder_.encode(health, receiver_);
     send();
   }

@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include "base/thread_priority.h"
+
 namespace pillarfield {
 
 QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
@@ -13,7 +15,10 @@ QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
       limits_(limits),
       consumer_(std::move(consumer)),
       slots_(std::max<std::size_t>(limits.frames, 1)),
-      thread_([this] { run(); }) {}
+      thread_([this] {
+        yield_to_other_threads();
+        run();
+      }) {}
 
 QueuedSink::~QueuedSink() { end_thread(End::abandoned); }
 

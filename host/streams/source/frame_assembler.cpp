@@ -161,7 +161,8 @@ void FrameAssembler::store(Slot& slot, const Packet& packet) {
 
 void FrameAssembler::measure_interval(std::uint64_t sequence, Time arrived) {
   const auto frames = static_cast<double>(sequence - highest_);
-  const double interval_ns = static_cast<double>((arrived - frame_began_).count()) / frames;
+  const double interval_ns =
+      std::max(static_cast<double>((arrived - frame_began_).count()), 1.0) / frames;
   interval_ns_ += (interval_ns - interval_ns_) * (interval_ns_ == 0 ? 1 : 1.0 / 16);
   frame_began_ = arrived;
   highest_ = sequence;

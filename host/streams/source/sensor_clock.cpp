@@ -17,7 +17,8 @@ double SensorClock::seconds(std::uint64_t time_ns, std::chrono::nanoseconds arri
   const bool jumped =
       comparable && (time_ns < before_ns || time_ns - before_ns > host + kMostAhead_ns);
   if (jumped) ++jumps_;
-  elapsed_ns_ += comparable && !jumped ? time_ns - before_ns : host;
+  // At least 1 ns, since files of frames need times that rise.
+  elapsed_ns_ += std::max<std::uint64_t>(comparable && !jumped ? time_ns - before_ns : host, 1);
   return static_cast<double>(elapsed_ns_) * 1e-9;
 }
 

@@ -5,9 +5,9 @@
 
 namespace pillarfield {
 
-/// Turns a sensor's clock into seconds since the first frame that never go back. A frame after a
-/// restart or a jump of the clock, or without a clock, is as much later than the frame before as
-/// their times of arrival are.
+/// Turns a sensor's clock into seconds since the first frame that rise from frame to frame. A frame
+/// after a restart or a jump of the clock, or without a clock, is as much later than the frame
+/// before as their times of arrival are.
 class SensorClock {
  public:
   /// Time of the next frame, s. `time_ns` 0: the sensor has no clock.

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/pipeline/allocation_count.h"
 #include "tests/streams/source/assembler_run.h"
 
 namespace pillarfield {
@@ -271,6 +272,26 @@ TEST(FrameAssembler, DiscardForgetsWithoutCounting) {
   run.add(frame_packet(kShape, 94));
   EXPECT_EQ(run.sequences, (Sequences{3, 91, 93, 94}));
   expect_counts(run.health(), {.frames = 4, .lost = 1});
+}
+
+TEST(FrameAssembler, AllocatesNothingForAFrame) {
+  std::vector<SentPacket> packets;
+  for (std::uint64_t i = 0; i < 50; ++i) {
+    packets.push_back(frame_packet(kShape, 4 * i));
+    packets.push_back(row_packets(kShape, 4 * i + 1, 20)[7]);
+    packets.push_back(row_packets(kShape, 4 * i + 2, 2)[1]);
+    packets.push_back(block_packet(kShape, 4 * i + 3, {0, 5}));
+  }
+  FrameAssembler assembler(kShape, PacketOrder::not_kept);
+  StreamedFrame frame(kShape.type, AssemblerRun::skin_of(kShape));
+  std::uint64_t before = 0;
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    if (i == 20) before = pipeline_test::allocations();  // The frame has its memory by now.
+    assembler.add(received(packets[i], std::chrono::milliseconds(i)));
+    while (assembler.pop(frame)) {
+    }
+  }
+  EXPECT_EQ(pipeline_test::allocations(), before);
 }
 
 TEST(FrameAssembler, RateIsThatOfTheLastSecond) {

@@ -11,7 +11,7 @@ namespace {
 
 using namespace pillarfield::testing;
 
-constexpr FrameShape kShape = {SenselType::u8, 18, 14};
+constexpr FrameShape kParsed = {SenselType::u8, 18, 14};
 
 /// Feeds bytes in pieces of random length, and calls `found` for each packet.
 template <class Found>
@@ -58,7 +58,7 @@ TEST(PacketParser, FindsEveryPacketBetweenRubbish) {
     std::uint64_t runs = 0;
     for (std::uint64_t i = 0; i < 40; ++i) {
       SentPacket packet =
-          random() % 2 == 0 ? frame_packet(kShape, i) : row_packets(kShape, i, 3)[random() % 3];
+          random() % 2 == 0 ? frame_packet(kParsed, i) : row_packets(kParsed, i, 3)[random() % 3];
       if (random() % 2 == 0) packet = checked(packet);
       const std::uint64_t fate = random() % 8;
       if (fate == 0) {  // cut short by 4 bytes or more
@@ -77,7 +77,7 @@ TEST(PacketParser, FindsEveryPacketBetweenRubbish) {
         continue;
       }
       // Adjacent damage is one run or several; a packet in between makes them count one by one.
-      bytes += frame_packet(kShape, 1000 + i).bytes();
+      bytes += frame_packet(kParsed, 1000 + i).bytes();
       sent.push_back(1000 + i);
     }
     std::vector<std::uint64_t> received;
@@ -85,9 +85,9 @@ TEST(PacketParser, FindsEveryPacketBetweenRubbish) {
       received.push_back(packet.header.sequence);
       const std::uint64_t sequence = packet.header.sequence;
       if (content_of(packet.header) == PILLARFIELD_FRAME) {
-        EXPECT_EQ(
-            std::memcmp(packet.bytes.data(), readings_of(kShape, sequence).data(), kShape.bytes()),
-            0);
+        EXPECT_EQ(std::memcmp(packet.bytes.data(), readings_of(kParsed, sequence).data(),
+                              kParsed.bytes()),
+                  0);
       }
     });
     EXPECT_EQ(received, sent);
@@ -98,7 +98,7 @@ TEST(PacketParser, FindsEveryPacketBetweenRubbish) {
 TEST(PacketParser, ReadingsMayLookLikeAMagic) {
   std::string bytes;
   for (std::uint64_t i = 0; i < 10; ++i) {
-    SentPacket packet = frame_packet(kShape, i);
+    SentPacket packet = frame_packet(kParsed, i);
     for (std::size_t at = 0; at + 4 < packet.readings.size(); at += 4) {
       packet.readings.replace(at, 4, "PFR1");
     }
@@ -113,8 +113,8 @@ TEST(PacketParser, ReadingsMayLookLikeAMagic) {
 TEST(PacketParser, AcceptsOnlyTheShapeOfTheFirstPacket) {
   constexpr FrameShape kOther = {SenselType::u8, 18, 15};
   std::mt19937 random(1);
-  const std::string bytes = frame_packet(kShape, 1).bytes() + frame_packet(kOther, 2).bytes() +
-                            frame_packet(kShape, 3).bytes();
+  const std::string bytes = frame_packet(kParsed, 1).bytes() + frame_packet(kOther, 2).bytes() +
+                            frame_packet(kParsed, 3).bytes();
   std::vector<std::uint64_t> received;
   const std::uint64_t invalid = parse(
       bytes, random, [&](const Packet& packet) { received.push_back(packet.header.sequence); });
@@ -123,7 +123,7 @@ TEST(PacketParser, AcceptsOnlyTheShapeOfTheFirstPacket) {
 }
 
 TEST(PacketParser, AHeaderAloneNeverAllocatesMuch) {
-  SentPacket packet = frame_packet(kShape, 1);
+  SentPacket packet = frame_packet(kParsed, 1);
   packet.header.rows = packet.header.cols = 65534;
   packet.header.bytes = 65534U * 65534U;
   EXPECT_FALSE(shape_of(packet.header));

@@ -305,10 +305,10 @@ TEST(HostileRing, LyingSizesAreRefused) {
     PillarfieldRing ring = ring_of_frames();
     switch (random() % 6) {
       case 0:
-        ring.slots = static_cast<std::uint32_t>(random() | 8);
+        ring.slots = static_cast<std::uint32_t>(5 + random() % 100);
         break;
       case 1:
-        ring.slot_bytes = random() | (1U << 20);
+        ring.slot_bytes = 64 * (22 + random() % 1000);
         break;
       case 2:
         ring.slot_bytes = random() % 1328;

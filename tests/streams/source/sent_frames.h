@@ -111,11 +111,11 @@ inline SentPacket checked(SentPacket packet) {
   return packet;
 }
 
-/// Makes a packet invalid.
+/// Makes a packet of rows invalid.
 inline SentPacket damaged(SentPacket packet, std::mt19937& random) {
   PillarfieldPacket& header = packet.header;
   packet.intact = false;
-  switch (random() % 10) {
+  switch (random() % 11) {
     case 0:
       header.magic ^= 1U << random() % 32;
       break;
@@ -137,10 +137,13 @@ inline SentPacket damaged(SentPacket packet, std::mt19937& random) {
     case 6:
       header.bytes += 1 + static_cast<std::uint32_t>(random());
       break;
-    case 7:
-      header.patch = 1;
+    case 7:  // only ROWS
+      header.first = header.rows - header.count + 1 + static_cast<std::uint32_t>(random() % 3);
       break;
     case 8:
+      header.patch = 1;
+      break;
+    case 9:
       packet.readings.resize(packet.readings.size() - 1 - random() % 20);
       break;
     default:

@@ -40,7 +40,31 @@ PillarIndex a_pillar(const MadeField& made, Region region, float left_of = 40) {
   return found;
 }
 
-AppState make_state(const MadeField& made, Player& player) {
+/// Curves of pins and selection that fade over four seconds.
+void fill(Curves& curves, const AppState& state) {
+  std::vector<PillarRect> rects{state.selection->rect};
+  for (const Pin& pin : state.pins) rects.push_back(rect_of(pin));
+  curves.set_rects(rects);
+  ForceField forces(state.field->forces.rows, state.field->forces.cols);
+  std::ranges::copy(state.field->forces.status, forces.status.begin());
+  PillarValues last;
+  last.normal = 1;
+  last.shear_x = 0.6f;
+  for (const CurvePoint& point : made_curve(last, 400)) {
+    for (std::size_t at = 0; at < forces.pillars(); ++at) {
+      forces.normal[at] = point.normal * state.field->forces.normal[at];
+      forces.shear_x[at] = point.shear_x * state.field->forces.normal[at];
+      forces.shear_y[at] = point.shear_y * state.field->forces.normal[at];
+    }
+    ShownField field;
+    field.forces = forces.view();
+    field.index = point.index;
+    field.time_s = point.time_s;
+    curves.add(field);
+  }
+}
+
+AppState make_state(const MadeField& made, Player& player, Curves& curves) {
   AppState state;
   state.player = &player;
   state.field = made.shown();
@@ -53,6 +77,8 @@ AppState make_state(const MadeField& made, Player& player) {
     state.pins.push_back({pillar});
   }
   state.selection = Selection{{4, 25, 8, 36}};
+  state.curves = &curves;
+  fill(curves, state);
   return state;
 }
 
@@ -122,8 +148,9 @@ class PanelSheet : public testing::Test {
     const GuiContext gui(instance_, device_, *pass, scale);
     gui.use();
     set_style(theme, scale);
+    Curves curves(1.265);
     for (int frame = 0; frame < 2; ++frame) {  // ImGui lays windows out in the second frame.
-      AppState state = make_state(made_, player_);
+      AppState state = make_state(made_, player_, curves);
       state.settings.theme = theme;
       state.settings.scale = scale;
       ImGui::GetIO().DisplaySize =

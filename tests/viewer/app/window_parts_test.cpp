@@ -2,9 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/viewer/source/touched_field.h"
+#include "viewer/app/panels/time_window.h"
+#include "viewer/app/trails.h"
 #include "viewer/app/window/draw_clock.h"
+#include "viewer/app/window/panel_layout.h"
 #include "viewer/app/window/redraws.h"
 #include "viewer/app/window/screen.h"
+#include "viewer/source/shown_contacts.h"
 
 namespace pillarfield::viewer {
 namespace {
@@ -15,25 +20,117 @@ TEST(Screen, ItsPartsTileTheWindow) {
   for (const std::uint32_t width : {1u, 100u, 481u, 1280u, 3841u}) {
     for (const std::uint32_t height : {1u, 30u, 321u, 720u, 2160u}) {
       for (const double scale : {1.0, 1.25, 2.0}) {
-        for (const bool column : {true, false}) {
-          const Screen screen = divide(width, height, scale, column);
-          const double all = area(screen.field) + area(screen.column) + area(screen.transport) +
-                             area(screen.status);
+        PanelLayout layout = default_layout();
+        move_panel(layout, PanelId::pillar, Dock::left);
+        for (const bool hidden : {false, true}) {
+          const PanelLayout* const shown = hidden ? nullptr : &layout;
+          const Screen screen = divide(width, height, scale, shown);
+          const double all = area(screen.field) + area(screen.left) + area(screen.right) +
+                             area(screen.bottom) + area(screen.transport) + area(screen.status);
           EXPECT_EQ(all, static_cast<double>(width) * height) << width << " x " << height;
           EXPECT_GE(screen.field.width, 1);
           EXPECT_GE(screen.field.height, 1);
-          EXPECT_EQ(screen.column.width > 0, column && width > 1);
+          EXPECT_EQ(screen.right.width > 0, shown != nullptr && width > 1);
+          EXPECT_EQ(screen.left.width > 0, shown != nullptr && width > 1);
+          EXPECT_EQ(screen.bottom.height > 0, shown != nullptr && height > 300);
         }
       }
     }
   }
 }
 
-TEST(Screen, SizesFollowTheScale) {
-  const Screen one = divide(2000, 1400, 1, true);
-  const Screen two = divide(2000, 1400, 2, true);
-  EXPECT_EQ(two.column.width, 2 * one.column.width);
+TEST(Screen, SizesFollowTheScaleAndTheLayout) {
+  PanelLayout layout = default_layout();
+  const Screen one = divide(2000, 1400, 1, &layout);
+  const Screen two = divide(2000, 1400, 2, &layout);
+  EXPECT_EQ(two.right.width, 2 * one.right.width);
   EXPECT_EQ(two.status.height, 2 * one.status.height);
+  EXPECT_EQ(one.left.width, 0);
+  place_of(layout, PanelId::curves).open = false;
+  EXPECT_LT(divide(2000, 1400, 1, &layout).bottom.height, one.bottom.height);
+  move_panel(layout, PanelId::curves, Dock::floating);
+  EXPECT_EQ(divide(2000, 1400, 1, &layout).bottom.height, 0);
+}
+
+TEST(PanelLayout, IsReadAsItWasWritten) {
+  PanelLayout layout = default_layout();
+  move_panel(layout, PanelId::contacts, Dock::left);
+  move_panel(layout, PanelId::view, Dock::floating);
+  place_of(layout, PanelId::view).window = {40, 50, 300, 400};
+  place_of(layout, PanelId::pillar).open = false;
+  layout.right_width = 444;
+  const PanelLayout read = layout_from(text_of(layout));
+  EXPECT_EQ(text_of(read), text_of(layout));
+  EXPECT_EQ(read.places.back().id, PanelId::view);
+  EXPECT_FALSE(place_of(layout, PanelId::pillar).open);
+}
+
+TEST(PanelLayout, RubbishIsIgnoredAndSizesAreLimited) {
+  const PanelLayout layout = layout_from(
+      "panel nonsense left 1 0 0 100 100\npanel view nowhere 1 0 0 1 1\npanel view left\n"
+      "panel write floating 1 -50 1e9 nan 1\nright_width 1e30\nleft_width -3\n\n\xff\xfe");
+  EXPECT_EQ(layout.places.size(), kPanels);
+  EXPECT_EQ(layout.right_width, 2000);
+  EXPECT_EQ(layout.left_width, 120);
+  std::string text = text_of(layout);
+  EXPECT_EQ(text_of(layout_from(text)), text);
+}
+
+TEST(PanelLayout, AFloatingPanelCoversItsPixels) {
+  PanelLayout layout = default_layout();
+  EXPECT_FALSE(covers(layout, {150, 150}, 1));
+  move_panel(layout, PanelId::view, Dock::floating);
+  place_of(layout, PanelId::view).window = {100, 100, 200, 200};
+  EXPECT_TRUE(covers(layout, {150, 150}, 1));
+  EXPECT_FALSE(covers(layout, {150, 150}, 2));
+}
+
+void expect_span(const Span& span, double from, double to) {
+  EXPECT_NEAR(span.from, from, 1e-9);
+  EXPECT_NEAR(span.to, to, 1e-9);
+}
+
+TEST(TimeWindow, ZoomsAboutTheCursorAndStaysInside) {
+  TimeWindow window;
+  const Span whole{10, 20};
+  expect_span(window.of(whole, 0), 10, 20);
+  window.zoom(whole, 0, 15, 2);
+  expect_span(window.of(whole, 0), 12.5, 17.5);
+  window.pan(whole, 0, 100);
+  expect_span(window.of(whole, 0), 15, 20);
+  window.zoom(whole, 0, 20, 1e9);
+  expect_span(window.of(whole, 0), 20 - TimeWindow::kLeastSeconds, 20);
+  window.zoom(whole, 0, 15, 1e-9);
+  EXPECT_FALSE(window.is_chosen());
+}
+
+TEST(TimeWindow, FollowsASensorUntilItIsMovedBack) {
+  TimeWindow window;
+  expect_span(window.of({0, 100}, 20), 80, 100);
+  window.zoom({0, 100}, 20, 100, 4);
+  expect_span(window.of({0, 100}, 20), 95, 100);
+  expect_span(window.of({0, 130}, 20), 125, 130);
+  window.pan({0, 130}, 20, -50);
+  expect_span(window.of({0, 130}, 20), 75, 80);
+  expect_span(window.of({0, 200}, 20), 75, 80);
+  window.reset();
+  expect_span(window.of({0, 200}, 20), 180, 200);
+}
+
+TEST(Trails, HoldTheLastSecondsOfEachContact) {
+  Trails trails;
+  const auto add = [&](std::uint64_t index, std::uint32_t col) {
+    ShownField field = touched_field(index, 20, 40, {{{4, 8, col, col + 4}}});
+    field.time_s = static_cast<double>(index);
+    field.contacts = std::make_shared<const ShownContacts>(FieldContacts(1).contacts_of(field));
+    trails.add(field);
+  };
+  for (std::uint32_t i = 0; i < 5; ++i) add(i, 10 + i);
+  ASSERT_EQ(trails.all().size(), 1U);
+  ASSERT_EQ(trails.all().front().places.size(), 3U) << "of two seconds";
+  EXPECT_DOUBLE_EQ(trails.all().front().places.back().x_mm, 14 + 2 - 20);
+  add(1, 10);
+  EXPECT_EQ(trails.all().front().places.size(), 1U) << "a step back";
 }
 
 /// Draws while due; returns the number of frames.

@@ -51,6 +51,12 @@ const std::vector<GoldenPicture>& golden_pictures() {
       {"demo_status", "demo", 10, look_at(Quantity::status)},
       {"demo_orbit", "demo", 50,
        with(look_at(Quantity::magnitude), [](Options& o) { o.orbit = true; })},
+      {"demo_relief", "demo", 50,
+       with(look_at(Quantity::normal),
+            [](Options& o) {
+              o.orbit = true;
+              o.relief = true;
+            })},
       {"demo_uncertainty_zoom", "demo", 30,
        with(look_at(Quantity::uncertainty),
             [](Options& o) {

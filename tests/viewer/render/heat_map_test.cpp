@@ -62,7 +62,8 @@ TEST_P(HeatMap, GivesValuesBackThroughItsColours) {
 INSTANTIATE_TEST_SUITE_P(Quantities, HeatMap,
                          testing::Values(Quantity::normal, Quantity::shear, Quantity::shear_x,
                                          Quantity::shear_y, Quantity::magnitude, Quantity::theta,
-                                         Quantity::phi, Quantity::uncertainty, Quantity::parity),
+                                         Quantity::phi, Quantity::uncertainty, Quantity::parity,
+                                         Quantity::peak),
                          [](const auto& test) { return info_of(test.param).name; });
 
 class States : public testing::TestWithParam<Quantity> {};

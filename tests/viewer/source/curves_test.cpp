@@ -158,6 +158,7 @@ TEST(PeakHold, KeepsTheLargestNormalForceOfEachPillar) {
   EXPECT_EQ(held->forces.status[0], 0);
   EXPECT_EQ(held->forces.shear_x[2 * 30 + 12], 0);
   EXPECT_EQ(held->index, 5U);
+  EXPECT_NE(held->pages.data(), nullptr);
   peaks.reset();
   peaks.add(rising_field(1).forces);
   EXPECT_EQ(peaks.field(rising_field(1))->forces.normal[2 * 30 + 12], 2);

@@ -69,6 +69,7 @@ class FakeSensor final : public FrameStream {
       frame.missing.push_back({0, 8, 0, 8});
       --wire_->partial;
     }
+    frame.time_s = 0.001 * static_cast<double>(sent_);
     frame.sequence = sent_++;
     frame.arrived = std::chrono::steady_clock::now().time_since_epoch();
     return Arrival::arrived;

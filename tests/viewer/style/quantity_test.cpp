@@ -76,7 +76,8 @@ TEST(Availability, FollowsWhatTheSourceHas) {
     return found;
   };
   const std::set<Quantity> always = {Quantity::normal,  Quantity::shear,  Quantity::shear_x,
-                                     Quantity::shear_y, Quantity::region, Quantity::status};
+                                     Quantity::shear_y, Quantity::region, Quantity::status,
+                                     Quantity::peak};
   EXPECT_EQ(available(), always);
   source.has_angles = true;
   EXPECT_EQ(available().size(), always.size() + 3);

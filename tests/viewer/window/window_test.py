@@ -6,9 +6,12 @@ import json
 import os
 import pathlib
 import signal
+import socket
+import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 
@@ -35,7 +38,8 @@ class Window:
         self.errors = open(folder / "stderr.txt", "w+", encoding="utf-8")
         self.process = subprocess.Popen(
             [VIEWER, *map(str, arguments), "--validate", "--statistics"], cwd=folder,
-            env=screen.environment(), stdout=subprocess.PIPE, stderr=self.errors, text=True)
+            env={**screen.environment(), "XDG_CONFIG_HOME": str(folder / "config")},
+            stdout=subprocess.PIPE, stderr=self.errors, text=True)
         self.id = self.wait_for_window()
         screen.xdotool("windowfocus", "--sync", self.id)
 
@@ -162,7 +166,7 @@ class KeyTest(WindowTest):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 20)
         before = self.shoot("opened")
         keys = ["2", "3", "4", "5", "6", "7", "8", "9", "0", "y", "1", "a", "a", "x", "x", "k", "k", "v",
-                "u", "r", "v", "t", "t", "g", "Tab", "Tab", "Right", "Left", "shift+Right",
+                "b", "b", "u", "r", "v", "e", "1", "i", "i", "w", "w", "t", "t", "g", "Tab", "Tab", "Right", "Left", "shift+Right",
                 "shift+Left", "Home", "End", "plus", "minus", "l", "l", "question", "Escape"]
         for (index, key) in enumerate(keys):
             window.key(key)
@@ -223,7 +227,7 @@ class MouseTest(WindowTest):
                     for (other, shot) in shots.items() if other != name), name)
 
         # The middle of the field lies left of the panels and above the play head.
-        (x, y) = (430, 310)
+        (x, y) = (411, 216)
         do("1_hover", lambda: window.move(x, y))
         do("2_pin", lambda: window.click(x, y))
         time.sleep(0.6)
@@ -244,17 +248,20 @@ class WidgetTest(WindowTest):
         window = self.open(SCENES / "demo.toml", "--paused", "--frame", 2)
         before = self.shoot("widget_opened")
         steps = [
-            ("scrub", lambda: window.drag((130, 671), (340, 671))),
-            ("step_on", lambda: window.click(83, 671)),
-            ("step_back", lambda: window.click(30, 671)),
-            ("faster", lambda: window.click(803, 671)),
-            ("loop", lambda: window.click(845, 671)),
+            ("scrub", lambda: window.drag((130, 461), (340, 461))),
+            ("step_on", lambda: window.click(83, 461)),
+            ("step_back", lambda: window.click(30, 461)),
+            ("faster", lambda: window.click(803, 461)),
+            ("loop", lambda: window.click(845, 461)),
             ("quantities", lambda: window.click(1145, 61)),
             ("chosen", lambda: window.click(1145, 140)),
             ("arrows", lambda: window.click(1036, 174)),
-            ("contacts", lambda: window.click(1036, 202)),
-            ("space", lambda: window.click(1205, 230)),
-            ("cylinder", lambda: window.click(1205, 258)),
+            ("contacts", lambda: window.click(1114, 174)),
+            ("hatch", lambda: window.click(1104, 202)),
+            ("truth", lambda: window.click(1036, 230)),
+            ("space", lambda: window.click(1205, 258)),
+            ("relief", lambda: window.click(1036, 202)),
+            ("cylinder", lambda: window.click(1205, 286)),
             ("fitted", lambda: window.click(1083, 118)),
         ]
         for (name, act) in steps:
@@ -268,16 +275,143 @@ class WidgetTest(WindowTest):
     def test_pin_and_region_over_time(self):
         window = self.open(SCENES / "demo.toml", "--paused")
         self.screen.still_pixels()
-        window.click(245, 150)
+        window.click(300, 120)
         time.sleep(0.6)
-        window.drag((380, 260), (520, 400))
+        window.drag((380, 200), (470, 300))
         for _ in range(3):
             window.key("shift+Right")
             self.screen.still_pixels()
-        self.screen.xdotool("mousemove", "--window", window.id, 1100, 500)
-        self.screen.xdotool("click", "--repeat", 20, "--delay", 20, 5)
         self.shoot("over_time")
         self.assert_quiet(window)
+
+    def test_curves_zoom_pan_and_seek(self):
+        window = self.open(SCENES / "demo.toml", "--paused", "--frame", 2)
+        before = self.shoot("curves_0")
+        steps = [("zoomed", lambda: window.click(180, 590, button=4, times=4)),
+                 ("panned", lambda: window.drag((180, 590), (120, 590))),
+                 ("sought", lambda: window.click(220, 590)),
+                 ("whole", lambda: window.click(220, 590, times=2))]
+        for (name, act) in steps:
+            act()
+            time.sleep(0.3)
+            after = self.shoot("curves_" + name)
+            self.assertFalse(numpy.array_equal(before, after), name)
+            before = after
+        self.assert_quiet(window)
+
+    def test_panels_move_and_are_remembered(self):
+        settings = self.folder / "config/pillarfield/viewer.conf"
+        window = self.open(SCENES / "demo.toml", "--paused")
+        before = self.shoot("panels_0")
+        steps = [("folded", lambda: window.click(1000, 28)),
+                 ("unfolded", lambda: window.click(1000, 28)),
+                 ("left", lambda: window.drag((1003, 292), (60, 300))),
+                 ("floating", lambda: window.drag((1003, 28), (620, 200))),
+                 ("wider", lambda: window.drag((942, 400), (860, 400)))]
+        for (name, act) in steps:
+            act()
+            time.sleep(0.3)
+            after = self.shoot("panels_" + name)
+            self.assertFalse(numpy.array_equal(before, after), name)
+            before = after
+        self.assert_quiet(window)
+        text = settings.read_text(encoding="utf-8")
+        self.assertIn("panel write left 1", text)
+        self.assertIn("panel view floating 1", text)
+        self.assertIn(f"recent {SCENES}/demo.toml", text)
+        window = self.open(SCENES / "demo.toml", "--paused")
+        self.shoot("panels_again")
+        self.assert_quiet(window)
+        self.assertEqual(settings.read_text(encoding="utf-8"), text)
+
+
+class Sensor(threading.Thread):
+    """Sends frames of 32 x 32 sensels by UDP, and leaves out every tenth."""
+
+    def __init__(self, port, rate_hz=200):
+        super().__init__(daemon=True)
+        (self.port, self.rate_hz, self.stopping) = (port, rate_hz, False)
+        self.start()
+
+    def run(self):
+        out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        number = 0
+        while not self.stopping:
+            frame = bytearray(32 * 32)
+            for row in range(10, 18):
+                begin = 32 * row + 8 + number // 20 % 10
+                frame[begin:begin + 8] = bytes([90] * 8)
+            header = struct.pack("<IHHIIQQQIIIIII", 0x31524650, 0, 1, 32, 32, 0, number,
+                                 number * 5_000_000, 0, 1, 0, 0, 0, len(frame))
+            if number % 10 != 9:
+                out.sendto(header + frame, ("127.0.0.1", self.port))
+            number += 1
+            time.sleep(1 / self.rate_hz)
+
+    def stop(self):
+        self.stopping = True
+        self.join()
+
+
+class SourceTest(WindowTest):
+    def test_start_page_opens_a_scene_and_remembers_it(self):
+        window = self.open()
+        before = self.shoot("start")
+        window.click(230, 191)  # The first scene.
+        time.sleep(0.5)
+        after = self.shoot_changed("start_opened", before, 20)
+        self.assertFalse(numpy.array_equal(before, after))
+        self.assertGreater(self.assert_quiet(window)["taken"], 0)
+        window = self.open()
+        recent = self.shoot("start_recent")
+        self.assertFalse(numpy.array_equal(before, recent))
+        self.assert_quiet(window)
+
+    def test_a_missing_file_is_an_error(self):
+        ended = subprocess.run([VIEWER, self.folder / "none.h5"], env=self.screen.environment(),
+                               check=False, capture_output=True, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn("none.h5", ended.stderr)
+
+    def test_truth_and_a_second_source_beside(self):
+        shots = []
+        for arguments in (["--truth"], [SCENES / "spin.toml"], []):
+            window = self.open(SCENES / "demo.toml", *arguments, "--paused", "--frame", 20)
+            shots.append(self.shoot(f"beside_{len(shots)}"))
+            self.assert_quiet(window)
+        for (index, shot) in enumerate(shots[:2]):
+            self.assertFalse(numpy.array_equal(shot, shots[2]), index)
+        self.assertFalse(numpy.array_equal(shots[0], shots[1]))
+
+    def test_a_sensor_comes_goes_and_is_recorded(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        window = self.open(f"udp:127.0.0.1:{port}")
+        self.shoot("sensor_awaited")
+        sensor = Sensor(port)
+        time.sleep(8)
+        for key in ("k", "j", "z", "ctrl+r"):
+            window.key(key)
+            time.sleep(0.7)
+        self.shoot("sensor", still=False)
+        window.key("ctrl+r")
+        time.sleep(0.5)
+        sensor.stop()
+        time.sleep(2.5)
+        silent = self.shoot("sensor_silent", still=False)
+        sensor = Sensor(port)
+        time.sleep(1)
+        again = self.shoot("sensor_again", still=False)
+        self.assertFalse(numpy.array_equal(silent, again))
+        statistics = self.assert_quiet(window)
+        sensor.stop()
+        self.assertGreater(statistics["produced"], 100)
+        recordings = list(self.folder.glob("udp_*recording.h5"))
+        self.assertEqual(len(recordings), 1, list(self.folder.iterdir()))
+        told = subprocess.run([PROGRAM, "info", recordings[0]], check=True, capture_output=True,
+                              text=True).stdout
+        self.assertIn("32", told)
 
 
 class WholeWindowTest(WindowTest):

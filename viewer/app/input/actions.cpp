@@ -39,6 +39,7 @@ void show_quantity(AppState& state, Quantity quantity) {
   remembered(state) = settings.range;
   settings.quantity = quantity;
   if (!same_scale) settings.map = default_map(info.scale);
+  if (quantity == Quantity::peak && state.field && state.field->peak == nullptr) hold_peak(state);
   if (const auto& range = remembered(state); range && !state.fit_each_field) {
     settings.range = *range;
   } else {
@@ -46,10 +47,19 @@ void show_quantity(AppState& state, Quantity quantity) {
   }
 }
 
+void hold_peak(AppState& state) {
+  state.player->set_peak(true);
+  state.notice = "peaks are held from now on";
+  if (state.beside != nullptr) state.beside->set_peak(true);
+}
+
 void fit_range(AppState& state) {
   RenderSettings& settings = state.settings;
   const float most = state.field ? largest(settings.quantity, *state.field) : 0;
   settings.range = fitting_range(settings.quantity, most);
+  if (settings.quantity == Quantity::normal) {
+    settings.relief_full_n = static_cast<double>(settings.range.high);
+  }
   remembered(state) = settings.range;
 }
 

@@ -142,6 +142,11 @@ constexpr std::array kShortcuts{
              show<Quantity::uncertainty>},
     Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
 
+    Shortcut{Group::show, plain(GLFW_KEY_E), "E", "peak of the normal force",
+             show<Quantity::peak>},
+    Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
+             [](const Command& command) { hold_peak(command.state); }},
+
     Shortcut{Group::view, plain(GLFW_KEY_A), "A", "arrows", toggle<&RenderSettings::arrows>},
     Shortcut{Group::view, plain(GLFW_KEY_U), "U", "uncertainty sectors",
              toggle<&RenderSettings::sectors>},
@@ -149,6 +154,8 @@ constexpr std::array kShortcuts{
              toggle<&RenderSettings::hatch>},
     Shortcut{Group::view, plain(GLFW_KEY_K), "K", "contacts", toggle_contacts},
     Shortcut{Group::view, plain(GLFW_KEY_V), "V", "top view or 3-D", toggle_view},
+    Shortcut{Group::view, plain(GLFW_KEY_B), "B", "height relief in 3-D",
+             toggle<&RenderSettings::relief>},
     Shortcut{Group::view, plain(GLFW_KEY_R), "R", "the whole skin",
              [](const Command& command) { reset_view(command.state, command.place); }},
     Shortcut{Group::view, plain(GLFW_KEY_G), "G", "fit the range to this frame",

@@ -125,9 +125,23 @@ void choose_layers(AppState& state) {
   bool trails = state.show_trails;
   if (ImGui::Checkbox("trails", &trails)) show_trails(state, trails);
   labelled("");
+  ImGui::Checkbox("relief", &settings.relief);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("in 3-D, the normal force raises the skin (B)");
+  ImGui::SameLine();
   ImGui::Checkbox("hatch", &settings.hatch);
   ImGui::SameLine();
-  ImGui::Checkbox("uncertainty sectors", &settings.sectors);
+  ImGui::Checkbox("sectors", &settings.sectors);
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("uncertainty of ambiguous shear, at large zoom (U)");
+  }
+}
+
+void choose_truth(const Command& command) {
+  const AppState& state = command.state;
+  if (!state.has_truth && !state.beside_is_truth) return;
+  labelled("Beside");
+  bool shown = state.beside_is_truth;
+  if (ImGui::Checkbox("the truth", &shown)) command.pending.truth = true;
 }
 
 void choose_view(const Command& command) {
@@ -175,8 +189,13 @@ void view_panel(const Command& command) {
   AppState& state = command.state;
   choose_quantity(state);
   choose_range(state);
+  if (state.settings.quantity == Quantity::peak) {
+    labelled("");
+    if (ImGui::Button("Hold from now on", ImVec2(-1, 0))) hold_peak(state);
+  }
   choose_map(state.settings);
   choose_layers(state);
+  choose_truth(command);
   choose_view(command);
   if (shows_orbit(state.settings)) choose_surface(command);
   choose_theme(state.settings);

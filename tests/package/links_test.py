@@ -1,0 +1,59 @@
+"""Links of the Markdown pages lead to files and headings; every scene has a place in the gallery."""
+
+import os
+import pathlib
+import re
+import sys
+import unittest
+
+SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
+sys.path.insert(0, str(SOURCE / "docs/site"))
+import page  # noqa: E402
+
+
+def prose(path):
+    """The page without code."""
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    return re.sub(r"`[^`]*`", "`code`",
+                  "".join(line for line, code in zip(lines, page.is_code(lines)) if not code))
+
+
+def anchors(path):
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    return set(page.anchors(lines))
+
+
+def broken(path):
+    for target in re.findall(r"\]\(([^)\s]+)\)", prose(path)):
+        if re.match(r"[a-z]+:", target):
+            continue
+        file, _, anchor = target.partition("#")
+        other = (path.parent / file).resolve() if file else path
+        if not other.exists():
+            yield f"{path.relative_to(SOURCE)}: {target}: no such file"
+        elif anchor and anchor not in anchors(other):
+            yield f"{path.relative_to(SOURCE)}: {target}: no such heading"
+
+
+class Links(unittest.TestCase):
+    def test_links_lead_somewhere(self):
+        self.assertGreater(len(page.PAGES), 30)
+        self.assertEqual([fault for path in sorted(page.PAGES) for fault in broken(path)], [])
+
+    def test_every_scene_is_in_the_gallery(self):
+        shown = set(re.findall(r"^`scenes/(.*?)`\.", (SOURCE / "docs/gallery.md").read_text(), re.MULTILINE))
+        self.assertEqual(shown, {path.name for path in (SOURCE / "scenes").glob("*.toml")})
+
+    def test_the_menu_leads_to_pages(self):
+        menu = set(re.findall(r"@ref ([\w-]+)", (SOURCE / "docs/site/layout.xml").read_text()))
+        self.assertEqual(menu - {page.page_name(path) for path in page.PAGES}, set())
+
+    def test_math_links_and_headings_for_doxygen(self):
+        text = "# T\n\n$a$ and `$b$`, [x](#y)\n\n    $code$\n\n## Y\n## Y\n"
+        got = "".join(page.convert(SOURCE / "docs/formats.md", text.splitlines(keepends=True)))
+        self.assertEqual(got, "# T {#formats}\n\n\\f$a\\f$ and `$b$`, <a href=\"formats.html#formats--y\">x</a>\n\n"
+                              "    $code$\n\n## Y {#formats--y}\n## Y {#formats--y-1}\n")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,260 @@
+// The WebSocket server with small limits, and what clients may write to it.
+
+#include "streams/sink/foxglove_server.h"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "streams/sink/foxglove_protocol.h"
+
+namespace pillarfield {
+namespace {
+
+/// A client that checks little.
+class RawClient {
+ public:
+  explicit RawClient(std::uint16_t port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in address = {};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval timeout = {20, 0};
+    ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &timeout, sizeof timeout);
+    EXPECT_EQ(::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  }
+  ~RawClient() { ::close(socket_); }
+  RawClient(const RawClient&) = delete;
+  RawClient& operator=(const RawClient&) = delete;
+
+  void write(const std::string& bytes) const {
+    static_cast<void>(::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL));
+  }
+
+  /// Shakes hands; returns the two messages of greeting.
+  std::string greet() {
+    write(
+        "GET / HTTP/1.1\r\nHost: x\r\nUpgrade: websocket\r\nConnection: upgrade\r\n"
+        "Sec-WebSocket-Key: MDEyMzQ1Njc4OWFiY2RlZg==\r\nSec-WebSocket-Version: 13\r\n"
+        "Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n");
+    while (received_.find("\r\n\r\n") == std::string::npos && receive()) {
+    }
+    received_.erase(0, received_.find("\r\n\r\n") + 4);
+    return message().value_or("") + message().value_or("");
+  }
+
+  void write_text(const std::string& text) const {
+    constexpr const char* kNoMask = "\0\0\0\0";
+    write(std::string("\x81") + static_cast<char>(0x80 | text.size()) + std::string(kNoMask, 4) +
+          text);
+  }
+
+  /// The content of the next message; none if the server closed.
+  std::optional<std::string> message() {
+    if (!need(2)) return std::nullopt;
+    std::uint64_t size = static_cast<unsigned char>(received_[1]);
+    const std::size_t more = size == 126 ? 2 : size == 127 ? 8 : 0;
+    if (!need(2 + more)) return std::nullopt;
+    if (more > 0) size = 0;
+    for (std::size_t i = 0; i < more; ++i) {
+      size = size << 8 | static_cast<unsigned char>(received_[2 + i]);
+    }
+    if (!need(2 + more + size)) return std::nullopt;
+    const std::string content = received_.substr(2 + more, size);
+    const bool is_close = (received_[0] & 15) == 8;
+    received_.erase(0, 2 + more + size);
+    if (is_close) return std::nullopt;
+    return content;
+  }
+
+  /// Whether the server ends the connection, whatever it sends before.
+  bool is_closed() {
+    while (receive()) received_.clear();
+    return !timed_out_;
+  }
+
+ private:
+  bool receive() {
+    std::string block(1 << 16, '\0');
+    const ssize_t bytes = ::recv(socket_, block.data(), block.size(), 0);
+    timed_out_ = bytes < 0 && errno == EAGAIN;
+    if (bytes <= 0) return false;
+    received_.append(block, 0, static_cast<std::size_t>(bytes));
+    return true;
+  }
+  bool need(std::size_t bytes) {
+    while (received_.size() < bytes) {
+      if (!receive()) return false;
+    }
+    return true;
+  }
+
+  int socket_;
+  std::string received_;
+  bool timed_out_ = false;
+};
+
+class FoxgloveServerTest : public ::testing::Test {
+ protected:
+  void serve(const ServerLimits& limits) {
+    server_.emplace(address_of("127.0.0.1:0", "test", 0), "test", limits);
+  }
+  [[nodiscard]] LiveSinkStatistics statistics() const {
+    LiveSinkStatistics statistics;
+    server_->add_to(statistics);
+    return statistics;
+  }
+  static void wait_until(const std::function<bool()>& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (!condition()) {
+      ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+  /// Sends `bytes` to the subscribers of topic 0.
+  void send(std::size_t bytes) {
+    const auto data = std::make_shared<const std::vector<std::byte>>(bytes);
+    const std::vector<ServerMessage> messages = {{0, 7, data}, {1, 7, data}};
+    server_->send(messages);
+  }
+  void subscribe(RawClient& client) {
+    client.write_text(R"({"op":"subscribe","subscriptions":[{"id":9,"channelId":0}]})");
+    wait_until([&] { return server_->subscribed().test(0); });
+  }
+
+  std::optional<FoxgloveServer> server_;
+};
+
+TEST_F(FoxgloveServerTest, LostFramesOfAClientAreCountedExactly) {
+  constexpr std::size_t kBytes = 1 << 20;
+  constexpr std::size_t kFrames = 40;
+  serve({.queue_bytes = 3 * kBytes});
+  RawClient client(server_->port());
+  EXPECT_NE(client.greet().find("/skin/contacts/16"), std::string::npos);
+  subscribe(client);
+  for (std::size_t i = 0; i < kFrames; ++i) send(kBytes);
+  const std::uint64_t lost = statistics().dropped;
+  EXPECT_GT(lost, 10u);
+  std::size_t received = 0;
+  std::thread finisher([&] { server_->finish(); });
+  while (const auto message = client.message()) {
+    EXPECT_EQ(message->size(), kBytes + kMessageDataBytes);
+    EXPECT_EQ(message->substr(0, 6), std::string("\x01\x09\0\0\0\x07", 6));
+    ++received;
+  }
+  finisher.join();
+  EXPECT_EQ(received + lost, kFrames);
+}
+
+TEST_F(FoxgloveServerTest, OneFrameMayAlwaysWait) {
+  serve({.queue_bytes = 10});
+  RawClient client(server_->port());
+  client.greet();
+  subscribe(client);
+  send(1000);
+  EXPECT_EQ(client.message().value_or("").size(), 1000 + kMessageDataBytes);
+  EXPECT_EQ(statistics().dropped, 0u);
+}
+
+TEST_F(FoxgloveServerTest, ClientsWithoutALifeSignAreDisconnected) {
+  serve({.handshake_s = 0.2, .silence_s = 0.4});
+  RawClient mute(server_->port());
+  RawClient deaf(server_->port());
+  deaf.greet();
+  EXPECT_EQ(statistics().clients, 1u);
+  EXPECT_TRUE(mute.is_closed());
+  EXPECT_TRUE(deaf.is_closed());  // It answers no ping.
+  wait_until([&] { return statistics().clients == 0; });
+  EXPECT_EQ(statistics().refused, 1u);
+}
+
+TEST_F(FoxgloveServerTest, PlacesOfClientsAreFreedAgain) {
+  serve({.clients = 2});
+  for (int i = 0; i < 20; ++i) {
+    wait_until([&] { return statistics().clients < 2; });
+    RawClient client(server_->port());
+    EXPECT_FALSE(client.greet().empty());
+  }
+  const RawClient one(server_->port());
+  wait_until([&] { return statistics().clients == 0; });
+  RawClient two(server_->port());
+  EXPECT_FALSE(two.greet().empty());
+  RawClient three(server_->port());
+  EXPECT_TRUE(three.is_closed());
+  EXPECT_EQ(statistics().refused, 1u);
+}
+
+TEST_F(FoxgloveServerTest, DestroyedAtAnyMoment) {
+  for (int i = 0; i < 20; ++i) {
+    serve({});
+    RawClient client(server_->port());
+    if (i % 2 == 0) {
+      client.greet();
+      subscribe(client);
+      for (int frame = 0; frame < i; ++frame) send(1 << 20);
+    }
+    server_.reset();
+    EXPECT_TRUE(client.is_closed());
+  }
+}
+
+TEST(Subscriptions, SurviveAnyText) {
+  std::mt19937 random(7);
+  const std::vector<std::string> pieces = {"{",
+                                           "}",
+                                           "[",
+                                           "]",
+                                           ":",
+                                           ",",
+                                           R"("op")",
+                                           R"("subscribe")",
+                                           R"("id")",
+                                           "1",
+                                           "-1",
+                                           "1e9",
+                                           "null",
+                                           "0.5",
+                                           "\"\\u",
+                                           "\xff",
+                                           "true",
+                                           R"("channelId")",
+                                           R"("subscriptions")",
+                                           R"("unsubscribe")",
+                                           R"("subscriptionIds")"};
+  Subscriptions subscriptions;
+  for (int i = 0; i < 20'000; ++i) {
+    std::string text = i % 2 == 0 ? R"({"op":"subscribe","subscriptions":[{"id":)" : "";
+    for (auto piece = random() % 20; piece > 0; --piece) {
+      text += pieces[random() % pieces.size()];
+    }
+    static_cast<void>(subscriptions.obey(text));
+  }
+  static_cast<void>(subscriptions.obey(std::string(65536, '[')));
+  EXPECT_TRUE(subscriptions.topics().none());
+}
+
+TEST(Subscriptions, ObeyInPart) {
+  Subscriptions subscriptions;
+  EXPECT_NE(subscriptions.obey(R"({"op":"subscribe","subscriptions":[{"id":4,"channelId":2},
+      {"id":4,"channelId":3},{"id":5,"channelId":2},{"id":6,"channelId":0}]})"),
+            "");
+  EXPECT_EQ(subscriptions.of(2), 4u);
+  EXPECT_EQ(subscriptions.of(0), 6u);
+  EXPECT_EQ(subscriptions.topics().count(), 2u);
+  EXPECT_EQ(subscriptions.obey(R"({"op":"unsubscribe","subscriptionIds":[4]})"), "");
+  EXPECT_EQ(subscriptions.topics().count(), 1u);
+}
+
+}  // namespace
+}  // namespace pillarfield

@@ -1,0 +1,115 @@
+"""Builds the drivers of examples/driver with a C99 compiler, and lets them feed the program."""
+
+import json
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ["PILLARFIELD"]
+SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
+DRIVERS = SOURCE / "examples/driver"
+NAME = f"pillarfield-drivers-{os.getpid()}"
+
+
+def segments():
+    return sorted(path.name for path in pathlib.Path("/dev/shm").glob(f"{NAME}*"))
+
+
+def free_port():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return probe.getsockname()[1]
+
+
+class Drivers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        scratch = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(scratch.cleanup)
+        cls.addClassCleanup(lambda: [pathlib.Path("/dev/shm", name).unlink() for name in segments()])
+        cls.folder = pathlib.Path(scratch.name)
+        for name in ("ring_driver", "control_loop"):
+            subprocess.run([os.environ.get("CC", "cc"), "-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic",
+                            "-Werror", "-I", SOURCE / "host/include", "-o", cls.folder / name,
+                            DRIVERS / f"{name}.c", "-lm"], check=True)
+
+    def start(self, *words, **options):
+        process = subprocess.Popen([str(word) for word in words], text=True, **options)
+        self.addCleanup(lambda: (process.kill(), process.wait(), process.stdout and process.stdout.close()))
+        return process
+
+    def start_stream(self, *words):
+        return self.start(PROGRAM, "stream", *words, "--json", stdout=subprocess.PIPE,
+                          stderr=subprocess.DEVNULL)
+
+    def summary_of(self, stream):
+        stream.send_signal(signal.SIGINT)
+        lines = stream.communicate(timeout=60)[0].splitlines()
+        self.assertEqual(stream.returncode, 0)
+        return json.loads(lines[-1])["summary"]
+
+    def test_ring_driver_to_control_loop(self):
+        frames, forces = f"{NAME}-frames", f"{NAME}-forces"
+        stream = self.start_stream(f"shm:{frames}", "--to", f"shm:{forces}")
+        loop = self.start(self.folder / "control_loop", forces, "--seconds", 60,
+                          stdout=subprocess.PIPE)
+        driver = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 60,
+                            "--rows", 48, "--cols", 48)
+        def next_frame():
+            line = loop.stdout.readline()
+            found = re.fullmatch(r"frame (\d+): ([\d.]+) N, 1 contacts, .*\n", line)
+            self.assertIsNotNone(found, line)
+            self.assertGreater(float(found[2]), 1)
+            return int(found[1])
+
+        while next_frame() < 50:
+            pass
+        self.assertEqual(segments(), [forces, frames])
+
+        # The program goes on when its driver is killed, and takes up the ring of the next one.
+        driver.kill()
+        driver.wait()
+        again = self.start(self.folder / "ring_driver", frames, "--rate", 50, "--seconds", 60,
+                           "--rows", 48, "--cols", 48)
+        while next_frame() >= 50:
+            pass
+        again.terminate()
+        self.assertEqual(again.wait(), 0)
+        summary = self.summary_of(stream)
+        self.assertEqual(summary["restarts"], 1)
+        self.assertEqual(summary["invalid"], 0)
+        self.assertEqual(segments(), [])
+
+    def test_a_driver_replaces_a_ring_of_another_size(self):
+        driver = self.folder / "ring_driver"
+        killed = self.start(driver, NAME, "--seconds", 60)
+        while not segments():
+            time.sleep(0.01)
+        busy = subprocess.run([driver, NAME], stderr=subprocess.PIPE, text=True, check=False)
+        self.assertEqual(busy.returncode, 1)
+        self.assertIn("another driver", busy.stderr)
+        killed.kill()
+        killed.wait()
+        self.assertEqual(segments(), [NAME])
+        subprocess.run([driver, NAME, "--rows", "20", "--seconds", "0.05"], check=True)
+        self.assertEqual(segments(), [])
+
+    def test_udp_driver(self):
+        port = free_port()
+        stream = self.start_stream(f"udp:127.0.0.1:{port}")
+        self.start(sys.executable, DRIVERS / "udp_driver.py", port, 60)
+        while json.loads(stream.stdout.readline()).get("health", {}).get("solved", 0) < 20:
+            pass
+        summary = self.summary_of(stream)
+        self.assertEqual((summary["lost"], summary["invalid"], summary["restarts"]), (0, 0, 0))
+
+
+if __name__ == "__main__":
+    unittest.main()
