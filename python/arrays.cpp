@@ -39,8 +39,7 @@ std::vector<T> plane_from(const py::object& plane, std::uint32_t rows, std::uint
                           std::string_view place) {
   if (plane.is_none()) return {};
   using Dense = py::array_t<T, py::array::c_style | py::array::forcecast>;
-  const auto array = Dense::ensure(plane);
-  if (!array) throw py::error_already_set();
+  const Dense array(plane);
   if (array.ndim() != 2 || array.shape(0) != rows || array.shape(1) != cols) {
     throw Error(place, fmt::format("the array is {}", shape_text(array)),
                 fmt::format("give {} x {}", rows, cols));

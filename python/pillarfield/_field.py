@@ -198,7 +198,7 @@ class ForceField:
 
     def where(self, status: int) -> npt.NDArray[np.bool_]:
         """True where a pillar has any of these bits of Status."""
-        return (self.status & np.uint8(status)) != 0
+        return np.not_equal(self.status & np.uint8(status), 0)
 
     def __len__(self) -> int:
         """The number of frames."""

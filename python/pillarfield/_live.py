@@ -9,6 +9,7 @@ from types import TracebackType
 from typing import Any, Optional
 
 from . import _core
+from ._error import Error
 from ._field import ForceField
 from ._frames import Readings
 
@@ -110,6 +111,8 @@ class LiveSink:
 
     def send(self, forces: ForceField) -> None:
         """Sends the forces of one frame, with their contacts if the sink has contacts."""
+        if len(forces.shape) != 2:
+            raise Error("LiveSink.send", "the forces are of several frames", "send one at a time")
         contacts = forces.contacts if self._contacts else None
         self._sink.send(forces._batch(), contacts, float(forces.times), self._sent)
         self._sent += 1

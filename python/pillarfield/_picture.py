@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import struct
 import zlib
-from typing import Any, Mapping, Optional
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +25,7 @@ _FONT = {
     " ": (0, 0, 0, 0, 0)}
 
 
-def picture(planes: Mapping[str, Any], quantity: str, limits: Optional[tuple[float, float]],
+def picture(planes: dict[str, Any], quantity: str, limits: Optional[tuple[float, float]],
             light: bool) -> bytes:
     """PNG of planes [1, P, Q]: heat map, arrows of the shear, and the colour bar with its ends."""
     pillars, low, high, unit = _core.paint(planes, quantity, limits, light)
@@ -58,7 +58,7 @@ def _write(image: Image, text: str, top: int, left: int, ink: int) -> None:
         left += 8
 
 
-def _draw_arrows(skin: Image, planes: Mapping[str, Any], zoom: int, light: bool) -> None:
+def _draw_arrows(skin: Image, planes: dict[str, Any], zoom: int, light: bool) -> None:
     """Arrows of the mean shear in cells of pillars, the longest one cell long."""
     cell = max(1, round(_ARROW_CELL / zoom))
     x, y = (_cell_means(planes[name][0], cell) for name in ("shear_x", "shear_y"))
@@ -83,7 +83,7 @@ def _draw_arrows(skin: Image, planes: Mapping[str, Any], zoom: int, light: bool)
         skin[row, col] = 20 if light else 255
 
 
-def _cell_means(plane: npt.NDArray[Any], cell: int) -> npt.NDArray[Any]:
+def _cell_means(plane: npt.NDArray[np.float32], cell: int) -> Any:
     rows, cols = (max(1, size // cell) for size in plane.shape)
     whole = plane[:rows * cell, :cols * cell]
     if whole.size < rows * cols * cell * cell:

@@ -83,7 +83,7 @@ class Recording:
     def __getitem__(self, frames: Union[int, slice]) -> Readings:
         """Readings of a frame [R, C] or of a slice [T, R, C]."""
         readings = self._source.read(*range_of(frames, len(self)))
-        return readings if isinstance(frames, slice) else readings[0]
+        return readings if isinstance(frames, slice) else np.asarray(readings[0])
 
     def __iter__(self) -> Iterator[Readings]:
         """The frames."""

@@ -68,14 +68,14 @@ def simulate(source: Union[Path, Mapping[str, Any], _core.Scene], *, frames: Opt
 
 
 def _toml_table(table: Mapping[str, Any], path: tuple[str, ...]) -> str:
-    """TOML text of a table: its values, then its tables."""
+    """TOML text of a table: its values, then its tables; an empty list is left out."""
     values, tables = [], []
     for key, value in table.items():
         where = (*path, key)
         name = ".".join(json.dumps(part) for part in where)
         if isinstance(value, Mapping):
             tables.append(f"[{name}]\n{_toml_table(value, where)}")
-        elif isinstance(value, (list, tuple)) and value and isinstance(value[0], Mapping):
+        elif isinstance(value, (list, tuple)) and all(isinstance(one, Mapping) for one in value):
             tables += [f"[[{name}]]\n{_toml_table(entry, where)}" for entry in value]
         else:
             values.append(f"{json.dumps(key)} = {_toml_value(value, name)}\n")

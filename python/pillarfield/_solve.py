@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Iterable
-from typing import Any, Optional, Union
+from typing import Any, Optional, TypeGuard, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -90,7 +90,7 @@ def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[np
                                       skin_of(skin, readings.shape[-2:]), calibration)
 
 
-def _is_iterator(frames: Any) -> bool:
+def _is_iterator(frames: Any) -> TypeGuard[Iterable[Any]]:
     return (isinstance(frames, Iterable) and not hasattr(frames, "__array__")
             and not isinstance(frames, (str, list, tuple, os.PathLike, Simulation)))
 
@@ -143,8 +143,9 @@ def _solve_iterator(frames: Iterable[Any], skin: Optional[_core.Skin], calibrati
     if readings.ndim != 2:
         raise Error("frames", f"the iterator's array has {readings.ndim} axes",
                     "give frames [rows, cols]")
+    options = {"frame_interval_s": 1 / rate_hz, **options}
     plan = _core.Plan(skin_of(skin, readings.shape), sensel_type=str(readings.dtype),
-                      calibration=calibration, **{"frame_interval_s": 1 / rate_hz, **options})
+                      calibration=calibration, **options)
     stream = timed(itertools.chain([first], iterator), str(readings.dtype), rate_hz)
     return _field_of(_core.solve_iterator(stream, plan, contacts, device), plan)
 

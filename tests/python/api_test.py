@@ -1,0 +1,84 @@
+"""Docstrings, doctests, the names of the stub, and the manual's snippets."""
+
+import ast
+import contextlib
+import doctest
+import importlib
+import inspect
+import io
+import os
+import pathlib
+import pkgutil
+import re
+import sys
+import unittest
+
+import pillarfield as pf
+
+SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
+WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
+
+
+def modules():
+    names = [module.name for module in pkgutil.iter_modules(pf.__path__)]
+    return [pf] + [importlib.import_module(f"pillarfield.{name}") for name in names]
+
+
+def public(owner):
+    return {name: value for name, value in vars(owner).items() if not name.startswith("_")}
+
+
+class Documentation(unittest.TestCase):
+    def test_doctests(self):
+        tried = 0
+        for module in modules():
+            result = doctest.testmod(module)
+            self.assertEqual(result.failed, 0, module)
+            tried += result.attempted
+        self.assertGreater(tried, 20)
+
+    def test_every_public_name_has_a_docstring(self):
+        for name in pf.__all__:
+            value = getattr(pf, name)
+            if name == "__version__":
+                continue
+            self.assertTrue(inspect.getdoc(value), name)
+            if not inspect.isclass(value) or issubclass(value, int):
+                continue
+            for member, attribute in public(value).items():
+                fields = getattr(value, "__dataclass_fields__", {})
+                self.assertTrue(inspect.getdoc(attribute) or member in fields, f"{name}.{member}")
+
+    def test_the_manual_runs(self):
+        """Each Python block of docs/python.md runs, in order, in one program."""
+        blocks = re.findall(r"^```python\n(.*?)^```$", (SOURCE / "docs/python.md").read_text(),
+                            re.MULTILINE | re.DOTALL)
+        self.assertGreater(len(blocks), 5)
+        WORK.mkdir(parents=True, exist_ok=True)
+        os.chdir(WORK)
+        names = {"__name__": "manual"}
+        for block in blocks:
+            with contextlib.redirect_stdout(io.StringIO()):
+                exec(compile(block, "docs/python.md", "exec"), names)
+
+
+class Stub(unittest.TestCase):
+    def test_names_of_the_compiled_half(self):
+        tree = ast.parse((SOURCE / "python/pillarfield/_core.pyi").read_text())
+        for node in tree.body:
+            if isinstance(node, ast.ClassDef):
+                stubbed = {entry.name for entry in node.body if isinstance(entry, ast.FunctionDef)}
+                bound = {name for name in vars(getattr(pf._core, node.name))
+                         if not name.startswith("_") or name in ("__len__", "__getitem__")}
+                self.assertEqual(stubbed - {"__init__"}, bound, node.name)
+        stubbed = {node.name for node in tree.body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+        self.assertEqual(stubbed, set(public(pf._core)))
+
+    def test_exports(self):
+        for name in pf.__all__:
+            self.assertTrue(hasattr(pf, name), name)
+        self.assertEqual(pf.__all__, sorted(pf.__all__, key=lambda name: (name[0].islower(), name)))
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())

@@ -1,0 +1,106 @@
+"""pillarfield.calibrate: each step finds what was simulated, from arrays, paths and simulations."""
+
+import os
+import pathlib
+import unittest
+
+import numpy as np
+
+import pillarfield as pf
+
+WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
+RANDOM = np.random.default_rng(3)
+K = 250.0
+AREA_MM2 = (2 * pf.Skin(2, 2).sensel_pitch_mm) ** 2
+
+
+def noisy(readings, frames=40):
+    """Frames of uint16 around the readings [R, C]."""
+    return (readings + RANDOM.normal(0, 1, (frames, *readings.shape))).round().astype(np.uint16)
+
+
+class Steps(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.tare = RANDOM.normal(100, 5, (32, 40))
+        cls.gain = 1 + RANDOM.normal(0, 0.05, (32, 40))
+        cls.gain /= cls.gain.mean()
+        cls.unloaded = noisy(cls.tare)
+        cls.tared = pf.calibrate.tare(cls.unloaded)
+
+    def pressed(self, normal_n):
+        return noisy(self.tare + K * np.asarray(normal_n) * self.gain)
+
+    def equilibrated(self):
+        presses = [(self.pressed(kpa * 1e-3 * AREA_MM2), kpa) for kpa in (50, 100, 200)]
+        return pf.calibrate.equilibrate(presses, self.tared.calibration)
+
+    def test_tare(self):
+        calibration = self.tared.calibration
+        np.testing.assert_allclose(calibration.tare, self.unloaded.mean(0), atol=0.01)
+        np.testing.assert_allclose(calibration.noise, self.unloaded.std(0, ddof=1), atol=0.01)
+        self.assertIn("tare of 40 frames", calibration.history[0])
+        touched = self.unloaded.copy()
+        touched[:, 4:10, 4:10] += 3000
+        with self.assertRaisesRegex(pf.Error, "preloaded|touch"):
+            pf.calibrate.tare(touched)
+        with self.assertRaises(pf.Error):
+            pf.calibrate.tare(self.unloaded[:3])
+
+    def test_equilibrate_and_load(self):
+        step = self.equilibrated()
+        np.testing.assert_allclose(step.calibration.gain, 1 / self.gain, rtol=0.03)
+        self.assertAlmostEqual(step.calibration.counts_per_newton, K, delta=0.02 * K)
+        normal = np.zeros((32, 40))
+        normal[10:20, 10:20] = 1.2  # 25 pillars of 1.2 N
+        loaded = pf.calibrate.load([(self.pressed(normal), 30.0)], step.calibration)
+        self.assertAlmostEqual(loaded.calibration.counts_per_newton, K, delta=0.02 * K)
+        forces = pf.solve(self.pressed(normal), calibration=loaded.calibration)
+        self.assertAlmostEqual(float(forces.normal.sum((1, 2)).mean()), 30, delta=0.5)
+        self.assertEqual([line.split()[1] for line in loaded.calibration.history],
+                         ["tare", "equilibrate", "load"])
+
+    def test_a_dead_sensel(self):
+        moving = np.concatenate([self.pressed(np.full((32, 40), level)) for level in
+                                 np.linspace(0.1, 1.5, 10)])
+        moving[:, 7, 9] = 90
+        step = pf.calibrate.faults([moving], self.equilibrated().calibration)
+        masked = [(found.row, found.col) for found in step.facts["findings"] if found.masked]
+        self.assertEqual(masked, [(7, 9)])
+        self.assertEqual(step.calibration.mask[7, 9], 0)
+
+    def test_shear(self):
+        frames = np.repeat(self.unloaded[:1].astype(float), 30, 0)
+        add = np.zeros((32, 40))
+        add[10:20:2, 10:20:2] = add[11:21:2, 10:20:2] = 200  # left sensels
+        add[10:20:2, 11:21:2] = add[11:21:2, 11:21:2] = 400  # right sensels
+        frames = noisy(self.tare + add * self.gain)
+        pulled = np.sqrt(2) * (2 * 400 - 2 * 200) / (4 * K) * 25
+        step = pf.calibrate.shear([(frames, (pulled / 1.3, 0.0))], self.equilibrated().calibration)
+        self.assertAlmostEqual(step.facts["coefficient"][0], 1.3, delta=0.05)
+
+    def test_paths_and_wrong_arguments(self):
+        path = WORK / "unloaded.h5"
+        pf.save_recording(path, self.unloaded, overwrite=True)
+        np.testing.assert_array_equal(pf.calibrate.tare(path).calibration.tare,
+                                      self.tared.calibration.tare)
+        before = WORK / "before.h5"
+        self.tared.calibration.save(before, overwrite=True)
+        again = pf.calibrate.tare(pf.open(path), before).calibration
+        self.assertEqual(len(again.history), 2)
+        other = np.zeros((20, 8, 8), np.uint8)
+        calls = [lambda: pf.calibrate.tare(other, self.tared.calibration),
+                 lambda: pf.calibrate.equilibrate([], self.tared.calibration),
+                 lambda: pf.calibrate.equilibrate([(self.unloaded, -1.0)], self.tared.calibration),
+                 lambda: pf.calibrate.equilibrate([(self.unloaded, 5.0)], None, model="cubic"),
+                 lambda: pf.calibrate.load([(self.unloaded, 5.0)], self.tared.calibration),
+                 lambda: pf.calibrate.memory([(self.unloaded, [1.0])], self.tared.calibration),
+                 lambda: pf.calibrate.leak([self.unloaded], None)]
+        for call in calls:
+            with self.assertRaises(pf.Error):
+                call()
+
+
+if __name__ == "__main__":
+    WORK.mkdir(parents=True, exist_ok=True)
+    unittest.main()

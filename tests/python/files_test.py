@@ -1,0 +1,198 @@
+"""Files, scenes, simulation, comparison, pictures, points."""
+
+import os
+import pathlib
+import struct
+import unittest
+import zlib
+
+import numpy as np
+
+import pillarfield as pf
+import skins
+
+WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
+SCENES = pathlib.Path(os.environ["PILLARFIELD_SOURCE"]) / "scenes"
+
+
+def pixels_of(png):
+    """Pixels of an RGB PNG without filters."""
+    assert png[:8] == b"\x89PNG\r\n\x1a\n"
+    place, data = 8, b""
+    while place < len(png):
+        size, kind = struct.unpack(">I4s", png[place:place + 8])
+        body = png[place + 8:place + 8 + size]
+        assert zlib.crc32(kind + body) == struct.unpack(">I", png[place + 8 + size:place + 12 + size])[0]
+        if kind == b"IHDR":
+            cols, rows = struct.unpack(">II", body[:8])
+        data += body if kind == b"IDAT" else b""
+        place += 12 + size
+    return np.frombuffer(zlib.decompress(data), np.uint8).reshape(rows, -1)[:, 1:].reshape(rows, cols, 3)
+
+
+class Files(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.simulation = pf.simulate(skins.scene())
+        cls.forces = pf.solve(cls.simulation, outputs=["uncertainty"], contacts=True)
+        pf.save_recording(WORK / "press.h5", cls.simulation, overwrite=True)
+        cls.forces.save(WORK / "forces.h5", overwrite=True)
+
+    def test_recording(self):
+        recording, frames = pf.open(WORK / "press.h5"), self.simulation.frames
+        self.assertIsInstance(recording, pf.Recording)
+        self.assertEqual((recording.shape, recording.dtype), (frames.shape, frames.dtype))
+        for index in (0, -1, 5, slice(2, 9, 3), slice(None, None, -1), slice(5, 5), slice(-3, None)):
+            self.assertTrue(np.array_equal(recording[index], frames[index]), index)
+        self.assertTrue(np.array_equal(recording, frames))
+        self.assertTrue(np.array_equal([frame for frame in recording], frames))
+        self.assertTrue(np.allclose(recording.times, self.simulation.times))
+        for index in (12, -13):
+            with self.assertRaises(IndexError):
+                recording[index]
+        with self.assertRaises(pf.Error):
+            recording.truth()
+        with self.assertRaises(pf.Error):
+            pf.save_recording(WORK / "press.h5", self.simulation)  # Recordings are not replaced.
+
+    def test_forces(self):
+        file = pf.open(WORK / "forces.h5")
+        self.assertIsInstance(file, pf.ForceFile)
+        for index in (0, -1, slice(2, 9, 3), slice(None)):
+            read, expected = file[index], self.forces[index]
+            for name in ("shear_x", "normal", "status"):
+                self.assertTrue(np.array_equal(getattr(read, name), getattr(expected, name)))
+            self.assertTrue(np.array_equal(read.uncertainty.phi_low, expected.uncertainty.phi_low))
+            self.assertTrue(np.array_equal(read.times, expected.times))
+        self.forces.save(WORK / "forces.csv", overwrite=True)
+        with self.assertRaises(pf.Error):
+            self.forces.save(WORK / "forces.xyz")
+
+    def test_calibration(self):
+        tare = np.arange(24.0).reshape(4, 6)
+        pf.Calibration(4, 6, tare=tare, gain=np.ones((4, 6)), counts_per_newton=100).save(
+            WORK / "calibration.h5", overwrite=True)
+        read = pf.open(WORK / "calibration.h5")
+        self.assertTrue(np.array_equal(read.tare, tare))
+        self.assertEqual((read.counts_per_newton, read.noise), (100, None))
+        for wrong in ({"tare": tare[:3]}, {"gain": 0 * tare}, {"tare": np.full((4, 6), np.inf)}):
+            with self.assertRaises(pf.Error):
+                pf.Calibration(4, 6, **wrong)
+
+    def test_damaged_files(self):
+        for content in (b"", b"\x89HDF\r\n\x1a\n" + bytes(100), os.urandom(5000)):
+            (WORK / "damaged.h5").write_bytes(content)
+            with self.assertRaises(pf.Error):
+                pf.open(WORK / "damaged.h5")
+        for path in ("/", "", "\0", WORK):
+            with self.assertRaises((pf.Error, TypeError)):
+                pf.open(path)
+
+
+class Scenes(unittest.TestCase):
+    def test_a_dict_is_the_file_of_the_same_keys(self):
+        toml = ('[skin]\npillars = [20, 30]\nthreshold_counts = 2\n'
+                '[sensor]\nadc_bits = 8\nnoise_counts = 0.5\n[time]\nrate_hz = 100\nframes = 3\n'
+                '[[contact]]\nshape = "sphere"\nmotion = "slide"\ncontact_radius_mm = 8\n'
+                'reference_load_n = 20\nfriction = 0.6\ndirection_deg = 0\npath = [\n'
+                '{ time_s = 0.0, position_mm = [-5, 0], load_n = 15 },\n'
+                '{ time_s = 0.1, position_mm = [5, 0], load_n = 20 }]\n')
+        (WORK / "scene.toml").write_text(toml)
+        one, other = pf.simulate(WORK / "scene.toml"), pf.simulate(skins.scene(frames=3))
+        self.assertTrue(np.array_equal(one.frames, other.frames))
+        self.assertFalse(np.array_equal(one.frames, pf.simulate(one.scene, seed=2).frames))
+        self.assertEqual(len(pf.simulate(one.scene, frames=2).frames), 2)
+
+    def test_every_scene_loads(self):
+        for path in sorted(SCENES.glob("*.toml")):
+            self.assertGreater(pf.scene(path).frames, 0, path)
+
+    def test_wrong_scenes(self):
+        for wrong in ({}, {"skin": {}}, {"skin": {"pillars": [8, {}]}}, {"skin": {"pillars": None}},
+                      {"a\nb": 1}, {"skin": {"pillars": [8, 8], "colour": "red"}}):
+            with self.assertRaises(pf.Error):
+                pf.scene(wrong)
+
+    def test_comparison_with_the_truth(self):
+        simulation = pf.simulate(skins.scene())
+        exact = pf.compare(simulation.truth, simulation.truth)
+        self.assertEqual(exact.loaded.rms_n, 0)
+        solved = pf.solve(simulation)
+        errors = pf.compare(solved, simulation.truth)
+        one = errors.regions[pf.Region.ONE]
+        chosen = simulation.truth.region == pf.Region.ONE
+        squares = sum((getattr(solved, name) - getattr(simulation.truth, name)) ** 2
+                      for name in ("shear_x", "shear_y", "normal"))
+        self.assertAlmostEqual(one.rms_n, float(np.sqrt(squares[chosen].mean())), delta=0.1 * one.rms_n)
+        with self.assertRaises(pf.Error):
+            pf.compare(solved[:3], simulation.truth)
+
+
+class Pictures(unittest.TestCase):
+    def test_colours_are_those_of_the_viewer(self):
+        normal = np.zeros((10, 10), np.float32)
+        normal[2, 3] = 1
+        forces = pf.ForceField(0 * normal, 0 * normal, normal, status=15 * (normal > 0))
+        pixels = pixels_of(forces.picture(limits=(0, 1)))
+        zoom = 48
+        self.assertEqual(tuple(pixels[20 + 2 * zoom + 24, 20 + 3 * zoom + 24]), (254, 232, 56))
+        self.assertEqual(tuple(pixels[24, 24]), (0x26, 0x2a, 0x30))  # idle
+        self.assertEqual(tuple(pixels[2, 2]), (0x15, 0x18, 0x1c))  # background
+        light = pixels_of(forces.picture(theme="light"))
+        self.assertEqual(tuple(light[2, 2]), (0xf7, 0xf8, 0xf9))
+
+    def test_quantities(self):
+        forces = pf.solve(pf.simulate(skins.scene()), outputs=["angles", "uncertainty"])
+        for quantity in ("normal", "shear", "shear_x", "shear_y", "magnitude", "theta", "phi", "region",
+                         "status", "uncertainty"):
+            self.assertGreater(len(np.unique(pixels_of(forces[5].picture(quantity)))), 10, quantity)
+        self.assertEqual(pixels_of(forces._repr_png_()).ndim, 3)
+        for wrong in ("parity", "colour", ""):
+            with self.assertRaises(pf.Error):
+                forces[5].picture(wrong)
+        for limits in ((1, 1), (1, 0), (0, float("nan"))):
+            with self.assertRaises(pf.Error):
+                forces[5].picture(limits=limits)
+        with self.assertRaises(pf.Error):
+            forces.picture()
+
+    def test_odd_shapes(self):
+        for shape in ((1, 1), (1, 700), (700, 1)):
+            forces = pf.ForceField(*np.ones((3, *shape)), status=15 * np.ones(shape))
+            self.assertGreater(len(forces.picture()), 100)
+
+
+class Points(unittest.TestCase):
+    def test_a_plane_and_a_cylinder(self):
+        forces = np.arange(24.0).reshape(3, 2, 4)  # shear_x, shear_y, normal
+        skin = pf.Skin(4, 8, sensel_pitch_mm=2)
+        points = pf.ForceField(*forces, skin=skin).to_points()
+        self.assertEqual(points.force_n.shape, (8, 3))
+        np.testing.assert_allclose(points.force_n.T.reshape(3, 2, 4), forces * [[[1]], [[1]], [[-1]]])
+        np.testing.assert_allclose(points.position_m[[0, 7]], [[-6e-3, 2e-3, 0], [6e-3, -2e-3, 0]])
+        bent = pf.Skin(4, 8, sensel_pitch_mm=2, surface=pf.Surface.cylinder(20))
+        round_ = pf.ForceField(*forces, skin=bent).to_points()
+        np.testing.assert_allclose(np.linalg.norm(round_.force_n, axis=1),
+                                   np.linalg.norm(points.force_n, axis=1), rtol=1e-6)
+        radii = np.hypot(round_.position_m[:, 0], round_.position_m[:, 2] + 20e-3)
+        np.testing.assert_allclose(radii, 20e-3)
+        with self.assertRaises(pf.Error):
+            pf.ForceField(*forces).to_points()
+
+    def test_xarray(self):
+        try:
+            import xarray
+        except ImportError:
+            self.skipTest("xarray is not installed")
+        forces = pf.solve(pf.simulate(skins.scene()), outputs=["uncertainty"])
+        data = forces.to_xarray()
+        self.assertEqual(dict(data.sizes), {"time": 12, "y": 20, "x": 30})
+        self.assertEqual(data.normal.attrs["units"], "N")
+        self.assertEqual(data.uncertainty_phi_low.attrs["units"], "rad")
+        self.assertGreater(float(data.y[0]), float(data.y[-1]))
+        self.assertTrue(np.array_equal(data.sel(time=0.03).normal, forces[3].normal))
+
+
+if __name__ == "__main__":
+    WORK.mkdir(parents=True, exist_ok=True)
+    unittest.main()

@@ -1,0 +1,214 @@
+"""pillarfield.solve: forces against an oracle and the command, from every kind of frames."""
+
+import gc
+import os
+import pathlib
+import subprocess
+import sys
+import threading
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+import pillarfield as pf
+import skins
+
+WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
+RANDOM = np.random.default_rng(5)
+PLANES = ("shear_x", "shear_y", "normal", "status")
+
+
+def same(one, other, planes=PLANES):
+    return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in planes)
+
+
+class Oracle(unittest.TestCase):
+    def test_four_pressed_sensels_follow_the_paper(self):
+        for kind in (np.uint8, np.uint16, np.float32):
+            frames = RANDOM.integers(100, 120, (7, 16, 24)).astype(kind)
+            forces = pf.solve(frames, counts_per_newton=skins.K)
+            expected = skins.forces_of_region_one(frames)
+            self.assertTrue((forces.region == pf.Region.ONE).all())
+            for name, plane in zip(("shear_x", "shear_y", "normal"), expected):
+                np.testing.assert_allclose(getattr(forces, name), plane, atol=2e-6, err_msg=name)
+
+    def test_the_command_gives_the_same_bits(self):
+        simulation = pf.simulate(skins.scene())
+        recording, solved = WORK / "press.h5", WORK / "forces.h5"
+        pf.save_recording(recording, simulation, overwrite=True)
+        for estimator in ("direct", "contact"):
+            subprocess.run([os.environ["PILLARFIELD"], "solve", recording, "-o", solved, "--overwrite",
+                            "-q", "--estimator", estimator, "--noise", "0.5", "--outputs",
+                            "angles,uncertainty"], check=True)
+            forces = pf.solve(recording, estimator=estimator, noise_counts=0.5,
+                              outputs=["angles", "uncertainty"])
+            with h5py.File(solved) as file:
+                for name in (*PLANES, "magnitude", "theta", "phi"):
+                    np.testing.assert_array_equal(getattr(forces, name), file["force"][name], name)
+                for name in ("normal", "phi_low", "magnitude_high"):
+                    np.testing.assert_array_equal(getattr(forces.uncertainty, name),
+                                                  file["uncertainty"][name], name)
+            self.assertTrue(same(forces, pf.open(solved)[:]))
+
+
+class Frames(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.simulation = pf.simulate(skins.scene())
+        cls.frames = cls.simulation.frames
+        cls.expected = pf.solve(cls.frames)
+
+    def test_every_form_of_the_same_frames(self):
+        frames = self.frames
+        whole = frames.astype(np.uint16)
+        np.save(WORK / "frames.npy", frames)
+        forms = {
+            "list": frames.tolist(), "tuple": tuple(frames), "int64": frames.astype(np.int64),
+            "float64": frames.astype(float), "float16": frames.astype(np.float16),
+            "columns first": np.asfortranarray(frames), "big endian": whole.astype(">u2"),
+            "reversed twice": frames[::-1][::-1], "sliced": np.repeat(frames, 2, 2)[:, :, ::2],
+            "mapped": np.load(WORK / "frames.npy", mmap_mode="r"), "iterator": iter(frames),
+            "generator": (frame.astype(float) for frame in frames)}
+        for name, form in forms.items():
+            with self.subTest(name):
+                forces = pf.solve(form)
+                self.assertEqual(forces.shape, (12, 20, 30))
+                self.assertTrue(np.array_equal(forces.normal, self.expected.normal))
+
+    def test_unaligned_frames(self):
+        memory = np.zeros(self.frames.size * 4 + 1, np.uint8)
+        odd = memory[1:].view(np.float32).reshape(self.frames.shape)
+        odd[:] = self.frames
+        self.assertTrue(np.array_equal(pf.solve(odd).normal, self.expected.normal))
+
+    def test_one_frame_has_planes_of_two_axes(self):
+        one = pf.solve(self.frames[3])
+        self.assertEqual((one.shape, one.times.shape), ((20, 30), ()))
+        self.assertTrue(same(one, self.expected[3]))
+        self.assertTrue(same(one, pf.solve(self.frames[3].tolist())))
+
+    def test_no_frame(self):
+        self.assertEqual(pf.solve(self.frames[:0]).shape, (0, 20, 30))
+
+    def test_times(self):
+        self.assertEqual(pf.solve(self.frames, rate_hz=50).times[3], 0.06)
+        times = np.linspace(5, 6, 12)
+        self.assertTrue(np.array_equal(pf.solve(self.frames, times=times).times, times))
+
+    def test_contacts_over_time(self):
+        forces = pf.solve(self.simulation, contacts=True, estimator="contact")
+        again = pf.Contacts(skins.plan_of(self.simulation)).over(pf.solve(self.simulation))
+        for frame, contacts in zip(forces, forces.contacts):
+            total = contacts.total
+            self.assertAlmostEqual(total.normal_n, float(frame.normal.sum()), 3)
+            self.assertEqual(frame.contacts[0].track_id, 1)
+        self.assertEqual([len(contacts) for contacts in again], [len(c) for c in forces.contacts])
+        x = [contacts[0].centre_of_pressure_mm[0] for contacts in forces.contacts]
+        self.assertAlmostEqual(x[-1] - x[0], 10, delta=1.5)  # It slides from -5 to 5 mm in 0.1 s.
+
+    def test_friction_of_a_sliding_ball(self):
+        contact = pf.solve(self.simulation, contacts=True, friction=0.6)[5].contacts[0]
+        self.assertEqual((contact.slip, contact.friction_source), ("sliding", "given"))
+        self.assertLess(abs(contact.slip_margin), 0.05)
+
+
+class Memory(unittest.TestCase):
+    def test_arrays_outlive_everything_and_are_writeable(self):
+        frames = RANDOM.integers(0, 255, (20, 32, 48), np.uint8)
+        forces = pf.solve(frames, outputs=["angles"])
+        kept, expected = forces[4:9].phi[1:], forces.phi[5:9].copy()
+        view = kept[0][::2]
+        del forces, frames
+        gc.collect()
+        for _ in range(5):
+            pf.solve(RANDOM.integers(0, 255, (20, 32, 48), np.uint8))
+        self.assertTrue(np.array_equal(kept, expected))
+        self.assertTrue(np.array_equal(view, expected[0][::2]))
+        kept *= 2
+        np.from_dlpack(kept)
+
+    def test_the_lock_is_released(self):
+        frames = RANDOM.integers(0, 255, (400, 158, 158), np.uint8)
+        turns = [0]
+        solving = threading.Event()
+
+        def turn():
+            while solving.is_set():
+                turns[0] += 1
+                time.sleep(0)
+
+        solving.set()
+        thread = threading.Thread(target=turn)
+        thread.start()
+        before = turns[0]
+        pf.solve(frames)
+        during = turns[0] - before
+        solving.clear()
+        thread.join()
+        self.assertGreater(during, 100)
+
+
+class Errors(unittest.TestCase):
+    def test_text_place_and_mend(self):
+        with self.assertRaises(pf.Error) as caught:
+            pf.solve("missing.h5")
+        self.assertEqual(str(caught.exception),
+                         "missing.h5: No such file or directory; check its name")
+        self.assertEqual((caught.exception.place, caught.exception.mend),
+                         ("missing.h5", "check its name"))
+
+    def test_wrong_calls(self):
+        frames = np.zeros((2, 8, 12), np.uint8)
+        wrong = [
+            (pf.Error, lambda: pf.solve(np.zeros(8, np.uint8))),
+            (pf.Error, lambda: pf.solve(np.zeros((2, 3, 8, 12)))),
+            (pf.Error, lambda: pf.solve(np.array([["a", "b"]]))),
+            (pf.Error, lambda: pf.solve(frames.astype(complex))),
+            (pf.Error, lambda: pf.solve(np.zeros((1, 1, 1), np.uint8))),
+            (pf.Error, lambda: pf.solve(frames, skin=pf.Skin(8, 14))),
+            (pf.Error, lambda: pf.solve(frames, times=[1.0])),
+            (pf.Error, lambda: pf.solve(frames, times=[1.0, 0.0], baseline_time_s=3)),
+            (pf.Error, lambda: pf.solve(frames, rate_hz=0)),
+            (pf.Error, lambda: pf.solve(frames, estimator="field")),
+            (pf.Error, lambda: pf.solve(frames, outputs=["angle"])),
+            (pf.Error, lambda: pf.solve(frames, counts_per_newton=-1)),
+            (pf.Error, lambda: pf.solve(frames, device="no such device")),
+            (pf.Error, lambda: pf.solve(frames, calibration=pf.Calibration(8, 14))),
+            (TypeError, lambda: pf.solve(frames, scene={"skin": 3})),
+            (pf.Error, lambda: pf.solve(iter([]))),
+            (pf.Error, lambda: pf.solve(iter([frames[0], frames[0][:4]]))),
+            (pf.Error, lambda: pf.solve(iter([frames[0], 300 + frames[0].astype(int)]))),
+            (pf.Error, lambda: pf.solve(frames).theta),
+            (pf.Error, lambda: pf.solve(frames).uncertainty),
+            (pf.Error, lambda: pf.solve(frames).contacts),
+            (TypeError, lambda: pf.solve(frames, estimater="direct")),
+            (TypeError, lambda: pf.solve(frames)[0][0]),
+            (IndexError, lambda: pf.solve(frames)[2])]
+        for number, (kind, call) in enumerate(wrong):
+            with self.subTest(number), self.assertRaises(kind):
+                call()
+
+    def test_an_exception_in_an_iterator_is_the_users(self):
+        def broken():
+            yield np.zeros((8, 12), np.uint8)
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            pf.solve(broken())
+
+    def test_an_interrupt_ends_it(self):
+        code = ("import itertools, os, signal, threading, numpy as np, pillarfield as pf\n"
+                "threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+                "try: pf.solve(np.zeros((50_000_000, 64, 64), np.uint8), contacts=True)\n"
+                "except KeyboardInterrupt: print('ended')\n")
+        code = code.replace("np.zeros((50_000_000, 64, 64), np.uint8)",
+                            "itertools.repeat(np.zeros((64, 64), np.uint8))")
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.stdout, done.returncode), ("ended\n", 0), done.stderr)
+
+
+if __name__ == "__main__":
+    WORK.mkdir(parents=True, exist_ok=True)
+    unittest.main()
