@@ -281,7 +281,7 @@ void LivePlayer::State::append(const SolvedFrame& frame) {
   if (!paused && waits_for_display(begin)) skipped = frame;
   if (!paused && !skipped) publish(frame);
   const std::scoped_lock lock(mutex);
-  times.add(begin, live_now());
+  times.add(frame.arrived, live_now());
 }
 
 /// True if a field waits that is younger than the time of two copies.
