@@ -20,13 +20,15 @@
 namespace pillarfield::viewer {
 namespace {
 
+/// A survey releases each field at once.
+constexpr int kSurveySlots = 2;
+
 Processor processor_for(const Device& device, const SolverPlan& plan,
-                        const ProducerOptions& options) {
-  return {device,
-          plan,
-          {.memory = options.memory,
-           .frames_in_flight = FieldProducer::kMostShown,
-           .on_compiling = options.on_compiling}};
+                        const ProducerOptions& options, int slots = FieldProducer::kMostShown) {
+  return {
+      device,
+      plan,
+      {.memory = options.memory, .frames_in_flight = slots, .on_compiling = options.on_compiling}};
 }
 
 /// Without the function that reports to whom opens a source now.
@@ -109,7 +111,7 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
                                  options_for_later(options)]() -> std::unique_ptr<FieldProducer> {
     // Simulated frames may be read by several threads.
     return std::make_unique<SolvedProducer>(info, provider, plan,
-                                            processor_for(device, plan, options));
+                                            processor_for(device, plan, options, kSurveySlots));
   };
   producer->open_truth = [=]() -> std::unique_ptr<FieldProducer> {
     return std::make_unique<TruthProducer>(info, [=](std::uint64_t index, ForceField& truth) {
@@ -168,9 +170,9 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
       info, recorded_frames(path, std::move(source), read), plan, std::move(processor));
   producer->open_again = [=, options =
                                  options_for_later(options)]() -> std::unique_ptr<FieldProducer> {
-    return std::make_unique<SolvedProducer>(info,
-                                            recorded_frames(path, open_frames(path, read), read),
-                                            plan, processor_for(device, plan, options));
+    return std::make_unique<SolvedProducer>(
+        info, recorded_frames(path, open_frames(path, read), read), plan,
+        processor_for(device, plan, options, kSurveySlots));
   };
   if (!has_truth) return producer;
   producer->open_truth = [=]() -> std::unique_ptr<FieldProducer> {

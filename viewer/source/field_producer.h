@@ -63,7 +63,8 @@ class FieldProducer {
   [[nodiscard]] virtual std::optional<CurvePoint> stored_total(std::uint64_t index);
 
   /// Makes another producer of the same source, or of its true forces; empty where there is none.
-  /// Each producer belongs to one thread; the functions may be called in any.
+  /// Each producer belongs to one thread; the functions may be called in any. Of another producer
+  /// only one field may be alive.
   using Opener = std::function<std::unique_ptr<FieldProducer>()>;
   Opener open_again = {};
   Opener open_truth = {};

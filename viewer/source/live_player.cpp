@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <future>
 #include <mutex>
 #include <thread>
@@ -32,7 +34,7 @@ double live_seconds(LiveTime time) { return std::chrono::duration<double>(time).
 
 SourceInfo live_info(const std::string& name, const SolverPlan& plan, const Processor& processor) {
   SourceInfo info;
-  info.name = name;
+  info.name = name == "-" ? "standard input" : name;
   info.kind = "sensor";
   info.skin = plan.skin;
   info.calibration = plan.calibration;
@@ -96,6 +98,7 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   void run();
   void run_pipeline();
   void take_tare(const StreamedFrame& frame);
+  void follow_clock(const SolvedFrame& frame);
   [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
   [[nodiscard]] bool waits_for_display(LiveTime now) const;
   void publish(const SolvedFrame& frame);
@@ -117,6 +120,8 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   LiveTime copy_time{0};
   std::optional<SolvedFrame> skipped;  ///< the frame solved last, if it was not published
   bool tracks = false;
+  double last_time_s = -1;               ///< of the frame solved last, since `start`
+  std::optional<double> clock_offset_s;  ///< that time less the sensor's
   SenselWatch watch;
 
   std::atomic<bool> stopping = false;
@@ -238,7 +243,7 @@ ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t i
   ShownField field;
   field.forces = frame.forces;
   field.raw = frame.readings;
-  field.time_s = live_seconds(frame.arrived - start);
+  field.time_s = last_time_s;
   field.index = index;
   field.arrived = frame.arrived;
   if (plan.estimator == Estimator::direct) field.direct_point = plan.segment_point;
@@ -246,8 +251,22 @@ ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t i
   return field;
 }
 
+/// Follows the sensor's clock from the first frame on, which evens out delays on the way; where it
+/// stands still, jumps, or leaves the time of arrival, takes that.
+void LivePlayer::State::follow_clock(const SolvedFrame& frame) {
+  constexpr double kMostApartS = 5;
+  constexpr double kLeastStepS = 1e-6;
+  const double arrived_s = live_seconds(frame.arrived - start);
+  const double by_sensor_s = frame.time_s + clock_offset_s.value_or(arrived_s - frame.time_s);
+  const bool follows = clock_offset_s && by_sensor_s > last_time_s &&
+                       std::abs(by_sensor_s - arrived_s) < kMostApartS;
+  last_time_s = follows ? by_sensor_s : std::max(arrived_s, last_time_s + kLeastStepS);
+  clock_offset_s = last_time_s - frame.time_s;
+}
+
 void LivePlayer::State::append(const SolvedFrame& frame) {
   const LiveTime begin = live_now();
+  follow_clock(frame);
   {
     const std::scoped_lock lock(recording_mutex);
     if (recording != nullptr) recording->append(frame);
@@ -262,7 +281,7 @@ void LivePlayer::State::append(const SolvedFrame& frame) {
   if (!paused && waits_for_display(begin)) skipped = frame;
   if (!paused && !skipped) publish(frame);
   const std::scoped_lock lock(mutex);
-  times.add(begin, live_now());
+  times.add(frame.arrived, live_now());
 }
 
 /// True if a field waits that is younger than the time of two copies.

@@ -47,7 +47,7 @@ struct LiveOptions {
 
 /// Solves every frame of a sensor as it arrives, by a Pipeline in a thread of its own, and hands
 /// the newest to the display; the stream counts frames for which the program is late. The time of a
-/// field is that of its arrival since the player began.
+/// field is the sensor's, counted from the start of the player.
 class LivePlayer final : public Player, public LiveControl {
  public:
   LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name, const SolverPlan& plan,

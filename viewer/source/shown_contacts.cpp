@@ -54,10 +54,10 @@ ShownContacts with_extents(FrameContacts found, const ContactLabels& map,
     return found.contacts[place].quantities.normal_n;
   });
   const double limit_n = noise_limit(found, noise_n);
-  const auto noise = std::ranges::stable_partition(shown.heaviest, [&](std::size_t place) {
-    return !is_at_noise(found.contacts[place].quantities, limit_n);
-  });
-  shown.above_noise = static_cast<std::size_t>(noise.begin() - shown.heaviest.begin());
+  const auto noise = std::stable_partition(
+      shown.heaviest.begin(), shown.heaviest.end(),
+      [&](std::size_t place) { return !is_at_noise(found.contacts[place].quantities, limit_n); });
+  shown.above_noise = static_cast<std::size_t>(noise - shown.heaviest.begin());
   shown.found = std::move(found);
   return shown;
 }

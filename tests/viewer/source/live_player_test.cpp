@@ -33,6 +33,7 @@ struct Wire {
   std::deque<std::vector<std::uint8_t>> frames;
   std::uint64_t sent = 0;
   std::uint64_t partial = 0;  ///< the next frames lack the upper left block
+  double jump_s = 0;          ///< of the sensor's clock
   bool ended = false;
 
   void send(std::uint8_t reading) {
@@ -69,7 +70,7 @@ class FakeSensor final : public FrameStream {
       frame.missing.push_back({0, 8, 0, 8});
       --wire_->partial;
     }
-    frame.time_s = 0.001 * static_cast<double>(sent_);
+    frame.time_s = 0.001 * static_cast<double>(sent_) + wire_->jump_s;
     frame.sequence = sent_++;
     frame.arrived = std::chrono::steady_clock::now().time_since_epoch();
     return Arrival::arrived;
@@ -132,6 +133,29 @@ TEST(LivePlayer, SolvesEveryFrameAndShowsTheNewest) {
   EXPECT_FLOAT_EQ(points.back().normal, 4);
   EXPECT_EQ(live.player->status().stream.lost, 3U);
   EXPECT_EQ(live.player->state().frames, 0U);
+}
+
+TEST(LivePlayer, TimesAreThoseOfTheSensorWhileItsClockRuns) {
+  LiveFixture live;
+  for (int i = 0; i < 5; ++i) {
+    live.send(50);
+    std::this_thread::sleep_for(std::chrono::milliseconds(7 * i));
+  }
+  live.wire->jump_s = 1000;
+  live.send(50, 2);
+  live.wire->jump_s = -1000;
+  live.send(50, 2);
+  const auto points = live.curves->total(-1, 1e9, 1000);
+  ASSERT_EQ(points.size(), 9U);
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const double step_s = points[i].time_s - points[i - 1].time_s;
+    if (i == 5 || i == 7) {
+      EXPECT_GT(step_s, 0);
+      EXPECT_LT(step_s, 20) << "a clock that jumps";
+    } else {
+      EXPECT_NEAR(step_s, 0.001, 1e-9);
+    }
+  }
 }
 
 TEST(LivePlayer, PauseFreezesThePictureNotTheSensor) {

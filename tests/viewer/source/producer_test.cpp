@@ -268,6 +268,23 @@ TEST(RecordingProducer, SolvesWhatIsReadOnDemand) {
   EXPECT_THROW(static_cast<void>(producer->produce(kFrames)), Error);
 }
 
+TEST(SceneProducer, OpensAgainAndHasATruth) {
+  const auto producer = open_producer(PILLARFIELD_SCENES "/sliding.toml", {.most_frames = 3});
+  const auto again = producer->open_again();
+  EXPECT_EQ(again->info().frames, 3U);
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    expect_same_forces(again->produce(index).forces, producer->produce(index).forces);
+  }
+  const auto truth = producer->open_truth();
+  const PillarRect all{0, 1000, 0, 1000};
+  const SelectionSums expected = sums_over(truth->produce(2), all, 1);
+  const SelectionSums solved = sums_over(producer->produce(2), all, 1);
+  EXPECT_GT(expected.normal, 1);
+  EXPECT_NEAR(solved.normal, expected.normal, 0.05 * expected.normal);
+  EXPECT_FALSE(truth->info().has_readings);
+  EXPECT_FALSE(truth->open_truth);
+}
+
 TEST(RecordingProducer, ReportsMissingNoise) {
   const TemporaryDirectory directory;
   const auto path = directory / "r.h5";

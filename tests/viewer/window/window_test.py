@@ -83,10 +83,11 @@ class Window:
     def drag(self, begin, end, button=1):
         self.move(*begin)
         self.screen.xdotool("mousedown", button)
+        time.sleep(0.15)  # A busy machine draws few frames, and a drag needs several.
         for share in (0.3, 0.7, 1):
             self.move(begin[0] + share * (end[0] - begin[0]),
                       begin[1] + share * (end[1] - begin[1]))
-            time.sleep(0.05)
+            time.sleep(0.15)
         self.screen.xdotool("mouseup", button)
 
     def quit(self):

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 namespace pillarfield::viewer {
@@ -14,9 +15,10 @@ std::filesystem::path first_free(const SourceInfo& source, const std::string& de
                                  const char* ending, const LookedFor& looked_for) {
   std::string stem = std::filesystem::path(source.name).stem().string();
   if (source.kind == "sensor") {  // No path: "udp:127.0.0.1:4242".
-    stem = source.name == "-" ? "stdin" : source.name;
-    std::ranges::replace_if(
-        stem, [](char c) { return c == ':' || c == '.' || c == '/'; }, '_');
+    stem = source.name;
+    for (char& letter : stem) {
+      if (std::string_view(":./ ").find(letter) != std::string_view::npos) letter = '_';
+    }
   }
   if (!detail.empty()) stem += "_" + detail;
   std::filesystem::path path = stem + ending;

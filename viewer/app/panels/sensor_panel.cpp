@@ -20,7 +20,7 @@ std::vector<ShownValue> health_lines(const LiveStatus& status) {
   std::vector<ShownValue> lines{{"rate", fmt::format("{:.1f}", stream.rate_hz), {}, "Hz"},
                                 {"frames", fmt::format("{}", status.solved), {}, ""},
                                 {"lost", fmt::format("{}", stream.lost), {}, ""}};
-  count_line(lines, "of these, too fast", stream.overrun);
+  count_line(lines, "program too late", stream.overrun);
   count_line(lines, "incomplete", stream.incomplete);
   count_line(lines, "late", stream.late);
   count_line(lines, "duplicates", stream.duplicates);
