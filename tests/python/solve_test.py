@@ -64,6 +64,7 @@ class Frames(unittest.TestCase):
         frames = self.frames
         whole = frames.astype(np.uint16)
         np.save(WORK / "frames.npy", frames)
+        np.testing.assert_array_equal(pf.solve(WORK / "frames.npy", rate_hz=50).times[1], 0.02)
         forms = {
             "list": frames.tolist(), "tuple": tuple(frames), "int64": frames.astype(np.int64),
             "float64": frames.astype(float), "float16": frames.astype(np.float16),
