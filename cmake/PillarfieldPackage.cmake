@@ -101,4 +101,10 @@ pillarfield_package(documentation pillarfield-doc SECTION doc ALL
 and ready-made scenes to simulate."
   RECOMMENDS libjs-mathjax)
 
+# Its module is installed with the folder that holds the package, which CPack neither strips nor relinks.
+if(BUILD_SHARED_LIBS AND TARGET pillarfield_python)
+  set_target_properties(pillarfield_python PROPERTIES BUILD_WITH_INSTALL_RPATH ON)
+  target_link_options(pillarfield_python PRIVATE -s)
+endif()
+
 include(CPack)

@@ -12,10 +12,10 @@ namespace pillarfield::viewer {
 
 /// The command line.
 struct Options {
-  std::filesystem::path source;  ///< a file, or a live source; empty: the start page
-  std::filesystem::path beside;  ///< a second source, shown at the right; empty: none
-  bool truth = false;            ///< the true forces beside those solved
-  std::filesystem::path calibration;        ///< of a sensor
+  std::filesystem::path source;       ///< a file, or a live source; empty: the start page
+  std::filesystem::path beside;       ///< a second source, shown at the right; empty: none
+  bool truth = false;                 ///< the true forces beside those solved
+  std::filesystem::path calibration;  ///< of a sensor
   bool trust_input = false;
   ReadOptions plain;   ///< of plain data: array, times, size of a frame, rate, constants, tare
   std::string device;  ///< OpenCL device that solves

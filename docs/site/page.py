@@ -4,6 +4,7 @@ Headings get the anchors that GitHub gives them, links between pages lead to the
 are no page become plain text, and $...$ and $$...$$ become formulas.
 """
 
+import html
 import itertools
 import os
 import pathlib
@@ -46,6 +47,9 @@ def link(path, words, target):
 
 
 def convert_token(path, match):
+    # A bar in code within a table.
+    if match[0].startswith("`") and r"\|" in match[0]:
+        return f"<code>{html.escape(match[0].strip('`'), quote=False)}</code>"
     if match["display"]:
         return rf"\f[{match['display']}\f]"
     if match["inline"]:
@@ -93,6 +97,8 @@ def headed(path, lines):
 def convert(path, lines):
     for fixed, block in itertools.groupby(headed(path, lines), key=lambda pair: pair[1]):
         text = "".join(line for line, _ in block)
+        # Doxygen finds no emphasis that begins with code.
+        text = re.sub(r"^\*(?=`)((?:.|\n(?!\n))+?)\*$", r"<em>\1</em>", text, flags=re.MULTILINE)
         yield text if fixed else TOKEN.sub(lambda match: convert_token(path, match), text)
 
 

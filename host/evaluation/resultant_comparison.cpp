@@ -52,6 +52,7 @@ Resultant resultant_of(const ForceFieldView& field, double pitch_mm) {
 std::vector<ContactQuantities> measure(const ForceFieldView& field, const ContactLabels& labels,
                                        double pitch_mm) {
   std::vector<ContactQuantities> contacts;
+  contacts.reserve(labels.contacts());
   for (std::uint32_t label = 0; label < labels.contacts(); ++label) {
     contacts.push_back(quantities_of(sum_of(field, labels.runs(label), {}), pitch_mm));
   }
@@ -79,6 +80,7 @@ std::vector<Pair> match(const ContactLabels& truth, const ContactLabels& solved,
     }
   }
   std::vector<std::pair<std::uint64_t, Pair>> by_pillars;
+  by_pillars.reserve(shared.size());
   for (const auto& [pair, count] : shared) by_pillars.emplace_back(count, pair);
   std::ranges::stable_sort(by_pillars, std::greater(), &std::pair<std::uint64_t, Pair>::first);
   std::vector<bool> has_true(truth.contacts());

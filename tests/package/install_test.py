@@ -134,8 +134,9 @@ class Desktop(unittest.TestCase):
             self.skipTest("no viewer")
         if shutil.which("desktop-file-validate"):
             self.assertEqual(run("desktop-file-validate", entry), "")
-        icon = re.search("^Icon=(.*)$", entry.read_text(), re.MULTILINE)[1]
-        drawing = ElementTree.parse(PREFIX / f"share/icons/hicolor/scalable/apps/{icon}.svg")
+        values = dict(re.findall("^([A-Z]\\w+)=(.*)$", entry.read_text(), re.MULTILINE))
+        self.assertTrue((PREFIX / "bin" / values["Exec"].split()[0]).exists())
+        drawing = ElementTree.parse(PREFIX / f"share/icons/hicolor/scalable/apps/{values['Icon']}.svg")
         self.assertEqual(drawing.getroot().tag, "{http://www.w3.org/2000/svg}svg")
 
 

@@ -44,9 +44,9 @@ class Links(unittest.TestCase):
         shown = set(re.findall(r"^`scenes/(.*?)`\.", (SOURCE / "docs/gallery.md").read_text(), re.MULTILINE))
         self.assertEqual(shown, {path.name for path in (SOURCE / "scenes").glob("*.toml")})
 
-    def test_the_menu_leads_to_pages(self):
-        menu = set(re.findall(r"@ref ([\w-]+)", (SOURCE / "docs/site/layout.xml").read_text()))
-        self.assertEqual(menu - {page.page_name(path) for path in page.PAGES}, set())
+    def test_the_menu_has_every_page(self):
+        menu = re.findall(r"@ref ([\w-]+)", (SOURCE / "docs/site/layout.xml").read_text())
+        self.assertEqual(sorted(["index", *menu]), sorted(page.page_name(path) for path in page.PAGES))
 
     def test_math_links_and_headings_for_doxygen(self):
         text = "# T\n\n$a$ and `$b$`, [x](#y)\n\n    $code$\n\n## Y\n## Y\n"

@@ -9,6 +9,8 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
+#include <thread>
 #include <vector>
 
 #include "pillarfield/error.h"
@@ -131,6 +133,21 @@ TEST_F(QueuedSinkTest, OneFrameMayAlwaysWait) {
   EXPECT_EQ(sink_->statistics().dropped, 0u);
 }
 
+TEST_F(QueuedSinkTest, ReusesTheMemoryOfTheLastFrame) {
+  std::set<const float*> memory;
+  log_.consume = [&](const SolvedFrame& frame) {
+    memory.insert(frame.forces.normal.data());
+    return true;
+  };
+  log_.allow(100);
+  open({});
+  for (std::uint64_t sequence = 0; sequence < 20; ++sequence) {
+    append(sequence);
+    while (sink_->statistics().frames <= sequence) std::this_thread::yield();
+  }
+  EXPECT_EQ(memory.size(), 1u);
+}
+
 TEST_F(QueuedSinkTest, KeepsTheOrderOfManyFrames) {
   open({.frames = 4, .bytes = kUnlimited});
   log_.allow(100'000);
@@ -144,6 +161,21 @@ TEST_F(QueuedSinkTest, KeepsTheOrderOfManyFrames) {
   for (std::size_t i = 0; i < log_.values.size(); ++i) {
     ASSERT_EQ(log_.values[i], static_cast<float>(log_.sequences[i]));
   }
+}
+
+TEST(FrameCopy, KeepsItsMemory) {
+  ForceField field(10, 10);
+  SolvedFrame frame;
+  frame.forces = field.view();
+  FrameCopy copy;
+  EXPECT_EQ(copy.capacity(), 0u);
+  copy.assign(frame, {.forces = true});
+  EXPECT_EQ(copy.capacity(), bytes_of(frame, {.forces = true}));
+  const float* const memory = copy.frame().forces.normal.data();
+  copy.assign(frame, {.forces = true});
+  EXPECT_EQ(copy.frame().forces.normal.data(), memory);
+  copy.release();
+  EXPECT_EQ(copy.capacity(), 0u);
 }
 
 TEST_F(QueuedSinkTest, StopsAtAFailure) {

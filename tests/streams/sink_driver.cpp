@@ -111,7 +111,7 @@ Recording record(const DriverOptions& options) {
 
   FrameBuffer raw(plan.sensel_type, plan.skin.rows, plan.skin.cols);
   ForceField truth(info.rows, info.cols);
-  recording.frames.resize(scene.frames);
+  recording.frames = std::vector<FrameCopy>(scene.frames);
   for (std::uint32_t index = 0; index < scene.frames; ++index) {
     simulator.render(index, raw, truth);
     const ForceField forces = solve_on_host(plan, raw.view());

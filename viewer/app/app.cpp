@@ -72,7 +72,9 @@ class Application {
     return options_.scale > 0 ? options_.scale : window_.scale();
   }
   [[nodiscard]] Command command() { return {state_, place_, pending_}; }
-  [[nodiscard]] bool shows_source() const { return state_.player != nullptr && loading_ == nullptr; }
+  [[nodiscard]] bool shows_source() const {
+    return state_.player != nullptr && loading_ == nullptr;
+  }
 
   void open(const std::string& source);
   void take_loaded();
@@ -109,7 +111,7 @@ class Application {
   void continue_frames();
   void toggle_recording();
   void toggle_truth();
-  [[nodiscard]] Pixels pixels() { return read_pixels(device_, presenter_.renderer().image()); }
+  [[nodiscard]] Pixels pixels();
   void print_statistics() const;
 
   Options options_;  ///< of the open source
@@ -193,7 +195,6 @@ void Application::show(LoadedSource loaded) {
   const SourceInfo& source = loaded_.player->info();
   fmt::print(stderr, "{}", warning_lines(source));
   user_.add_recent(loaded_.name);
-  window_.set_title(source.name + " – Pillarfield");
   AppState next;
   next.player = loaded_.player.get();
   next.curves = loaded_.curves.get();
@@ -243,7 +244,6 @@ void Application::set_beside() {
   state_.beside_is_truth = loaded_.beside_is_truth;
   if (state_.beside == nullptr) return;
   state_.beside->set_contacts(state_.settings.contacts);
-  state_.beside->play();
   state_.beside->on_new_field([this] {
     news_ = true;
     Window::wake();
@@ -353,7 +353,7 @@ void Application::route(const InputEvent& event) {
 /// The second picture has the view of the first, so a place in it means the one in the first.
 InputEvent Application::in_first_half(InputEvent event) const {
   if (state_.beside == nullptr) return event;
-  const Viewport second = second_half(screen_.field);
+  const Viewport second = second_half(screen_.field, scale());
   std::visit(
       [&](auto& each) {
         if constexpr (requires { each.pixel; }) {
@@ -452,9 +452,10 @@ void Application::arrange() {
   const vk::Extent2D size = window_.size();
   if (size.width == 0 || size.height == 0) return;
   state_.settings.scale = scale();
+  state_.settings.colour_bar = state_.beside == nullptr;
   const Viewport before = place_.area;
   screen_ = divide(size.width, size.height, scale(), state_.show_panels ? &state_.panels : nullptr);
-  place_.area = state_.beside != nullptr ? first_half(screen_.field) : screen_.field;
+  place_.area = state_.beside != nullptr ? first_half(screen_.field, scale()) : screen_.field;
   const bool moved = before.width != place_.area.width || before.height != place_.area.height;
   if (moved && state_.view_is_fitted && state_.player != nullptr) reset_view(state_, place_);
 }
@@ -466,7 +467,7 @@ bool Application::fit_to_window() {
   std::vector<Presenter::Place> places;
   if (shows_source()) places.push_back(place_in_window(place_.area));
   if (shows_source() && state_.beside != nullptr) {
-    places.push_back(place_in_window(second_half(screen_.field)));
+    places.push_back(place_in_window(second_half(screen_.field, scale())));
   }
   const bool fits = !presenter_.stale() && size == sized_for_ && places == presenter_.places() &&
                     scale() == presenter_.gui().scale();
@@ -488,15 +489,19 @@ void Application::draw() {
   draw_front_frame();
   const bool new_settings = drawn_settings_ != state_.settings;
   const bool new_picture = state_.field && (field_is_new_ || new_settings);
+  RenderSettings beside_settings = state_.settings;
+  beside_settings.colour_bar = true;
   std::vector<std::optional<Presenter::Picture>> pictures(presenter_.places().size());
   if (new_picture) {
     pictures[0].emplace(Presenter::Picture{*state_.field, *place_.source, state_.settings});
   }
   if (pictures.size() > 1 && state_.beside_field && (beside_is_new_ || new_settings)) {
     pictures[1].emplace(
-        Presenter::Picture{*state_.beside_field, state_.beside->info(), state_.settings});
+        Presenter::Picture{*state_.beside_field, state_.beside->info(), beside_settings});
   }
   if (!presenter_.draw(pictures)) return;
+  // Not before there is something to see, for who waits for it.
+  if (new_picture && !drawn_settings_) window_.set_title(place_.source->name + " – Pillarfield");
   measure(begin_s, new_picture);
   if (new_picture) drawn_settings_ = state_.settings;
   field_is_new_ = false;
@@ -543,8 +548,7 @@ void Application::measure(double begin_s, bool new_picture) {
   std::optional<double> latency_ms;
   // From the arrival at a sensor, else from the solved field; the first may precede on_new_field().
   if (new_picture && field_is_new_ && state_.field->arrived) {
-    latency_ms =
-        1e3 * (steady_s() - std::chrono::duration<double>(*state_.field->arrived).count());
+    latency_ms = 1e3 * (steady_s() - std::chrono::duration<double>(*state_.field->arrived).count());
   } else if (new_picture && field_is_new_ && taken_s_ > 0) {
     latency_ms = 1e3 * (steady_s() - taken_s_);
   }
@@ -586,8 +590,8 @@ void Application::serve() {
     writer_.reset();
     state_.notice = "stopped writing";
   }
-  if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop ||
-      asked.record || asked.truth) {
+  if (asked.picture || asked.table || asked.sequence || asked.video || asked.stop || asked.record ||
+      asked.truth) {
     redraws_.input(Window::now_s());
   }
 }
@@ -626,6 +630,15 @@ void Application::toggle_truth() {
   drawn_settings_.reset();
 }
 
+/// All pictures, side by side.
+Pixels Application::pixels() {
+  Pixels all = read_pixels(device_, presenter_.image(0));
+  for (std::size_t i = 1; i < presenter_.places().size(); ++i) {
+    all = side_by_side(all, read_pixels(device_, presenter_.image(i)));
+  }
+  return all;
+}
+
 void Application::write_picture() {
   if (!drawn_settings_) return;
   const auto path = free_path(*place_.source, info_of(state_.settings.quantity).name, ".png");
@@ -655,7 +668,7 @@ void Application::begin_frames(FrameWriter::Kind kind) {
           ? PlannedOutput{path, OutputKind::video}
           : PlannedOutput{numbered(path, 1, place_.source->frames), OutputKind::png};
   check_outputs({options_.source}, {first}, Replace::nothing);
-  const vk::Extent2D size = presenter_.renderer().image().size();
+  const vk::Extent2D size = extent_of(screen_.field);
   writer_ = std::make_unique<FrameWriter>(state_, kind, path, size.width, size.height);
 }
 

@@ -11,8 +11,7 @@ void Trails::add(const ShownField& field) {
   last_s_ = field.time_s;
   if (field.contacts == nullptr) return;
   for (std::size_t i = 0; i < field.contacts->above_noise; ++i) {
-    const TrackedContact& contact =
-        field.contacts->found.contacts[field.contacts->heaviest[i]];
+    const TrackedContact& contact = field.contacts->found.contacts[field.contacts->heaviest[i]];
     const PatchPlace& centre = contact.quantities.centre_of_pressure;
     extend(contact.track_id, {field.time_s, centre.x_mm, centre.y_mm});
   }

@@ -284,6 +284,20 @@ void write_bar_title(const Canvas& canvas, const Layout& layout) {
               fmt::format("{}{}", info.title, unit));
 }
 
+/// Colour bar or wheel, and the legend.
+void write_scales(const Canvas& canvas, const SourceInfo& source, Layout layout) {
+  write_bar_title(canvas, layout);
+  const Scale scale = info_of(canvas.settings.quantity).scale;
+  if (scale == Scale::cyclic) {
+    write_wheel(canvas, layout);
+  } else if (scale != Scale::classes) {
+    write_bar(canvas, layout);
+  } else {
+    layout.legend.y = layout.bar.y;  // The legend replaces the bar.
+  }
+  write_legend(canvas, source, layout);
+}
+
 }  // namespace
 
 void write_overlay(const GuiContext& gui, const ShownField& field, const SourceInfo& source,
@@ -309,18 +323,7 @@ void write_overlay(const GuiContext& gui, const ShownField& field, const SourceI
     } else {
       write_triad(canvas, source, layout);
     }
-    write_bar_title(canvas, layout);
-    const Scale scale = info_of(settings.quantity).scale;
-    if (scale == Scale::cyclic) {
-      write_wheel(canvas, layout);
-    } else if (scale != Scale::classes) {
-      write_bar(canvas, layout);
-    }
-    Layout shifted = layout;
-    if (scale == Scale::classes) {
-      shifted.legend.y = layout.bar.y;  // The legend replaces the bar.
-    }
-    write_legend(canvas, source, shifted);
+    if (settings.colour_bar) write_scales(canvas, source, layout);
   }
   ImGui::Render();
 }

@@ -18,7 +18,7 @@ constexpr float kSmallestForceFraction =
 constexpr double kSinglePillarPixels = 0.7;
 
 constexpr std::uint32_t kMostReliefTiles = 256;  ///< along a side of the skin
-constexpr double kMostRelief = 1.5;  ///< of the height of RenderSettings::relief_full_n
+constexpr double kMostRelief = 1.5;              ///< of the height of RenderSettings::relief_full_n
 
 bool shows_relief(const RenderSettings& settings) {
   return settings.relief && std::holds_alternative<OrbitView>(settings.view);

@@ -60,7 +60,8 @@ std::uint64_t next_index(const std::deque<CurvePoint>& points) {
 /// Keeps of each run of points the one with the least and the one with the largest normal force.
 std::vector<CurvePoint> thinned_points(const std::deque<CurvePoint>& points, std::size_t begin,
                                        std::size_t end, std::size_t most) {
-  const std::size_t run = std::max<std::size_t>(2 * (end - begin) / std::max<std::size_t>(most, 2), 1);
+  const std::size_t run =
+      std::max<std::size_t>(2 * (end - begin) / std::max<std::size_t>(most, 2), 1);
   std::vector<CurvePoint> kept;
   for (std::size_t i = begin; i < end; i += run) {
     const auto first = points.begin() + static_cast<std::ptrdiff_t>(i);
@@ -111,8 +112,8 @@ void Curves::set_rects(std::span<const PillarRect> rects) {
   const std::scoped_lock lock(mutex_);
   std::vector<Curve> next;
   for (const PillarRect& rect : rects) {
-    const auto old = std::ranges::find_if(
-        curves_, [&](const Curve& curve) { return curve.rect == rect; });
+    const auto old =
+        std::ranges::find_if(curves_, [&](const Curve& curve) { return curve.rect == rect; });
     next.push_back(old == curves_.end() ? Curve{rect, {}} : std::move(*old));
   }
   curves_ = std::move(next);

@@ -15,7 +15,7 @@ namespace pillarfield::viewer {
 /// that are not finite count as zero.
 struct CurvePoint {
   double time_s = 0;
-  std::uint64_t index = 0;                   ///< of the frame
+  std::uint64_t index = 0;                     ///< of the frame
   float shear_x = 0, shear_y = 0, normal = 0;  ///< N
   /// Moment of the shear about the centre of pressure, N mm, counter-clockwise; NaN without load.
   float torque = 0;

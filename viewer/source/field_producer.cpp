@@ -29,6 +29,12 @@ Processor processor_for(const Device& device, const SolverPlan& plan,
            .on_compiling = options.on_compiling}};
 }
 
+/// Without the function that reports to whom opens a source now.
+ProducerOptions options_for_later(ProducerOptions options) {
+  options.on_compiling = {};
+  return options;
+}
+
 /// Fills in the properties that plan and processor determine.
 void describe(SourceInfo& info, const SolverPlan& plan, const Processor& processor) {
   info.skin = plan.skin;
@@ -99,7 +105,8 @@ std::unique_ptr<FieldProducer> open_scene(const std::filesystem::path& path,
   const std::shared_ptr<FrameProvider> provider = simulate_frames(*simulator, frames, progress);
   info.frames = frames;
   auto producer = std::make_unique<SolvedProducer>(info, provider, plan, std::move(processor));
-  producer->open_again = [=]() -> std::unique_ptr<FieldProducer> {
+  producer->open_again = [=, options =
+                                 options_for_later(options)]() -> std::unique_ptr<FieldProducer> {
     // Simulated frames may be read by several threads.
     return std::make_unique<SolvedProducer>(info, provider, plan,
                                             processor_for(device, plan, options));
@@ -159,7 +166,8 @@ std::unique_ptr<FieldProducer> open_recording(const std::filesystem::path& path,
   const bool has_truth = source->has_truth();
   auto producer = std::make_unique<SolvedProducer>(
       info, recorded_frames(path, std::move(source), read), plan, std::move(processor));
-  producer->open_again = [=]() -> std::unique_ptr<FieldProducer> {
+  producer->open_again = [=, options =
+                                 options_for_later(options)]() -> std::unique_ptr<FieldProducer> {
     return std::make_unique<SolvedProducer>(info,
                                             recorded_frames(path, open_frames(path, read), read),
                                             plan, processor_for(device, plan, options));

@@ -150,8 +150,8 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   std::thread thread;  ///< last: uses the other members
 };
 
-LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& name, SolverPlan with,
-                         Processor solver, std::shared_ptr<Curves> measured)
+LivePlayer::State::State(std::unique_ptr<FrameStream> from, const std::string& name,
+                         SolverPlan with, Processor solver, std::shared_ptr<Curves> measured)
     : stream(std::move(from)),
       plan(std::move(with)),
       processor(std::move(solver)),
@@ -242,8 +242,7 @@ ShownField LivePlayer::State::field_of(const SolvedFrame& frame, std::uint64_t i
   field.index = index;
   field.arrived = frame.arrived;
   if (plan.estimator == Estimator::direct) field.direct_point = plan.segment_point;
-  field.shear_coefficient =
-      plan.calibration.effects.shear_coefficient.value_or(ShearCoefficient{});
+  field.shear_coefficient = plan.calibration.effects.shear_coefficient.value_or(ShearCoefficient{});
   return field;
 }
 
@@ -390,9 +389,9 @@ void LivePlayer::stop_recording() {
       std::async(std::launch::async, [this, finished = std::shared_ptr(std::move(sink))] {
         finished->finish();
         const LiveSinkStatistics statistics = finished->statistics();
-        state_->tell(statistics.failure.empty()
-                         ? fmt::format("recorded {} frames: {}", statistics.frames, finished->name())
-                         : statistics.failure);
+        state_->tell(statistics.failure.empty() ? fmt::format("recorded {} frames: {}",
+                                                              statistics.frames, finished->name())
+                                                : statistics.failure);
       });
 }
 

@@ -17,13 +17,13 @@ struct LiveStatus {
   StreamHealth stream;
   SenselHealth sensels;
   std::uint64_t solved = 0;
-  double silent_s = 0;              ///< since the last frame arrived
-  bool ended = false;               ///< no frame will follow
+  double silent_s = 0;  ///< since the last frame arrived
+  bool ended = false;   ///< no frame will follow
   bool taring = false;
-  std::string recording;            ///< file; empty: none
+  std::string recording;             ///< file; empty: none
   LiveSinkStatistics recorded = {};  ///< of that file
-  std::string message;              ///< about the last tare or recording
-  std::uint64_t messages = 0;       ///< how many there were
+  std::string message;               ///< about the last tare or recording
+  std::uint64_t messages = 0;        ///< how many there were
 };
 
 /// What a user can do with a sensor.
@@ -45,8 +45,8 @@ struct LiveOptions {
   std::function<bool()> stop = {};               ///< gives up waiting for the first frame
 };
 
-/// Solves every frame of a sensor as it arrives, by a Pipeline in a thread of its own, and hands the
-/// newest to the display; the stream counts frames for which the program is late. The time of a
+/// Solves every frame of a sensor as it arrives, by a Pipeline in a thread of its own, and hands
+/// the newest to the display; the stream counts frames for which the program is late. The time of a
 /// field is that of its arrival since the player began.
 class LivePlayer final : public Player, public LiveControl {
  public:

@@ -108,8 +108,9 @@ Colour colour_of(Special special, Theme theme) {
 
 const char* name_of(Special special) {
   static constexpr std::array<const char*, kSpecials> kNames = {
-      "no contact", "saturated", "inconsistent", "ambiguous",        "from neighbours", "region 1",
-      "region 2",   "region 3",  "region 4",     "opposite sensels", "determined",       "no reading"};
+      "no contact",      "saturated",        "inconsistent", "ambiguous",
+      "from neighbours", "region 1",         "region 2",     "region 3",
+      "region 4",        "opposite sensels", "determined",   "no reading"};
   return kNames.at(static_cast<std::size_t>(special));
 }
 

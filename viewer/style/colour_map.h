@@ -30,8 +30,8 @@ inline constexpr std::size_t kColours = 256;
 
 /// Colours outside every map, for classes and for pillars without a value. Colours of one legend
 /// differ from each other, also for colour-blind readers, and (except the quiet ones, idle and
-/// no_reading) from all entries of the maps, by at least 10 in CIE dE2000. Region 1 and determined, region 3 and ambiguous, opposite
-/// and inconsistent share a colour each.
+/// no_reading) from all entries of the maps, by at least 10 in CIE dE2000. Region 1 and determined,
+/// region 3 and ambiguous, opposite and inconsistent share a colour each.
 enum class Special : std::uint8_t {
   idle,
   saturated,

@@ -10,7 +10,7 @@ Layout layout_of(double width, double height, const RenderSettings& settings) {
   const double top = 34 * unit;
   const double bottom = 40 * unit;
   const double left = 58 * unit;
-  const double right = 176 * unit;
+  const double right = (settings.colour_bar ? 24 + kColourBarWidth : 24) * unit;
   Layout layout;
   layout.plot = {left, top, std::max(width - left - right, 1.0),
                  std::max(height - top - bottom, 1.0)};

@@ -28,6 +28,7 @@ struct RenderSettings {
   double arrow_cell = 14;  ///< least width of an arrow's cell, pixels at scale 1
   double scale = 1;        ///< pixels of the display per nominal pixel
   bool legend = true;      ///< axes, colour bar, legends and title
+  bool colour_bar = true;  ///< of these, colour bar and legends
   std::string title;
   friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
 };
@@ -38,6 +39,9 @@ struct Layout {
   Viewport bar;     ///< the colour bar
   Viewport legend;  ///< the meaning of colours and arrows
 };
+/// The difference that RenderSettings::colour_bar makes to the width of the plot, nominal pixels.
+inline constexpr double kColourBarWidth = 152;
+
 [[nodiscard]] Layout layout_of(double width, double height, const RenderSettings& settings);
 
 /// Pillars along an arrow's cell: the least of 1, 2, 3, 4, 6, 8, 12, 16, ... for which the cell is

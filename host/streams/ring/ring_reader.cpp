@@ -43,8 +43,7 @@ T RingReader::load(std::size_t offset) const {
 }
 
 bool RingReader::open() {
-  if (segment_.is_open() || attach()) return true;
-  return false;
+  return segment_.is_open() || attach();
 }
 
 /// Opens the segment of the name; false if there is none yet, or none that fits.

@@ -34,16 +34,15 @@ RingWriter::RingWriter(const std::string& name, const RingLayout& layout, std::u
     : name_("shm:" + name), segment_name_(segment_name(name)) {
   const auto content = content_bytes(layout);
   if (!content) throw Error(name_, "the skin is too large for a ring", "use a smaller one");
-  PillarfieldRing wanted = {};
-  wanted.magic = PILLARFIELD_RING_MAGIC;
-  wanted.kind = layout.kind;
-  wanted.rows = layout.rows;
-  wanted.cols = layout.cols;
-  wanted.type = layout.type;
-  wanted.slots = slots;
-  wanted.slot_bytes = (*content + 63) / 64 * 64;
+  layout_.magic = PILLARFIELD_RING_MAGIC;
+  layout_.kind = layout.kind;
+  layout_.rows = layout.rows;
+  layout_.cols = layout.cols;
+  layout_.type = layout.type;
+  layout_.slots = slots;
+  layout_.slot_bytes = (*content + 63) / 64 * 64;
   // Another process may unlink the segment between two steps.
-  for (int attempts = 0; !open(wanted); ++attempts) {
+  for (int attempts = 0; !open(); ++attempts) {
     if (attempts == 100) throw Error(name_, "is unlinked again and again", "give another name");
   }
   number_ = ring().published;
@@ -58,7 +57,7 @@ PillarfieldRing& RingWriter::ring() const {
 }
 
 /// Opens or creates the segment of the name; false if it must be tried again.
-bool RingWriter::open(const PillarfieldRing& wanted) {
+bool RingWriter::open() {
   segment_ = Descriptor(shm_open(segment_name_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600));
   struct stat status = {};
   if (!segment_.is_open() || fstat(segment_.get(), &status) != 0 || status.st_uid != geteuid()) {
@@ -67,21 +66,21 @@ bool RingWriter::open(const PillarfieldRing& wanted) {
   if (flock(segment_.get(), LOCK_EX | LOCK_NB) != 0) {
     throw Error(name_, "another program writes this ring", "give another name");
   }
-  const std::uint64_t bytes = sizeof wanted + wanted.slots * wanted.slot_bytes;
+  const std::uint64_t bytes = sizeof layout_ + layout_.slots * layout_.slot_bytes;
   fstat(segment_.get(), &status);
   if (status.st_nlink == 0) return false;
   const auto size = static_cast<std::uint64_t>(status.st_size);
-  if (size == 0) create(wanted);
+  if (size == 0) create(bytes);
   memory_ = Mapping(segment_, bytes, true);
   if (memory_.data() == nullptr) throw Error(name_, std::strerror(errno), "free some memory");
   if (size == 0) {
-    PillarfieldRing unfinished = wanted;
+    PillarfieldRing unfinished = layout_;
     unfinished.magic = 0;
     ring() = unfinished;
     store(ring().magic, PILLARFIELD_RING_MAGIC);
     return true;
   }
-  if (size == bytes && std::memcmp(&ring(), &wanted, offsetof(PillarfieldRing, session)) == 0) {
+  if (size == bytes && std::memcmp(&ring(), &layout_, offsetof(PillarfieldRing, session)) == 0) {
     return true;
   }
   shm_unlink(segment_name_.c_str());
@@ -89,9 +88,9 @@ bool RingWriter::open(const PillarfieldRing& wanted) {
 }
 
 /// Allocates the memory of a new segment.
-void RingWriter::create(const PillarfieldRing& wanted) {
-  const auto bytes = static_cast<off_t>(sizeof wanted + wanted.slots * wanted.slot_bytes);
-  if (const int failure = posix_fallocate(segment_.get(), 0, bytes); failure != 0) {
+void RingWriter::create(std::uint64_t bytes) {
+  const int failure = posix_fallocate(segment_.get(), 0, static_cast<off_t>(bytes));
+  if (failure != 0) {
     shm_unlink(segment_name_.c_str());
     throw Error(name_, fmt::format("{} bytes of shared memory: {}", bytes, std::strerror(failure)),
                 "free some of /dev/shm");
@@ -99,15 +98,15 @@ void RingWriter::create(const PillarfieldRing& wanted) {
 }
 
 std::span<std::byte> RingWriter::begin() {
-  std::byte* const slot = memory_.data() + slot_offset(ring(), number_);
+  std::byte* const slot = memory_.data() + slot_offset(layout_, number_);
   std::atomic_ref(*reinterpret_cast<std::uint64_t*>(slot))
       .store(2 * number_ + 1, std::memory_order_relaxed);
   std::atomic_thread_fence(std::memory_order_release);
-  return {slot, ring().slot_bytes};
+  return {slot, layout_.slot_bytes};
 }
 
 void RingWriter::publish() {
-  std::byte* const slot = memory_.data() + slot_offset(ring(), number_);
+  std::byte* const slot = memory_.data() + slot_offset(layout_, number_);
   store(*reinterpret_cast<std::uint64_t*>(slot), 2 * number_ + 2);
   ++number_;
   store(ring().published, number_);

@@ -29,13 +29,14 @@ class RingWriter {
   void close();
 
  private:
-  [[nodiscard]] bool open(const PillarfieldRing& wanted);
-  void create(const PillarfieldRing& wanted);
+  [[nodiscard]] bool open();
+  void create(std::uint64_t bytes);
   [[nodiscard]] PillarfieldRing& ring() const;
 
   std::string name_;
   std::string segment_name_;
   Descriptor segment_;
+  PillarfieldRing layout_ = {};  ///< ours; nobody changes it
   Mapping memory_;
   std::uint64_t number_ = 0;  ///< of the next publication
 };

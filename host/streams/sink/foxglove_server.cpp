@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <semaphore>
@@ -262,6 +263,7 @@ struct FoxgloveServer::State {
   State(const SocketAddress& address, const std::string& target, const ServerLimits& limits);
   ~State();
 
+  void serve() noexcept;
   void accept();
   void take(tcp::socket socket);
   /// Runs `action` in the server's thread, and waits for it.
@@ -296,7 +298,7 @@ FoxgloveServer::State::State(const SocketAddress& address, const std::string& ta
   accept();
   thread = std::thread([this] {
     yield_to_other_threads();
-    context.run();
+    serve();
   });
 }
 
@@ -304,6 +306,16 @@ FoxgloveServer::State::~State() {
   context.stop();
   thread.join();
   hub.sessions.clear();
+}
+
+/// An error without memory, say, ends the operation of one client, whose timeout follows.
+void FoxgloveServer::State::serve() noexcept {
+  while (!context.stopped()) {
+    try {
+      context.run();
+    } catch (const std::exception&) {
+    }
+  }
 }
 
 void FoxgloveServer::State::accept() {
@@ -334,11 +346,17 @@ void FoxgloveServer::State::take(tcp::socket socket) {
 
 void FoxgloveServer::State::run(const std::function<void()>& action) {
   std::binary_semaphore done(0);
+  std::exception_ptr error;
   asio::post(context, [&] {
-    action();
+    try {
+      action();
+    } catch (...) {
+      error = std::current_exception();
+    }
     done.release();
   });
   done.acquire();
+  if (error) std::rethrow_exception(error);
 }
 
 bool FoxgloveServer::State::all(bool (*condition)(const Session&)) {

@@ -60,7 +60,8 @@ FrameParts FoxgloveConsumer::wants(const SolvedFrame& frame) {
   // Contacts come with the time, too, since a frame without parts is skipped.
   parts.contacts =
       (wanted & contact_topics()).any() || wanted[topic::kArrows] || wanted[topic::kTime];
-  if (frame.arrived - last_picture_ < kPictureInterval) return parts;
+  const bool has_arrival = frame.arrived.count() != 0;
+  if (has_arrival && frame.arrived - last_picture_ < kPictureInterval) return parts;
   parts.forces = wanted[topic::kNormal] || wanted[topic::kForces];
   parts.readings = wanted[topic::kRaw];
   if (parts.forces || parts.readings) last_picture_ = frame.arrived;

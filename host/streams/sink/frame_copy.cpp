@@ -7,9 +7,13 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kUsualContacts = 256;
-
 std::size_t planes_to_copy(bool all_planes) { return all_planes ? kSolvedPlanes : kForcePlanes; }
+
+/// An assignment of {} would keep the memory.
+template <class Vector>
+void release_memory(Vector& vector) {
+  Vector().swap(vector);
+}
 
 }  // namespace
 
@@ -47,10 +51,22 @@ void FrameCopy::assign(const SolvedFrame& frame, const FrameParts& parts) {
   if (parts.readings && frame.readings.data != nullptr) copy_readings(frame.readings);
 }
 
-void FrameCopy::trim() {
-  if (contacts_.contacts.capacity() + contacts_.ended.capacity() <= kUsualContacts) return;
-  frame_.contacts = nullptr;
-  contacts_ = {};
+std::size_t FrameCopy::capacity() const {
+  std::size_t bytes = status_.capacity() + readings_.capacity() +
+                      missing_.capacity() * sizeof(SenselBlock) +
+                      contacts_.contacts.capacity() * sizeof(TrackedContact) +
+                      contacts_.ended.capacity() * sizeof(EndedContact);
+  for (const std::vector<float>& plane : planes_) bytes += plane.capacity() * sizeof(float);
+  return bytes;
+}
+
+void FrameCopy::release() {
+  frame_ = {};
+  contacts_ = FrameContacts();
+  release_memory(planes_);
+  release_memory(status_);
+  release_memory(readings_);
+  release_memory(missing_);
 }
 
 void FrameCopy::copy_forces(const ForceFieldView& forces, bool all_planes) {

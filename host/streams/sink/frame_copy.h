@@ -24,11 +24,16 @@ struct FrameParts {
 /// A solved frame that owns its memory, which the next frame reuses.
 class FrameCopy {
  public:
+  FrameCopy() = default;
+  FrameCopy(const FrameCopy&) = delete;  // frame() refers to members
+  FrameCopy& operator=(const FrameCopy&) = delete;
+
   /// Copies parts of a frame; the other parts become empty.
   void assign(const SolvedFrame& frame, const FrameParts& parts);
 
-  /// Releases the memory of an unusual number of contacts.
-  void trim();
+  /// Bytes of memory that it holds, and their release; frame() is empty then.
+  [[nodiscard]] std::size_t capacity() const;
+  void release();
 
   /// A view of the copy, valid until the next assign().
   [[nodiscard]] const SolvedFrame& frame() const { return frame_; }

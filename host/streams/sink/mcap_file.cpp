@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
 #include "pillarfield/error.h"
 #include "pillarfield/version.h"
@@ -46,7 +47,10 @@ void McapBytes::put_text(std::string_view text) {
 }
 
 void McapBytes::put_bytes(std::span<const std::byte> bytes) {
-  bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  if (bytes.empty()) return;
+  const std::size_t start = bytes_.size();
+  bytes_.resize(start + bytes.size());
+  std::memcpy(bytes_.data() + start, bytes.data(), bytes.size());
 }
 
 void McapBytes::put_record(std::uint8_t type, const McapBytes& content) {

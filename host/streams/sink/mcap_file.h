@@ -20,8 +20,7 @@ class McapBytes {
  public:
   template <class T>
   void put(T value) {
-    const auto* const bytes = reinterpret_cast<const std::byte*>(&value);
-    bytes_.insert(bytes_.end(), bytes, bytes + sizeof value);
+    put_bytes(std::as_bytes(std::span(&value, 1)));
   }
   void put_text(std::string_view text);
   void put_bytes(std::span<const std::byte> bytes);

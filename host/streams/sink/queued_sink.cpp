@@ -14,11 +14,14 @@ QueuedSink::QueuedSink(std::string name, std::unique_ptr<SinkConsumer> consumer,
     : name_(std::move(name)),
       limits_(limits),
       consumer_(std::move(consumer)),
-      slots_(std::max<std::size_t>(limits.frames, 1)),
-      thread_([this] {
-        yield_to_other_threads();
-        run();
-      }) {}
+      slots_(std::max<std::size_t>(limits.frames, 1)) {
+  free_.reserve(slots_.size());
+  for (Slot& slot : slots_) free_.push_back(&slot);
+  thread_ = std::thread([this] {
+    yield_to_other_threads();
+    run();
+  });
+}
 
 QueuedSink::~QueuedSink() { end_thread(End::abandoned); }
 
@@ -26,34 +29,47 @@ void QueuedSink::append(const SolvedFrame& frame) {
   const FrameParts parts = consumer_->wants(frame);
   if (!parts.any()) return;
   const std::size_t bytes = bytes_of(frame, parts);
-  Slot* const slot = free_slot(bytes);
+  Slot* const slot = take_slot(bytes);
   if (slot == nullptr) return;
+  slot->bytes = bytes;
   try {
     slot->copy.assign(frame, parts);
+    const std::scoped_lock lock(mutex_);
+    waiting_.push_back(slot);
+    waiting_bytes_ += bytes;
   } catch (const std::exception&) {  // no memory
     const std::scoped_lock lock(mutex_);
     ++dropped_;
+    free_slot(*slot);
     return;
-  }
-  slot->bytes = bytes;
-  {
-    const std::scoped_lock lock(mutex_);
-    ++waiting_;
-    waiting_bytes_ += bytes;
   }
   changed_.notify_one();
 }
 
 /// Returns null, and counts the frame as dropped, if it may not wait.
-QueuedSink::Slot* QueuedSink::free_slot(std::size_t bytes) {
+QueuedSink::Slot* QueuedSink::take_slot(std::size_t bytes) {
   const std::scoped_lock lock(mutex_);
   const bool is_full =
-      waiting_ == slots_.size() || (waiting_ > 0 && waiting_bytes_ + bytes > limits_.bytes);
+      free_.empty() || (!waiting_.empty() && waiting_bytes_ + bytes > limits_.bytes);
   if (is_full || end_ != End::none || !failure_.empty()) {
     ++dropped_;
     return nullptr;
   }
-  return &slots_[(first_ + waiting_) % slots_.size()];
+  Slot* const slot = free_.back();
+  free_.pop_back();
+  free_bytes_ -= slot->capacity;
+  return slot;
+}
+
+/// Takes a slot back, with its memory if that is within the limits. The mutex is locked.
+void QueuedSink::free_slot(Slot& slot) {
+  slot.capacity = slot.copy.capacity();
+  if (waiting_bytes_ + free_bytes_ + slot.capacity > limits_.bytes) {
+    slot.copy.release();
+    slot.capacity = 0;
+  }
+  free_bytes_ += slot.capacity;
+  free_.push_back(&slot);
 }
 
 void QueuedSink::report(const HealthReport& health) {
@@ -100,7 +116,8 @@ void QueuedSink::run() {
 void QueuedSink::fail(const std::string& reason) {
   const std::scoped_lock lock(mutex_);
   if (failure_.empty()) failure_ = reason;
-  dropped_ += std::exchange(waiting_, 0);
+  dropped_ += waiting_.size();
+  waiting_.clear();
   waiting_bytes_ = 0;
 }
 
@@ -109,13 +126,13 @@ void QueuedSink::work() {
   std::unique_lock lock(mutex_);
   while (failure_.empty()) {
     const bool has_work = changed_.wait_for(
-        lock, kIdle, [&] { return waiting_ > 0 || health_ || end_ != End::none; });
+        lock, kIdle, [&] { return !waiting_.empty() || health_ || end_ != End::none; });
     if (health_) {
       const HealthReport health = *std::exchange(health_, std::nullopt);
       lock.unlock();
       consumer_->report(health);
       lock.lock();
-    } else if (waiting_ > 0) {
+    } else if (!waiting_.empty()) {
       consume_oldest(lock);
     } else if (has_work) {
       break;
@@ -131,15 +148,14 @@ void QueuedSink::work() {
 }
 
 void QueuedSink::consume_oldest(std::unique_lock<std::mutex>& lock) {
-  Slot& slot = slots_[first_];
+  Slot& slot = *waiting_.front();
   lock.unlock();
   const bool arrived = consumer_->consume(slot.copy.frame());
-  slot.copy.trim();
   lock.lock();
   ++(arrived ? frames_ : dropped_);
-  first_ = (first_ + 1) % slots_.size();
-  --waiting_;
+  waiting_.pop_front();
   waiting_bytes_ -= slot.bytes;
+  free_slot(slot);
 }
 
 }  // namespace pillarfield

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -40,7 +41,8 @@ class SinkConsumer {
   virtual void add_to(LiveSinkStatistics& statistics) const { static_cast<void>(statistics); }
 };
 
-/// Limits of the frames that wait. One frame may always wait, however large.
+/// Limits of the frames that wait, and of the memory kept for later ones. One frame may always
+/// wait, however large.
 struct QueueLimits {
   std::size_t frames = 512;
   std::size_t bytes = std::size_t{64} << 20;
@@ -67,11 +69,13 @@ class QueuedSink final : public LiveSink {
  private:
   struct Slot {
     FrameCopy copy;
-    std::size_t bytes = 0;
+    std::size_t bytes = 0;     // of the frame
+    std::size_t capacity = 0;  // of the copy while it is free
   };
   enum class End : std::uint8_t { none, abandoned, finished };
 
-  [[nodiscard]] Slot* free_slot(std::size_t bytes);
+  [[nodiscard]] Slot* take_slot(std::size_t bytes);
+  void free_slot(Slot& slot);
   void run();
   void work();
   void consume_oldest(std::unique_lock<std::mutex>& lock);
@@ -81,12 +85,13 @@ class QueuedSink final : public LiveSink {
   const std::string name_;
   const QueueLimits limits_;
   std::unique_ptr<SinkConsumer> consumer_;
-  std::vector<Slot> slots_;  // a ring; the thread reads slots_[first_]
+  std::vector<Slot> slots_;
 
   mutable std::mutex mutex_;  // of the members below
   std::condition_variable changed_;
-  std::size_t first_ = 0;
-  std::size_t waiting_ = 0;
+  std::vector<Slot*> free_;  // the last freed is taken first, so that few hold memory
+  std::size_t free_bytes_ = 0;
+  std::deque<Slot*> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::optional<HealthReport> health_;
   End end_ = End::none;

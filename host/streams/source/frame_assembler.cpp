@@ -154,7 +154,7 @@ void FrameAssembler::store(Slot& slot, const Packet& packet) {
     const SenselBlock place = sensels_of_block(shape_, number);
     for (std::uint32_t row = 0; row < place.rows; ++row) {
       std::memcpy(&readings[(place.first_row + row) * shape_.row_bytes() + place.first_col * size],
-                  block + 8 + row * PILLARFIELD_BLOCK_SIDE * size, place.cols * size);
+                  block + 8 + row * size * PILLARFIELD_BLOCK_SIDE, place.cols * size);
     }
   }
 }

@@ -70,7 +70,7 @@ std::uint32_t FrameShape::block_cols() const { return (cols + kSide - 1) / kSide
 
 std::uint32_t FrameShape::blocks() const { return (rows + kSide - 1) / kSide * block_cols(); }
 
-std::size_t FrameShape::block_bytes() const { return kBlockHead + kSide * kSide * size_of(type); }
+std::size_t FrameShape::block_bytes() const { return kBlockHead + size_of(type) * kSide * kSide; }
 
 std::size_t FrameShape::most_packet_bytes() const {
   return std::max(bytes(), blocks() * block_bytes()) + kChecksumBytes;

@@ -7,7 +7,7 @@ namespace pillarfield {
 
 double SensorClock::seconds(std::uint64_t time_ns, std::chrono::nanoseconds arrived,
                             bool restarted) {
-  constexpr std::uint64_t kMostAhead_ns = 1'000'000'000;
+  constexpr std::uint64_t kMostAheadNs = 1'000'000'000;
   const std::uint64_t before_ns = std::exchange(last_ns_, time_ns);
   const auto host =
       static_cast<std::uint64_t>(std::max<std::int64_t>((arrived - last_arrived_).count(), 0));
@@ -15,7 +15,7 @@ double SensorClock::seconds(std::uint64_t time_ns, std::chrono::nanoseconds arri
   if (!std::exchange(started_, true)) return 0;
   const bool comparable = !restarted && time_ns != 0 && before_ns != 0;
   const bool jumped =
-      comparable && (time_ns < before_ns || time_ns - before_ns > host + kMostAhead_ns);
+      comparable && (time_ns < before_ns || time_ns - before_ns > host + kMostAheadNs);
   if (jumped) ++jumps_;
   // At least 1 ns, since files of frames need times that rise.
   elapsed_ns_ += std::max<std::uint64_t>(comparable && !jumped ? time_ns - before_ns : host, 1);

@@ -5,7 +5,7 @@
 #include "streams/source/frame_assembler.h"
 #include "tests/streams/source/damage_plan.h"
 
-namespace pillarfield::testing {
+namespace pillarfield::streams_test {
 
 using namespace std::chrono_literals;
 
@@ -104,4 +104,4 @@ struct AssemblerRun {
   std::vector<std::string> readings;
 };
 
-}  // namespace pillarfield::testing
+}  // namespace pillarfield::streams_test

@@ -10,39 +10,47 @@
 #include "pillarfield/frame_stream.h"
 #include "tests/streams/source/sent_frames.h"
 
-namespace pillarfield::testing {
+namespace pillarfield::streams_test {
 
-/// The packets of some frames in the order in which they arrive.
+using Arrivals = std::multimap<double, SentPacket>;
+
+/// Drops, damages, delays or duplicates a packet that is sent at `time`, in frame intervals, or
+/// lets it pass.
+inline void send(const SentPacket& packet, double time, std::mt19937& random, bool reorders,
+                 Arrivals& arrivals) {
+  const std::uint64_t fate = random() % 40;
+  const double delay = reorders ? 0.1 * static_cast<double>(random() % 60) : 0;
+  if (fate == 0) return;
+  if (fate == 1) {
+    arrivals.emplace(time, damaged(packet, random));
+    return;
+  }
+  if (fate <= 3) time += delay;
+  if (fate == 4) arrivals.emplace(time + delay, packet);
+  arrivals.emplace(time, packet);
+}
+
+/// The packets of some frames in the order in which they arrive. The first and the last frame
+/// arrive whole, so that begin and end are known.
 inline std::vector<SentPacket> damage(const std::vector<std::vector<SentPacket>>& frames,
                                       std::mt19937& random, bool reorders) {
-  std::multimap<double, SentPacket> by_time;
+  Arrivals arrivals;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-    for (std::size_t part = 0; part < frames[frame].size(); ++part) {
-      const SentPacket& packet = frames[frame][part];
-      double time = static_cast<double>(frame) +
-                    static_cast<double>(part) / static_cast<double>(frames[frame].size());
-      // The first and the last frame arrive, so that the plan's begin and end are known.
-      const bool safe = frame == 0 || frame + 1 == frames.size();
-      const std::uint64_t fate = safe ? 99 : random() % 40;
-      const double delay = 0.1 * static_cast<double>(random() % 60);
-      if (fate == 0) continue;
-      if (fate == 1) {
-        by_time.emplace(time, damaged(packet, random));
-        continue;
+    const auto& packets = frames[frame];
+    const bool safe = frame == 0 || frame + 1 == frames.size();
+    if (!safe && random() % 20 == 0) continue;  // All of it is lost.
+    for (std::size_t part = 0; part < packets.size(); ++part) {
+      const double time = static_cast<double>(frame) +
+                          static_cast<double>(part) / static_cast<double>(packets.size());
+      if (safe) {
+        arrivals.emplace(time, packets[part]);
+      } else {
+        send(packets[part], time, random, reorders, arrivals);
       }
-      if (fate <= 3 && reorders) time += delay;
-      if (fate == 4) by_time.emplace(time + (reorders ? delay : 0), packet);
-      by_time.emplace(time, packet);
-    }
-    const bool vanishes = random() % 20 == 0;
-    if (vanishes && frame > 0 && frame + 1 < frames.size()) {
-      std::erase_if(by_time, [&](const auto& entry) {
-        return entry.second.header.sequence == frames[frame][0].header.sequence;
-      });
     }
   }
   std::vector<SentPacket> arriving;
-  for (const auto& [time, packet] : by_time) arriving.push_back(packet);
+  for (const auto& [time, packet] : arrivals) arriving.push_back(packet);
   return arriving;
 }
 
@@ -92,4 +100,4 @@ inline Expected expect(const std::vector<SentPacket>& arriving, std::uint64_t wi
   return expected;
 }
 
-}  // namespace pillarfield::testing
+}  // namespace pillarfield::streams_test

@@ -7,10 +7,8 @@
 #include "tests/pipeline/allocation_count.h"
 #include "tests/streams/source/assembler_run.h"
 
-namespace pillarfield {
+namespace pillarfield::streams_test {
 namespace {
-
-using namespace pillarfield::testing;
 
 constexpr FrameShape kShape = {SenselType::u16, 20, 12};
 
@@ -45,13 +43,13 @@ void run_plan(unsigned seed, PacketOrder order) {
 }
 
 TEST(FrameAssembler, CountsEveryDamageOfAPlan) {
-  for (unsigned seed = 0; seed < 300 && !::testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
     run_plan(seed, PacketOrder::not_kept);
   }
 }
 
 TEST(FrameAssembler, CountsEveryDamageWherePacketsKeepTheirOrder) {
-  for (unsigned seed = 0; seed < 300 && !::testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < 300 && !testing::Test::HasFailure(); ++seed) {
     run_plan(seed, PacketOrder::kept);
   }
 }
@@ -99,7 +97,7 @@ TEST(FrameAssembler, BlocksChangeOnlyTheirSensels) {
   for (std::uint32_t row = 0; row < kShape.rows; ++row) {
     for (std::uint32_t col = 0; col < kShape.cols; ++col) {
       const std::uint32_t block = row / 8 * 2 + col / 8;
-      const std::size_t place = (row * kShape.cols + col) * 2;
+      const std::size_t place = (std::size_t{row} * kShape.cols + col) * 2;
       const std::string& source = block == 3 || block == 4 ? after : before;
       ASSERT_EQ(run.readings[1].substr(place, 2), source.substr(place, 2)) << row << ' ' << col;
     }
@@ -306,4 +304,4 @@ TEST(FrameAssembler, RateIsThatOfTheLastSecond) {
 }
 
 }  // namespace
-}  // namespace pillarfield
+}  // namespace pillarfield::streams_test

@@ -6,10 +6,8 @@
 
 #include "tests/streams/source/sent_frames.h"
 
-namespace pillarfield {
+namespace pillarfield::streams_test {
 namespace {
-
-using namespace pillarfield::testing;
 
 constexpr FrameShape kParsed = {SenselType::u8, 18, 14};
 
@@ -27,8 +25,7 @@ std::uint64_t parse(const std::string& bytes, std::mt19937& random, Found found)
   };
   for (std::size_t fed = 0; fed < bytes.size();) {
     const auto space = parser.space();
-    const std::size_t size =
-        std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
+    const auto size = std::min<std::size_t>({bytes.size() - fed, space.size(), 1 + random() % 200});
     std::memcpy(space.data(), &bytes[fed], size);
     parser.commit(size);
     fed += size;
@@ -136,4 +133,4 @@ TEST(PacketParser, AHeaderAloneNeverAllocatesMuch) {
 }
 
 }  // namespace
-}  // namespace pillarfield
+}  // namespace pillarfield::streams_test

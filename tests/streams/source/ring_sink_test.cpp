@@ -12,10 +12,8 @@
 #include "tests/base/message.h"
 #include "tests/streams/source/assembler_run.h"
 
-namespace pillarfield {
+namespace pillarfield::streams_test {
 namespace {
-
-using namespace pillarfield::testing;
 
 std::string results_name() { return "pillarfield-results-" + std::to_string(getpid()); }
 
@@ -42,6 +40,13 @@ struct Solved {
   ForceField field;
   SolvedFrame frame;
 };
+
+template <class T>
+std::vector<T> values_at(const std::byte* place, std::size_t count) {
+  std::vector<T> values(count);
+  std::memcpy(values.data(), place, count * sizeof(T));
+  return values;
+}
 
 PillarfieldResultSlot head_of(const std::byte* slot) {
   PillarfieldResultSlot head;
@@ -73,11 +78,11 @@ TEST(RingSink, PublishesPlanesTimesAndTotal) {
     EXPECT_EQ(head.total.normal_n,
               std::accumulate(solved.field.normal.begin(), solved.field.normal.end(), 0.0));
     EXPECT_TRUE(std::isnan(head.total.friction));
-    const auto* const planes = slot + sizeof head;
-    EXPECT_EQ(std::memcmp(planes, solved.field.shear_x.data(), 60), 0);
-    EXPECT_EQ(std::memcmp(planes + 60, solved.field.shear_y.data(), 60), 0);
-    EXPECT_EQ(std::memcmp(planes + 120, solved.field.normal.data(), 60), 0);
-    EXPECT_EQ(std::memcmp(planes + 180, solved.field.status.data(), 15), 0);
+    const std::byte* const planes = slot + sizeof head;
+    EXPECT_EQ(values_at<float>(planes, 15), solved.field.shear_x);
+    EXPECT_EQ(values_at<float>(planes + 60, 15), solved.field.shear_y);
+    EXPECT_EQ(values_at<float>(planes + 120, 15), solved.field.normal);
+    EXPECT_EQ(values_at<std::uint8_t>(planes + 180, 15), solved.field.status);
   }
   EXPECT_EQ(sink->statistics().frames, 20);
   sink->finish();
@@ -131,4 +136,4 @@ TEST(RingSink, RefusesANameInUse) {
 }
 
 }  // namespace
-}  // namespace pillarfield
+}  // namespace pillarfield::streams_test

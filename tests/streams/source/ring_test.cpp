@@ -16,10 +16,9 @@
 #include "tests/base/message.h"
 #include "tests/streams/source/source_run.h"
 
-namespace pillarfield {
+namespace pillarfield::streams_test {
 namespace {
 
-using namespace pillarfield::testing;
 using core_test::message_of;
 
 constexpr FrameShape kShape = {SenselType::u8, 40, 30};
@@ -213,7 +212,7 @@ TEST(Ring, SurvivesKilledReaders) {
   Child last([&] {
     const auto stream = open_live_source(name.source(), {});
     read_until(*stream, 50'000);
-    _exit(::testing::Test::HasFailure() ? 1 : 0);
+    _exit(testing::Test::HasFailure() ? 1 : 0);
   });
   for (int i = 0; i < 100; ++i) {
     publish(writer, frame_packet(kShape, 50'000));
@@ -358,6 +357,20 @@ TEST(HostileRing, RandomContentsNeverDeliverAFrameNorHang) {
   }
 }
 
+TEST(HostileRing, CannotMisleadItsWriter) {
+  const Name name;
+  RingWriter writer(name.text(), kLayout, 4);
+  Segment segment(name, 64 + 4 * 1344);
+  std::mt19937_64 random(1);
+  for (std::uint64_t round = 0; round < 200; ++round) {
+    PillarfieldRing ring = {};
+    ring.slots = static_cast<std::uint32_t>(random() % 3);
+    ring.slot_bytes = ring.published = random();
+    segment.put(0, ring);
+    publish(writer, frame_packet(kShape, round));
+  }
+}
+
 TEST(HostileRing, MayShrinkAtAnyMoment) {
   const Name name;
   Segment segment(name, 64 + 4 * 1344);
@@ -380,4 +393,4 @@ TEST(HostileRing, MayShrinkAtAnyMoment) {
 }
 
 }  // namespace
-}  // namespace pillarfield
+}  // namespace pillarfield::streams_test

@@ -12,7 +12,7 @@
 
 #include "streams/source/packet.h"
 
-namespace pillarfield::testing {
+namespace pillarfield::streams_test {
 
 /// A packet as bytes, and what it was before it was damaged.
 struct SentPacket {
@@ -153,4 +153,4 @@ inline SentPacket damaged(SentPacket packet, std::mt19937& random) {
   return packet;
 }
 
-}  // namespace pillarfield::testing
+}  // namespace pillarfield::streams_test

@@ -7,7 +7,7 @@
 #include "pillarfield/live.h"
 #include "tests/streams/source/assembler_run.h"
 
-namespace pillarfield::testing {
+namespace pillarfield::streams_test {
 
 /// Writes all bytes; for pipes that have room for them.
 inline void write_all(int descriptor, const std::string& bytes) {
@@ -36,4 +36,4 @@ inline std::string bytes_of(const StreamedFrame& frame) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-}  // namespace pillarfield::testing
+}  // namespace pillarfield::streams_test

@@ -11,10 +11,8 @@
 #include "tests/base/message.h"
 #include "tests/streams/source/source_run.h"
 
-namespace pillarfield {
+namespace pillarfield::streams_test {
 namespace {
-
-using namespace pillarfield::testing;
 
 /// `action` must throw an Error that says `text`.
 template <class Action>
@@ -162,7 +160,7 @@ void run_udp_plan(unsigned seed, int family) {
 }
 
 TEST(UdpSource, CountsEveryDamageOfAPlan) {
-  for (unsigned seed = 0; seed < 12 && !::testing::Test::HasFailure(); ++seed) {
+  for (unsigned seed = 0; seed < 12 && !testing::Test::HasFailure(); ++seed) {
     run_udp_plan(seed, seed % 2 == 0 ? AF_INET : AF_INET6);
   }
 }
@@ -299,4 +297,4 @@ TEST(LiveSource, KnowsItsKinds) {
 }
 
 }  // namespace
-}  // namespace pillarfield
+}  // namespace pillarfield::streams_test

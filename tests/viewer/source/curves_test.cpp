@@ -21,7 +21,8 @@ constexpr PillarRect kWholeSkin{0, 20, 0, 30};
 /// A force that rises with the frame.
 ShownField rising_field(std::uint64_t index) {
   const auto force = static_cast<float>(index + 1);
-  return touched_field(index, 20, 30, {{{2, 9, 12, 14}, force, 0.5F * force, -1}, {{15, 17, 3, 29}}});
+  return touched_field(index, 20, 30,
+                       {{{2, 9, 12, 14}, force, 0.5F * force, -1}, {{15, 17, 3, 29}}});
 }
 
 void expect_equal(const CurvePoint& point, const SelectionSums& sums) {
@@ -34,8 +35,8 @@ void expect_equal(const CurvePoint& point, const SelectionSums& sums) {
 }
 
 TEST(CurvePoint, IsTheSumOfTheSelection) {
-  for (const PillarRect& rect :
-       {kWholeSkin, PillarRect{3, 16, 5, 29}, PillarRect{2, 3, 12, 13}, PillarRect{10, 400, 0, 400}}) {
+  for (const PillarRect& rect : {kWholeSkin, PillarRect{3, 16, 5, 29}, PillarRect{2, 3, 12, 13},
+                                 PillarRect{10, 400, 0, 400}}) {
     expect_equal(curve_point(rising_field(4), rect, kCurvePitch),
                  sums_over(rising_field(4), rect, kCurvePitch));
   }
@@ -67,7 +68,9 @@ TEST(Curves, ThinningKeepsThePeakAndTheNeighboursOfTheWindow) {
   for (std::uint64_t i = 0; i < 1000; ++i) {
     curves.add_total({.time_s = 0.01 * static_cast<double>(i),
                       .index = i,
-                      .normal = i == 457 ? 9.0F : i == 613 ? -2.0F : 1.0F});
+                      .normal = i == 457   ? 9.0F
+                                : i == 613 ? -2.0F
+                                           : 1.0F});
   }
   const auto points = curves.total(0, 100, 50);
   EXPECT_LE(points.size(), 52U);
@@ -125,7 +128,8 @@ TEST(Survey, MeasuresEveryFrameThenNewRectanglesAndNewFrames) {
   const auto total = curves->total(0, 1, 100);
   ASSERT_EQ(total.size(), 20U);
   EXPECT_EQ(total[6].normal, -1) << "stored";
-  EXPECT_FLOAT_EQ(total[7].normal, static_cast<float>(sums_over(rising_field(7), kWholeSkin, 1).normal));
+  EXPECT_FLOAT_EQ(total[7].normal,
+                  static_cast<float>(sums_over(rising_field(7), kWholeSkin, 1).normal));
   const PillarRect pillar{2, 3, 12, 13};
   curves->set_rects(std::vector{pillar});
   survey.look_again();

@@ -62,7 +62,9 @@ TEST(Specials, OfOneLegendAreDistinctForEveryEye) {
           if (first >= second) continue;
           for (const Sight sight : kSights) {
             EXPECT_GE(difference(colour_of(first, theme), colour_of(second, theme), sight),
-                      is_quiet(second) ? 9 : sight == Sight::normal ? 18 : 14)
+                      is_quiet(second)         ? 9
+                      : sight == Sight::normal ? 18
+                                               : 14)
                 << name_of(first) << " and " << name_of(second) << ", sight "
                 << static_cast<int>(sight);
           }

@@ -42,6 +42,8 @@ class Window:
             stdout=subprocess.PIPE, stderr=self.errors, text=True)
         self.id = self.wait_for_window()
         screen.xdotool("windowfocus", "--sync", self.id)
+        if arguments and not str(arguments[0]).startswith(("-", "udp:")):
+            self.wait_for_source()
 
     def wait_for_window(self):
         deadline = time.monotonic() + 60
@@ -55,6 +57,14 @@ class Window:
                 return found[0]
             time.sleep(0.1)
         raise AssertionError("no window came")
+
+    def wait_for_source(self):
+        """Until it is open, as the window's title tells."""
+        deadline = time.monotonic() + 60
+        while "–" not in self.screen.xdotool("getwindowname", self.id):
+            assert self.process.poll() is None, "the viewer ended: " + self.error_text()
+            assert time.monotonic() < deadline, "the source does not open"
+            time.sleep(0.05)
 
     def error_text(self):
         self.errors.seek(0)
@@ -305,7 +315,7 @@ class WidgetTest(WindowTest):
         before = self.shoot("panels_0")
         steps = [("folded", lambda: window.click(1000, 28)),
                  ("unfolded", lambda: window.click(1000, 28)),
-                 ("left", lambda: window.drag((1003, 292), (60, 300))),
+                 ("left", lambda: window.drag((1003, 320), (60, 300))),
                  ("floating", lambda: window.drag((1003, 28), (620, 200))),
                  ("wider", lambda: window.drag((942, 400), (860, 400)))]
         for (name, act) in steps:
@@ -334,7 +344,10 @@ class Sensor(threading.Thread):
         self.start()
 
     def run(self):
-        out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as out:
+            self.send(out)
+
+    def send(self, out):
         number = 0
         while not self.stopping:
             frame = bytearray(32 * 32)
@@ -355,7 +368,7 @@ class Sensor(threading.Thread):
 
 class SourceTest(WindowTest):
     def test_start_page_opens_a_scene_and_remembers_it(self):
-        window = self.open()
+        window = self.open("--paused")
         before = self.shoot("start")
         window.click(230, 191)  # The first scene.
         time.sleep(0.5)

@@ -12,10 +12,12 @@ namespace {
 template <class LookedFor>
 std::filesystem::path first_free(const SourceInfo& source, const std::string& detail,
                                  const char* ending, const LookedFor& looked_for) {
-  // The name of a sensor is no path: "udp:127.0.0.1:4242".
-  std::string stem = source.name == "-" ? "stdin" : source.name;
-  std::ranges::replace(stem, ':', '_');
-  stem = std::filesystem::path(stem).stem().string();
+  std::string stem = std::filesystem::path(source.name).stem().string();
+  if (source.kind == "sensor") {  // No path: "udp:127.0.0.1:4242".
+    stem = source.name == "-" ? "stdin" : source.name;
+    std::ranges::replace_if(
+        stem, [](char c) { return c == ':' || c == '.' || c == '/'; }, '_');
+  }
   if (!detail.empty()) stem += "_" + detail;
   std::filesystem::path path = stem + ending;
   for (int number = 2; std::filesystem::exists(std::filesystem::symlink_status(looked_for(path)));
@@ -41,7 +43,12 @@ FrameWriter::FrameWriter(AppState& state, Kind kind, std::filesystem::path path,
 
 FrameWriter::~FrameWriter() { state_->writing = false; }
 
-bool FrameWriter::wants_picture() const { return state_->field && state_->field->index == next_; }
+bool FrameWriter::wants_picture() const {
+  if (!state_->field || state_->field->index != next_) return false;
+  if (state_->beside == nullptr || state_->beside->live() != nullptr) return true;
+  const std::uint64_t last = state_->beside->info().frames - 1;
+  return state_->beside_field && state_->beside_field->index == std::min(next_, last);
+}
 
 bool FrameWriter::add(const Pixels& pixels) {
   if (video_ != nullptr) {

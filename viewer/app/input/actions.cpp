@@ -127,9 +127,7 @@ void toggle_pin(AppState& state, PillarIndex pillar) {
   number_pins(state);
 }
 
-void select_pillars(AppState& state, const PillarRect& rect) {
-  state.selection = Selection{rect};
-}
+void select_pillars(AppState& state, const PillarRect& rect) { state.selection = Selection{rect}; }
 
 void mark_contact(AppState& state, const FieldPlace& place, const PatchPlace& centre,
                   const PillarRect& extent) {

@@ -142,8 +142,7 @@ constexpr std::array kShortcuts{
              show<Quantity::uncertainty>},
     Shortcut{Group::show, plain(GLFW_KEY_Y), "Y", "parity residual", show<Quantity::parity>},
 
-    Shortcut{Group::show, plain(GLFW_KEY_E), "E", "peak of the normal force",
-             show<Quantity::peak>},
+    Shortcut{Group::show, plain(GLFW_KEY_E), "E", "peak of the normal force", show<Quantity::peak>},
     Shortcut{Group::show, with(kShift, GLFW_KEY_E), "Shift+E", "hold the peak from now on",
              [](const Command& command) { hold_peak(command.state); }},
 
@@ -164,10 +163,9 @@ constexpr std::array kShortcuts{
     Shortcut{Group::view, plain(GLFW_KEY_J), "J", "trail of the centre of pressure", toggle_trails},
     Shortcut{Group::view, plain(GLFW_KEY_W), "W", "the truth beside, or not",
              ask<&PendingActions::truth>},
-    Shortcut{Group::view, plain(GLFW_KEY_I), "I", "times of solving and drawing",
-             [](const Command& command) {
-               command.state.show_counters = !command.state.show_counters;
-             }},
+    Shortcut{
+        Group::view, plain(GLFW_KEY_I), "I", "times of solving and drawing",
+        [](const Command& command) { command.state.show_counters = !command.state.show_counters; }},
     Shortcut{
         Group::view, plain(GLFW_KEY_TAB), "Tab", "panels",
         [](const Command& command) { command.state.show_panels = !command.state.show_panels; }},

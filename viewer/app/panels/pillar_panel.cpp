@@ -106,8 +106,7 @@ std::vector<CurvePoint> points_before(const AppState& state) {
   constexpr std::size_t kMostPoints = 256;
   if (state.curves == nullptr) return {};
   const double now_s = state.field->time_s;
-  auto points =
-      state.curves->of(rect_of(state.pins.back()), now_s - kSeconds, now_s, kMostPoints);
+  auto points = state.curves->of(rect_of(state.pins.back()), now_s - kSeconds, now_s, kMostPoints);
   std::erase_if(points, [&](const CurvePoint& point) { return point.time_s > now_s; });
   return points;
 }

@@ -302,7 +302,8 @@ RegionLimits region_limits(double phi) {
 }
 
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      std::span<const CurvePoint> before, const PanelStyle& style, ImU32 colour, Theme theme) {
+                      std::span<const CurvePoint> before, const PanelStyle& style, ImU32 colour,
+                      Theme theme) {
   const PlotArea area{inside_axes(outer, width_of("90"), style), {-180, 180}, {0, 90}};
   const Viewport& box = area.box;
   const Drawing drawing(list, area, style, theme, values);

@@ -43,6 +43,7 @@ struct RegionLimits {
 
 /// Draws the paper's Figure 3 with a pillar in it, and its directions before.
 void draw_region_plot(ImDrawList& list, const Viewport& outer, const PillarValues& values,
-                      std::span<const CurvePoint> before, const PanelStyle& style, ImU32 colour, Theme theme);
+                      std::span<const CurvePoint> before, const PanelStyle& style, ImU32 colour,
+                      Theme theme);
 
 }  // namespace pillarfield::viewer

@@ -94,9 +94,9 @@ void loading_page(const std::string& source, const std::string& message, const V
   begin_page("loading", area, 0);
   const auto centred = [&](const std::string& words, double line, bool faint) {
     const ImVec2 size = ImGui::CalcTextSize(words.c_str());
-    ImGui::SetCursorPos(ImVec2(std::max(0.5f * (static_cast<float>(area.width) - size.x), 8.0f),
-                               0.5f * static_cast<float>(area.height) +
-                                   static_cast<float>(line) * 1.6f * size.y));
+    ImGui::SetCursorPos(
+        ImVec2(std::max(0.5f * (static_cast<float>(area.width) - size.x), 8.0f),
+               0.5f * static_cast<float>(area.height) + static_cast<float>(line) * 1.6f * size.y));
     if (faint) {
       ImGui::TextDisabled("%s", words.c_str());
     } else {

@@ -56,13 +56,16 @@ Colours colours_of(const PanelStyle& style, Theme theme) {
 
 /// Total force, torque and centre of pressure of the whole skin.
 void add_total(std::vector<Chart>& charts, const Points& points, const Colours& colours) {
-  charts.push_back({"Force", "N",
+  charts.push_back({"Force",
+                    "N",
                     {{"x", points, shear_x_of, colours.x},
                      {"y", points, shear_y_of, colours.y},
                      {"normal", points, normal_of, colours.normal}}});
   charts.push_back({"Torque", "N mm", {{"", points, torque_of, colours.normal}}});
-  charts.push_back({"Centre of pressure", "mm",
-                    {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
+  charts.push_back(
+      {"Centre of pressure",
+       "mm",
+       {{"x", points, centre_x_of, colours.x}, {"y", points, centre_y_of, colours.y}}});
 }
 
 void add_pins(std::vector<Chart>& charts, const AppState& state, const Span& time) {
@@ -84,7 +87,8 @@ void add_selection(std::vector<Chart>& charts, const AppState& state, const Span
   if (!state.selection) return;
   const Points points =
       state.curves->of(state.selection->rect, time.from, time.to, kMostShownPoints);
-  charts.push_back({"Selection", "N",
+  charts.push_back({"Selection",
+                    "N",
                     {{"x", points, shear_x_of, colours.x},
                      {"y", points, shear_y_of, colours.y},
                      {"normal", points, normal_of, colours.normal}}});
@@ -166,8 +170,8 @@ void take_mouse(const Chart& chart, const PlotArea& area, const ChartFrame& fram
   }
   const CurvePoint* const point = nearest(chart.curves.front().points, at_s);
   if (point == nullptr) return;
-  draw_block(*ImGui::GetWindowDrawList(), {area.at({point->time_s, 0}).x, area.box.y, 1, area.box.height},
-             style.faint);
+  draw_block(*ImGui::GetWindowDrawList(),
+             {area.at({point->time_s, 0}).x, area.box.y, 1, area.box.height}, style.faint);
   show_values(chart, at_s);
   if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
     window.reset();
@@ -225,8 +229,7 @@ void draw_charts(const std::vector<Chart>& charts, const ChartFrame& frame,
   const ImVec2 available = ImGui::GetContentRegionAvail();
   const auto wide = static_cast<double>(available.x);
   const double gap = 14 * style.unit;
-  const auto fitting =
-      static_cast<std::size_t>(std::max(wide / (kChartWidth * style.unit), 1.0));
+  const auto fitting = static_cast<std::size_t>(std::max(wide / (kChartWidth * style.unit), 1.0));
   const std::size_t beside = std::min(fitting, charts.size());
   const std::size_t rows = (charts.size() + beside - 1) / beside;
   const double width = (wide - gap * static_cast<double>(beside - 1)) / static_cast<double>(beside);

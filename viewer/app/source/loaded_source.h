@@ -14,10 +14,10 @@ namespace pillarfield::viewer {
 struct LoadedSource {
   std::string name;  ///< as given: a path, or a live source
   std::shared_ptr<Curves> curves;
-  std::unique_ptr<Survey> survey;           ///< fills `curves`; null for a sensor
-  FieldProducer::Opener open_truth;         ///< empty where the truth is not known
-  std::unique_ptr<Player> player;           ///< null: nothing is open
-  std::unique_ptr<Player> beside;           ///< shown at the right; may be null
+  std::unique_ptr<Survey> survey;    ///< fills `curves`; null for a sensor
+  FieldProducer::Opener open_truth;  ///< empty where the truth is not known
+  std::unique_ptr<Player> player;    ///< null: nothing is open
+  std::unique_ptr<Player> beside;    ///< shown at the right; may be null
   bool beside_is_truth = false;
   RenderSettings settings;
 };

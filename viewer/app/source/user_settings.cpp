@@ -92,8 +92,9 @@ std::vector<std::filesystem::path> scenes_at_hand() {
   std::error_code error;
   const std::filesystem::path program =
       std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
-  for (const auto& folder : {std::filesystem::path("scenes"), program / "../share/pillarfield/scenes",
-                             program / "../../../scenes"}) {
+  for (const auto& folder :
+       {std::filesystem::path("scenes"), program / "../share/pillarfield/scenes",
+        program / "../../../scenes"}) {
     std::vector<std::filesystem::path> scenes;
     for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
       if (entry.path().extension() == ".toml") {

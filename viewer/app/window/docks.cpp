@@ -84,15 +84,9 @@ std::vector<PanelId> panels_in(const AppState& state, Dock dock) {
   return ids;
 }
 
-void begin_dock(const char* name, const Viewport& box, int flags = 0) {
-  ImGui::SetNextWindowPos(to_imgui({box.x, box.y}));
-  ImGui::SetNextWindowSize(to_imgui({box.width, box.height}));
-  ImGui::Begin(name, nullptr, fixed_window_flags() | flags);
-}
-
 void draw_column(const Command& command, const char* name, Dock dock, const Viewport& box) {
   if (box.width < 1) return;
-  begin_dock(name, box);
+  begin_part(name, box, command.state.settings.theme);
   for (const PanelId id : panels_in(command.state, dock)) docked_panel(command, id);
   ImGui::End();
 }
@@ -100,7 +94,8 @@ void draw_column(const Command& command, const char* name, Dock dock, const View
 /// Panels side by side.
 void draw_row(const Command& command, const Viewport& box) {
   if (box.height < 1) return;
-  begin_dock("bottom", box, ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
+  begin_part("bottom", box, command.state.settings.theme,
+             ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
   const std::vector<PanelId> ids = panels_in(command.state, Dock::bottom);
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const auto count = static_cast<float>(std::max<std::size_t>(ids.size(), 1));
@@ -119,8 +114,7 @@ void draw_window(const Command& command, PanelId id, double scale) {
   PanelLayout& layout = command.state.panels;
   Viewport& box = place_of(layout, id).window;
   ImGui::SetNextWindowPos(to_imgui({box.x * scale, box.y * scale}), ImGuiCond_Appearing);
-  ImGui::SetNextWindowSize(to_imgui({box.width * scale, box.height * scale}),
-                           ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize(to_imgui({box.width * scale, box.height * scale}), ImGuiCond_Appearing);
   bool stays = true;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 4);
@@ -140,13 +134,13 @@ void draw_window(const Command& command, PanelId id, double scale) {
 ImVec2 drag_edge(const char* name, const Viewport& box, Theme theme) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
-  begin_dock(name, box, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar);
+  begin_part(name, box, theme, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar);
   ImGui::InvisibleButton("edge", to_imgui({box.width, box.height}));
   const bool held = ImGui::IsItemActive();
   if (held || ImGui::IsItemHovered()) {
-    ImGui::GetWindowDrawList()->AddRectFilled(
-        to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}),
-        palette_of(theme).accent);
+    ImGui::GetWindowDrawList()->AddRectFilled(to_imgui({box.x, box.y}),
+                                              to_imgui({box.x + box.width, box.y + box.height}),
+                                              palette_of(theme).accent);
   }
   ImGui::End();
   ImGui::PopStyleVar(2);
@@ -236,6 +230,23 @@ void drop_panel(AppState& state, const Screen& screen) {
 }
 
 }  // namespace
+
+void begin_part(const char* name, const Viewport& box, Theme theme, int flags) {
+  ImGui::SetNextWindowPos(to_imgui({box.x, box.y}));
+  ImGui::SetNextWindowSize(to_imgui({box.width, box.height}));
+  ImGui::Begin(name, nullptr, fixed_window_flags() | flags);
+  if ((flags & ImGuiWindowFlags_NoBackground) != 0) return;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto line = [&](double x, double y, double width, double height) {
+    list.AddRectFilled(to_imgui({x, y}), to_imgui({x + width, y + height}), palette_of(theme).line);
+  };
+  list.PushClipRect(to_imgui({box.x, box.y}), to_imgui({box.x + box.width, box.y + box.height}));
+  if (box.y > 0) line(box.x, box.y, box.width, 1);
+  const bool is_left_column = box.x == 0 && box.y == 0;
+  if (box.x > 0 || is_left_column)
+    line(is_left_column ? box.width - 1 : box.x, box.y, 1, box.height);
+  list.PopClipRect();
+}
 
 int fixed_window_flags() {
   return ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |

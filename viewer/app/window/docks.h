@@ -9,6 +9,10 @@ namespace pillarfield::viewer {
 /// dragged too.
 void draw_docks(const Command& command, const Screen& screen);
 
+/// Begins a fixed part of the window, without decorations, and draws its upper and left edge;
+/// ImGui::End() ends it. `flags`: further ImGuiWindowFlags.
+void begin_part(const char* name, const Viewport& box, Theme theme, int flags = 0);
+
 /// Flags of a fixed part of the window.
 [[nodiscard]] int fixed_window_flags();
 

@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::array<const char*, kPanels> kPanelTitles{
     "Sensor", "View", "Write", "Contacts", "Under the cursor", "Pillar", "Selection", "Over time"};
-constexpr std::array<const char*, kPanels> kPanelNames{
-    "sensor", "view", "write", "contacts", "cursor", "pillar", "selection", "curves"};
+constexpr std::array<const char*, kPanels> kPanelNames{"sensor", "view",   "write",     "contacts",
+                                                       "cursor", "pillar", "selection", "curves"};
 constexpr std::array<const char*, kDocks> kDockTitles{"Left", "Right", "Bottom", "Window"};
 constexpr std::array<const char*, kDocks> kDockNames{"left", "right", "bottom", "floating"};
 
@@ -41,7 +41,8 @@ std::optional<PanelPlace> panel_from(std::istream& line) {
   place.id = static_cast<PanelId>(*id);
   place.dock = static_cast<Dock>(*where);
   box = {std::clamp(box.x, 0.0, kMostSize), std::clamp(box.y, 0.0, kMostSize),
-         std::clamp(box.width, kLeastSize, kMostSize), std::clamp(box.height, kLeastSize, kMostSize)};
+         std::clamp(box.width, kLeastSize, kMostSize),
+         std::clamp(box.height, kLeastSize, kMostSize)};
   return place;
 }
 

@@ -32,7 +32,7 @@ inline constexpr std::size_t kDocks = 4;
 struct PanelPlace {
   PanelId id = PanelId::view;
   Dock dock = Dock::right;
-  bool open = true;                      ///< not folded
+  bool open = true;                     ///< not folded
   Viewport window{160, 120, 360, 300};  ///< while floating, nominal pixels
 };
 

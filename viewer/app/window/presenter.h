@@ -49,6 +49,9 @@ class Presenter {
 
   /// The ImGui context of the panels.
   [[nodiscard]] const GuiContext& gui() const { return *gui_; }
+  [[nodiscard]] const gpu::Image& image(std::size_t index) const {
+    return parts_.at(index).renderer->image();
+  }
   /// Of the first picture.
   [[nodiscard]] Renderer& renderer() { return *parts_.front().renderer; }
 

@@ -13,9 +13,8 @@ constexpr double kStatus = 26;
 constexpr double kFoldedRow = 44;
 
 bool has_open_panels(const PanelLayout& layout, Dock dock) {
-  return std::ranges::any_of(layout.places, [&](const PanelPlace& place) {
-    return place.dock == dock && place.open;
-  });
+  return std::ranges::any_of(
+      layout.places, [&](const PanelPlace& place) { return place.dock == dock && place.open; });
 }
 
 /// Height of the row, nominal pixels.
@@ -39,9 +38,8 @@ Screen divide(std::uint32_t width, std::uint32_t height, double scale, const Pan
   const double status = std::min(std::round(kStatus * scale), high - 1);
   const double transport = std::min(std::round(kTransport * scale), high - 1 - status);
   const double above = high - status;
-  const double row = layout == nullptr
-                         ? 0
-                         : std::round(std::min(row_height(*layout) * scale, 0.4 * above));
+  const double row =
+      layout == nullptr ? 0 : std::round(std::min(row_height(*layout) * scale, 0.4 * above));
   const double middle = std::max(wide - left - right, 1.0);
   const double field = std::max(above - transport - row, 1.0);
   Screen screen;
