@@ -23,9 +23,8 @@ namespace {
 
 constexpr const char* kSource =
     R"(Frames with random access: readings, times, skin and calibration.)";
-constexpr const char* kOpen = R"(Opens a recording or a Tekscan ASCII export.
-
-trust: the file comes from your own programs, so it is not examined first.)";
+constexpr const char* kOpen =
+    "Opens frames of a file; pillarfield.Recording describes the options.";
 constexpr const char* kArray = R"(Frames of an array, without a copy.
 
 readings: uint8, uint16 or float32 [frames, rows, cols], dense
@@ -147,9 +146,19 @@ SkinCalibration calibration_of(const Frames& frames) {
   return calibration;
 }
 
-std::unique_ptr<Frames> open(const std::filesystem::path& path, bool trust) {
+std::unique_ptr<Frames> open(
+    const std::filesystem::path& path, bool trust, std::string dataset, std::string times,
+    const std::optional<std::pair<std::uint32_t, std::uint32_t>>& frame_size,
+    std::optional<double> rate_hz, std::uint64_t tare_frames) {
   const py::gil_scoped_release unlocked;
-  return std::make_unique<Frames>(open_frames(path, {.trust = trust}));
+  ReadOptions options;
+  options.trust = trust;
+  options.dataset = std::move(dataset);
+  options.times = std::move(times);
+  if (frame_size) options.frame_size = {frame_size->first, frame_size->second};
+  options.rate_hz = rate_hz;
+  options.tare_frames = tare_frames;
+  return std::make_unique<Frames>(open_frames(path, options));
 }
 
 std::unique_ptr<Frames> of_array(const py::array& readings,
@@ -181,7 +190,10 @@ void write(Frames& frames, const std::filesystem::path& path, bool overwrite) {
 
 void bind_frames(py::module_& module) {
   py::class_<Frames>(module, "FrameSource", kSource)
-      .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("trust") = false, kOpen)
+      .def_static("open", &open, py::arg("path"), py::kw_only(), py::arg("trust") = false,
+                  py::arg("dataset") = "", py::arg("times") = "",
+                  py::arg("frame_size") = py::none(), py::arg("rate_hz") = py::none(),
+                  py::arg("tare_frames") = 0, kOpen)
       .def_static("of_array", &of_array, py::arg("readings"), py::arg("times"), py::arg("skin"),
                   py::arg("calibration"), kArray)
       .def("write", &write, py::arg("path"), py::kw_only(), py::arg("overwrite"),

@@ -12,12 +12,13 @@
 
 namespace pillarfield::python {
 
-/// A source of frames, used by one thread at a time.
+/// A source of frames, used by one thread at a time; between frames, a signal handler of that
+/// thread may use it too.
 struct Frames {
   explicit Frames(std::unique_ptr<FrameSource> frames) : source(std::move(frames)) {}
 
   std::unique_ptr<FrameSource> source;
-  std::mutex alone;
+  std::recursive_mutex alone;
 };
 
 }  // namespace pillarfield::python

@@ -3,10 +3,12 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -42,25 +44,20 @@ class LiveFrames {
   /// The next frame as (readings, time, sequence, missing); None where none came in time. Throws
   /// StopIteration at the end.
   py::object next(double timeout_s) {
-    py::array readings(dtype_of(sensel_type_), Shape{skin_.rows, skin_.cols});
-    auto* const copy = static_cast<std::byte*>(readings.mutable_data());
-    Arrival arrival = Arrival::timed_out;
-    std::vector<std::array<std::uint32_t, 4>> missing;
-    double time_s = 0;
-    std::uint64_t sequence = 0;
-    with_stream([&](FrameStream& stream) {
-      arrival = wait(stream, timeout_s);
-      if (arrival != Arrival::arrived) return;
-      copy_readings(copy);
-      time_s = frame_->time_s;
-      sequence = frame_->sequence;
-      for (const auto& [first_row, rows, first_col, cols] : frame_->missing) {
-        missing.push_back({first_row, rows, first_col, cols});
-      }
-    });
-    if (arrival == Arrival::ended) throw py::stop_iteration();
-    if (arrival == Arrival::timed_out) return py::none();
-    return py::make_tuple(readings, time_s, sequence, missing);
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::nanoseconds kPatience = std::chrono::milliseconds(100);
+    constexpr double kMostSeconds = 1e9;
+    const double seconds =
+        std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
+    const auto end =
+        Clock::now() + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
+    for (;;) {
+      const std::chrono::nanoseconds left = end - Clock::now();
+      py::object frame = next_within(std::clamp(left, std::chrono::nanoseconds(0), kPatience));
+      if (!frame.is_none() || left <= std::chrono::nanoseconds(0)) return frame;
+      // Signal handlers and other threads may use, or close, the source meanwhile.
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    }
   }
 
   [[nodiscard]] py::dict health() {
@@ -106,21 +103,26 @@ class LiveFrames {
     call(*stream);
   }
 
-  Arrival wait(FrameStream& stream, double timeout_s) {
-    constexpr std::chrono::nanoseconds kPatience = std::chrono::milliseconds(100);
-    constexpr double kMostSeconds = 1e9;
-    const auto start = std::chrono::steady_clock::now();
-    const double seconds =
-        std::isnan(timeout_s) ? kMostSeconds : std::clamp(timeout_s, 0.0, kMostSeconds);
-    const auto end = start + std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
-    SignalCheck check_signals;
-    for (;;) {
-      const std::chrono::nanoseconds left = end - std::chrono::steady_clock::now();
-      const auto pause = std::clamp(left, std::chrono::nanoseconds(0), kPatience);
-      const Arrival arrival = stream.next(*frame_, pause);
-      if (arrival != Arrival::timed_out || left <= std::chrono::nanoseconds(0)) return arrival;
-      check_signals();
-    }
+  py::object next_within(std::chrono::nanoseconds patience) {
+    py::array readings(dtype_of(sensel_type_), Shape{skin_.rows, skin_.cols});
+    auto* const copy = static_cast<std::byte*>(readings.mutable_data());
+    Arrival arrival = Arrival::timed_out;
+    std::vector<std::array<std::uint32_t, 4>> missing;
+    double time_s = 0;
+    std::uint64_t sequence = 0;
+    with_stream([&](FrameStream& stream) {
+      arrival = stream.next(*frame_, patience);
+      if (arrival != Arrival::arrived) return;
+      copy_readings(copy);
+      time_s = frame_->time_s;
+      sequence = frame_->sequence;
+      for (const auto& [first_row, rows, first_col, cols] : frame_->missing) {
+        missing.push_back({first_row, rows, first_col, cols});
+      }
+    });
+    if (arrival == Arrival::ended) throw py::stop_iteration();
+    if (arrival == Arrival::timed_out) return py::none();
+    return py::make_tuple(readings, time_s, sequence, missing);
   }
 
   void copy_readings(std::byte* copy) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include "device/slot_memory.h"
 #include "solve/activation_thresholds.h"
@@ -11,7 +12,7 @@ namespace {
 
 template <class Value>
 void copy(const std::vector<Value>& plane, std::byte* to) {
-  std::memcpy(to, plane.data(), plane.size() * sizeof(Value));
+  std::ranges::copy(std::as_bytes(std::span(plane)), to);
 }
 
 /// Copies the activation thresholds as readings of the plan's type.

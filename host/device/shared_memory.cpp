@@ -20,8 +20,7 @@ class SharedMemory final : public SlotMemory {
   }
 
   DeviceFrame upload(const cl::CommandQueue& queue, const FrameView& frame) override {
-    if (mapped_) queue.enqueueUnmapMemObject(results_, pages_);
-    mapped_ = false;
+    release(queue);
     const std::size_t bytes =
         ((frame.rows - 1) * frame.row_stride + frame.cols) * size_of(frame.type);
     // OpenCL requires a non-const pointer even to read-only host memory.
@@ -33,6 +32,11 @@ class SharedMemory final : public SlotMemory {
   void download(const cl::CommandQueue& queue) override {
     queue.enqueueMapBuffer(results_, CL_FALSE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes_);
     mapped_ = true;
+  }
+
+  void release(const cl::CommandQueue& queue) override {
+    if (mapped_) queue.enqueueUnmapMemObject(results_, pages_);
+    mapped_ = false;
   }
 
  private:

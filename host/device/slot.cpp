@@ -110,6 +110,7 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
 Slot::~Slot() {
   if (queue_() == nullptr) return;  // Moved from.
   try {
+    memory_->release(queue_);
     queue_.finish();
   } catch (const cl::Error&) {
     // The result of the frame in flight is not used.

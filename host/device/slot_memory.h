@@ -61,6 +61,9 @@ class SlotMemory {
   /// Starts the transfer of the results to the host.
   virtual void download(const cl::CommandQueue& queue) = 0;
 
+  /// Returns the memory to the device, before both end: PoCL leaks a buffer that is still mapped.
+  virtual void release(const cl::CommandQueue& queue) { static_cast<void>(queue); }
+
   [[nodiscard]] const ResultLayout& layout() const { return layout_; }
   /// Results and idle flags, which the kernel writes; the flags are zero at first.
   [[nodiscard]] const cl::Buffer& results() const { return results_; }

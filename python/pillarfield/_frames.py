@@ -49,9 +49,10 @@ def _require_range(array: Readings, most: int, kind: str) -> None:
                     f"give whole numbers, 0..{most}, or plan with sensel_type='float32'")
 
 
-def times_of(count: int, times: Optional[npt.ArrayLike], rate_hz: float) -> npt.NDArray[np.float64]:
+def times_of(count: int, times: Optional[npt.ArrayLike], rate_hz: Optional[float]) -> npt.NDArray[np.float64]:
     """Times of frames, from given ones or from a rate."""
     if times is None:
+        rate_hz = 100.0 if rate_hz is None else rate_hz
         if not rate_hz > 0:
             raise Error("frames", f"rate_hz is {rate_hz}", "give a rate above 0")
         return np.arange(count) / rate_hz

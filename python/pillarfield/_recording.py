@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any, Union
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -22,15 +22,26 @@ def range_of(frames: Union[int, slice], count: int) -> tuple[int, int, int]:
 
 
 class Recording:
-    """Frames of a recording or of a Tekscan ASCII export, read when they are indexed.
+    """Frames of a file of any format (docs/formats.md), read when they are indexed.
 
     recording[10] is a frame [R, C], recording[1000:2000:10] an array [T, R, C], of uint8, uint16 or
-    float32 counts. trust: the file comes from your own programs, so it is not examined first. Raises
-    Error if it is neither, or damaged.
+    float32 counts.
+
+    trust: the file comes from your own programs, so it is not examined first
+    dataset, times: names of the arrays of frames and times in an HDF5 file or .npz archive
+    frame_size: (R, C) of frames that lie in one line of a table or array
+    rate_hz: frames per second of a file without times
+    tare_frames: number of first frames, of the unloaded skin, that give the tare; 0: none
+
+    Raises Error if it holds no frames, is damaged, or an option does not fit it.
     """
 
-    def __init__(self, path: Path, *, trust: bool = False) -> None:
-        self._source = _core.FrameSource.open(path, trust=trust)
+    def __init__(self, path: Path, *, trust: bool = False, dataset: str = "", times: str = "",
+                 frame_size: Optional[tuple[int, int]] = None, rate_hz: Optional[float] = None,
+                 tare_frames: int = 0) -> None:
+        self._source = _core.FrameSource.open(
+            path, trust=trust, dataset=dataset, times=times, frame_size=frame_size,
+            rate_hz=rate_hz, tare_frames=tare_frames)
 
     @property
     def skin(self) -> _core.Skin:

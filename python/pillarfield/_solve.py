@@ -21,8 +21,8 @@ from ._scene import Simulation
 def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulation], *,
           skin: Optional[_core.Skin] = None,
           calibration: Union[_core.Calibration, Path, None] = None,
-          times: Optional[npt.ArrayLike] = None, rate_hz: float = 100.0, contacts: bool = False,
-          device: str = "", **options: Any) -> ForceField:
+          times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
+          contacts: bool = False, device: str = "", **options: Any) -> ForceField:
     """Solves frames of readings into forces.
 
     frames: path of a recording or Tekscan export; readings, counts, [T, R, C] or [R, C]; an iterator
@@ -30,6 +30,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
     skin: constants of the skin; by default those of the file, or Skin() for arrays
     calibration: replaces that of the file
     times: of the frames of an array, s; by default from rate_hz
+    rate_hz: frames per second of arrays and iterators, 100 by default, and of files without times
     contacts: find and track the contacts too
     device: OpenCL device, by its index or a part of its name; '': the best one
     options: those of Plan: estimator, outputs, noise_counts, threshold_counts, ...
@@ -47,7 +48,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
         options = {"scene": frames.scene, **options}
         calibration = calibration or frames.calibration
     if _is_iterator(frames):
-        return _solve_iterator(frames, skin, calibration, rate_hz, contacts, device, options)
+        return _solve_iterator(frames, skin, calibration, rate_hz or 100.0, contacts, device, options)
     if isinstance(frames, (list, tuple)):
         frames = np.asarray(frames)
     source = source_of(frames, skin, times, rate_hz)
@@ -57,7 +58,7 @@ def solve(frames: Union[Path, npt.ArrayLike, Iterable[Any], Recording, Simulatio
 
 
 def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None,
-                   times: Optional[npt.ArrayLike] = None, rate_hz: float = 100.0,
+                   times: Optional[npt.ArrayLike] = None, rate_hz: Optional[float] = None,
                    calibration: Optional[_core.Calibration] = None,
                    overwrite: bool = False) -> None:
     """Writes frames as a recording, for the viewer and the command line.
@@ -70,11 +71,11 @@ def save_recording(path: Path, frames: Any, *, skin: Optional[_core.Skin] = None
 
 
 def source_of(frames: Any, skin: Optional[_core.Skin] = None, times: Optional[npt.ArrayLike] = None,
-              rate_hz: float = 100.0,
+              rate_hz: Optional[float] = None,
               calibration: Optional[_core.Calibration] = None) -> _core.FrameSource:
     """Frames with random access from a path, an array, a Recording or a Simulation."""
     if isinstance(frames, (str, os.PathLike)):
-        return _core.FrameSource.open(frames)
+        return _core.FrameSource.open(frames, rate_hz=rate_hz)
     if isinstance(frames, Recording):
         return frames._source
     if isinstance(frames, Simulation):

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import signal
 import socket
 import struct
 import threading
@@ -113,6 +114,17 @@ class Live(unittest.TestCase):
             source.close()
             with self.assertRaisesRegex(pf.Error, "closed"):
                 source.receive(0)
+
+    def test_a_signal_handler_may_close_the_source(self):
+        port = free_port()
+        with Sender(port):
+            source = pf.live(f"udp:127.0.0.1:{port}")
+        before = signal.signal(signal.SIGALRM, lambda *_: source.close())
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        with self.assertRaisesRegex(pf.Error, "closed"):
+            for _ in source:
+                pass
+        signal.signal(signal.SIGALRM, before)
 
     def test_wrong_names(self):
         plan = pf.Plan(pf.Skin(8, 12))

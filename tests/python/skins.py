@@ -11,11 +11,11 @@ def scene(frames=12, **skin):
     """A ball that presses and slides: 8-bit frames of 40 x 60 sensels."""
     return {"skin": {"pillars": [20, 30], "threshold_counts": 2, **skin},
             "sensor": {"adc_bits": 8, "noise_counts": 0.5},
-            "time": {"rate_hz": 100, "frames": frames},
+            "time": {"rate_hz": 50, "frames": frames},
             "contact": [{"shape": "sphere", "motion": "slide", "contact_radius_mm": 8,
                          "reference_load_n": 20, "friction": 0.6, "direction_deg": 0,
                          "path": [{"time_s": 0.0, "position_mm": [-5, 0], "load_n": 15},
-                                  {"time_s": 0.1, "position_mm": [5, 0], "load_n": 20}]}]}
+                                  {"time_s": 0.2, "position_mm": [5, 0], "load_n": 20}]}]}
 
 
 def plan_of(simulation, **options):
