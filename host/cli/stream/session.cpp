@@ -362,8 +362,9 @@ void StreamSession::print_summary() const {
                *all_latencies_.quantile_ms(0.5), *all_latencies_.quantile_ms(0.99),
                all_latencies_.worst_ms());
   }
-  fmt::print("  frames     {} lost, of which {} came too fast; {} incomplete\n",
-             grouped(stream.lost), grouped(stream.overrun), grouped(stream.incomplete));
+  fmt::print(
+      "  frames     {} lost, {} incomplete; {} packets or ring slots came too fast to be read\n",
+      grouped(stream.lost), grouped(stream.incomplete), grouped(stream.overrun));
   fmt::print("  packets    {} late, {} twice, {} out of order, {} invalid\n", grouped(stream.late),
              grouped(stream.duplicates), grouped(stream.reordered), grouped(stream.invalid));
   fmt::print("  sensor     {} restarts, {} clock jumps\n", grouped(stream.restarts),

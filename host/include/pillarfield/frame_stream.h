@@ -39,8 +39,8 @@ struct StreamHealth {
   std::uint64_t invalid = 0;      ///< packets that are no frame of this stream
   std::uint64_t restarts = 0;     ///< new sessions, or sequences that began anew
   std::uint64_t clock_jumps = 0;  ///< sensor times that went back, or ahead by over a second
-  std::uint64_t overrun = 0;  ///< lost frames that the sensor sent, and the program was late for
-  double rate_hz = 0;         ///< frames per second, over about the last second
+  std::uint64_t overrun = 0;      ///< packets or ring slots that came faster than they were read
+  double rate_hz = 0;             ///< frames per second, over about the last second
 };
 
 /// Result of FrameStream::next().
