@@ -140,6 +140,17 @@ class WindowTest(unittest.TestCase):
             pixels = self.shoot(name)
         return pixels
 
+    def shoot_field(self, name, patience_s=90):
+        """Waits for a picture of a field: with the bright end of a colour bar."""
+        end = time.monotonic() + patience_s
+        while True:
+            pixels = self.shoot(name, still=False).astype(int)
+            bright = (pixels[..., 0] > 230) & (pixels[..., 1] > 200) & (pixels[..., 2] < 90)
+            if bright.sum() > 20:
+                return pixels
+            self.assertLess(time.monotonic(), end, "no field is shown")
+            time.sleep(0.2)
+
     def assert_quiet(self, window):
         """Closes the window; expects no validation messages."""
         statistics = window.quit()
@@ -372,8 +383,7 @@ class SourceTest(WindowTest):
         window = self.open("--paused")
         before = self.shoot("start")
         window.click(230, 191)  # The first scene.
-        time.sleep(0.5)
-        after = self.shoot_changed("start_opened", before, 20)
+        after = self.shoot_field("start_opened")
         self.assertFalse(numpy.array_equal(before, after))
         self.assertGreater(self.assert_quiet(window)["taken"], 0)
         window = self.open()
@@ -404,7 +414,7 @@ class SourceTest(WindowTest):
         window = self.open(f"udp:127.0.0.1:{port}")
         self.shoot("sensor_awaited")
         sensor = Sensor(port)
-        time.sleep(8)
+        self.shoot_field("sensor_found")
         for key in ("k", "j", "z", "ctrl+r"):
             window.key(key)
             time.sleep(0.7)
