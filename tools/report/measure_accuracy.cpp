@@ -185,7 +185,7 @@ Json region_three_json() {
 // --- Small forces, and the dead zone of the testbed ---
 
 Json json_of(const testbed::SmallForceErrors& errors) {
-  return {{"undetected", errors.undetected},     {"wrong_region", errors.wrong_region},
+  return {{"undetected", errors.undetected}, {"wrong_region", errors.wrong_region},
           {"unflagged", errors.unflagged},   {"held", errors.held},
           {"determined", errors.determined}, {"force", errors.force},
           {"theta_rad", errors.theta_rad},   {"phi_rad", errors.phi_rad}};

@@ -49,7 +49,7 @@ struct HealthReport {
   std::uint64_t solved = 0;      ///< frames since the start
   double latency_ms_median = 0;  ///< from arrival to delivery, over the last second
   double latency_ms_worst = 0;   ///< over the last second
-  double since_frame_s = 0;           ///< since the last frame arrived
+  double since_frame_s = 0;      ///< since the last frame arrived
   std::uint64_t dead = 0;        ///< sensels that do not respond where the others do
   std::uint64_t stuck = 0;       ///< sensels whose reading is constant and out of place
   std::uint64_t drifting = 0;    ///< untouched sensels whose reading left their tare

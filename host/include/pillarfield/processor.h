@@ -157,10 +157,10 @@ class Processor {
   /// plan has none of these and no tare.
   [[nodiscard]] std::vector<float> tare() const;
 
-  /// Replaces the tare, [sensel rows, cols], counts, for the frames submitted from now on; waits for
-  /// those in flight. The skin must be untouched: hysteresis and creep begin at rest. Throws Error
-  /// if the plan has no tare (it may be zero), or `tare` has another size or a value that is not
-  /// finite.
+  /// Replaces the tare, [sensel rows, cols], counts, for the frames submitted from now on; waits
+  /// for those in flight. The skin must be untouched: hysteresis and creep begin at rest. Throws
+  /// Error if the plan has no tare (it may be zero), or `tare` has another size or a value that is
+  /// not finite.
   void set_tare(std::span<const float> tare);
 
   /// The curvature of the skin in the frame submitted last, 1/mm, if the plan has the planes

@@ -42,9 +42,7 @@ T RingReader::load(std::size_t offset) const {
   return value;
 }
 
-bool RingReader::open() {
-  return segment_.is_open() || attach();
-}
+bool RingReader::open() { return segment_.is_open() || attach(); }
 
 /// Opens the segment of the name; false if there is none yet, or none that fits.
 bool RingReader::attach() {
