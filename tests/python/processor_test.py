@@ -147,18 +147,18 @@ class Ring(unittest.TestCase):
         held = next(processor.stream(self.simulation.frames))
         child = os.fork()
         if child == 0:
-            told = 0
+            refused = 0
             for call in (processor.receive, lambda: pf.solve(self.simulation),
                          lambda: pf.Processor(self.plan),
                          lambda: processor.submit(self.simulation.frames[0])):
                 try:
                     call()
                 except pf.Error as error:
-                    told += "forked" in str(error)
+                    refused += "forked" in str(error)
             fits = self.equal(held, 0)  # Memory came along.
             del processor, held
             gc.collect()
-            os._exit(0 if (told, fits) == (4, True) else 1)
+            os._exit(0 if (refused, fits) == (4, True) else 1)
         self.assertEqual(os.waitpid(child, 0)[1], 0)
         processor.submit(self.simulation.frames[3])
         self.assertTrue(self.equal(processor.receive(), 3))

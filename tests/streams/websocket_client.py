@@ -125,8 +125,8 @@ class FoxgloveClient(WebSocket):
 
     def settle(self):
         """Waits until the server has obeyed; before the first data."""
-        self.write(b"settled", PING)
-        assert self.read() == (PONG, b"settled")
+        self.write(b"done", PING)
+        assert self.read() == (PONG, b"done")
 
     def read_data(self):
         kind, content = self.read()

@@ -411,7 +411,7 @@ void Application::take_beside() {
   redraws_.field();
 }
 
-/// Progress of other threads, and of a sensor's silence.
+/// Progress of other threads, and of a sensor without frames.
 void Application::take_news() {
   if (news_.exchange(false)) redraws_.field();
   if (!shows_source()) return;

@@ -23,7 +23,7 @@ struct SenselHealth {
 /// which their pillar moves; they count until they move again.
 class SenselWatch {
  public:
-  /// `window`: of the judgement. Throws Error if the plan is out of range.
+  /// `window`: duration of a window. Throws Error if the plan is out of range.
   explicit SenselWatch(const SolverPlan& plan,
                        std::chrono::milliseconds window = std::chrono::seconds(10));
   ~SenselWatch();

@@ -66,9 +66,9 @@ bool FrameAssembler::began_anew(const PillarfieldPacket& header, Time arrived) c
   const std::uint64_t sequence = header.sequence;
   if (sequence >= expected) return next_ && sequence - expected > kFarAhead;
   const std::uint64_t back = expected - sequence;
-  const Time silence = std::max<Time>(500ms, Time(std::llround(4 * interval_ns_)));
+  const Time longest_gap = std::max<Time>(500ms, Time(std::llround(4 * interval_ns_)));
   return ended_ || back > kFarBack || (sequence < kNearZero && back > kFewFrames) ||
-         arrived - last_packet_ > silence;
+         arrived - last_packet_ > longest_gap;
 }
 
 /// Ends the frames of the sensor that began anew.

@@ -71,7 +71,7 @@ bool PacketParser::fits(const PillarfieldPacket& header) const {
   return shape && (!shape_ || shape == shape_);
 }
 
-/// Grows the buffer, until the shape is settled, for the packets of another shape.
+/// Grows the buffer, until the shape is final, for the packets of another shape.
 void PacketParser::make_room(const FrameShape& shape) {
   const std::size_t most = kHeaderBytes + shape.most_packet_bytes() + kReadBytes;
   if (buffer_.size() < most) buffer_.resize(most);

@@ -7,7 +7,7 @@
 namespace pillarfield {
 
 /// Follows the sessions of a sensor: the newest one counts. One that it replaced counts again only
-/// when the newest has been silent for a second.
+/// when the newest has sent nothing for a second.
 class Sessions {
  public:
   enum class Kind : std::uint8_t { current, started, replaced };

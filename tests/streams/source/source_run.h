@@ -18,12 +18,12 @@ inline void write_all(int descriptor, const std::string& bytes) {
   }
 }
 
-/// Takes frames until the stream is silent for `patience` or ends; true at the end.
+/// Takes frames until none comes for `patience` or ends; true at the end.
 template <class Take>
 bool take_frames(FrameStream& stream, std::chrono::nanoseconds patience, Take take) {
   StreamedFrame frame(stream.sensel_type(), stream.skin());
   for (;;) {
-    // next() may return early, so a silent stream is asked twice.
+    // next() may return early, so a stream without frames is polled twice.
     Arrival arrival = stream.next(frame, patience);
     if (arrival == Arrival::timed_out) arrival = stream.next(frame, patience);
     if (arrival != Arrival::arrived) return arrival == Arrival::ended;

@@ -423,19 +423,19 @@ class SourceTest(WindowTest):
         time.sleep(0.5)
         sensor.stop()
         time.sleep(2.5)
-        silent = self.shoot("sensor_silent", still=False)
+        stopped = self.shoot("sensor_stopped", still=False)
         sensor = Sensor(port)
         time.sleep(1)
         again = self.shoot("sensor_again", still=False)
-        self.assertFalse(numpy.array_equal(silent, again))
+        self.assertFalse(numpy.array_equal(stopped, again))
         statistics = self.assert_quiet(window)
         sensor.stop()
         self.assertGreater(statistics["produced"], 100)
         recordings = list(self.folder.glob("udp_*recording.h5"))
         self.assertEqual(len(recordings), 1, list(self.folder.iterdir()))
-        told = subprocess.run([PROGRAM, "info", recordings[0]], check=True, capture_output=True,
+        printed = subprocess.run([PROGRAM, "info", recordings[0]], check=True, capture_output=True,
                               text=True).stdout
-        self.assertIn("32", told)
+        self.assertIn("32", printed)
 
 
 class WholeWindowTest(WindowTest):
