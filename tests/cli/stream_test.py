@@ -138,6 +138,19 @@ class Replay(StreamTest):
         for index, frame in enumerate(kept):
             np.testing.assert_array_equal(frame, frames[index % 6])
 
+    def test_a_file_that_is_read_is_never_written(self):
+        before = self.recording.read_bytes()
+        for option in ("--to", "--record"):
+            self.assert_fails("stream", self.recording, option, self.recording, "--overwrite",
+                              names=("ball.h5",))
+        process = self.started(self.recording, "--repeat", "--overwrite", "--control", self.socket,
+                               "--json")
+        control = self.control()
+        self.assertIn("ball.h5", control.say(f"record {self.recording}")["error"])
+        control.say("quit")
+        self.ended(process)
+        self.assertEqual(self.recording.read_bytes(), before)
+
     def test_refusals(self):
         for arguments, names in [
                 (("nothing.h5",), ("nothing.h5",)),

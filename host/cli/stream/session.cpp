@@ -332,6 +332,7 @@ std::string StreamSession::record(const std::vector<std::string>& words) {
       return failed_line(fmt::format("record: {} is being recorded; give 'record stop' first",
                                      printable(recording_)));
     }
+    check_outputs(files_read(options_), {{words[1], OutputKind::recording}}, options_.replace);
     sinks_->add(create_live_recording(words[1], info_));
     recording_ = words[1];
     return done_line("record");

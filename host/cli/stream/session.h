@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -20,6 +21,9 @@
 #include "pillarfield/sensel_watch.h"
 
 namespace pillarfield::cli {
+
+/// The files that a stream reads, which it never writes; empty paths among them.
+[[nodiscard]] std::vector<std::filesystem::path> files_read(const StreamOptions& options);
 
 /// A run of `pillarfield stream`: frames of a source through the solver to live sinks, with control
 /// lines, live tare, pause, recording and reports of health.

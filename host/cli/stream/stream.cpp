@@ -11,6 +11,7 @@
 #include "cli/progress.h"
 #include "cli/stream/replay.h"
 #include "cli/stream/session.h"
+#include "io/extension.h"
 #include "pillarfield/error.h"
 #include "pillarfield/live.h"
 #include "pillarfield/printable.h"
@@ -30,6 +31,20 @@ std::unique_ptr<FrameStream> opened_source(const StreamOptions& options) {
   live.stop = is_interrupted;
   live.serial_baud = options.serial_baud;
   return open_live_source(options.source, live);
+}
+
+/// Throws Error if a file that is written is one that is read, or may not be replaced.
+void check_files(const StreamOptions& options) {
+  std::vector<PlannedOutput> outputs;
+  for (const std::string& sink : options.sinks) {
+    const std::string ending = extension_of(sink);
+    if (ending == ".mcap") outputs.push_back({sink, OutputKind::messages});
+    if (ending == ".h5" || ending == ".hdf5" || ending == ".csv" || ending == ".npy") {
+      outputs.push_back(planned_force_file(sink));
+    }
+  }
+  if (!options.record.empty()) outputs.push_back({options.record, OutputKind::recording});
+  check_outputs(files_read(options), outputs, options.replace);
 }
 
 /// The plan has a tare, so that it can be measured anew.
@@ -75,7 +90,14 @@ LiveSinkInfo sink_info(const StreamOptions& options, const SolverPlan& plan, con
 
 }  // namespace
 
+std::vector<std::filesystem::path> files_read(const StreamOptions& options) {
+  std::vector<std::filesystem::path> files = {options.plan.scene, options.plan.calibration};
+  if (!is_live_source(options.source)) files.emplace_back(options.source);
+  return files;
+}
+
 void stream(const StreamOptions& options) {
+  check_files(options);
   const std::unique_ptr<FrameStream> source = opened_source(options);
   if (!source) return;  // Interrupted before a frame came.
   const SolverPlan plan = plan_of(options, *source);
