@@ -456,6 +456,26 @@ TEST(SetTare, EqualsAPlanWithThatTare) {
   }
 }
 
+/// Blocks that were idle under the tare before, and are skipped, become active under a lower one.
+TEST(SetTare, MakesIdleBlocksActive) {
+  SolverPlan plan = bare_plan(64, 94, SenselType::u8);
+  plan.skin.threshold_counts = 5;
+  plan.calibration.tare.assign(plan.skin.sensels(), 20);
+  Processor processor(test_device(), plan);
+  FrameBuffer frame(SenselType::u8, plan.skin.rows, plan.skin.cols);
+  std::ranges::fill(frame.bytes(), std::byte{22});
+  for (int i = 0; i < 4; ++i) {
+    processor.submit(frame.view());
+    EXPECT_EQ(processor.receive().normal[0], 0);
+  }
+  plan.calibration.tare.assign(plan.skin.sensels(), 10);
+  processor.set_tare(plan.calibration.tare);
+  processor.submit(frame.view());
+  const ForceFieldView forces = processor.receive();
+  EXPECT_GT(forces.normal[0], 0);
+  expect_same_bits(forces, solve_on_host(plan, frame.view()).view());
+}
+
 TEST(SetTare, RefusesWhatIsNoTare) {
   SolverPlan plan = bare_plan(8, 8, SenselType::u8);
   EXPECT_THROW(Processor(test_device(), plan).set_tare(std::vector<float>(64)), Error);
