@@ -199,12 +199,12 @@ TEST(Pipeline, CountsMissingSequenceNumbers) {
 
 /// A pillar loses its force with any of its readings, and its contact loses the pillar; other
 /// pillars and other frames keep theirs.
-TEST(Pipeline, ReportsPillarsWithoutTheirReadingsAsMissing) {
+void expect_missing_pillars(Estimator estimator) {
   const SenselBlock corner = {.first_row = 5, .rows = 4, .first_col = 0, .cols = 13};
   const SenselBlock beyond = {.first_row = 22, .rows = 99, .first_col = 39, .cols = 99};
   Presses stream({.frames = 10, .missing = {corner, beyond}});
-  Processor processor(test_device(), plan_of());
-  Processor reference(test_device(), plan_of());
+  Processor processor(test_device(), plan_of(estimator));
+  Processor reference(test_device(), plan_of(estimator));
   ContactTracker tracker(kSkin.pillar_pitch_mm());
   FrameBuffer raw(SenselType::u8, kSkin.rows, kSkin.cols);
   std::uint64_t index = 0;
@@ -228,6 +228,11 @@ TEST(Pipeline, ReportsPillarsWithoutTheirReadingsAsMissing) {
   });
   EXPECT_EQ(Pipeline(stream, processor, {sink.get()}, {.contacts = &tracker}).run().frames, 10);
   EXPECT_EQ(index, 10);
+}
+
+TEST(Pipeline, ReportsPillarsWithoutTheirReadingsAsMissing) {
+  expect_missing_pillars(Estimator::direct);
+  expect_missing_pillars(Estimator::contact);  // It finds contacts before readings are missed.
 }
 
 TEST(Pipeline, DeliversFramesInFlightBeforeItWaits) {
