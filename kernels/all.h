@@ -30,6 +30,7 @@
 #include "frame/wire_vectors.h"
 #include "frame/calibration_planes.h"
 #include "frame/idle.h"
+#include "frame/idle_tiles.h"
 #include "frame/block.h"
 #include "frame/memory_planes.h"
 #include "frame/neighbours.h"

@@ -48,7 +48,6 @@ bool decide_sharing(Memory memory, const Device& device) {
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
-  paths.skip_idle = paths.skip_idle && may_skip_idle(plan);
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
   const std::size_t bytes = ResultLayout(plan, 0).bytes;
