@@ -79,8 +79,8 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   bottom = without_leak(bottom, around, 1);
 #endif
 #ifdef PF_MEMORY
-  top = recall_row(top, calibration, block.top, block.lanes);
-  bottom = recall_row(bottom, calibration, block.bottom, block.lanes);
+  top = recall_row(top, calibration, block.top, block);
+  bottom = recall_row(bottom, calibration, block.bottom, block);
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
