@@ -60,8 +60,9 @@ std::size_t bytes_of_states(const SolverPlan& plan) {
   const auto& memory = plan.calibration.effects.memory;
   if (!memory) return 0;
   const std::size_t states = memory->plays.size() + memory->creep.size() + 1;
-  const std::size_t pitch = (plan.skin.cols / 2 + 31) / 16 * 16;
-  return page_aligned(4 * states * plan.skin.pillar_rows() * pitch * sizeof(float));
+  // blocks_of_row() times the lanes, at most.
+  const std::size_t pillars_of_row = std::size_t{plan.skin.pillar_cols()} + 32;
+  return page_aligned(4 * states * plan.skin.pillar_rows() * pillars_of_row * sizeof(float));
 }
 
 }  // namespace

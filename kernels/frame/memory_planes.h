@@ -1,7 +1,6 @@
 /* States of the sensels under PF_LANES pillars in memory, behind the planes of the calibration:
- * plays, creep, and the number of the frame that a sensel was last active in. Each row of sensels
- * has a line of each state for its left sensels and one for its right sensels. solve_frame.cl
- * updates them; each lane is written by its own block. Stage PF_MEMORY. */
+ * plays, creep, and the number of the frame that a sensel was last active in. solve_frame.cl
+ * updates them; each block has its own. Stage PF_MEMORY. */
 #ifdef PF_MEMORY
 
 #define PF_STATES (PF_PLAYS + PF_CREEPS + 1)
@@ -12,49 +11,32 @@ PF_INLINE MemoryModel memory_model(void) {
   return model;
 }
 
-/* Floats of a state of one side of a row of sensels: with skew, a multiple of a cache line. */
-PF_INLINE size_t state_pitch(size_t stride) { return (stride / 2 + 31) / 16 * 16; }
-
-/* State `state` of the left (side 0) or right (side 1) sensels of a row of a block. Aligned blocks
- * are aligned here too. */
-PF_INLINE global float* state_at(Calibration calibration, int state, int side, Place place,
+/* State `state` of the left (side 0) or right (side 1) sensels of a row of a block. With several
+ * lanes all states of a block lie together, lane by lane, those of other blocks' lanes unused; with
+ * one lane the states of a row of sensels do. */
+PF_INLINE global float* state_at(Calibration calibration, int state, int side, uint row,
                                  Block block) {
-  const uint col = place.col / 2;
-  const size_t skew = (block.index - col) % PF_LANES;
-  const size_t line = (size_t)place.row * (2 * PF_STATES) + 2 * state + side;
-  return (global float*)PF_PLANE_OF(calibration, float, (size_t)PF_MEMORY_PLANE) +
-         line * state_pitch(calibration.stride) + skew + col;
+  const size_t number = 2 * state + side;
+  global float* const states =
+      (global float*)PF_PLANE_OF(calibration, float, (size_t)PF_MEMORY_PLANE);
+#if PF_LANES == 1
+  return states + ((size_t)row * (2 * PF_STATES) + number) * block.blocks + block.at;
+#else
+  return states +
+         (((size_t)row * block.blocks + block.at) * (2 * PF_STATES) + number) * PF_LANES;
+#endif
 }
 
-PF_INLINE RealPair load_states(Calibration calibration, int state, Place place, Block block) {
-  global const float* const left = state_at(calibration, state, 0, place, block);
-  global const float* const right = state_at(calibration, state, 1, place, block);
-#if PF_LANES == 1
-  const RealPair pair = {*left, *right};
-#else
-  const RealPair pair = {PF_LOAD_WHOLE(float, left), PF_LOAD_WHOLE(float, right)};
-#endif
+PF_INLINE RealPair load_states(Calibration calibration, int state, uint row, Block block) {
+  const RealPair pair = {*(global const Real*)state_at(calibration, state, 0, row, block),
+                         *(global const Real*)state_at(calibration, state, 1, row, block)};
   return pair;
 }
 
-PF_INLINE void store_state(Real value, global float* to, Lanes lanes) {
-#if PF_LANES == 1
-  *to = value;
-#else
-  if (are_all(lanes)) {
-    PF_STORE_WHOLE(float, value, to);
-    return;
-  }
-  float values[PF_LANES];
-  PF_VSTORE(value, 0, values);
-  for (uint i = lanes.first; i < lanes.end; ++i) to[i] = values[i];
-#endif
-}
-
-PF_INLINE void store_states(RealPair pair, Calibration calibration, int state, Place place,
+PF_INLINE void store_states(RealPair pair, Calibration calibration, int state, uint row,
                             Block block) {
-  store_state(pair.left, state_at(calibration, state, 0, place, block), block.lanes);
-  store_state(pair.right, state_at(calibration, state, 1, place, block), block.lanes);
+  *(global Real*)state_at(calibration, state, 0, row, block) = pair.left;
+  *(global Real*)state_at(calibration, state, 1, row, block) = pair.right;
 }
 
 #if PF_LANES == 1
@@ -72,24 +54,23 @@ PF_INLINE Real last_frame(Real before, Mask active, uint now) {
   return active ? real_of_word((Word)(now)) : before;
 }
 
-/* Removes hysteresis and creep from one row of sensels of a block; updates the states of its
- * lanes. */
-PF_INLINE SenselPair recall_row(SenselPair sensels, Calibration calibration, Place place,
+/* Removes hysteresis and creep from one row of a block's sensels, and updates their states. */
+PF_INLINE SenselPair recall_row(SenselPair sensels, Calibration calibration, uint row,
                                 Block block) {
   const Real threshold = (Real)(PF_THRESHOLD);
   if (!any_lane(is_touched(sensels.left, threshold) || is_touched(sensels.right, threshold))) {
     return sensels;
   }
-  const RealPair last = load_states(calibration, PF_STATES - 1, place, block);
+  const RealPair last = load_states(calibration, PF_STATES - 1, row, block);
   Memory left;
   Memory right;
   for (int i = 0; i < PF_PLAYS; ++i) {
-    const RealPair pair = load_states(calibration, i, place, block);
+    const RealPair pair = load_states(calibration, i, row, block);
     left.play[i] = pair.left;
     right.play[i] = pair.right;
   }
   for (int i = 0; i < PF_CREEPS; ++i) {
-    const RealPair pair = load_states(calibration, PF_PLAYS + i, place, block);
+    const RealPair pair = load_states(calibration, PF_PLAYS + i, row, block);
     left.creep[i] = pair.left;
     right.creep[i] = pair.right;
   }
@@ -100,16 +81,16 @@ PF_INLINE SenselPair recall_row(SenselPair sensels, Calibration calibration, Pla
   for (int i = 0; i < PF_PLAYS; ++i) {
     const RealPair pair = {to_left.active ? to_left.memory.play[i] : left.play[i],
                            to_right.active ? to_right.memory.play[i] : right.play[i]};
-    store_states(pair, calibration, i, place, block);
+    store_states(pair, calibration, i, row, block);
   }
   for (int i = 0; i < PF_CREEPS; ++i) {
     const RealPair pair = {to_left.active ? to_left.memory.creep[i] : left.creep[i],
                            to_right.active ? to_right.memory.creep[i] : right.creep[i]};
-    store_states(pair, calibration, PF_PLAYS + i, place, block);
+    store_states(pair, calibration, PF_PLAYS + i, row, block);
   }
   const RealPair now = {last_frame(last.left, to_left.active, calibration.frame),
                         last_frame(last.right, to_right.active, calibration.frame)};
-  store_states(now, calibration, PF_STATES - 1, place, block);
+  store_states(now, calibration, PF_STATES - 1, row, block);
   const SenselPair result = {to_left.sensel, to_right.sensel};
   return result;
 }

@@ -79,8 +79,8 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   bottom = without_leak(bottom, around, 1);
 #endif
 #ifdef PF_MEMORY
-  top = recall_row(top, calibration, block.top, block);
-  bottom = recall_row(bottom, calibration, block.bottom, block);
+  top = recall_row(top, calibration, block.top.row, block);
+  bottom = recall_row(bottom, calibration, block.bottom.row, block);
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
@@ -251,7 +251,11 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
-    const Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
+    Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
+#ifdef PF_MEMORY
+    block.at = at;
+    block.blocks = blocks_of_row(pillar_cols);
+#endif
     store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
 }
