@@ -54,6 +54,17 @@ PF_INLINE Real last_frame(Real before, Mask active, uint now) {
   return active ? real_of_word((Word)(now)) : before;
 }
 
+/* Prefetches the states of both rows of the block one pillar row below. */
+PF_INLINE void prefetch_states(Calibration calibration, Block block) {
+#if PF_LANES > 1
+  for (uint row = block.top.row + 2; row < block.top.row + 4; ++row) {
+    for (int state = 0; state < PF_STATES; ++state) {
+      PF_PREFETCH_FAR(state_at(calibration, state, 0, row, block));
+    }
+  }
+#endif
+}
+
 /* Removes hysteresis and creep from one row of a block's sensels, and updates their states. */
 PF_INLINE SenselPair recall_row(SenselPair sensels, Calibration calibration, uint row,
                                 Block block) {

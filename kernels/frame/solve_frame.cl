@@ -255,6 +255,7 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
 #ifdef PF_MEMORY
     block.at = at;
     block.blocks = blocks_of_row(pillar_cols);
+    prefetch_states(calibration, block);
 #endif
     store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
