@@ -5,18 +5,18 @@
 
 #define PF_TILE_PARTS ((PF_TILE_COLS + PF_WIRE_PARTS - 1) / PF_WIRE_PARTS * PF_WIRE_PARTS)
 
-/* Raw readings for the sums; missing sensels count as zero. */
-#define PF_DEFINE_SUMMED(name, type)                                          \
-  PF_INLINE type name(type reading, type good) {                              \
-    const type none = (type)(0.0f);                                           \
-    reading = good == (type)(1.0f) ? reading : none;                          \
-    return fabs(reading) <= (type)(PF_WIRE_LARGEST_READING) ? reading : none; \
-  }
 #ifdef PF_LARGEST_READING
-#define PF_WIRE_LARGEST_READING PF_LARGEST_READING
+#define PF_IN_RANGE(type, reading) (fabs(reading) <= (type)(PF_LARGEST_READING))
 #else
-#define PF_WIRE_LARGEST_READING 1e9f
+#define PF_IN_RANGE(type, reading) ((type)(0.0f) == (type)(0.0f))
 #endif
+/* Raw readings for the sums; missing sensels count as zero. */
+#define PF_DEFINE_SUMMED(name, type)                    \
+  PF_INLINE type name(type reading, type good) {        \
+    const type none = (type)(0.0f);                     \
+    reading = good == (type)(1.0f) ? reading : none;    \
+    return PF_IN_RANGE(type, reading) ? reading : none; \
+  }
 PF_DEFINE_SUMMED(summed_reading, float)
 #if PF_LANES > 1
 PF_DEFINE_SUMMED(summed_readings, Real)

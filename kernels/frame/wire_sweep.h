@@ -37,12 +37,23 @@ typedef struct __attribute__((packed)) {
 #endif
 #define PF_WIRE_GROUPS (PF_WIRE_PARTS / PF_WIRE_LANES)
 
-/* Their sum, by pairs; overwrites them. */
-PF_INLINE float sum_of_parts(float* parts) {
-  for (int lower = PF_WIRE_PARTS / 2; lower > 0; lower /= 2) {
+/* Sum of lanes, by pairs. */
+#if PF_WIRE_LANES == 1
+PF_INLINE float sum_of_lanes(Real lanes) { return lanes; }
+#else
+PF_INLINE float sum_of_2(float2 lanes) { return lanes.x + lanes.y; }
+PF_INLINE float sum_of_4(float4 lanes) { return sum_of_2(lanes.lo + lanes.hi); }
+PF_INLINE float sum_of_8(float8 lanes) { return sum_of_4(lanes.lo + lanes.hi); }
+PF_INLINE float sum_of_16(float16 lanes) { return sum_of_8(lanes.lo + lanes.hi); }
+PF_INLINE float sum_of_lanes(Real lanes) { return PF_JOIN(sum_of_, PF_LANES)(lanes); }
+#endif
+
+/* Sum of the parts in all lanes, by pairs; overwrites them. */
+PF_INLINE float sum_of_parts(Real* parts) {
+  for (int lower = PF_WIRE_GROUPS / 2; lower > 0; lower /= 2) {
     for (int i = 0; i < lower; ++i) parts[i] = parts[i] + parts[i + lower];
   }
-  return parts[0];
+  return sum_of_lanes(parts[0]);
 }
 
 /* 1 / (1 - loss), bounded. */
@@ -66,14 +77,8 @@ PF_INLINE RowWires wires_of_row(const float* readings, const float* columns, int
       squares[i] = squares[i] + reading * load;
     }
   }
-  float load_parts[PF_WIRE_PARTS];
-  float square_parts[PF_WIRE_PARTS];
-  for (int i = 0; i < PF_WIRE_GROUPS; ++i) {
-    PF_STORE_WIRES(loads[i], load_parts + i * PF_WIRE_LANES);
-    PF_STORE_WIRES(squares[i], square_parts + i * PF_WIRE_LANES);
-  }
-  const float load = sum_of_parts(load_parts);
-  const float square = before.row * sum_of_parts(square_parts);
+  const float load = sum_of_parts(loads);
+  const float square = before.row * sum_of_parts(squares);
   const float own = model.column * (1.0f - before.idle);
   RowWires after;
   after.row = gain_of_loss(model.row * (load + (own - model.column) * square));
