@@ -9,6 +9,7 @@
 #define PF_IDLE_TILE 0.0f
 #define PF_SATURATED_ROW INFINITY
 #define PF_WIRE_LARGEST_GAIN_ONE 1.4f
+#define PF_ROWS_AHEAD 16 /* that are prefetched */
 /* More than rounding takes from a bound. */
 #define PF_BOUND_RESERVE 1.00001f
 
@@ -76,12 +77,28 @@ PF_INLINE TileRange range_of_lanes(LaneRange range) {
   return result;
 }
 
+/* Prefetches a row of a tile with the thresholds; rows are too short for hardware prefetching. */
+PF_INLINE void prefetch_tile_row(global const PF_SENSEL* raw, Calibration calibration,
+                                 Layout layout, Tile tile, uint row) {
+  PF_PREFETCH_SPAN(raw + row * layout.row_stride + tile.col, tile.cols + 63 / sizeof(PF_SENSEL), 2);
+#ifdef PF_ACTIVATION_PLANE
+  PF_PREFETCH_SPAN(activation_thresholds(calibration) + row * calibration.stride + tile.col,
+                   tile.cols + 63 / sizeof(PF_SENSEL), 2);
+#endif
+}
+
 PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
                                   Layout layout, Tile tile) {
   if (tile.cols < PF_LANES) return (TileRange){0.0f, -1.0f};
   global const PF_SENSEL* const activation = activation_thresholds(calibration);
   LaneRange range = {(SenselLanes)(0), (SenselLanes)(PF_ACTIVATION_NEVER)};
+  for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
+    prefetch_tile_row(raw, calibration, layout, tile, row);
+  }
   for (uint row = tile.row; row < tile.row + tile.rows; ++row) {
+    if (row + PF_ROWS_AHEAD < tile.row + tile.rows) {
+      prefetch_tile_row(raw, calibration, layout, tile, row + PF_ROWS_AHEAD);
+    }
     global const PF_SENSEL* const readings = raw + row * layout.row_stride + tile.col;
     global const PF_SENSEL* const thresholds = activation + row * calibration.stride + tile.col;
     for (uint at = 0; at < tile.cols; at += PF_LANES) {
