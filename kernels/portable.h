@@ -22,6 +22,7 @@
  *   any_lane(m)   true if m is true in any lane
  *   PF_CONSTANT(T, x)  the constant x of a program or plan in every lane of a T
  *   PF_INLINE     specifier of a function of lanes; PoCL always inlines it
+ *   PF_UNROLL     before a loop of few turns; PoCL, which would keep its arrays in memory, unrolls it
  *   word_of(r)    the bits of r
  *   real_of_word(w)  the Real whose bits are w
  *
@@ -110,8 +111,10 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
  * inline; Oclgrind lacks the attribute. */
 #ifdef POCL_DEVICE_ADDRESS_BITS
 #define PF_INLINE static inline __attribute__((always_inline))
+#define PF_UNROLL _Pragma("unroll")
 #else
 #define PF_INLINE static inline
+#define PF_UNROLL
 #endif
 
 #define PF_CONSTANT(type, x) ((type)(x))
@@ -123,6 +126,7 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 #else /* C++ */
 
 #define PF_INLINE static inline
+#define PF_UNROLL
 #define PF_CONSTANT(type, x) static_cast<type>(x)
 #undef PF_REAL
 #undef PF_COUNTS

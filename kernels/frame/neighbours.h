@@ -84,6 +84,7 @@ PF_INLINE void fill_ring(Input input, uint row, bool first) {
 PF_INLINE Surroundings surroundings_of(Block block, Input input) {
   const uint col = block.top.col / 2;
   Surroundings around;
+  PF_UNROLL
   for (uint i = 0; i < 4; ++i) {
     global const float* const left = ring_row(input.ring, block.top.row + i - 1, 0) + col;
     global const float* const right = ring_row(input.ring, block.top.row + i - 1, 1) + col;
@@ -115,6 +116,7 @@ PF_INLINE RealPair sources_at(Input input, uint row, uint col) {
 PF_INLINE Surroundings surroundings_of(Block block, Input input) {
   const uint col = block.top.col / 2;
   Surroundings around;
+  PF_UNROLL
   for (uint i = 0; i < 4; ++i) {
     const uint row = block.top.row + i - 1;
     const RealPair own = sources_at(input, row, col);
