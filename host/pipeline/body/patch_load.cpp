@@ -18,6 +18,17 @@ Vector3 rotated(const Pose& pose, const Vector3& vector) {
   return vector.x * pose.tangent_x + vector.y * pose.tangent_y + vector.z * pose.normal;
 }
 
+constexpr std::uint8_t kIdleTile = 0;  ///< without force
+constexpr std::uint8_t kLoadedTile = 1;
+constexpr std::uint8_t kMarkedTile = 2;  ///< to be summed again
+
+bool is_zero(const Vector3& vector) { return vector.x == 0 && vector.y == 0 && vector.z == 0; }
+
+bool is_zero(const LoadSum& sum) {
+  return sum.normal_n == 0 && is_zero(sum.force_n) && is_zero(sum.moment_nmm) &&
+         is_zero(sum.normal_place_nmm);
+}
+
 /// A force at a point of a surface.
 LoadSum load_at(const Pose& pose, double shear_x, double shear_y, double normal) {
   const Vector3 force_n = rotated(pose, {shear_x, shear_y, -normal});
@@ -25,13 +36,6 @@ LoadSum load_at(const Pose& pose, double shear_x, double shear_y, double normal)
 }
 
 }  // namespace
-
-void LoadSum::add(const LoadSum& other) {
-  force_n = force_n + other.force_n;
-  moment_nmm = moment_nmm + other.moment_nmm;
-  normal_n += other.normal_n;
-  normal_place_nmm = normal_place_nmm + other.normal_place_nmm;
-}
 
 BodyLoad load_of(const LoadSum& sum, const Pose& pose) {
   BodyLoad load;
@@ -63,9 +67,9 @@ PatchLoad::PatchLoad(const Skin& skin, std::uint32_t reach)
       reach_(reach),
       tile_rows_(tiles_along(pillars_.rows)),
       tile_cols_(tiles_along(pillars_.cols)),
-      marked_(std::size_t{tile_rows_} * tile_cols_, 1),
+      state_(std::size_t{tile_rows_} * tile_cols_, kMarkedTile),
       marked_rows_(tile_rows_, 1),
-      tiles_(marked_.size()),
+      tiles_(state_.size()),
       rows_(tile_rows_) {
   if (skin.surface && skin.surface->shape != SurfaceShape::plane) {
     poses_ = poses_of(*skin.surface, pillars_);
@@ -85,43 +89,60 @@ void PatchLoad::mark(const SenselBlock& sensels) {
   for (std::uint32_t row = first(sensels.first_row); row <= last_row; ++row) {
     marked_rows_[row] = 1;
     for (std::uint32_t col = first(sensels.first_col); col <= last_col; ++col) {
-      marked_[std::size_t{row} * tile_cols_ + col] = 1;
+      state_[std::size_t{row} * tile_cols_ + col] = kMarkedTile;
     }
   }
 }
 
 void PatchLoad::mark_all() {
-  std::ranges::fill(marked_, std::uint8_t{1});
+  std::ranges::fill(state_, kMarkedTile);
   std::ranges::fill(marked_rows_, std::uint8_t{1});
 }
 
-/// Sums of one row of a tile on a plane, in units of pitches.
-void PatchLoad::add_flat_row(const ForceFieldView& forces, std::size_t first, std::uint32_t pillars,
-                             double x_mm, double y_mm, LoadSum& sum) const {
-  double normal = 0;
-  double shear_x = 0;
-  double shear_y = 0;
-  double normal_x = 0;  // Moments about the first pillar.
-  double shear_y_x = 0;
-  for (std::uint32_t i = 0; i < pillars; ++i) {
-    const double n = forces.normal[first + i];
-    const double y = forces.shear_y[first + i];
-    normal += n;
-    shear_x += forces.shear_x[first + i];
-    shear_y += y;
-    normal_x += i * n;
-    shear_y_x += i * y;
+LoadSum PatchLoad::sum_on_plane(const ForceFieldView& forces, const Tile& tile) const {
+  double normal = 0, shear_x = 0, shear_y = 0;    // N
+  double normal_x = 0, normal_y = 0, shears = 0;  // N times pitches from the middle
+  const double first_x = tile.first_col - 0.5 * (pillars_.cols - 1);
+  for (std::uint32_t row = tile.first_row; row < tile.end_row; ++row) {
+    const std::size_t first = std::size_t{row} * pillars_.cols;
+    const double y = 0.5 * (pillars_.rows - 1) - row;
+    double row_normal = 0, row_shear_x = 0, row_shear_y = 0;
+    for (std::uint32_t col = tile.first_col; col < tile.end_col; ++col) {
+      const double x = first_x + (col - tile.first_col);
+      const double n = forces.normal[first + col];
+      const double upward = forces.shear_y[first + col];
+      row_normal += n;
+      row_shear_x += forces.shear_x[first + col];
+      row_shear_y += upward;
+      normal_x += x * n;
+      shears += x * upward;
+    }
+    normal += row_normal;
+    shear_x += row_shear_x;
+    shear_y += row_shear_y;
+    normal_y += y * row_normal;
+    shears -= y * row_shear_x;
   }
-  normal_x = normal * x_mm + normal_x * pillars_.pitch_mm;
-  shear_y_x = shear_y * x_mm + shear_y_x * pillars_.pitch_mm;
-  sum.add({{shear_x, shear_y, -normal},
-           {-y_mm * normal, normal_x, shear_y_x - y_mm * shear_x},
-           normal,
-           {normal_x, y_mm * normal, 0}});
+  const double pitch = pillars_.pitch_mm;
+  return {{shear_x, shear_y, -normal},
+          {-pitch * normal_y, pitch * normal_x, pitch * shears},
+          normal,
+          {pitch * normal_x, pitch * normal_y, 0}};
 }
 
-/// One pillar after the other: on a curved surface, and where a force is not finite.
-LoadSum PatchLoad::sum_of_pillars(const ForceFieldView& forces, const Tile& tile) const {
+LoadSum PatchLoad::sum_on_surface(const ForceFieldView& forces, const Tile& tile) const {
+  LoadSum sum;
+  for (std::uint32_t row = tile.first_row; row < tile.end_row; ++row) {
+    for (std::uint32_t col = tile.first_col; col < tile.end_col; ++col) {
+      const std::size_t at = std::size_t{row} * pillars_.cols + col;
+      sum.add(load_at(poses_[at], forces.shear_x[at], forces.shear_y[at], forces.normal[at]));
+    }
+  }
+  return sum;
+}
+
+/// Where a force is not finite.
+LoadSum PatchLoad::sum_of_finite(const ForceFieldView& forces, const Tile& tile) const {
   LoadSum sum;
   for (std::uint32_t row = tile.first_row; row < tile.end_row; ++row) {
     for (std::uint32_t col = tile.first_col; col < tile.end_col; ++col) {
@@ -135,27 +156,23 @@ LoadSum PatchLoad::sum_of_pillars(const ForceFieldView& forces, const Tile& tile
 }
 
 LoadSum PatchLoad::sum_of_tile(const ForceFieldView& forces, const Tile& tile) const {
-  if (!poses_.empty()) return sum_of_pillars(forces, tile);
-  LoadSum sum;
-  for (std::uint32_t row = tile.first_row; row < tile.end_row; ++row) {
-    add_flat_row(forces, std::size_t{row} * pillars_.cols + tile.first_col,
-                 tile.end_col - tile.first_col, x_of(tile.first_col), y_of(row), sum);
-  }
-  const double all = sum.normal_n + sum.force_n.x + sum.force_n.y;
-  return std::isfinite(all) ? sum : sum_of_pillars(forces, tile);
+  const LoadSum sum = poses_.empty() ? sum_on_plane(forces, tile) : sum_on_surface(forces, tile);
+  const bool finite = std::isfinite(sum.normal_n + sum.force_n.x + sum.force_n.y + sum.force_n.z);
+  return finite ? sum : sum_of_finite(forces, tile);
 }
 
 void PatchLoad::update_row(const ForceFieldView& forces, std::uint32_t tile_row) {
   LoadSum row;
   for (std::uint32_t col = 0; col < tile_cols_; ++col) {
     const std::size_t tile = std::size_t{tile_row} * tile_cols_ + col;
-    if (marked_[tile] != 0) {
+    if (state_[tile] == kIdleTile) continue;
+    if (state_[tile] == kMarkedTile) {
       const std::uint32_t first_row = tile_row * kTile;
       const std::uint32_t first_col = col * kTile;
       tiles_[tile] = sum_of_tile(forces, {first_row, std::min(first_row + kTile, pillars_.rows),
                                           first_col, std::min(first_col + kTile, pillars_.cols)});
     }
-    marked_[tile] = 0;
+    state_[tile] = is_zero(tiles_[tile]) ? kIdleTile : kLoadedTile;
     row.add(tiles_[tile]);
   }
   rows_[tile_row] = row;

@@ -7,6 +7,7 @@
 #include "pillarfield/force_field.h"
 #include "pillarfield/frame.h"
 #include "pillarfield/whole_body.h"
+#include "skin/vectors.h"
 
 namespace pillarfield {
 
@@ -17,7 +18,12 @@ struct LoadSum {
   double normal_n = 0;
   Vector3 normal_place_nmm;  ///< sum of normal force times place
 
-  void add(const LoadSum& other);
+  void add(const LoadSum& other) {
+    force_n = force_n + other.force_n;
+    moment_nmm = moment_nmm + other.moment_nmm;
+    normal_n += other.normal_n;
+    normal_place_nmm = normal_place_nmm + other.normal_place_nmm;
+  }
 };
 
 /// The load in the body's frame of a patch with this pose.
@@ -57,9 +63,9 @@ class PatchLoad {
   [[nodiscard]] double y_of(std::uint32_t row) const {
     return (0.5 * (pillars_.rows - 1) - row) * pillars_.pitch_mm;
   }
-  void add_flat_row(const ForceFieldView& forces, std::size_t first, std::uint32_t pillars,
-                    double x_mm, double y_mm, LoadSum& sum) const;
-  [[nodiscard]] LoadSum sum_of_pillars(const ForceFieldView& forces, const Tile& tile) const;
+  [[nodiscard]] LoadSum sum_on_plane(const ForceFieldView& forces, const Tile& tile) const;
+  [[nodiscard]] LoadSum sum_on_surface(const ForceFieldView& forces, const Tile& tile) const;
+  [[nodiscard]] LoadSum sum_of_finite(const ForceFieldView& forces, const Tile& tile) const;
   [[nodiscard]] LoadSum sum_of_tile(const ForceFieldView& forces, const Tile& tile) const;
   void update_row(const ForceFieldView& forces, std::uint32_t tile_row);
 
@@ -67,8 +73,8 @@ class PatchLoad {
   std::uint32_t reach_;
   std::uint32_t tile_rows_;
   std::uint32_t tile_cols_;
-  std::vector<Pose> poses_;           ///< of each pillar; empty: a plane
-  std::vector<std::uint8_t> marked_;  ///< tiles
+  std::vector<Pose> poses_;          ///< of each pillar; empty: a plane
+  std::vector<std::uint8_t> state_;  ///< of each tile
   std::vector<std::uint8_t> marked_rows_;
   std::vector<LoadSum> tiles_;
   std::vector<LoadSum> rows_;

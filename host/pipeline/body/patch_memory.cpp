@@ -10,12 +10,28 @@ namespace {
 /// A sequence further back or ahead is that of a sensor that began anew.
 constexpr std::uint64_t kFar = 1000;
 
+/// Whether bytes that are replaced differ.
+bool replace(std::byte* to, const std::byte* from, std::size_t bytes) {
+  if (bytes == sizeof(std::uint64_t)) {  // Most rows: 8 readings of 8 bits.
+    std::uint64_t before = 0;
+    std::uint64_t after = 0;
+    std::memcpy(&before, to, sizeof before);
+    std::memcpy(&after, from, sizeof after);
+    std::memcpy(to, from, sizeof after);
+    return before != after;
+  }
+  const bool differs = std::memcmp(to, from, bytes) != 0;
+  std::memcpy(to, from, bytes);
+  return differs;
+}
+
 }  // namespace
 
-PatchMemory::PatchMemory(const Skin& skin, SenselType type, double refresh_s)
+PatchMemory::PatchMemory(const Skin& skin, SenselType type, double refresh_s,
+                         std::span<std::byte> readings)
     : shape_{type, skin.rows, skin.cols},
       refresh_(std::llround(1e9 * refresh_s)),
-      readings_(type, skin.rows, skin.cols) {
+      readings_(readings) {
   changed_.reserve(shape_.blocks());
 }
 
@@ -99,11 +115,10 @@ void PatchMemory::store_blocks(const Packet& packet) {
 void PatchMemory::store(const SenselBlock& place, const std::byte* from, std::size_t from_stride) {
   const std::size_t size = size_of(shape_.type);
   const std::size_t bytes = place.cols * size;
-  std::byte* to = &readings_.bytes()[place.first_row * shape_.row_bytes() + place.first_col * size];
+  std::byte* to = &readings_[place.first_row * shape_.row_bytes() + place.first_col * size];
   bool differs = false;
   for (std::uint32_t row = 0; row < place.rows; ++row) {
-    differs = std::memcmp(to, from, bytes) != 0 || differs;
-    std::memcpy(to, from, bytes);
+    differs = replace(to, from, bytes) || differs;
     from += from_stride;
     to += shape_.row_bytes();
   }

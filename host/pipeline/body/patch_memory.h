@@ -23,13 +23,16 @@ class PatchMemory {
  public:
   using Time = std::chrono::nanoseconds;
 
-  PatchMemory(const Skin& skin, SenselType type, double refresh_s);
+  /// `readings`: dense rows, which outlive this object.
+  PatchMemory(const Skin& skin, SenselType type, double refresh_s, std::span<std::byte> readings);
 
   /// Takes a packet that is intact and of this shape.
   void add(const Packet& packet);
 
   [[nodiscard]] const FrameShape& shape() const { return shape_; }
-  [[nodiscard]] FrameView readings() const { return readings_.view(); }
+  [[nodiscard]] FrameView readings() const {
+    return {readings_.data(), shape_.type, shape_.rows, shape_.cols, shape_.cols};
+  }
   /// Sensels whose readings changed since forget_changes().
   [[nodiscard]] std::span<const SenselBlock> changed() const { return changed_; }
   void forget_changes() { changed_.clear(); }
@@ -47,7 +50,7 @@ class PatchMemory {
 
   FrameShape shape_;
   Time refresh_;
-  FrameBuffer readings_;
+  std::span<std::byte> readings_;
   std::vector<SenselBlock> changed_;
   Sessions sessions_;
   PatchClock clock_;

@@ -8,6 +8,7 @@
 #include "pillarfield/error.h"
 #include "pipeline/body/patch_load.h"
 #include "pipeline/body/patch_memory.h"
+#include "pipeline/body/patch_stack.h"
 #include "skin/vectors.h"
 #include "solve/stages.h"
 
@@ -47,59 +48,70 @@ void check_skin(const BodySkin& skin) {
 
 }  // namespace
 
-/// A patch with its own kernel arguments, memory and results.
+/// A patch: its readings, in the frame of its stack, and its load.
 struct WholePatch {
-  WholePatch(const Device& device, const BodyPatch& patch, double refresh_s)
-      : memory(patch.plan.skin, patch.plan.sensel_type, refresh_s),
-        processor(device, patch.plan, {.frames_in_flight = 1, .changes = true}),
-        load(patch.plan.skin, neighbour_reach(patch.plan)),
-        solves_all(!may_solve_changes(patch.plan)) {}
+  WholePatch(const BodyPatch& patch, double refresh_s, std::span<std::byte> readings)
+      : memory(patch.plan.skin, patch.plan.sensel_type, refresh_s, readings),
+        load(patch.plan.skin, neighbour_reach(patch.plan)) {}
 
-  /// Starts the solve, if there is anything to solve.
-  bool submit() {
+  /// Passes the changes on.
+  void mark(PatchStack& stack, std::size_t at) {
     const auto changed = memory.changed();
-    if (solved && changed.empty() && !solves_all) return false;
-    if (!solved || solves_all) {
-      processor.submit(memory.readings());
+    stack.mark(at, changed);
+    if (stack.solves_all()) {
       load.mark_all();
     } else {
-      processor.submit(memory.readings(), changed);
       for (const SenselBlock& block : changed) load.mark(block);
     }
     memory.forget_changes();
-    solved = true;
-    return true;
-  }
-
-  void receive(const Pose& pose) {
-    state.forces = processor.receive();
-    state.load = load_of(load.update(state.forces), pose);
   }
 
   PatchMemory memory;
-  Processor processor;
   PatchLoad load;
   PatchState state;
-  bool solves_all;  ///< its plan needs all readings of each frame
-  bool solved = false;
 };
 
 struct WholeBody::State {
   BodySkin skin;
+  std::vector<PatchStack> stacks;
   std::vector<WholePatch> patches;
-  std::vector<std::size_t> submitted;
+  std::vector<PatchStack*> submitted;
   BodyLoad load;
   std::uint64_t invalid = 0;
+
+  [[nodiscard]] bool submit(PatchStack& stack) {
+    for (std::size_t at = 0; at < stack.members().size(); ++at) {
+      patches[stack.members()[at]].mark(stack, at);
+    }
+    return stack.submit();
+  }
+  void receive(PatchStack& stack) {
+    stack.receive();
+    for (std::size_t at = 0; at < stack.members().size(); ++at) {
+      const std::size_t index = stack.members()[at];
+      WholePatch& patch = patches[index];
+      patch.state.forces = stack.forces(at);
+      patch.state.load = load_of(patch.load.update(patch.state.forces), skin.patches[index].pose);
+    }
+  }
 };
 
 WholeBody::WholeBody(const Device& device, BodySkin skin) : state_(std::make_unique<State>()) {
   check_skin(skin);
   state_->skin = std::move(skin);
-  for (const BodyPatch& patch : state_->skin.patches) {
-    check(patch.plan, "patch " + patch.name);
-    state_->patches.emplace_back(device, patch, state_->skin.refresh_s);
+  const std::vector<BodyPatch>& patches = state_->skin.patches;
+  for (const BodyPatch& patch : patches) check(patch.plan, "patch " + patch.name);
+  std::vector<std::span<std::byte>> readings(patches.size());
+  for (std::vector<std::size_t>& members : PatchStack::divide(device, state_->skin)) {
+    PatchStack& stack = state_->stacks.emplace_back(device, state_->skin, std::move(members));
+    for (std::size_t at = 0; at < stack.members().size(); ++at) {
+      readings[stack.members()[at]] = stack.readings(at);
+    }
   }
-  state_->submitted.reserve(state_->patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    state_->patches.emplace_back(patches[i], state_->skin.refresh_s, readings[i]);
+  }
+  state_->submitted.reserve(state_->stacks.size());
 }
 
 WholeBody::~WholeBody() = default;
@@ -124,10 +136,10 @@ bool WholeBody::receive(const PillarfieldPacket& header, std::span<const std::by
 void WholeBody::solve() {
   State& body = *state_;
   body.submitted.clear();
-  for (std::size_t i = 0; i < body.patches.size(); ++i) {
-    if (body.patches[i].submit()) body.submitted.push_back(i);
+  for (PatchStack& stack : body.stacks) {
+    if (body.submit(stack)) body.submitted.push_back(&stack);
   }
-  for (const std::size_t i : body.submitted) body.patches[i].receive(body.skin.patches[i].pose);
+  for (PatchStack* const stack : body.submitted) body.receive(*stack);
   body.load = {};
   for (WholePatch& patch : body.patches) {
     patch.memory.describe(patch.state);
