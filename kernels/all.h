@@ -31,6 +31,7 @@
 #include "frame/load_store.h"
 #include "frame/wire_vectors.h"
 #include "frame/calibration_planes.h"
+#include "frame/changed.h"
 #include "frame/idle.h"
 #include "frame/block.h"
 #include "frame/memory_planes.h"

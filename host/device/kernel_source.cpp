@@ -217,6 +217,7 @@ std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedP
   all["PF_LANES"] = fmt::format("{}", lanes);
   if (possible.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
   if (possible.skip_idle) define_idle_range(plan, all);
+  if (possible.changed_only) all["PF_CHANGED"] = "";
   std::size_t place = 0;
   for (const CalibrationPlane plane : calibration_planes(plan, possible)) {
     all.emplace(macro_of(plane), fmt::format("{}", place++));
