@@ -7,23 +7,16 @@
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/force_sink.h"
-#include "io/hdf5/attribute.h"
 #include "io/hdf5/contact_hdf5_tables.h"
 #include "io/hdf5/file.h"
+#include "io/hdf5/force_info.h"
 #include "io/hdf5/frames.h"
-#include "io/stored_skin.h"
-#include "io/stored_surface.h"
 #include "pillarfield/error.h"
-#include "pillarfield/version.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr std::uint64_t kFlushEvery = 16;  // frames
-
-constexpr const char* kConvention =
-    "shear_x (+ right, growing column) and shear_y (+ up, falling row) act on the skin; normal is "
-    "positive when pressed; (theta, phi) is the direction from which the force comes, rad";
 
 class Hdf5Sink final : public ForceSink {
  public:
@@ -34,7 +27,6 @@ class Hdf5Sink final : public ForceSink {
   void finish() override;
 
  private:
-  void write_info();
   void create_datasets();
   void require_open() const;
   void put(const SolvedFrame& frame);
@@ -59,7 +51,7 @@ Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replac
       path_(path),
       part_(path, OutputKind::forces, replace),
       file_(hdf5::create(part_)) {
-  write_info();
+  write_info(file_, info_, path_);
   create_datasets();
   hdf5::start_appending(file_);
 }
@@ -72,27 +64,6 @@ Hdf5Sink::~Hdf5Sink() {
   time_ = {};
   contacts_ = {};
   file_ = {};
-}
-
-void Hdf5Sink::write_info() {
-  const hid_t root = file_.id.get();
-  hdf5::write_attribute(file_, root, "format", std::string(force_format::kName));
-  hdf5::write_attribute(file_, root, "version", force_format::kVersion);
-  hdf5::write_attribute(file_, root, force_format::kUnit, std::string("N"));
-  hdf5::write_attribute(file_, root, force_format::kSignConvention, std::string(kConvention));
-  hdf5::write_attribute(file_, root, force_format::kEstimator, info_.estimator);
-  if (info_.segment_point) {
-    hdf5::write_attribute(file_, root, force_format::kSegmentPoint, *info_.segment_point);
-  }
-  hdf5::write_attribute(file_, root, force_format::kDevice, info_.device);
-  hdf5::write_attribute(file_, root, force_format::kSource, info_.source);
-  hdf5::write_attribute(file_, root, force_format::kProgramVersion, std::string(kVersion));
-  hdf5::write_attribute(file_, root, force_format::kPillarPitch, info_.pillar_pitch_mm);
-  write_effects(file_, force_format::kEffects, info_.effects);
-  if (!info_.surface) return;
-  const PillarLayout pillars = {info_.rows, info_.cols, info_.pillar_pitch_mm};
-  check(*info_.surface, pillars, path_.c_str());
-  write_surface(file_, *info_.surface, pillars);
 }
 
 void Hdf5Sink::create_datasets() {
