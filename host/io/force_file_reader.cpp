@@ -102,10 +102,10 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
 void OpenForces::open_planes() {
   for (const ResultPlane& plane : planes_of(info)) {
     if (!is_read(plane)) continue;
-    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2);
+    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2, true);
     require_class(planes.back(), H5T_FLOAT, "floats", file.path);
   }
-  status = {file, force_format::kStatus, 2};
+  status = {file, force_format::kStatus, 2, true};
   require_class(status, H5T_INTEGER, "integers", file.path);
 }
 

@@ -89,14 +89,12 @@ std::uint64_t end_of_segment(std::uint64_t first, const FrameRange& range,
   return std::min((first / checkpoints.every + 1) * checkpoints.every, range.end);
 }
 
-void require_start(const FrameRange& range, const Checkpoints& checkpoints) {
-  const bool begins =
-      checkpoints.every == 0 ? range.first == 0 : range.first % checkpoints.every == 0;
+void require_start(bool begins, const std::string& where) {
   if (begins) return;
-  throw Error(fmt::format("frames from {}", range.first),
-              "they depend on earlier frames: a followed baseline, hysteresis, creep, bending, "
+  throw Error(where,
+              "its frames depend on earlier ones: a followed baseline, hysteresis, creep, bending, "
               "friction or identities of contacts",
-              "give --checkpoint-every, as a multiple of frames at which they begin anew");
+              "let them begin anew at some frames: --checkpoint-every");
 }
 
 }  // namespace
@@ -111,7 +109,10 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
                                const std::vector<ForceSink*>& sinks) {
   const bool has_state = carries_state(plan, options.contacts.has_value());
   const Checkpoints checkpoints = has_state ? options.checkpoints : Checkpoints{};
-  if (has_state) require_start(range, checkpoints);
+  if (has_state && range.first > 0) {
+    require_start(checkpoints.every > 0 && range.first % checkpoints.every == 0,
+                  fmt::format("the range from frame {}", range.first));
+  }
   PipelineStatistics done;
   for (std::uint64_t first = range.first; first < range.end && !done.stopped;) {
     const std::uint64_t end = end_of_segment(first, range, checkpoints);
@@ -157,7 +158,11 @@ std::optional<PipelineStatistics> solve_part(FrameSource& source, const Device& 
                                              std::vector<ForceSink*> others) {
   part.frames = source.frames();
   part.checkpoints = {};
-  if (carries_state(plan, options.contacts.has_value())) part.checkpoints = options.checkpoints;
+  if (carries_state(plan, options.contacts.has_value())) {
+    part.checkpoints = options.checkpoints;
+    require_start(part.count == 1 || part.checkpoints.every > 0,
+                  fmt::format("part {} of {}", part.index, part.count));
+  }
   check(part, output.string());
   part.fingerprint = fingerprint_of(source, plan, options.contacts);
   const std::filesystem::path file = part_file(output, part.index);

@@ -17,8 +17,10 @@
 #include "io/hdf5/file.h"
 #include "io/hdf5/force_info.h"
 #include "io/hdf5/frames.h"
+#include "io/hdf5/links.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/hdf5/tiled_frames.h"
 #include "io/hdf5/virtual_frames.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
@@ -138,10 +140,10 @@ class Joined {
     write_times(copy);
     for (const ResultPlane& plane : planes_of(info_)) {
       const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
-      copy ? copy_plane(name.c_str(), H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, kNoForce)
+      copy ? copy_plane(name.c_str(), H5T_IEEE_F32LE, kNoForce)
            : map_plane(name.c_str(), H5T_IEEE_F32LE, &kNoForce);
     }
-    copy ? copy_plane(force_format::kStatus, H5T_STD_U8LE, H5T_NATIVE_UINT8, kNoStatus)
+    copy ? copy_plane(force_format::kStatus, H5T_STD_U8LE, kNoStatus)
          : map_plane(force_format::kStatus, H5T_STD_U8LE, &kNoStatus);
     if (info_.contacts) write_contacts();
     hdf5::close(file_);
@@ -152,7 +154,7 @@ class Joined {
   void write_times(bool copy);
   void map_plane(const char* name, hid_t stored_type, const void* fill);
   template <class Value>
-  void copy_plane(const char* name, hid_t stored_type, hid_t memory_type, Value fill);
+  void copy_plane(const char* name, hid_t type, Value lost);
   void write_contacts();
   [[nodiscard]] std::optional<hdf5::File> open(std::uint64_t index) const;
 
@@ -193,21 +195,35 @@ void Joined::map_plane(const char* name, hid_t stored_type, const void* fill) {
                               {found_.joined.frames, info_.rows, info_.cols}, parts, fill);
 }
 
+/// Value of a dataset in pillars that nothing touches.
 template <class Value>
-void Joined::copy_plane(const char* name, hid_t stored_type, hid_t memory_type, Value fill) {
-  hdf5::ExtendibleDataset target(file_, name, stored_type, {info_.rows, info_.cols});
+Value fill_value(const hdf5::File& file, const char* name, hid_t type) {
+  const std::string failure = fmt::format("the layout of {} cannot be read", name);
+  const hdf5::Handle dataset = hdf5::open_object(file, name);
+  const hdf5::Handle layout =
+      hdf5::own(H5Dget_create_plist(dataset.get()), file.path, failure, hdf5::kDamaged);
+  Value value = 0;
+  hdf5::require(H5Pget_fill_value(layout.get(), type, &value), file.path, failure, hdf5::kDamaged);
+  return value;
+}
+
+template <class Value>
+void Joined::copy_plane(const char* name, hid_t type, Value lost) {
+  const auto idle = fill_value<Value>(*open(found_.files.begin()->first), name, type);
+  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &idle);
   std::vector<Value> values(std::size_t{info_.rows} * info_.cols);
   for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
     const FrameRange range = found_.frames(index);
     const std::optional<hdf5::File> file = open(index);
     std::optional<hdf5::StoredFrames> source;
-    if (file) source.emplace(*file, name, 2);
-    if (!source) std::ranges::fill(values, fill);
+    if (file) source.emplace(*file, name, 2, true);
+    if (!source) std::ranges::fill(values, lost);
     for (std::uint64_t frame = range.first; frame < range.end; ++frame) {
-      if (source) source->get(frame - range.first, memory_type, values.data());
-      target.put(frame, memory_type, values.data());
+      if (source) source->get(frame - range.first, type, values.data());
+      target.append(values.data());
     }
   }
+  target.flush();
 }
 
 void Joined::write_contacts() {
