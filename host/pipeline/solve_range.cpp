@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/interrupt.h"
 #include "solve/stages.h"
@@ -94,7 +95,18 @@ void require_start(bool begins, const std::string& where) {
   throw Error(where,
               "its frames depend on earlier ones: a followed baseline, hysteresis, creep, bending, "
               "friction or identities of contacts",
-              "let them begin anew at some frames: --checkpoint-every");
+              "let them begin anew at some frames: --checkpoint-every, in Python checkpoint_every");
+}
+
+/// Whether a file that should hold a part can be read neither as forces nor as frames.
+bool is_damaged(const std::filesystem::path& file) {
+  if (is_force_file(file) || is_calibration_file(file)) return false;
+  try {
+    static_cast<void>(open_frames(file));
+    return false;
+  } catch (const Error&) {
+    return true;
+  }
 }
 
 }  // namespace
@@ -173,7 +185,8 @@ std::optional<PipelineStatistics> solve_part(FrameSource& source, const Device& 
   const FrameRange range = frames_of(part);
   info.part = part;
   info.contacts = options.contacts;
-  const auto sink = create_force_sink(file, info);
+  const Replace replace = is_damaged(file) ? Replace::anything : Replace::results;
+  const auto sink = create_force_sink(file, info, replace);
   others.push_back(sink.get());
   PipelineStatistics done = solve_range(source, device, plan, range, options, others);
   if (!done.stopped) sink->finish();
