@@ -51,6 +51,12 @@ std::vector<float> draw_tares(const Scene& scene) {
   });
 }
 
+/// Drift rates in units of their standard deviation; empty without drift.
+std::vector<float> draw_drift(const Scene& scene) {
+  if (!(scene.sensor.drift_counts_per_s > 0)) return {};
+  return normal_plane(scene, random::Stream::drift, [](double n) { return n; });
+}
+
 std::vector<std::uint8_t> draw_mask(const Scene& scene) {
   const std::uint32_t cols = scene.skin.cols;
   std::vector<std::uint8_t> mask;
@@ -119,6 +125,7 @@ Sensor::Sensor(const Scene& scene)
       seed_(scene.seed),
       rate_hz_(scene.rate_hz),
       calibration_(draw_calibration(scene)),
+      drift_(draw_drift(scene)),
       needs_frames_(calibration_.effects.sensel_leak || calibration_.effects.wires ||
                     MemoryHistory::is_needed(model_)) {}
 
@@ -191,15 +198,14 @@ void Sensor::add_bending(std::uint64_t frame, std::uint32_t row, std::span<doubl
 
 void Sensor::digitise(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
                       FrameBuffer& raw) const {
-  if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
+  if (!drift_.empty()) add_drift(frame, row, signal);
   if (model_.noise_counts > 0) add_noise(frame, row, signal);
   if (!calibration_.mask.empty()) clear_dead(row, signal);
   convert(row, signal, raw);
 }
 
 void Sensor::add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
-  std::vector<float> speed(signal.size());
-  random::fill_normal({seed_, random::Stream::drift, 0, row}, speed);
+  const auto speed = row_of(drift_, row, signal.size());
   const double spread_counts = model_.drift_counts_per_s * static_cast<double>(frame) / rate_hz_;
   for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += spread_counts * speed[i];
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/pillar_model.h"
 #include "simulation/ideal_readings.h"
+#include "simulation/render_ahead.h"
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
 
@@ -205,6 +207,14 @@ void Simulator::render(std::uint64_t index, FrameBuffer& raw, ForceField& truth)
   } else {
     state_->render_rows(index, raw, truth);
   }
+}
+
+void Simulator::render_all(std::uint64_t first, std::uint64_t count, const TakeFrame& take,
+                           unsigned threads) const {
+  constexpr unsigned kMostThreads = 16;
+  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  const unsigned used = std::min(threads == 0 ? processors : threads, kMostThreads);
+  RenderAhead(*this, first, count, used, state_->memory != nullptr).deliver(take);
 }
 
 }  // namespace pillarfield

@@ -30,7 +30,7 @@ Edges edges_of(const PillarGrid& grid, const PillarBox& box, const Disc& disc) {
 
 std::vector<double> corners_along(const std::vector<double>& x, double y, CornerFunction corner) {
   std::vector<double> values(x.size());
-  std::transform(x.begin(), x.end(), values.begin(), [=](double at) { return corner(at, y); });
+  corner(x, std::vector<double>(x.size(), y), values);
   return values;
 }
 
@@ -155,7 +155,9 @@ ShareMoments disc_moments(const PillarGrid& grid, const PillarBox& box, const Di
     const double x1 = (at.right - disc.centre_mm.x) * scale;
     const double y0 = (at.bottom - disc.centre_mm.y) * scale;
     const double y1 = (at.top - disc.centre_mm.y) * scale;
-    return (corner(x1, y1) - corner(x0, y1)) - (corner(x1, y0) - corner(x0, y0));
+    std::array<double, 4> at_corner{};
+    corner(std::array{x1, x0, x1, x0}, std::array{y1, y1, y0, y0}, at_corner);
+    return (at_corner[0] - at_corner[1]) - (at_corner[2] - at_corner[3]);
   });
 }
 
