@@ -7,34 +7,13 @@
 #include <numbers>
 
 #include "base/wide.h"
+#include "simulation/closed_form/arc.h"
 #include "simulation/closed_form/elliptic_integrals.h"
 
 namespace pillarfield {
 namespace {
 
 using std::numbers::pi;
-
-/// atan2(y, x) for x >= 0, zero at the origin, without branches, so that compilers vectorise loops
-/// of it. atan t = atan c + atan((t - c) / (1 + tc)) with c of 0, tan(pi/8) or 1 leaves at most
-/// pi/16 to the Taylor series.
-PF_WIDE_INLINE double angle_of(double y, double x) {
-  constexpr double kTan1 = 0.19891236737965800691;  // tan(pi/16)
-  constexpr double kTan2 = 0.41421356237309504880;  // tan(pi/8)
-  constexpr double kTan3 = 0.66817863791929891999;  // tan(3 pi/16)
-  const double rise = std::abs(y);
-  const double less = std::min(rise, x);
-  const double more = std::max(rise, x);
-  const double c = less > kTan3 * more ? 1 : (less > kTan1 * more ? kTan2 : 0);
-  const double base = less > kTan3 * more ? pi / 4 : (less > kTan1 * more ? pi / 8 : 0);
-  const double u = (less - c * more) / std::max(more + c * less, 1e-300);
-  const double q = -u * u;
-  const double late =
-      1.0 / 13 + q * (1.0 / 15 + q * (1.0 / 17 + q * (1.0 / 19 + q * (1.0 / 21 + q * (1.0 / 23)))));
-  const double series =
-      1 + q * (1.0 / 3 + q * (1.0 / 5 + q * (1.0 / 7 + q * (1.0 / 9 + q * (1.0 / 11 + q * late)))));
-  const double angle = base + u * series;
-  return std::copysign(rise > x ? pi / 2 - angle : angle, y);
-}
 
 /// A corner clamped to the disc's bounding square, beyond which the corner functions of pressure
 /// are constant, and the three angles of (C5) and (C7).
@@ -51,7 +30,7 @@ PF_WIDE_INLINE PressureCorner pressure_corner(double x, double y) {
   x = std::clamp(x, -1.0, 1.0);
   y = std::clamp(y, -1.0, 1.0);
   const double height = std::sqrt(std::max(0.0, 1 - x * x - y * y));
-  return {x, y, height, angle_of(y, height), angle_of(x, height), angle_of(x * y, height)};
+  return {x, y, height, arc(y, height), arc(x, height), arc(x * y, height)};
 }
 
 /// Points clamped to the disc, y first, and the integrals of (C13).
@@ -101,7 +80,7 @@ PF_WIDE void sphere_spin(const CarlsonLanes& x, const CarlsonLanes& y, CarlsonLa
   set_spin_points(x, y, c);
   for (std::size_t i = 0; i < kCarlsonLanes; ++i) {
     const double elliptic = c.first[i] - (1 + c.y[i] * c.y[i]) * c.second[i];
-    const double inside = c.x[i] * angle_of(c.radius[i], c.height[i]) +
+    const double inside = c.x[i] * arc(c.radius[i], c.height[i]) +
                           c.x[i] * c.radius[i] * c.height[i] / 3 +
                           2 * c.half_chord[i] * elliptic / 3;
     values[i] = 3 / (4 * pi) * inside + 3.0 / 8 * c.beyond[i];
@@ -112,8 +91,7 @@ PF_WIDE void punch_spin(const CarlsonLanes& x, const CarlsonLanes& y, CarlsonLan
   SpinPoints c;
   set_spin_points(x, y, c);
   for (std::size_t i = 0; i < kCarlsonLanes; ++i) {
-    const double inside =
-        c.x[i] * angle_of(c.radius[i], c.height[i]) - c.half_chord[i] * c.second[i];
+    const double inside = c.x[i] * arc(c.radius[i], c.height[i]) - c.half_chord[i] * c.second[i];
     values[i] = inside / (2 * pi) + c.beyond[i] / 4;
   }
 }
