@@ -33,6 +33,7 @@
 #include "frame/calibration_planes.h"
 #include "frame/changed.h"
 #include "frame/idle.h"
+#include "frame/idle_tiles.h"
 #include "frame/block.h"
 #include "frame/memory_planes.h"
 #include "frame/neighbours.h"
