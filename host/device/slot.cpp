@@ -6,15 +6,19 @@
 namespace pillarfield {
 namespace {
 
+/// Work-groups of a compute unit. Where only changed blocks are solved, these lie in few of the
+/// rows.
+constexpr std::size_t kBandsPerUnit = 8;
+constexpr std::size_t kBandsOfChanges = 32;
+
 /// Global and local size of a launch. With several lanes, a work-item solves a band of rows.
 /// Several bands per compute unit balance the load; each is a work-group of its own, because
 /// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row.
 struct Launch {
-  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
+  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, std::size_t bands) {
     constexpr std::size_t kGroup = 64;
-    constexpr std::size_t kBandsPerUnit = 8;
     if (lanes > 1) {
-      global = cl::NDRange(1, std::min<std::size_t>(rows, kBandsPerUnit * compute_units));
+      global = cl::NDRange(1, std::min<std::size_t>(rows, bands));
       local = cl::NDRange(1, 1);
       return;
     }
@@ -63,6 +67,7 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .result_bytes = results.plane_bytes,
           .status = results.status,
           .idle = results.bytes,
+          .changed = results.changed_begin(),
           .ring = results.scratch_begin(),
           .wires = results.scratch_begin(),
           .frame = 0,
@@ -77,11 +82,15 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
       order_(&order) {
+  const bool changed_only = settings.paths.changed_only;
   const Launch solve(rows_, cols_, settings.lanes,
-                     device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+                     (changed_only ? kBandsOfChanges : kBandsPerUnit) *
+                         device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
-  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
+  if (changed_only) changed_.emplace(plan, settings.lanes);
+  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0,
+                       changed_ ? changed_->flags().size() : 0);
   if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);
   const std::size_t ring = ring_floats(plan, settings, global_[1]);
   const std::size_t forces = plan.calibration.effects.pillar_leak ? 3 * results.plane_bytes : 0;
@@ -120,6 +129,10 @@ Slot::~Slot() {
 }
 
 void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) {
+  if (changed_) {
+    memory_->set_changed(queue_, changed_->flags());
+    changed_->clear();
+  }
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   done_ = {};

@@ -102,4 +102,13 @@ bool has_memory_on_device(const SolverPlan& plan) {
   });
 }
 
+bool may_solve_changes(const SolverPlan& plan) {
+  return !effects(plan).wires && std::ranges::none_of(stages_of(plan), &Stage::has_memory);
+}
+
+std::uint32_t neighbour_reach(const SolverPlan& plan) {
+  return static_cast<std::uint32_t>(
+      std::ranges::count_if(stages_of(plan), &Stage::needs_neighbours));
+}
+
 }  // namespace pillarfield

@@ -28,4 +28,11 @@ struct Stage {
 /// True if frames must be solved in their order on the device.
 [[nodiscard]] bool has_memory_on_device(const SolverPlan& plan);
 
+/// True if pillars whose readings, and those of their neighbours, did not change keep their forces:
+/// no stage has a memory, reads whole wires or runs on the host.
+[[nodiscard]] bool may_solve_changes(const SolverPlan& plan);
+
+/// How many pillars beyond its own a sensel's reading may change the force of.
+[[nodiscard]] std::uint32_t neighbour_reach(const SolverPlan& plan);
+
 }  // namespace pillarfield

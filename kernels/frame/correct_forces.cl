@@ -83,9 +83,12 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
   for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
     const uint skew = skew_of(row, cols);
     for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
          at_block += step) {
+      if (!is_changed(changed, at_block)) continue;
       if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
       const OwnBlock block = own_block(at_block, skew, cols);
       const uint col = block.col;
@@ -146,9 +149,12 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
   const Output output = {results, results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
   for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
     const uint skew = skew_of(row, cols);
     for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
          at_block += step) {
+      if (!is_changed(changed, at_block)) continue;
       if (idle_flag(results, layout, row, at_block) != 0) continue;
       const OwnBlock block = own_block(at_block, skew, cols);
       const uint col = block.col;
