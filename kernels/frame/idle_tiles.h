@@ -49,8 +49,7 @@ typedef struct {
 PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
 #ifdef PF_LARGEST_READING
   const Real size = fabs(reading);
-  const Real distance =
-      size <= (Real)(PF_LARGEST_READING) ? threshold - reading : (Real)(-1.0f);
+  const Real distance = size <= (Real)(PF_LARGEST_READING) ? threshold - reading : (Real)(-1.0f);
   range.largest = size > range.largest ? size : range.largest;
 #else
   const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
@@ -151,8 +150,7 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
   }
   for (uint at = first; at < first + tile.rows; ++at) {
     const float row = wires.row[at];
-    const float own =
-        (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
+    const float own = (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
     const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
     wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN_ONE ? max(high, low) : PF_SATURATED_ROW;
@@ -162,7 +160,8 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
 /* The largest bound of `rows` rows of sensels under PF_LANES pillars. */
 PF_INLINE float bound_of(WireVectors wires, Place place, uint rows) {
   float bound = PF_IDLE_TILE;
-  for (uint tile = place.col / PF_TILE_COLS; tile * PF_TILE_COLS < place.col + 2 * PF_LANES; ++tile) {
+  for (uint tile = place.col / PF_TILE_COLS; tile * PF_TILE_COLS < place.col + 2 * PF_LANES;
+       ++tile) {
     global const float* const of_rows = wires.bound + (size_t)tile * wires.rows + place.row;
     for (uint row = 0; row < rows; ++row) bound = max(bound, of_rows[row]);
   }
@@ -186,8 +185,8 @@ PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
   const Real rise = (Real)(bound - 1.0f);
   Mask idle = mask_of(PF_BITS(-1));
   for (uint row = 0; row < rows; ++row) {
-    global const PF_SENSEL* const activation = activation_thresholds(calibration) +
-                                               (place.row + row) * calibration.stride + place.col;
+    global const PF_SENSEL* const activation =
+        activation_thresholds(calibration) + (place.row + row) * calibration.stride + place.col;
     for (uint side = 0; side < 2; ++side) {
       idle = idle && stays_idle(PF_READINGS_AT(raw + row * row_stride + side * PF_LANES),
                                 PF_THRESHOLDS_AT(activation + side * PF_LANES), rise);

@@ -22,8 +22,7 @@ PF_INLINE global float* state_at(Calibration calibration, int state, int side, u
 #if PF_LANES == 1
   return states + ((size_t)row * (2 * PF_STATES) + number) * block.blocks + block.at;
 #else
-  return states +
-         (((size_t)row * block.blocks + block.at) * (2 * PF_STATES) + number) * PF_LANES;
+  return states + (((size_t)row * block.blocks + block.at) * (2 * PF_STATES) + number) * PF_LANES;
 #endif
 }
 

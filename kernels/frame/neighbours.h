@@ -42,8 +42,8 @@ PF_INLINE Ring ring_of(global float* rings, uint cols) {
 PF_INLINE void prefetch_row_below(Input input, Place place) {
   PF_PREFETCH_FAR(input.raw + (place.row + 2) * input.row_stride + place.col);
 #ifdef PF_ACTIVATION_PLANE
-  PF_PREFETCH_FAR(activation_thresholds(input.calibration) +
-                  offset_of(input.calibration, place) + 2 * input.calibration.stride);
+  PF_PREFETCH_FAR(activation_thresholds(input.calibration) + offset_of(input.calibration, place) +
+                  2 * input.calibration.stride);
 #endif
 }
 

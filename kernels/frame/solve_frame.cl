@@ -145,8 +145,8 @@ typedef struct {
   size_t activation_stride;
   global uchar* idle;          /* flag of the first block */
   global const uchar* changed; /* flag of the first block */
-  uint skew;          /* pillars by which the first block would begin before the row */
-  uint last_col;      /* first column of the last block */
+  uint skew;                   /* pillars by which the first block would begin before the row */
+  uint last_col;               /* first column of the last block */
   uint blocks;
 #ifdef PF_WIRES
   Calibration calibration;
