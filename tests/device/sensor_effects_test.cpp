@@ -227,6 +227,33 @@ TEST_P(SensorEffectsOnDevice, BendingHasTheBitsOfTheHost) {
   expect_host_bits(plan, true);
 }
 
+/// Activation thresholds that each frame changes, before its wires are found.
+TEST_P(SensorEffectsOnDevice, WiresOfABentSkinHaveTheBitsOfTheHost) {
+  SensorEffects effects;
+  effects.wires = {16, 24, 3e-5, 3e-5, 3e-5};
+  SolverPlan plan = plan_with(effects, true);
+  add_patterns(plan, 50);
+  expect_host_bits(plan, true, 12.99);
+}
+
+TEST_P(SensorEffectsOnDevice, WiresBelowAFollowedBaselineHaveTheBitsOfTheHost) {
+  SensorEffects effects;
+  effects.wires = {16, 24, 3e-5, 3e-5, 3e-5};
+  SolverPlan plan = plan_with(effects, true);
+  plan.baseline_rate = 0.05;
+  Processor processor(test_device(), plan, {.memory = GetParam().memory},
+                      {.lanes = GetParam().lanes});
+  Frames frames(GetParam().type, 1, 12.99);
+  for (int index = 0; index < kFrames; ++index) {
+    const FrameView frame = frames.frame(index % 8);
+    processor.submit(frame);
+    const ForceFieldView forces = processor.receive();
+    const ForceField expected = solve_on_host(plan, frame);
+    expect_same_bits(forces, expected.view());
+    follow_baseline_on_host(plan, frame, expected, static_cast<std::uint64_t>(index));
+  }
+}
+
 /// Every path is compiled once, with everything.
 class AllEffectsOnDevice : public SensorEffectsOnDevice {};
 
