@@ -314,12 +314,11 @@ void solve(const SolveOptions& given) {
   range.checkpoints = checkpoints_of(options.parts);
   range.processor = {.memory = options.device.memory,
                      .frames_in_flight = kFramesInFlight,
-                     .start_on_host = true,
                      .on_compiling = terminal_line(options.quiet)};
   if (!options.contacts_file.empty()) range.contacts = options.contacts;
   SolveSummary summary;
   range.stop = [&, started = false]() mutable {
-    // Called before the first frame.
+    // Called first when all is compiled.
     if (!std::exchange(started, true)) summary.startup_seconds = watch.seconds();
     return is_interrupted();
   };
