@@ -101,6 +101,7 @@ struct Processor::State {
         calibration(opened.state().context, wanted, paths),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
     order.is_needed = has_memory_on_device(wanted);
+    order.each_writes = wanted.baseline_rate || wanted.calibration.effects.memory;
     order.follows_baseline = wanted.baseline_rate.has_value();
     order.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
