@@ -50,9 +50,8 @@ class Body(CommandTest):
     def test_wrong_file_in_one_line(self):
         file = self.folder / "body.toml"
         file.write_text('[[patch]]\nname = "a"\n')
-        failed = run("body", "plan", file, status=1)
-        self.assertEqual(failed.stderr.count("\n"), 1)
-        self.assertIn(f"{file}:1: key 'scene' in [[patch]] is missing", failed.stderr)
+        self.assert_fails("body", "plan", file,
+                          names=[f"{file}:1: key 'scene' in [[patch]] is missing"])
 
 
 if __name__ == "__main__":
