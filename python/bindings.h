@@ -14,6 +14,7 @@ void bind_contacts(pybind11::module_& module);
 void bind_frames(pybind11::module_& module);
 void bind_solve(pybind11::module_& module);
 void bind_force_files(pybind11::module_& module);
+void bind_parts(pybind11::module_& module);
 void bind_compare(pybind11::module_& module);
 void bind_calibrate(pybind11::module_& module);
 void bind_live(pybind11::module_& module);

@@ -16,6 +16,7 @@ PYBIND11_MODULE(_core, module) {
   bind_solve(module);
   bind_processor(module);
   bind_force_files(module);
+  bind_parts(module);
   bind_compare(module);
   bind_calibrate(module);
   bind_live(module);

@@ -42,12 +42,27 @@ struct SimulateOptions : WriteOptions {
   bool uncalibrated = false;
 };
 
+/// Ranges of frames that are solved apart.
+struct PartOptions {
+  std::string part;   ///< "7/64"; empty: none
+  std::string parts;  ///< "64" or "auto"; empty: none
+  std::optional<std::uint64_t> checkpoint_every;
+  std::optional<std::uint64_t> warm_up;
+};
+
 struct SolveOptions : WriteOptions {
   std::string input;
   PlanOptions plan;
   DeviceOptions device;
   std::string contacts_file;  ///< empty: none
   ContactOptions contacts;
+  PartOptions parts;
+};
+
+struct JoinCommand : WriteOptions {
+  ReadOptions read;
+  bool copy = false;
+  bool allow_missing = false;
 };
 
 struct PaceOptions : PrintOptions {
@@ -101,6 +116,7 @@ struct CompareOptions : PrintOptions {
   std::string forces;
   std::string recording;
   ReadOptions read;
+  bool allow_missing = false;
 };
 
 /// Arguments of all calibration steps.
@@ -182,6 +198,7 @@ struct InfoOptions : PrintOptions {
 
 void simulate(const SimulateOptions& options);
 void solve(const SolveOptions& given);
+void join(const JoinCommand& command);
 void pace(const PaceOptions& options);
 void stream(const StreamOptions& options);
 void plan_body(const BodyOptions& options);

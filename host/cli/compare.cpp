@@ -195,6 +195,16 @@ void print_coverage(const Coverage& coverage) {
       "deviations, since it excludes noise. Pillars with flagged sensels are left out.\n");
 }
 
+/// Ranges of frames without forces. Throws Error unless they are allowed.
+std::vector<LostPart> lost_parts(const ForceFileReader& forces, const CompareOptions& options) {
+  std::vector<LostPart> lost = forces.lost_parts();
+  if (lost.empty() || options.allow_missing) return lost;
+  throw Error(options.forces,
+              fmt::format("it lacks {} of {} parts: {}{}", lost.size(), forces.parts(),
+                          name_of(lost.front()), lost.size() > 1 ? ", ..." : ""),
+              "solve them, or leave them out with --allow-missing");
+}
+
 /// Checks that the files belong to one patch and returns the number of frames in both.
 std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& recording,
                             const CompareOptions& options) {
@@ -225,7 +235,14 @@ void compare(const CompareOptions& options) {
   const ForceFileReader forces(options.forces, options.read);
   const std::unique_ptr<FrameSource> recording =
       open_frames(options.recording, {.trust = options.read.trust, .untimed = true});
-  const std::uint64_t frames = common_frames(forces, *recording, options);
+  const std::vector<LostPart> lost = lost_parts(forces, options);
+  const auto is_lost = [&](std::uint64_t frame) {
+    return std::ranges::any_of(lost, [&](const LostPart& part) {
+      return frame >= part.frames.first && frame < part.frames.end;
+    });
+  };
+  const std::uint64_t all_frames = common_frames(forces, *recording, options);
+  std::uint64_t frames = 0;
   const ForceFileInfo& info = forces.info();
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
@@ -234,9 +251,11 @@ void compare(const CompareOptions& options) {
   std::optional<Coverage> coverage;
   if (info.uncertainty) coverage.emplace();
   {
-    Progress progress("Comparing", frames, options.quiet);
-    for (std::uint64_t index = 0; index < frames; ++index) {
+    Progress progress("Comparing", all_frames, options.quiet);
+    for (std::uint64_t index = 0; index < all_frames; ++index) {
       stop_if_interrupted(index, options.forces);
+      if (is_lost(index)) continue;
+      ++frames;
       forces.read(index, solved);
       recording->read_truth(index, truth);
       comparison.add(solved.view(), truth.view());

@@ -29,6 +29,9 @@ using Json = nlohmann::ordered_json;
 /// facts_of() probes a file once, before it is opened several times.
 const ReadOptions kProbed = {.trust = true};
 
+/// Parts of a joined file without which it is not whole.
+constexpr const char* kLostParts = "lost_parts";
+
 /// Returns a value as text: the members of a list, and of an object with their names.
 std::string text_of(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
@@ -146,6 +149,16 @@ Json facts_of_forces(const std::string& file) {
                 {"warnings", reader.warnings()}};
   if (info.segment_point) facts["segment_point"] = *info.segment_point;
   add_surface(facts, info.surface);
+  if (info.part) {
+    facts["part"] = fmt::format("{}/{}", info.part->index, info.part->count);
+    facts["first_frame"] = frames_of(*info.part).first;
+  }
+  if (reader.parts() == 0) return facts;
+  facts["parts"] = reader.parts();
+  facts[kLostParts] = Json::array();
+  for (const LostPart& part : reader.examine_parts()) {
+    facts[kLostParts].push_back(fmt::format("{}: {}", name_of(part), part.reason));
+  }
   return facts;
 }
 
@@ -270,7 +283,14 @@ void info(const InfoOptions& options) {
   } else if (!options.kernel.empty()) {
     print_kernel(options.kernel);
   } else if (!options.file.empty()) {
-    print_facts(facts_of(options.file, options.read), options.json);
+    const Json facts = facts_of(options.file, options.read);
+    print_facts(facts, options.json);
+    const std::size_t lost = facts.contains(kLostParts) ? facts[kLostParts].size() : 0;
+    if (lost > 0) {
+      throw Error(options.file,
+                  fmt::format("{} of its {} parts are lost", lost, facts["parts"].get<int>()),
+                  "solve them again with the same --part K/N");
+    }
   } else {
     print_facts({{"version", kVersion}, {"license", "MIT"}}, options.json);
     print_devices(options.json);

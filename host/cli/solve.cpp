@@ -12,6 +12,7 @@
 #include "cli/interrupt.h"
 #include "cli/json_text.h"
 #include "cli/number_text.h"
+#include "cli/parts/share.h"
 #include "cli/progress.h"
 #include "cli/region_count.h"
 #include "cli/stopwatch.h"
@@ -20,10 +21,10 @@
 #include "pillarfield/contact_file.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
-#include "pillarfield/pipeline.h"
 #include "pillarfield/printable.h"
 #include "pillarfield/processor.h"
 #include "pillarfield/recording.h"
+#include "pillarfield/solve_range.h"
 #include "pillarfield/tuning.h"
 
 namespace pillarfield::cli {
@@ -55,6 +56,8 @@ std::optional<PlannedOutput> contact_table(const SolveOptions& options) {
 
 struct SolveSummary {
   PipelineStatistics done;
+  std::optional<PartShare> parts;      ///< of --part and --parts
+  std::vector<std::uint64_t> skipped;  ///< parts that were whole already
   RegionCount regions;
   double startup_seconds = 0;  ///< opening the files and the device, compiling
   double seconds = 0;          ///< reading, solving and writing, which overlap
@@ -89,18 +92,8 @@ SolverPlan plan_of(const SolveOptions& options, FrameSource& source) {
 }
 
 ForceFileInfo file_info(const SolveOptions& options, const SolverPlan& plan, const Device& device) {
-  ForceFileInfo info;
-  info.rows = plan.skin.pillar_rows();
-  info.cols = plan.skin.pillar_cols();
-  info.pillar_pitch_mm = plan.skin.pillar_pitch_mm();
-  info.estimator = name_of(plan.estimator);
-  if (plan.estimator != Estimator::paper) info.segment_point = plan.segment_point;
-  info.device = device.info().name;
-  info.source = std::filesystem::path(options.input).filename().string();
-  info.angles = plan.angles;
-  info.uncertainty = plan.uncertainty;
-  info.effects = plan.calibration.effects;
-  info.surface = plan.skin.surface;
+  ForceFileInfo info =
+      file_info(plan, device, std::filesystem::path(options.input).filename().string());
   if (!options.contacts_file.empty() && is_hdf5(options.output)) info.contacts = options.contacts;
   return info;
 }
@@ -125,7 +118,12 @@ class Counter final : public ForceSink {
 
 double per_second(double amount, double seconds) { return seconds > 0 ? amount / seconds : 0; }
 
-void print_json(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
+bool shares_memory(const SolveOptions& options, const Device& device) {
+  return options.device.memory == Memory::shared ||
+         (options.device.memory == Memory::automatic && device.info().shares_memory);
+}
+
+void print_json(const SolveOptions& options, const SolverPlan& plan, const Device& device,
                 const SolveSummary& summary, const std::vector<std::string>& warnings) {
   nlohmann::ordered_json regions;
   for (const Region region :
@@ -135,8 +133,8 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
   nlohmann::ordered_json json = {{"input", options.input},
                                  {"output", options.output},
                                  {"estimator", name_of(plan.estimator)},
-                                 {"device", processor.device().info().name},
-                                 {"zero_copy", processor.shares_memory()},
+                                 {"device", device.info().name},
+                                 {"zero_copy", shares_memory(options, device)},
                                  {"stages", kernel_stages(plan)},
                                  {"frames", summary.done.frames},
                                  {"pillar_rows", plan.skin.pillar_rows()},
@@ -148,6 +146,11 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
                                  {"startup_seconds", summary.startup_seconds},
                                  {"seconds", summary.seconds},
                                  {"warnings", warnings}};
+  if (summary.parts) {
+    json["parts"] = {{"count", summary.parts->count},
+                     {"own", summary.parts->indices},
+                     {"skipped", summary.skipped}};
+  }
   if (!options.contacts_file.empty()) {
     json["contacts_output"] = options.contacts_file;
     json["contacts"] = summary.done.contacts;
@@ -156,15 +159,26 @@ void print_json(const SolveOptions& options, const SolverPlan& plan, const Proce
   fmt::print("{}\n", json_text(json));
 }
 
-void print_text(const SolveOptions& options, const SolverPlan& plan, const Processor& processor,
+void print_parts(const SolveOptions& options, const SolveSummary& summary) {
+  fmt::print("Wrote {} of {} in {}\n",
+             counted(summary.parts->indices.size() - summary.skipped.size(), "part"),
+             summary.parts->count, printable(part_file(options.output, 1).parent_path().string()));
+  if (!summary.skipped.empty()) {
+    fmt::print("Left {} as before\n", counted(summary.skipped.size(), "whole part"));
+  }
+  fmt::print("When all are whole: pillarfield join {}\n", printable(options.output));
+}
+
+void print_text(const SolveOptions& options, const SolverPlan& plan, const Device& solver,
                 const SolveSummary& summary) {
+  if (summary.parts && summary.done.frames == 0) return print_parts(options, summary);
   const RegionCount& regions = summary.regions;
   const auto frames = static_cast<double>(summary.done.frames);
   const auto pillars = static_cast<double>(regions.all());
-  const DeviceInfo& device = processor.device().info();
+  const DeviceInfo& device = solver.info();
   fmt::print("Solved {} of {} x {} pillars on {} ({}, {})\n", counted(summary.done.frames, "frame"),
              plan.skin.pillar_rows(), plan.skin.pillar_cols(), device.name, device.type,
-             processor.shares_memory() ? "zero copy" : "staged");
+             shares_memory(options, solver) ? "zero copy" : "staged");
   fmt::print("  reading, solving, writing  {:.2f} s, {} frames/s, {:.3g} million pillars/s\n",
              summary.seconds, rounded(per_second(frames, summary.seconds)),
              per_second(pillars, summary.seconds) / 1e6);
@@ -191,19 +205,18 @@ void print_text(const SolveOptions& options, const SolverPlan& plan, const Proce
     fmt::print("Contacts: {} in all, at most {} at once, in {}\n", grouped(summary.done.contacts),
                summary.done.most_contacts, printable(options.contacts_file));
   }
+  if (summary.parts) return print_parts(options, summary);
   fmt::print("Wrote {}\n", printable(options.output));
-}
-
-/// Number of pillars without any sensel, over all frames.
-std::uint64_t pillars_without_sensels(const FrameSource& source, const SolverPlan& plan) {
-  return source.frames() * count_pillars_without_sensels(plan.calibration, plan.skin);
 }
 
 /// Warns of a recording that seems to lack its tare: nearly all pillars of a real skin in contact.
 void warn_of_tare(const SolveOptions& options, const FrameSource& source, const SolverPlan& plan,
-                  const RegionCount& regions) {
+                  const SolveSummary& summary) {
   constexpr double kNearlyAll = 0.95;
-  const auto present = static_cast<double>(regions.all() - pillars_without_sensels(source, plan));
+  const RegionCount& regions = summary.regions;
+  const auto present =
+      static_cast<double>(regions.all() - summary.done.frames * count_pillars_without_sensels(
+                                                                    plan.calibration, plan.skin));
   if (source.has_truth() || !plan.calibration.tare.empty() || !(present > 0) ||
       static_cast<double>(regions.in_contact()) < kNearlyAll * present) {
     return;
@@ -214,22 +227,72 @@ void warn_of_tare(const SolveOptions& options, const FrameSource& source, const 
              printable(options.input), percent(regions.in_contact(), regions.all()));
 }
 
-void run(const SolveOptions& options, FrameSource& source, Processor& processor,
-         const std::vector<std::unique_ptr<ForceSink>>& files, ContactTracker* tracker,
-         SolveSummary& summary) {
-  {
-    Counter counter(source.frames(), options.quiet);
-    std::vector<ForceSink*> sinks = {&counter};
-    for (const auto& file : files) sinks.push_back(file.get());
-    const auto stream = file_stream(source);
-    Pipeline pipeline(
-        *stream, processor, sinks,
-        {.frames_in_flight = kFramesInFlight, .contacts = tracker, .stop = is_interrupted});
-    summary.done = pipeline.run();
-    summary.regions = counter.regions();
+/// What a solve of all frames or of some parts needs.
+struct Job {
+  const SolveOptions& options;
+  FrameSource& source;
+  const Device& device;
+  const SolverPlan& plan;
+  RangeOptions range;
+  Counter& counter;
+};
+
+/// Solves all frames into the outputs of the options.
+void solve_all(const Job& job, const std::optional<PlannedOutput>& table, SolveSummary& summary) {
+  const SolveOptions& options = job.options;
+  const ForceFileInfo info = file_info(options, job.plan, job.device);
+  std::vector<std::unique_ptr<ForceSink>> files;
+  files.push_back(create_force_sink(options.output, info, options.replace));
+  if (table) {
+    files.push_back(create_contact_sink(
+        table->path, {info.pillar_pitch_mm, info.source, options.contacts}, options.replace));
   }
+  std::vector<ForceSink*> sinks = {&job.counter};
+  for (const auto& file : files) sinks.push_back(file.get());
+  summary.done =
+      solve_range(job.source, job.device, job.plan, {0, job.source.frames()}, job.range, sinks);
   if (summary.done.stopped) stop_if_interrupted(summary.done.frames, options.output);
   for (const auto& file : files) file->finish();
+}
+
+/// Solves the parts of this process that are not whole.
+void solve_parts(const Job& job, SolveSummary& summary) {
+  const std::string& output = job.options.output;
+  const ForceFileInfo info = file_info(job.options, job.plan, job.device);
+  for (const std::uint64_t index : summary.parts->indices) {
+    ForcePart part;
+    part.index = index;
+    part.count = summary.parts->count;
+    const auto done =
+        solve_part(job.source, job.device, job.plan, job.range, output, info, part, {&job.counter});
+    if (!done) {
+      summary.skipped.push_back(index);
+      continue;
+    }
+    if (done->stopped) stop_if_interrupted(done->frames, part_file(output, index));
+    summary.done.frames += done->frames;
+    summary.done.contacts += done->contacts;
+    summary.done.most_contacts = std::max(summary.done.most_contacts, done->most_contacts);
+  }
+}
+
+void check_part_options(const SolveOptions& options) {
+  if (options.parts.part.empty() && options.parts.parts.empty()) return;
+  if (!is_hdf5(options.output)) {
+    throw Error(options.output, "parts are HDF5 files", "end its name in .h5");
+  }
+  if (options.contacts_file.empty() || name_same_file(options.contacts_file, options.output))
+    return;
+  throw Error(options.contacts_file, "the contacts of parts lie in the force file",
+              fmt::format("give --contacts {}", options.output));
+}
+
+/// The files that this process writes.
+std::vector<PlannedOutput> outputs_of(const SolveOptions& options,
+                                      const std::optional<PlannedOutput>& table) {
+  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
+  if (table) outputs.push_back(*table);
+  return outputs;
 }
 
 }  // namespace
@@ -238,40 +301,44 @@ void solve(const SolveOptions& given) {
   SolveOptions options = given;
   const Stopwatch watch;
   const std::optional<PlannedOutput> table = contact_table(options);
-  std::vector<PlannedOutput> outputs = {planned_force_file(options.output)};
-  if (table) outputs.push_back(*table);
-  check_outputs({options.input, options.plan.scene, options.plan.calibration}, outputs,
-                options.replace);
+  check_part_options(options);
+  check_outputs({options.input, options.plan.scene, options.plan.calibration},
+                outputs_of(options, table), options.replace);
   const std::unique_ptr<FrameSource> source =
       open_frames(options.input, frame_options(options.plan));
   print_file_warnings(options.input, source->warnings());
   const SolverPlan plan = plan_of(options, *source);
   set_sensor(options.contacts, plan);
   const Device device = open_device(options.device.name);
-  Processor processor(device, plan,
-                      {.memory = options.device.memory,
-                       .frames_in_flight = kFramesInFlight,
-                       .on_compiling = terminal_line(options.quiet)});
-  const ForceFileInfo info = file_info(options, plan, device);
-  std::vector<std::unique_ptr<ForceSink>> files;
-  files.push_back(create_force_sink(options.output, info, options.replace));
-  std::optional<ContactTracker> tracker;
-  if (!options.contacts_file.empty()) {
-    tracker.emplace(info.pillar_pitch_mm, options.contacts);
-    if (table) {
-      files.push_back(create_contact_sink(
-          table->path, {info.pillar_pitch_mm, info.source, options.contacts}, options.replace));
-    }
-  }
+  RangeOptions range;
+  range.checkpoints = checkpoints_of(options.parts);
+  range.processor = {.memory = options.device.memory,
+                     .frames_in_flight = kFramesInFlight,
+                     .on_compiling = terminal_line(options.quiet)};
+  if (!options.contacts_file.empty()) range.contacts = options.contacts;
   SolveSummary summary;
-  summary.startup_seconds = watch.seconds();
-  run(options, *source, processor, files, tracker ? &*tracker : nullptr, summary);
+  range.stop = [&, started = false]() mutable {
+    // Called first when all is compiled.
+    if (!std::exchange(started, true)) summary.startup_seconds = watch.seconds();
+    return is_interrupted();
+  };
+  summary.parts = share_of(options.parts, most_parts(source->frames(), range.checkpoints));
+  {
+    Counter counter(source->frames(), options.quiet);
+    const Job job = {options, *source, device, plan, range, counter};
+    if (summary.parts) {
+      solve_parts(job, summary);
+    } else {
+      solve_all(job, table, summary);
+    }
+    summary.regions = counter.regions();
+  }
   summary.seconds = watch.seconds() - summary.startup_seconds;
-  warn_of_tare(options, *source, plan, summary.regions);
+  warn_of_tare(options, *source, plan, summary);
   if (options.json) {
-    print_json(options, plan, processor, summary, source->warnings());
+    print_json(options, plan, device, summary, source->warnings());
   } else if (!options.quiet) {
-    print_text(options, plan, processor, summary);
+    print_text(options, plan, device, summary);
   }
 }
 

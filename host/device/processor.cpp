@@ -49,7 +49,6 @@ bool decide_sharing(Memory memory, const Device& device) {
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
-  paths.skip_idle = paths.skip_idle && may_skip_idle(plan);
   paths.changed_only = options.changes;
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;

@@ -53,7 +53,7 @@ std::size_t wire_floats(const SolverPlan& plan, const cl::NDRange& tiles) {
   if (!plan.calibration.effects.wires) return 0;
   const std::size_t rows = 2 * std::size_t{plan.skin.pillar_rows()};
   const std::size_t cols = 2 * std::size_t{plan.skin.pillar_cols()};
-  return 2 * rows * tiles[0] + cols * tiles[1];
+  return 3 * rows * tiles[0] + cols * tiles[1];
 }
 
 single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& results,
@@ -110,7 +110,8 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   const SensorEffects& effects = plan.calibration.effects;
   if (!plan.calibration.bend_x.empty()) bend_ = kernel("bend_tare");
   if (effects.pillar_leak) unleak_ = kernel("remove_pillar_leak");
-  if (effects.pillar_leak || effects.arm_mm) correct_ = kernel("correct_forces");
+  const bool derives = plan.angles || plan.uncertainty;
+  if (effects.arm_mm || (effects.pillar_leak && derives)) correct_ = kernel("correct_forces");
   if (!order.follows_baseline) return;
   follow_ = kernel("follow_baseline");
   follow_.setArg(kInterval, order.interval);
@@ -136,7 +137,6 @@ void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) 
   done_ = {};
   layout_.row_stride = on_device.row_stride;
   layout_.frame = ++order_->frame;
-  if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
   solve(bent);
   if (unleak_() != nullptr) launch(unleak_, global_, local_);
   if (correct_() != nullptr) launch(correct_, global_, local_);
@@ -152,9 +152,8 @@ void Slot::launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRan
 }
 
 void Slot::solve(const std::optional<Curvature>& bent) {
-  if (!order_->is_needed) return launch(kernel_, global_, local_);
   std::vector<cl::Event> before;
-  if (order_->left() != nullptr) before.push_back(order_->left);
+  if (order_->is_needed && order_->left() != nullptr) before.push_back(order_->left);
   if (bent) {
     bend_.setArg(kBendX, static_cast<float>(bent->x));
     bend_.setArg(kBendX + 1, static_cast<float>(bent->y));
@@ -162,6 +161,12 @@ void Slot::solve(const std::optional<Curvature>& bent) {
     launch(bend_, global_, local_, &before);
     before.clear();
   }
+  // Tares and activation thresholds may change from frame to frame.
+  if (wires_() != nullptr) {
+    launch(wires_, tiles_, {1, 1}, &before);
+    before.clear();
+  }
+  if (!order_->is_needed) return launch(kernel_, global_, local_);
   cl::Event* const left = &order_->left;
   launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
   if (order_->follows_baseline) {

@@ -9,10 +9,12 @@
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/contact_hdf5_reader.h"
 #include "io/hdf5/file.h"
+#include "io/hdf5/force_info.h"
 #include "io/hdf5/links.h"
 #include "io/hdf5/number_type.h"
 #include "io/hdf5/readers.h"
 #include "io/hdf5/stored_frames.h"
+#include "io/part_readers.h"
 #include "io/stored_skin.h"
 #include "io/stored_surface.h"
 #include "pillarfield/error.h"
@@ -26,7 +28,9 @@ namespace {
 struct OpenForces {
   explicit OpenForces(hdf5::File opened);
 
-  void read_size();
+  void open_planes();
+  void read_size(const std::vector<hsize_t>& shape);
+  void open_parts();
   void read_info();
   void read_surface_of_skin();
   void count_frames();
@@ -37,6 +41,7 @@ struct OpenForces {
   hdf5::StoredFrames status;
   hdf5::StoredFrames time;
   std::optional<ContactTablesReader> contacts;
+  std::optional<PartReaders> parts;  // of a joined file, which has neither planes nor status
   ForceFileInfo info;
   std::uint64_t frames = 0;
   std::vector<std::string> warnings;
@@ -56,32 +61,55 @@ void require_class(const hdf5::StoredFrames& frames, H5T_class_t kind, const cha
               "see docs/formats.md");
 }
 
+/// The size of a frame of a joined file's status, whose values lie in its parts.
+std::vector<hsize_t> shape_of_virtual(const hdf5::File& file, const char* name) {
+  const hdf5::Handle dataset = hdf5::open_object(file, name);
+  const hdf5::Handle space = hdf5::own(H5Dget_space(dataset.get()), file.path,
+                                       fmt::format("{} is not a dataset", name), hdf5::kDamaged);
+  std::vector<hsize_t> extent(3);
+  if (H5Sget_simple_extent_ndims(space.get()) != 3 ||
+      H5Sget_simple_extent_dims(space.get(), extent.data(), nullptr) != 3) {
+    throw Error(file.path.string(), fmt::format("{} does not have 3 dimensions", name),
+                hdf5::kDamaged);
+  }
+  return {extent[1], extent[2]};
+}
+
 OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
   hdf5::require_format(file, force_format::kName, force_format::kVersion);
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
-  for (const ResultPlane& plane : planes_of(info)) {
-    if (!is_read(plane)) continue;
-    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2);
-    require_class(planes.back(), H5T_FLOAT, "floats", path);
-  }
-  status = {file, force_format::kStatus, 2};
-  require_class(status, H5T_INTEGER, "integers", path);
+  const bool is_joined = hdf5::exists(file, force_format::kParts);
+  if (!is_joined) open_planes();
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
   if (hdf5::exists(file, force_format::kContacts)) {
     contacts.emplace(file);
     info.contacts = contacts->options();
   }
-  read_size();
+  read_size(is_joined ? shape_of_virtual(file, force_format::kStatus) : status.shape());
   read_info();
   read_surface_of_skin();
-  count_frames();
+  if (is_joined) {
+    open_parts();
+  } else {
+    info.part = read_part(file, force_format::kPart);
+    count_frames();
+  }
 }
 
-void OpenForces::read_size() {
-  const auto shape = status.shape();
+void OpenForces::open_planes() {
+  for (const ResultPlane& plane : planes_of(info)) {
+    if (!is_read(plane)) continue;
+    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2, true);
+    require_class(planes.back(), H5T_FLOAT, "floats", file.path);
+  }
+  status = {file, force_format::kStatus, 2, true};
+  require_class(status, H5T_INTEGER, "integers", file.path);
+}
+
+void OpenForces::read_size(const std::vector<hsize_t>& shape) {
   for (const hsize_t size : shape) {
     if (size >= 1 && size <= kMaxSensels / 2) continue;
     throw Error(file.path.string(), fmt::format("its fields are {} x {}", shape[0], shape[1]),
@@ -95,6 +123,28 @@ void OpenForces::read_size() {
   }
   info.rows = static_cast<std::uint32_t>(shape[0]);
   info.cols = static_cast<std::uint32_t>(shape[1]);
+  hdf5::require_probe_limit(file, force_format::kStatus,
+                            static_cast<double>(info.rows) * static_cast<double>(info.cols));
+}
+
+/// Opens the folder of parts, which lies beside the file.
+void OpenForces::open_parts() {
+  const auto part = read_part(file, force_format::kParts);
+  const hdf5::Handle group = hdf5::open_object(file, force_format::kParts);
+  const std::string folder = hdf5::read_text(file, group.get(), force_format::kFolder).value_or("");
+  if (folder.empty() || folder == "." || folder == ".." ||
+      std::filesystem::path(folder).filename() != folder) {
+    throw Error(file.path.string(), "does not name the folder of its parts", "join them again");
+  }
+  frames = part->frames;
+  if (time.frames() != frames || (contacts && contacts->frames() != frames)) {
+    throw Error(file.path.string(), "its tables do not fit the frames of its parts",
+                "join them again");
+  }
+  parts.emplace(file.path.parent_path() / folder, *part, info);
+  for (const LostPart& lost : parts->lost()) {
+    warnings.push_back(fmt::format("It lacks {}: {}.", name_of(lost), lost.reason));
+  }
 }
 
 void OpenForces::read_info() {
@@ -163,9 +213,26 @@ const ForceFileInfo& ForceFileReader::info() const { return state_->info; }
 std::uint64_t ForceFileReader::frames() const { return state_->frames; }
 const std::vector<std::string>& ForceFileReader::warnings() const { return state_->warnings; }
 
+const std::vector<LostPart>& ForceFileReader::lost_parts() const {
+  static const std::vector<LostPart> kNone;
+  return state_->parts ? state_->parts->lost() : kNone;
+}
+
+std::uint64_t ForceFileReader::parts() const { return state_->parts ? state_->parts->parts() : 0; }
+
+std::vector<LostPart> ForceFileReader::examine_parts() const {
+  return state_->parts ? state_->parts->examine() : std::vector<LostPart>();
+}
+
 double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   const hdf5::QuietErrors quiet;
   state_->require_frame(index);
+  double time_s = 0;
+  state_->time.get(index, H5T_NATIVE_DOUBLE, &time_s);
+  if (state_->parts) {
+    state_->parts->read(index, forces);
+    return time_s;
+  }
   if (forces.rows != state_->info.rows || forces.cols != state_->info.cols) {
     forces = ForceField(state_->info.rows, state_->info.cols);
   }
@@ -180,8 +247,6 @@ double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
   }
   forces.status.resize(forces.pillars());
   state_->status.get(index, H5T_NATIVE_UINT8, forces.status.data());
-  double time_s = 0;
-  state_->time.get(index, H5T_NATIVE_DOUBLE, &time_s);
   return time_s;
 }
 

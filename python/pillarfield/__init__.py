@@ -10,7 +10,7 @@
 docs/python.md is the manual.
 """
 
-from . import calibrate
+from . import calibrate, distributed
 from ._compare import Comparison, compare
 from ._core import (Calibration, Contact, ContactTotal, FrameContacts, Plan, RegionErrors, Scene,
                     SenselFinding, Skin, Surface, __version__)
@@ -26,5 +26,6 @@ from ._status import Region, Status
 __all__ = ["Calibration", "Comparison", "Contact", "ContactTotal", "Contacts", "Error", "ForceField",
            "ForceFile", "Frame", "FrameContacts", "LiveSink", "LiveSource", "Plan", "Points", "Processor", "Recording", "Region",
            "RegionErrors", "Scene", "SenselFinding", "Simulation", "Skin", "Status", "Surface",
-           "Uncertainty", "__version__", "calibrate", "compare", "live", "open", "save_recording", "scene",
+           "Uncertainty", "__version__", "calibrate", "compare",
+           "distributed", "live", "open", "save_recording", "scene",
            "simulate", "sink", "solve"]

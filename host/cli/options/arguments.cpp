@@ -15,6 +15,7 @@
 #include "cli/options/completion.h"
 #include "cli/options/help.h"
 #include "cli/options/shared_arguments.h"
+#include "cli/parts/share.h"
 #include "pillarfield/printable.h"
 
 namespace pillarfield::cli {
@@ -113,6 +114,46 @@ void add_simulate(CLI::App& parent, Work& work) {
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
 
+/// Accepts K/N, or with `all` N and auto.
+CLI::Validator parts(bool all) {
+  const auto error_of = [=](const std::string& text) -> std::string {
+    if (!all) {
+      return is_part(text) ? ""
+                           : fmt::format("'{}' is not a part K/N, such as 7/64; N is at most {}",
+                                         text, kMostParts);
+    }
+    return text == "auto" ? "" : whole_number_in(1, kMostParts)(text);
+  };
+  return {error_of, ""};
+}
+
+void add_parts(CLI::App* command, PartOptions& options) {
+  Group group(command, "Parts");
+  CLI::Option* const part =
+      group
+          .text("--part", options.part, "K/N",
+                "Solve only the K-th of N ranges of frames, into the folder OUTPUT.parts; join "
+                "puts the parts together")
+          ->check(parts(false));
+  group
+      .text("--parts", options.parts, "N|auto",
+            "Solve this process's share of N parts, by its rank under mpirun, srun or in an array "
+            "job; all of them without; auto: one part per process")
+      ->check(parts(true))
+      ->excludes(part);
+  CLI::Option* const every = group.whole(
+      "--checkpoint-every", options.checkpoint_every, "FRAMES",
+      "Begin anew at multiples of this frame what is carried from frame to frame, so that parts "
+      "may begin there [never]",
+      1, 1'000'000'000);
+  group
+      .whole("--warm-up", options.warm_up, "FRAMES",
+             "Frames before each checkpoint that are solved first [a tenth of "
+             "--checkpoint-every]",
+             0, 1'000'000'000)
+      ->needs(every);
+}
+
 void add_solve(CLI::App& parent, Work& work) {
   const auto [command, options] = add_command<SolveOptions>(
       parent, work, solve, "solve",
@@ -146,7 +187,28 @@ void add_solve(CLI::App& parent, Work& work) {
       .number("--contact-reach", found.reach_mm, "MM",
               "Largest movement of a contact between frames [10]")
       ->needs(file);
+  add_parts(command, options->parts);
   add_device(command, options->device);
+  add_general(command, *options, "Print the summary as JSON", kQuietWriter);
+}
+
+void add_join(CLI::App& parent, Work& work) {
+  const auto [command, options] = add_command<JoinCommand>(
+      parent, work, join, "join", "Join the parts of solve --part into one file of forces.",
+      "  pillarfield simulate scenes/sliding.toml -o sliding.h5\n"
+      "  pillarfield solve sliding.h5 -o forces.h5 --part 1/2\n"
+      "  pillarfield solve sliding.h5 -o forces.h5 --part 2/2\n"
+      "  pillarfield join forces.h5\n");
+  Group input(command, "Input");
+  input.file("OUTPUT", options->output,
+             "Output of solve (.h5), whose parts lie in the folder OUTPUT.parts");
+  input.flag("--allow-missing", options->allow_missing,
+             "Join although parts are missing; their frames read as NaN");
+  add_trust(command, options->read);
+  Group(command, "Output")
+      .flag("--copy", options->copy,
+            "Copy all values, so that the parts may be removed [refer to them]");
+  add_overwrite(command, options->replace);
   add_general(command, *options, "Print the summary as JSON", kQuietWriter);
 }
 
@@ -302,6 +364,8 @@ void add_compare(CLI::App& parent, Work& work) {
   Group input(command, "Input");
   input.file("FORCES", options->forces, "Force fields of solve (.h5)");
   input.file("RECORDING", options->recording, "Recording that they were solved from, with truth");
+  input.flag("--allow-missing", options->allow_missing,
+             "Leave out the frames of missing parts of a joined file");
   add_trust(command, options->read);
   add_general(command, *options, "Print the table as JSON", kQuietReport);
 }
@@ -431,6 +495,7 @@ Work parse_arguments(int argc, char** argv) {
       "  pillarfield compare forces.h5 demo.h5\n");
   add_simulate(app, work);
   add_solve(app, work);
+  add_join(app, work);
   add_stream(app, work);
   add_pace(app, work);
   add_body(app, work);

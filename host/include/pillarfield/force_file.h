@@ -9,6 +9,7 @@
 
 #include "pillarfield/contact_tracker.h"
 #include "pillarfield/force_field.h"
+#include "pillarfield/force_parts.h"
 #include "pillarfield/force_sink.h"
 #include "pillarfield/output_file.h"
 #include "pillarfield/read_options.h"
@@ -32,6 +33,7 @@ struct ForceFileInfo {
   std::optional<double> segment_point = {};
   SensorEffects effects = {};           ///< of the skin's calibration; HDF5 only
   std::optional<Surface> surface = {};  ///< of the skin; HDF5 only
+  std::optional<ForcePart> part = {};   ///< it holds one part of the frames; HDF5 only
 };
 
 /// Creates a sink in the format of the extension of `path` (docs/formats.md; endings_of() lists
@@ -60,7 +62,7 @@ void write_force_csv(const std::filesystem::path& path, const ForceFileInfo& inf
                                  const ReadOptions& options = {});
 
 /// Reads files of the format "pillarfield-forces" (docs/formats.md), including those of a killed
-/// writer.
+/// writer and those that join_parts() wrote. Parts are opened when a frame of theirs is read.
 class ForceFileReader {
  public:
   /// Throws Error if the file is of another format or damaged.
@@ -73,6 +75,16 @@ class ForceFileReader {
   [[nodiscard]] std::uint64_t frames() const;  ///< number of frames
   /// Warnings about the file, one sentence each.
   [[nodiscard]] const std::vector<std::string>& warnings() const;
+
+  /// The parts of a joined file whose files are absent. Their frames read as NaN with
+  /// status::kInconsistent.
+  [[nodiscard]] const std::vector<LostPart>& lost_parts() const;
+
+  /// The number of parts of a joined file; 0 for another file.
+  [[nodiscard]] std::uint64_t parts() const;
+
+  /// Opens every part of a joined file and returns those that are absent or cannot be used.
+  [[nodiscard]] std::vector<LostPart> examine_parts() const;
 
   /// Reads a frame, with its uncertainty if the file has it, and returns its time, s.
   double read(std::uint64_t index, ForceField& forces) const;

@@ -81,8 +81,8 @@ struct ProcessorTuning;  // tuning.h
 /// receive() waits for the oldest frame in flight and returns a view of the slot's memory. Call
 /// pin() to hold a result beyond the ring's lifetime, as a display does that draws it in place.
 ///
-/// Results agree bit for bit with solve_on_host(), except for the power law and the estimator
-/// `paper`, which call library functions.
+/// Results agree bit for bit with solve_on_host(), except for the estimator `paper`, which calls
+/// library functions.
 ///
 /// Threads: one at a time. A PinnedResult may be destroyed in any thread.
 class Processor {

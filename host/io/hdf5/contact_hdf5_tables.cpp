@@ -1,10 +1,16 @@
 #include "io/hdf5/contact_hdf5_tables.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "io/contact_columns.h"
 #include "io/force_format.h"
 #include "io/hdf5/attribute.h"
+#include "io/hdf5/stored_frames.h"
+#include "pillarfield/error.h"
 
 namespace pillarfield {
 namespace {
@@ -46,7 +52,7 @@ Hdf5Table::Hdf5Table(const hdf5::File& file, std::string group) : group_(std::mo
 void Hdf5Table::add_column(const hdf5::File& file, const std::string& name, hid_t stored_type,
                            const std::string& unit, const std::string& words) {
   const std::string path = group_ + "/" + name;
-  columns_.push_back({{file, path.c_str(), stored_type, {}}, {}});
+  columns_.push_back({name, {file, path.c_str(), stored_type, {}}, {}});
   const hid_t dataset = columns_.back().dataset.id();
   if (!unit.empty()) hdf5::write_attribute(file, dataset, force_format::kUnit, unit);
   if (!words.empty()) hdf5::write_attribute(file, dataset, force_format::kWords, words);
@@ -56,6 +62,27 @@ void Hdf5Table::put(double value) {
   if (next_column_ == 0) ++rows_;
   columns_[next_column_].waiting.push_back(value);
   next_column_ = (next_column_ + 1) % columns_.size();
+}
+
+void Hdf5Table::append(const hdf5::File& file,
+                       const std::function<Shift(const std::string&)>& shift_of) {
+  write();
+  std::uint64_t rows = 0;
+  for (Column& column : columns_) {
+    const hdf5::StoredFrames stored(file, group_ + "/" + column.name, 0);
+    std::vector<double> values(stored.frames());
+    stored.get_all(0, values.size(), H5T_NATIVE_DOUBLE, values.data());
+    const Shift shift = shift_of(column.name);
+    for (double& value : values) {
+      if (shift.zero_too || value != 0) value += shift.by;
+    }
+    column.dataset.append(H5T_NATIVE_DOUBLE, values.data(), values.size());
+    if (&column == columns_.data()) rows = values.size();
+    if (values.size() == rows) continue;
+    throw Error(file.path.string(), fmt::format("the columns of {} differ in length", group_),
+                hdf5::kDamaged);
+  }
+  rows_ += rows;
 }
 
 void Hdf5Table::write() {
@@ -110,6 +137,42 @@ void ContactTables::append(const FrameContacts& frame) {
   for (const EndedContact& contact : frame.ended) {
     ended_.put(index);
     put_row(ended_columns(), contact, ended_);
+  }
+}
+
+void ContactTables::append(const hdf5::File& part, std::uint64_t first) {
+  const auto frame = static_cast<double>(first);
+  const auto contacts = static_cast<double>(contacts_.rows());
+  const auto ended = static_cast<double>(ended_.rows());
+  const auto shift_of = [=, id = largest_id_](const std::string& column) -> Hdf5Table::Shift {
+    if (column == force_format::kFrameColumn) return {frame, true};
+    if (column == force_format::kPatchRows[0]) return {contacts, true};
+    if (column == force_format::kPatchRows[2]) return {ended, true};
+    const bool is_id = column == "id" || column == "parent" || column == "merged_into";
+    return {is_id ? id : 0, false};
+  };
+  contacts_.append(part, shift_of);
+  ended_.append(part, shift_of);
+  patch_.append(part, shift_of);
+  const hdf5::StoredFrames stored(part, std::string(force_format::kContacts) + "/id", 0);
+  std::vector<double> ids(stored.frames());
+  stored.get_all(0, ids.size(), H5T_NATIVE_DOUBLE, ids.data());
+  if (!ids.empty()) largest_id_ += std::ranges::max(ids);
+}
+
+void ContactTables::append_lost(std::uint64_t frames) {
+  ContactQuantities unknown;
+  for (const auto& column : columns_) {
+    if (column.kind == ColumnKind::number) {
+      column.set(unknown, std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    for (const Hdf5Table* table : {&contacts_, &ended_}) {
+      patch_.put(static_cast<double>(table->rows()));
+      patch_.put(0);
+    }
+    put_row(columns_, unknown, patch_);
   }
 }
 

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -7,23 +9,17 @@
 #include "io/force_format.h"
 #include "io/force_planes.h"
 #include "io/force_sink.h"
-#include "io/hdf5/attribute.h"
 #include "io/hdf5/contact_hdf5_tables.h"
 #include "io/hdf5/file.h"
+#include "io/hdf5/force_info.h"
 #include "io/hdf5/frames.h"
-#include "io/stored_skin.h"
-#include "io/stored_surface.h"
+#include "io/hdf5/tiled_frames.h"
 #include "pillarfield/error.h"
-#include "pillarfield/version.h"
 
 namespace pillarfield {
 namespace {
 
 constexpr std::uint64_t kFlushEvery = 16;  // frames
-
-constexpr const char* kConvention =
-    "shear_x (+ right, growing column) and shear_y (+ up, falling row) act on the skin; normal is "
-    "positive when pressed; (theta, phi) is the direction from which the force comes, rad";
 
 class Hdf5Sink final : public ForceSink {
  public:
@@ -34,8 +30,7 @@ class Hdf5Sink final : public ForceSink {
   void finish() override;
 
  private:
-  void write_info();
-  void create_datasets();
+  void create_datasets(const SolvedFrame* first);
   void require_open() const;
   void put(const SolvedFrame& frame);
   void flush();
@@ -45,8 +40,8 @@ class Hdf5Sink final : public ForceSink {
   std::filesystem::path path_;
   OutputFile part_;
   hdf5::File file_;
-  std::vector<hdf5::ExtendibleDataset> planes_;  // in the order of frame_planes_.planes()
-  hdf5::ExtendibleDataset status_;
+  std::vector<hdf5::TiledFrames> planes_;  // in the order of frame_planes_.planes()
+  hdf5::TiledFrames status_;
   hdf5::ExtendibleDataset time_;
   ContactTables contacts_;
   std::uint64_t frames_ = 0;
@@ -59,9 +54,7 @@ Hdf5Sink::Hdf5Sink(const std::filesystem::path& path, ForceFileInfo info, Replac
       path_(path),
       part_(path, OutputKind::forces, replace),
       file_(hdf5::create(part_)) {
-  write_info();
-  create_datasets();
-  hdf5::start_appending(file_);
+  write_info(file_, info_, path_);
 }
 
 Hdf5Sink::~Hdf5Sink() {
@@ -74,39 +67,29 @@ Hdf5Sink::~Hdf5Sink() {
   file_ = {};
 }
 
-void Hdf5Sink::write_info() {
-  const hid_t root = file_.id.get();
-  hdf5::write_attribute(file_, root, "format", std::string(force_format::kName));
-  hdf5::write_attribute(file_, root, "version", force_format::kVersion);
-  hdf5::write_attribute(file_, root, force_format::kUnit, std::string("N"));
-  hdf5::write_attribute(file_, root, force_format::kSignConvention, std::string(kConvention));
-  hdf5::write_attribute(file_, root, force_format::kEstimator, info_.estimator);
-  if (info_.segment_point) {
-    hdf5::write_attribute(file_, root, force_format::kSegmentPoint, *info_.segment_point);
-  }
-  hdf5::write_attribute(file_, root, force_format::kDevice, info_.device);
-  hdf5::write_attribute(file_, root, force_format::kSource, info_.source);
-  hdf5::write_attribute(file_, root, force_format::kProgramVersion, std::string(kVersion));
-  hdf5::write_attribute(file_, root, force_format::kPillarPitch, info_.pillar_pitch_mm);
-  write_effects(file_, force_format::kEffects, info_.effects);
-  if (!info_.surface) return;
-  const PillarLayout pillars = {info_.rows, info_.cols, info_.pillar_pitch_mm};
-  check(*info_.surface, pillars, path_.c_str());
-  write_surface(file_, *info_.surface, pillars);
+/// Value of a plane in pillars that nothing touches: with angles and uncertainty it is not zero.
+float idle_value(std::span<const float> plane, std::span<const std::uint8_t> status) {
+  const auto idle = std::ranges::find(status, std::uint8_t{0});
+  return idle == status.end() ? 0.0F : plane[static_cast<std::size_t>(idle - status.begin())];
 }
 
-void Hdf5Sink::create_datasets() {
+/// Creates the datasets for frames like `first`, if there is one.
+void Hdf5Sink::create_datasets(const SolvedFrame* first) {
   const hdf5::Handle force = hdf5::create_group(file_, force_format::kForce);
   const hdf5::Handle uncertainty =
       info_.uncertainty ? hdf5::create_group(file_, force_format::kUncertainty) : hdf5::Handle();
-  const hdf5::FrameShape shape = {info_.rows, info_.cols};
+  if (first != nullptr) frame_planes_.set_frame(first->forces);
   for (const ResultPlane& plane : frame_planes_.planes()) {
     const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
-    planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, shape);
+    const float fill =
+        first == nullptr ? 0.0F : idle_value(frame_planes_.of(plane), first->forces.status);
+    planes_.emplace_back(file_, name.c_str(), H5T_IEEE_F32LE, info_.rows, info_.cols, &fill);
   }
-  status_ = {file_, force_format::kStatus, H5T_STD_U8LE, shape};
+  constexpr std::uint8_t kIdle = 0;
+  status_ = {file_, force_format::kStatus, H5T_STD_U8LE, info_.rows, info_.cols, &kIdle};
   time_ = {file_, force_format::kTime, H5T_IEEE_F64LE, {}};
   if (info_.contacts) contacts_ = {file_, *info_.contacts};
+  hdf5::start_appending(file_);
 }
 
 void Hdf5Sink::require_open() const {
@@ -118,14 +101,16 @@ void Hdf5Sink::put(const SolvedFrame& frame) {
   std::size_t index = 0;
   frame_planes_.set_frame(frame.forces);
   for (const ResultPlane& plane : frame_planes_.planes()) {
-    planes_[index++].put(frames_, H5T_NATIVE_FLOAT, frame_planes_.of(plane).data());
+    planes_[index++].append(frame_planes_.of(plane).data());
   }
-  status_.put(frames_, H5T_NATIVE_UINT8, frame.forces.status.data());
+  status_.append(frame.forces.status.data());
   time_.put(frames_, H5T_NATIVE_DOUBLE, &frame.time_s);
   if (info_.contacts) contacts_.append(*frame.contacts);
 }
 
 void Hdf5Sink::flush() {
+  for (auto& plane : planes_) plane.flush();
+  status_.flush();
   if (info_.contacts) contacts_.write();
   hdf5::flush(file_);
   flushed_ = frames_;
@@ -136,6 +121,7 @@ void Hdf5Sink::append(const SolvedFrame& frame) {
   const hdf5::QuietErrors quiet;
   require_open();
   check(frame, info_, path_.string());
+  if (planes_.empty()) create_datasets(&frame);
   put(frame);
   ++frames_;
   if (frames_ % kFlushEvery == 0) flush();
@@ -144,6 +130,7 @@ void Hdf5Sink::append(const SolvedFrame& frame) {
 void Hdf5Sink::finish() {
   const hdf5::QuietErrors quiet;
   require_open();
+  if (planes_.empty()) create_datasets(nullptr);
   flush();
   for (auto& plane : planes_) plane.close();
   status_.close();

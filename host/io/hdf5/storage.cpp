@@ -111,6 +111,10 @@ Storage storage_of(const File& file, const Handle& dataset, const std::string& n
   storage.extent = extent_of(file, dataset, name);
   storage.chunk = chunk_of(file, layout, name, storage.extent.size());
   storage.filters = {file.path, name, layout, storage.value_bytes};
+  H5D_fill_time_t fill_time = H5D_FILL_TIME_NEVER;
+  H5Pget_fill_time(layout.get(), &fill_time);
+  storage.is_filled =
+      !storage.chunk.empty() && storage.filters.empty() && fill_time != H5D_FILL_TIME_NEVER;
   unsigned options = 0;
   if (!storage.filters.empty()) H5Pget_chunk_opts(layout.get(), &options);
   if (options == 0) return storage;
@@ -119,8 +123,8 @@ Storage storage_of(const File& file, const Handle& dataset, const std::string& n
 }
 
 void require_stored(const File& file, const Handle& dataset, const std::string& name,
-                    const Storage& storage) {
-  if (!storage.holds_values()) return;
+                    const Storage& storage, bool may_lack_chunks) {
+  if (!storage.holds_values() || (may_lack_chunks && storage.is_filled)) return;
   const std::uint64_t file_bytes = bytes_of(file);
   if (least_bytes(storage) > static_cast<double>(file_bytes)) {
     throw Error(file.path.string(),

@@ -14,6 +14,7 @@ struct Storage {
   std::vector<hsize_t> chunk;  ///< empty: not chunked
   Filters filters;             ///< empty: unfiltered
   std::size_t value_bytes = 0;
+  bool is_filled = false;  ///< chunks that were never written read as its fill value
 
   [[nodiscard]] bool holds_values() const;
   [[nodiscard]] double chunk_bytes() const;
@@ -25,8 +26,9 @@ struct Storage {
 
 /// Throws Error if the file is shorter than the dataset claims or lacks chunks of it, so that a
 /// damaged header causes no endless allocation and lost readings do not become zeros. Chunks of an
-/// unclosed file are not counted.
+/// unclosed file are not counted. With `may_lack_chunks`, absent chunks of a dataset with a fill
+/// value are as if they held it.
 void require_stored(const File& file, const Handle& dataset, const std::string& name,
-                    const Storage& storage);
+                    const Storage& storage, bool may_lack_chunks = false);
 
 }  // namespace pillarfield::hdf5

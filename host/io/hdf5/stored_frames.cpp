@@ -35,7 +35,8 @@ void require_probe_limit(const File& file, const std::string& name, double value
               "read larger ones from a trusted file, with --trust-input");
 }
 
-StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_t frame_rank)
+StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_t frame_rank,
+                           bool may_lack_chunks)
     : path_(file.path), name_(name), dataset_(open_object(file, name.c_str())) {
   if (H5Iget_type(dataset_.get()) != H5I_DATASET) {
     throw Error(path_.string(), fmt::format("{} is not a dataset", name),
@@ -47,7 +48,7 @@ StoredFrames::StoredFrames(const File& file, const std::string& name, std::size_
     throw Error(path_.string(), fmt::format("{} has {} dimensions", name, storage_.extent.size()),
                 fmt::format("it needs {}; see docs/formats.md", frame_rank + 1));
   }
-  require_stored(file, dataset_, name_, storage_);
+  require_stored(file, dataset_, name_, storage_, may_lack_chunks);
   if (!storage_.filters.empty()) {
     chunks_ = std::make_unique<FilteredChunks>(path_, name_, storage_);
   }

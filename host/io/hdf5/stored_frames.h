@@ -25,8 +25,9 @@ class StoredFrames {
 
   /// Throws Error if the dataset does not have `frame_rank` dimensions beside the frames, does not
   /// hold plain numbers, or claims more than its file stores. For a probed file it checks
-  /// kMaxProbedValues and reads the first and last value.
-  StoredFrames(const File& file, const std::string& name, std::size_t frame_rank);
+  /// kMaxProbedValues and reads the first and last value. `may_lack_chunks` as in require_stored().
+  StoredFrames(const File& file, const std::string& name, std::size_t frame_rank,
+               bool may_lack_chunks = false);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::uint64_t frames() const { return storage_.extent[0]; }

@@ -11,7 +11,7 @@ namespace {
 
 /// A threshold of each sensel; none if forces depend on smaller readings too.
 std::vector<float> thresholds_of(const SolverPlan& plan) {
-  if (!may_skip_idle(plan) || !may_solve_changes(plan)) return {};
+  if (!may_solve_changes(plan)) return {};
   std::vector<float> thresholds = activation_thresholds(plan);
   if (thresholds.size() == 1) thresholds.assign(plan.skin.sensels(), thresholds.front());
   return thresholds;

@@ -1,0 +1,41 @@
+// pillarfield join: one file of forces from its parts.
+
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/number_text.h"
+#include "pillarfield/force_parts.h"
+#include "pillarfield/printable.h"
+
+namespace pillarfield::cli {
+
+void join(const JoinCommand& command) {
+  check_outputs({}, {{command.output, OutputKind::forces}}, command.replace);
+  const JoinedParts joined = join_parts(command.output, {.copy = command.copy,
+                                                         .allow_lost = command.allow_missing,
+                                                         .replace = command.replace,
+                                                         .read = command.read});
+  if (command.json) {
+    nlohmann::ordered_json lost = nlohmann::ordered_json::array();
+    for (const LostPart& part : joined.lost) lost.push_back(part.index);
+    fmt::print("{}\n", json_text({{"output", command.output},
+                                  {"frames", joined.frames},
+                                  {"parts", joined.parts},
+                                  {"lost_parts", lost},
+                                  {"copied", command.copy}}));
+    return;
+  }
+  for (const LostPart& part : joined.lost) {
+    fmt::print(stderr, "{}: it lacks {}\n", printable(command.output), name_of(part));
+  }
+  if (command.quiet) return;
+  fmt::print("Joined {} of {} parts, {}, in {}\n", joined.parts - joined.lost.size(), joined.parts,
+             counted(joined.frames, "frame"), printable(command.output));
+  if (!command.copy) {
+    fmt::print("Its values stay in {}\n",
+               printable(part_file(command.output, 1).parent_path().string()));
+  }
+}
+
+}  // namespace pillarfield::cli

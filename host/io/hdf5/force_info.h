@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "io/hdf5/file.h"
+#include "pillarfield/force_file.h"
+
+namespace pillarfield {
+
+/// Writes format, attributes, effects, surface and part of a force file; `path` is for messages.
+void write_info(const hdf5::File& file, const ForceFileInfo& info,
+                const std::filesystem::path& path);
+
+/// Writes the group `place`, kPart or kParts, and returns it.
+hdf5::Handle write_part(const hdf5::File& file, const char* place, const ForcePart& part);
+
+/// Reads the group `place`; unset if it is absent. Throws Error if it is incomplete or out of
+/// range.
+[[nodiscard]] std::optional<ForcePart> read_part(const hdf5::File& file, const char* place);
+
+}  // namespace pillarfield

@@ -1,0 +1,255 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "io/extension.h"
+#include "io/force_format.h"
+#include "io/force_planes.h"
+#include "io/hdf5/attribute.h"
+#include "io/hdf5/contact_hdf5_tables.h"
+#include "io/hdf5/file.h"
+#include "io/hdf5/force_info.h"
+#include "io/hdf5/frames.h"
+#include "io/hdf5/links.h"
+#include "io/hdf5/readers.h"
+#include "io/hdf5/stored_frames.h"
+#include "io/hdf5/tiled_frames.h"
+#include "io/hdf5/virtual_frames.h"
+#include "pillarfield/error.h"
+#include "pillarfield/force_file.h"
+#include "pillarfield/status.h"
+
+namespace pillarfield {
+namespace {
+
+constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
+constexpr std::uint8_t kNoStatus = status::kInconsistent;
+
+/// The parts in a folder.
+struct FoundParts {
+  ForceFileInfo info;  ///< of the first part found
+  std::map<std::uint64_t, std::filesystem::path> files;
+  JoinedParts joined;
+
+  [[nodiscard]] FrameRange frames(std::uint64_t index) const {
+    ForcePart part = *info.part;
+    part.index = index;
+    return frames_of(part);
+  }
+};
+
+/// Throws Error unless `info` describes a part of the same solve as `first`.
+void require_same(const ForceFileInfo& info, const ForceFileInfo& first,
+                  const std::filesystem::path& file) {
+  ForcePart part = *info.part;
+  part.index = first.part->index;
+  const bool fits = part == *first.part && info.rows == first.rows && info.cols == first.cols &&
+                    info.angles == first.angles && info.uncertainty == first.uncertainty &&
+                    info.contacts.has_value() == first.contacts.has_value();
+  if (fits) return;
+  throw Error(file.string(),
+              "differs from the other parts in its source, plan, calibration or number of parts",
+              "solve it again, or remove it");
+}
+
+void add_part(FoundParts& found, const std::filesystem::path& file, std::uint64_t index,
+              const ReadOptions& options) {
+  const ForceFileReader reader(file, options);
+  const ForceFileInfo& info = reader.info();
+  if (!info.part || info.part->index != index) {
+    throw Error(file.string(), fmt::format("is not part {}", index), "solve it again");
+  }
+  if (found.files.empty()) found.info = info;
+  require_same(info, found.info, file);
+  if (reader.frames() != found.frames(index).frames()) {
+    throw Error(file.string(),
+                fmt::format("holds {} frames of {}", reader.frames(), found.frames(index).frames()),
+                "solve it again");
+  }
+  found.files[index] = file;
+}
+
+/// The files in a folder with the name of a part, by index.
+std::map<std::uint64_t, std::filesystem::path> files_in(const std::filesystem::path& folder) {
+  std::map<std::uint64_t, std::filesystem::path> files;
+  std::error_code failed;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    const std::string stem = entry.path().stem().string();
+    if (stem.size() != 5 || !std::ranges::all_of(stem, [](char c) { return c >= '0' && c <= '9'; }))
+      continue;
+    const std::uint64_t index = std::stoull(stem);
+    if (entry.path().filename() == part_file({}, index).filename()) files[index] = entry.path();
+  }
+  return files;
+}
+
+FoundParts find_parts(const std::filesystem::path& output, const JoinOptions& options) {
+  const std::filesystem::path folder = part_file(output, 1).parent_path();
+  FoundParts found;
+  for (const auto& [index, file] : files_in(folder)) add_part(found, file, index, options.read);
+  if (found.files.empty()) {
+    throw Error(folder.string(), "has no parts", "solve some with 'pillarfield solve --part'");
+  }
+  const ForcePart& part = *found.info.part;
+  found.joined.frames = part.frames;
+  found.joined.parts = part.count;
+  for (std::uint64_t index = 1; index <= part.count; ++index) {
+    if (found.files.contains(index)) continue;
+    const std::string file = part_file(output, index).string();
+    found.joined.lost.push_back({index, found.frames(index), file + " is absent"});
+  }
+  const auto& lost = found.joined.lost;
+  if (lost.empty() || options.allow_lost) return found;
+  throw Error(folder.string(),
+              fmt::format("lacks {} of {} parts: {}{}", lost.size(), part.count,
+                          name_of(lost.front()), lost.size() > 1 ? ", ..." : ""),
+              "solve them, or join the others with --allow-missing");
+}
+
+/// A joined file while it is written.
+class Joined {
+ public:
+  Joined(const std::filesystem::path& output, const FoundParts& found, const JoinOptions& options)
+      : found_(found),
+        info_(found.info),
+        output_(output, OutputKind::forces, options.replace),
+        file_(hdf5::create(output_)) {
+    info_.part.reset();
+    write_info(file_, info_, output);
+    static_cast<void>(hdf5::create_group(file_, force_format::kForce));
+    if (info_.uncertainty) {
+      static_cast<void>(hdf5::create_group(file_, force_format::kUncertainty));
+    }
+    if (!options.copy) {
+      ForcePart all = *found.info.part;
+      all.index = 1;
+      const hdf5::Handle parts = write_part(file_, force_format::kParts, all);
+      const std::string folder = part_file(output, 1).parent_path().filename().string();
+      hdf5::write_attribute(file_, parts.get(), force_format::kFolder, folder);
+    }
+  }
+
+  void write(bool copy) {
+    write_times(copy);
+    for (const ResultPlane& plane : planes_of(info_)) {
+      const std::string name = fmt::format("/{}/{}", plane.group(), plane.name);
+      copy ? copy_plane(name.c_str(), H5T_IEEE_F32LE, kNoForce)
+           : map_plane(name.c_str(), H5T_IEEE_F32LE, &kNoForce);
+    }
+    copy ? copy_plane(force_format::kStatus, H5T_STD_U8LE, kNoStatus)
+         : map_plane(force_format::kStatus, H5T_STD_U8LE, &kNoStatus);
+    if (info_.contacts) write_contacts();
+    hdf5::close(file_);
+    output_.commit();
+  }
+
+ private:
+  void write_times(bool copy);
+  void map_plane(const char* name, hid_t stored_type, const void* fill);
+  template <class Value>
+  void copy_plane(const char* name, hid_t type, Value lost);
+  void write_contacts();
+  [[nodiscard]] std::optional<hdf5::File> open(std::uint64_t index) const;
+
+  const FoundParts& found_;
+  ForceFileInfo info_;
+  OutputFile output_;
+  hdf5::File file_;
+};
+
+/// One part at a time is open, since a process may open few files.
+std::optional<hdf5::File> Joined::open(std::uint64_t index) const {
+  const auto found = found_.files.find(index);
+  if (found == found_.files.end()) return std::nullopt;
+  return hdf5::open_to_read(found->second);
+}
+
+void Joined::write_times(bool copy) {
+  std::vector<double> times(found_.joined.frames, std::numeric_limits<double>::quiet_NaN());
+  for (const auto& [index, file] : found_.files) {
+    const FrameRange range = found_.frames(index);
+    hdf5::StoredFrames(*open(index), force_format::kTime, 0)
+        .get_all(0, range.frames(), H5T_NATIVE_DOUBLE, times.data() + range.first);
+  }
+  if (!copy) return hdf5::write_numbers(file_, force_format::kTime, times);
+  hdf5::ExtendibleDataset target(file_, force_format::kTime, H5T_IEEE_F64LE, {});
+  target.append(H5T_NATIVE_DOUBLE, times.data(), times.size());
+}
+
+void Joined::map_plane(const char* name, hid_t stored_type, const void* fill) {
+  std::vector<hdf5::VirtualPart> parts;
+  for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
+    // A lost part may be found again.
+    const FrameRange range = found_.frames(index);
+    const std::filesystem::path file = part_file(output_.path().filename(), index);
+    parts.push_back({file, range.first, range.frames()});
+  }
+  hdf5::create_virtual_frames(file_, name, stored_type,
+                              {found_.joined.frames, info_.rows, info_.cols}, parts, fill);
+}
+
+/// Value of a dataset in pillars that nothing touches.
+template <class Value>
+Value fill_value(const hdf5::File& file, const char* name, hid_t type) {
+  const std::string failure = fmt::format("the layout of {} cannot be read", name);
+  const hdf5::Handle dataset = hdf5::open_object(file, name);
+  const hdf5::Handle layout =
+      hdf5::own(H5Dget_create_plist(dataset.get()), file.path, failure, hdf5::kDamaged);
+  Value value = 0;
+  hdf5::require(H5Pget_fill_value(layout.get(), type, &value), file.path, failure, hdf5::kDamaged);
+  return value;
+}
+
+template <class Value>
+void Joined::copy_plane(const char* name, hid_t type, Value lost) {
+  const auto idle = fill_value<Value>(*open(found_.files.begin()->first), name, type);
+  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &idle);
+  std::vector<Value> values(std::size_t{info_.rows} * info_.cols);
+  for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
+    const FrameRange range = found_.frames(index);
+    const std::optional<hdf5::File> file = open(index);
+    std::optional<hdf5::StoredFrames> source;
+    if (file) source.emplace(*file, name, 2, true);
+    if (!source) std::ranges::fill(values, lost);
+    for (std::uint64_t frame = range.first; frame < range.end; ++frame) {
+      if (source) source->get(frame - range.first, type, values.data());
+      target.append(values.data());
+    }
+  }
+  target.flush();
+}
+
+void Joined::write_contacts() {
+  ContactTables tables(file_, *info_.contacts);
+  for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
+    const FrameRange range = found_.frames(index);
+    if (const std::optional<hdf5::File> file = open(index)) {
+      tables.append(*file, range.first);
+    } else {
+      tables.append_lost(range.frames());
+    }
+  }
+  tables.write();
+}
+
+}  // namespace
+
+JoinedParts join_parts(const std::filesystem::path& output, const JoinOptions& options) {
+  const hdf5::QuietErrors quiet;
+  const std::string extension = extension_of(output);
+  if (extension != ".h5" && extension != ".hdf5") {
+    throw Error(output.string(), "a joined file is an HDF5 file", "end its name in .h5");
+  }
+  const FoundParts found = find_parts(output, options);
+  Joined(output, found, options).write(options.copy);
+  return found.joined;
+}
+
+}  // namespace pillarfield

@@ -1,0 +1,135 @@
+"""Recordings solved by many processes or machines, in parts (docs/many_machines.md).
+
+`solve()` uses Dask distributed; `solve_part()` and `join()` fit any other engine.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from typing import Any, Optional
+
+from . import _core
+from ._error import Error
+from ._frames import Path
+from ._recording import ForceFile, Recording
+from ._solve import _needs_interval, _interval_of
+
+__all__ = ["join", "solve", "solve_part"]
+
+
+def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = None,
+          copy: bool = False, overwrite: bool = False, attempts: int = 10,
+          **how: Any) -> ForceFile:
+    """Solves a recording in parts on the workers of Dask distributed, joins them and opens the result.
+
+    client: distributed.Client; its workers see both paths, and have this package
+    recording: path of a file of frames
+    output: path of the result, .h5; parts that are whole already are not solved again
+    parts: number of parts; by default four for each worker
+    copy: copy all values into the output; otherwise it refers to its parts
+    overwrite: replace an output of any kind
+    attempts: how often a part is tried, since workers may die
+    how: as in solve_part()
+
+    Raises Error if a part fails, with the reason.
+    """
+    try:
+        from distributed import as_completed
+    except ImportError:
+        raise Error("pillarfield.distributed", "the package 'distributed' is not installed",
+                    "install python3-distributed, or use solve_part()") from None
+    recording, output = os.path.abspath(recording), os.path.abspath(output)
+    _require_portable(how)
+    frames = len(_recording_of(recording, how))
+    most = _core.most_parts(frames, how.get("checkpoint_every", 0))
+    if parts is None:
+        parts = max(1, min(4 * len(client.scheduler_info()["workers"]), most))
+
+    def submit(part: int) -> Any:
+        return client.submit(solve_part, recording, output, part, parts, pure=False, **how)
+
+    tried = dict.fromkeys(range(1, parts + 1), 1)
+    waiting = {submit(part): part for part in tried}
+    finished = as_completed(list(waiting))
+    for future in finished:
+        part = waiting.pop(future)
+        failure = future.exception() if future.status != "finished" else None
+        if future.status == "finished":
+            continue
+        if not _may_pass(failure) or tried[part] >= attempts:
+            client.cancel(list(waiting))
+            if isinstance(failure, Error):
+                raise failure
+            raise Error(str(output), f"part {part} of {parts} failed {tried[part]} times: {failure}",
+                        "look at the workers' logs; the same call continues") from failure
+        tried[part] += 1
+        time.sleep(0.2)
+        again = submit(part)
+        waiting[again] = part
+        finished.add(again)
+    join(output, copy=copy, overwrite=overwrite)
+    return ForceFile(output)
+
+
+def solve_part(recording: Path, output: Path, part: int, parts: int, *,
+               checkpoint_every: int = 0, warm_up: Optional[int] = None, contacts: bool = False,
+               calibration: Optional[Path] = None, device: str = "",
+               reading: Optional[dict[str, Any]] = None, **options: Any) -> bool:
+    """Solves one part of a recording into the folder output + '.parts', unless it is whole already.
+
+    part, parts: it is the part-th of so many, from 1
+    checkpoint_every: multiples of this frame begin anew what is carried from frame to frame: a
+        followed baseline, hysteresis, friction, identities of contacts. 0: nothing is carried
+    warm_up: frames before each of them that are solved first; by default a tenth of the distance
+    contacts: find and track the contacts too
+    calibration: path of its file
+    device: OpenCL device, by its index or a part of its name; '': the best one
+    reading: options of Recording
+    options: those of Plan, with paths for files
+
+    Returns whether it was solved by this call. Raises Error if a file or an option is wrong, or if
+    another process writes the part.
+    """
+    source = Recording(recording, **(reading or {}))._source
+    if _needs_interval(options, calibration or source.calibration):
+        options = {"frame_interval_s": _interval_of(source), **options}
+    plan = _core.Plan(source.skin, sensel_type=source.sensel_type,
+                      calibration=calibration or source.calibration, **options)
+    warm_up = checkpoint_every // 10 if warm_up is None else warm_up
+    return _core.solve_part(source, plan, os.path.basename(recording), output, part, parts,
+                            checkpoint_every, warm_up, contacts, device)
+
+
+def join(output: Path, *, copy: bool = False, allow_missing: bool = False, overwrite: bool = False,
+         trust: bool = False) -> int:
+    """Joins the parts in the folder output + '.parts' into one file of forces.
+
+    copy: copy all values, so that the parts may be removed; otherwise the file refers to them
+    allow_missing: join although parts are missing; their frames read as NaN
+    overwrite: replace an output of any kind
+    trust: the parts come from your own programs, so they are not examined first
+
+    Returns the number of missing parts. Raises Error if parts differ in source or plan.
+    """
+    return _core.join_parts(output, copy, allow_missing, overwrite, trust)
+
+
+def _recording_of(recording: Path, how: dict[str, Any]) -> Recording:
+    return Recording(recording, **(how.get("reading") or {}))
+
+
+def _require_portable(how: dict[str, Any]) -> None:
+    """Objects of the library stay in their process."""
+    for name, value in how.items():
+        if type(value).__module__.startswith("pillarfield"):
+            raise Error("pillarfield.distributed.solve",
+                        f"{name} is an object of this process, which workers lack",
+                        "save it and give its path")
+
+
+def _may_pass(failure: Optional[BaseException]) -> bool:
+    """Whether another attempt may succeed: a worker died, or one that was given up still writes."""
+    if isinstance(failure, Error):
+        return "being written by another process" in failure.failure
+    return True

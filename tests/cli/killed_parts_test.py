@@ -1,0 +1,63 @@
+"""Parts under mpirun, and processes killed at any time: a restart ends with the serial bits."""
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+import unittest
+
+from command import PROGRAM, run
+from parts_test import CARRYING, PartsFolder
+
+FRAMES = 600
+PLAN = (*CARRYING, "--checkpoint-every", 25)
+
+
+class Killed(PartsFolder):
+    def setUp(self):
+        super().setUp()
+        scene = self.folder / "ball.toml"
+        scene.write_text(scene.read_text().replace("frames = 23", f"frames = {FRAMES}")
+                         .replace("[20, 20]", "[80, 80]"), encoding="utf-8")
+        run("simulate", scene, "-o", self.recording, "--overwrite")
+        self.serial = self.folder / "serial.h5"
+        self.solve(*PLAN, "--contacts", self.serial, output=self.serial)
+        self.command = [PROGRAM, "solve", self.recording, "-o", self.output, *map(str, PLAN),
+                        "--contacts", self.output, "-q"]
+
+    def assert_joined(self):
+        run("join", self.output)
+        self.assert_same(self.serial, self.output)
+
+    @unittest.skipUnless(shutil.which("mpirun"), "mpirun is not installed")
+    def test_mpirun(self):
+        root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
+        for ranks in (1, 2, 4):
+            shutil.rmtree(self.parts, ignore_errors=True)
+            subprocess.run(["mpirun", *root, "--oversubscribe", "-n", str(ranks), *self.command,
+                            "--parts", "auto"], check=True, timeout=300)
+            self.assertEqual(len(list(self.parts.iterdir())), ranks)
+            self.assert_joined()
+
+    def test_ten_kills(self):
+        rng = random.Random(21)
+        kills = 0
+        while kills < 10:
+            shutil.rmtree(self.parts, ignore_errors=True)
+            while True:
+                process = subprocess.Popen([*self.command, "--parts", "8"])
+                time.sleep(rng.uniform(0.05, 1.2))
+                process.send_signal(signal.SIGKILL)
+                if process.wait(60) != -signal.SIGKILL:
+                    break  # It was faster.
+                kills += 1
+                if kills % 4 == 0:
+                    break
+            subprocess.run([*self.command, "--parts", "8"], check=True, timeout=300)
+            self.assert_joined()
+
+
+if __name__ == "__main__":
+    unittest.main()

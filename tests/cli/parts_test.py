@@ -1,0 +1,237 @@
+"""Parts of a solve: their bits, joining, restarts, lost parts, claims, launchers, hostile files."""
+
+import fcntl
+import os
+import shutil
+import subprocess
+import unittest
+
+import h5py
+import numpy
+
+from command import BALL, PROGRAM, CommandTest, run, run_json
+
+CARRYING = ("--estimator", "contact", "--follow-baseline", 0.05, "--noise", 0.5)
+
+
+def datasets(path):
+    """The datasets of an HDF5 file by name."""
+    found = {}
+    with h5py.File(path, "r") as file:
+        file.visititems(lambda name, item: found.update(
+            {name: item[()]} if isinstance(item, h5py.Dataset) else {}))
+    return found
+
+
+class PartsFolder(CommandTest):
+    """A recording, and an output with its folder of parts."""
+
+    def setUp(self):
+        super().setUp()
+        scene = self.folder / "ball.toml"
+        scene.write_text(BALL.replace("frames = 6", "frames = 23"), encoding="utf-8")
+        self.recording = self.folder / "rec.h5"
+        self.output = self.folder / "out.h5"
+        self.parts = self.folder / "out.h5.parts"
+        run("simulate", scene, "-o", self.recording)
+
+    def solve(self, *options, output=None, **how):
+        return run("solve", self.recording, "-o", output or self.output, *options, **how)
+
+    def assert_same(self, one, other):
+        """Both files hold the same objects and bits."""
+        one, other = datasets(one), datasets(other)
+        self.assertEqual(sorted(one), sorted(other))
+        for name, values in one.items():
+            self.assertEqual(values.dtype, other[name].dtype)
+            self.assertEqual(values.tobytes(), other[name].tobytes(), name)
+
+
+class PartsTest(PartsFolder):
+    def test_joined_parts_equal_the_serial_solve(self):
+        plans = (("--outputs", "angles,uncertainty", "--noise", 0.5), (),
+                 (*CARRYING, "--checkpoint-every", 3, "--warm-up", 2))
+        for plan in plans:
+            serial = self.folder / "serial.h5"
+            contacts = bool(plan) and plan[0] == "--estimator"
+            with_contacts = lambda file: ("--contacts", file) if contacts else ()
+            self.solve(*plan, *with_contacts(serial), output=serial)
+            for count in (1, 2, 3, 7):
+                shutil.rmtree(self.parts, ignore_errors=True)
+                for part in range(count, 0, -1):
+                    self.solve(*plan, *with_contacts(self.output), "--part", f"{part}/{count}")
+                for how in ((), ("--copy",)):
+                    run("join", self.output, *how)
+                    self.assert_same(serial, self.output)
+                    self.assertEqual(run_json("info", self.output).get("lost_parts"),
+                                     None if how else [])
+        # The reader sees the forces that h5py sees.
+        run("join", self.output)
+        self.assertEqual(run("compare", self.output, self.recording).stdout.splitlines()[1:],
+                         run("compare", serial, self.recording).stdout.splitlines()[1:])
+
+    def test_checkpoints(self):
+        """Without effect up to the first; then state begins anew, less so after a warm-up."""
+        def ids(*options):
+            file = self.folder / "c.h5"
+            self.solve(*CARRYING, "--contacts", file, *options, output=file)
+            with h5py.File(file, "r") as found:
+                return found["contacts/id"][()], found["force/normal"][()]
+        plain = ids()
+        late = ids("--checkpoint-every", 23)
+        numpy.testing.assert_array_equal(plain[1], late[1])
+        self.assertEqual(set(plain[0]), {1})
+        cold, warm = (ids("--checkpoint-every", 10, "--warm-up", frames) for frames in (0, 9))
+        self.assertEqual(set(cold[0]), {1, 2, 3})
+        numpy.testing.assert_array_equal(cold[1][:10], plain[1][:10])
+        error = [numpy.abs(each[1][10:] - plain[1][10:]).sum() for each in (cold, warm)]
+        self.assertGreater(error[0], 0)
+        self.assertLess(error[1], error[0])
+
+    def test_what_cannot_be_split_is_refused(self):
+        part = ("-o", self.output, "--part", "2/3")
+        for plan in (CARRYING, ("--contacts", self.output), ("--follow-baseline", 1)):
+            self.assert_fails("solve", self.recording, *part, *plan,
+                              names=["part 2 of 3", "--checkpoint-every"])
+        self.assert_fails("solve", self.recording, "-o", self.output, "--part", "1/24",
+                          names=["23 frames", "24 parts"])
+        self.assert_fails("solve", self.recording, "-o", self.folder / "f.csv", "--part", "1/2",
+                          names=["HDF5"])
+        self.assert_fails("solve", self.recording, *part, "--contacts", self.folder / "c.csv",
+                          names=["c.csv", "--contacts"])
+        for wrong in ("0/3", "4/3", "1", "1/", "/3", "-1/3", "1/100000", "1/3x"):
+            self.assert_fails("solve", self.recording, "-o", self.output, "--part", wrong, status=2)
+        self.assert_folder_holds("ball.toml", "rec.h5")
+        self.assert_fails("join", self.output, names=["has no parts"])
+
+    def test_a_restart_solves_what_is_missing(self):
+        self.assertEqual(run_json("solve", self.recording, "-o", self.output, "--parts", 4)["frames"],
+                         23)
+        (self.parts / "00003.h5").unlink()
+        (self.parts / "00004.h5").write_bytes((self.parts / "00004.h5").read_bytes()[:3000])
+        (self.parts / "00003.h5.part").write_bytes(b"left by a killed process")
+        again = run_json("solve", self.recording, "-o", self.output, "--parts", 4)
+        self.assertEqual(again["parts"], {"count": 4, "own": [1, 2, 3, 4], "skipped": [1, 2]})
+        self.assertEqual(again["frames"], 12)
+        # Another plan, number of parts or recording is another solve.
+        for change in (("--segment-point", 0.5), ("--threshold", 5)):
+            self.solve("--part", "2/4", *change)
+            self.assert_fails("join", self.output, names=["differs from the other parts"])
+            self.assertEqual(run_json("solve", self.recording, "-o", self.output, "--part",
+                                      "2/4")["parts"]["skipped"], [])
+        self.solve("--part", "2/5")
+        self.assert_fails("join", self.output, names=["00002.h5", "number of parts"])
+
+    def test_lost_parts_are_named(self):
+        self.solve("--parts", 3)
+        run("join", self.output)
+        lost = self.parts / "00002.h5"
+        for damage in (lambda: shutil.copy(self.parts / "00001.h5", lost),
+                       lambda: lost.write_bytes(b""), lost.unlink):
+            damage()
+            result = run("info", self.output, expect=1)
+            self.assertIn("part 2 (frames 7 to 14)", result.stdout)
+            self.assertIn("1 of its 3 parts are lost", result.stderr)
+        self.assert_fails("compare", self.output, self.recording,
+                          names=["lacks 1 of 3 parts", "frames 7 to 14", "--allow-missing"])
+        table = run("compare", self.output, self.recording, "--allow-missing").stdout
+        self.assertIn("15 frames", table.splitlines()[0])
+        self.assertNotIn("nan", table)
+        self.assert_fails("join", self.output, names=["part 2 (frames 7 to 14)"])
+        for how in ((), ("--copy",)):
+            run("join", self.output, "--allow-missing", *how)
+            with h5py.File(self.output, "r") as file:
+                self.assertTrue(numpy.isnan(file["force/normal"][7:15]).all())
+                self.assertTrue((file["force/status"][7:15] == 64).all())
+                self.assertFalse(numpy.isnan(file["force/normal"][:7]).any())
+        # A lost part that comes back is found again.
+        run("join", self.output, "--allow-missing")
+        self.solve("--part", "2/3")
+        self.assertEqual(run_json("info", self.output)["lost_parts"], [])
+
+    def test_one_of_two_claimants_writes(self):
+        self.parts.mkdir()
+        claimed = self.parts / "00001.h5.part"
+        with open(claimed, "wb") as file:
+            fcntl.lockf(file, fcntl.LOCK_EX)
+            self.assert_fails("solve", self.recording, "-o", self.output, "--part", "1/2",
+                              names=["00001.h5", "being written by another process"])
+        processes = [subprocess.Popen([PROGRAM, "solve", self.recording, "-o", self.output, "--part",
+                                       "1/2", "-q"], stderr=subprocess.PIPE, text=True)
+                     for _ in range(4)]
+        messages = [process.communicate(timeout=60)[1] for process in processes]
+        self.assertIn(0, [process.returncode for process in processes], messages)
+        self.solve("--part", "2/2")
+        run("join", self.output)
+        self.solve(output=self.folder / "serial.h5")
+        self.assert_same(self.output, self.folder / "serial.h5")
+
+    def test_ranks_of_launchers(self):
+        clean = {name: value for name, value in os.environ.items()
+                 if not name.startswith(("OMPI_", "PMI", "SLURM_", "SGE_"))}
+        def own(environment, parts="auto"):
+            shutil.rmtree(self.parts, ignore_errors=True)
+            result = run("solve", self.recording, "-o", self.output, "--parts", parts, "--json",
+                         env={**clean, **environment}).stdout
+            return [int(word) for word in
+                    result.partition('"own":')[2].partition("]")[0].strip(" [\n").split(",") if word]
+        open_mpi = {"OMPI_COMM_WORLD_RANK": "1", "OMPI_COMM_WORLD_SIZE": "4"}
+        array = {"SLURM_ARRAY_TASK_ID": "14", "SLURM_ARRAY_TASK_MIN": "10",
+                 "SLURM_ARRAY_TASK_MAX": "18", "SLURM_ARRAY_TASK_STEP": "2"}
+        self.assertEqual(own(open_mpi), [2])
+        self.assertEqual(own(open_mpi, 10), [2, 6, 10])
+        self.assertEqual(own({"PMI_RANK": "0", "PMI_SIZE": "2"}), [1])
+        self.assertEqual(own({"SLURM_PROCID": "2", "SLURM_NTASKS": "3", **open_mpi}), [2])
+        self.assertEqual(own({"SLURM_PROCID": "2", "SLURM_STEP_NUM_TASKS": "3"}), [3])
+        self.assertEqual(own({**array, "SLURM_PROCID": "0", "SLURM_NTASKS": "1"}), [3])
+        self.assertEqual(own({**array, **open_mpi}), [10])
+        self.assertEqual(own({"SGE_TASK_ID": "1", "SGE_TASK_FIRST": "1", "SGE_TASK_LAST": "3"}), [1])
+        self.assertEqual(own({"SGE_TASK_ID": "undefined", **open_mpi}), [2])
+        self.assertEqual(own({}, 2), [1, 2])
+        # More processes than frames: the others have nothing to do.
+        self.assertEqual(own({"PMI_RANK": "30", "PMI_SIZE": "40"}), [])
+        for wrong in ({}, {"PMI_RANK": "2", "PMI_SIZE": "2"}, {**array, "SLURM_ARRAY_TASK_ID": "11"}):
+            result = run("solve", self.recording, "-o", self.output, "--parts", "auto", expect=1,
+                         env={**clean, **wrong})
+            self.assertIn("--part", result.stderr)
+
+    def test_a_joined_file_leads_to_its_own_folder_only(self):
+        self.solve("--parts", 2)
+        run("join", self.output)
+        elsewhere = self.folder / "elsewhere"
+        shutil.copytree(self.parts, elsewhere / "out.h5.parts")
+        for folder in ("", ".", "..", "elsewhere/out.h5.parts", "/tmp", str(elsewhere)):
+            with h5py.File(self.output, "r+") as file:
+                file["parts"].attrs["folder"] = folder
+            self.assert_fails("info", self.output, names=["folder of its parts"])
+        for name, value in (("count", 1e18), ("count", 0), ("frames", -1), ("frames", 24),
+                            ("checkpoint_every", float("nan"))):
+            run("join", self.output, "--overwrite")
+            with h5py.File(self.output, "r+") as file:
+                file["parts"].attrs[name] = value
+            self.assert_fails("compare", self.output, self.recording, names=["out.h5"])
+        # A plain file with a virtual dataset is refused as before.
+        run("join", self.output, "--overwrite")
+        with h5py.File(self.output, "r+") as file:
+            del file["parts"]
+        self.assert_fails("info", self.output, names=["lies in another file"])
+
+    def test_what_nothing_touches_takes_no_room(self):
+        scene = self.folder / "large.toml"
+        scene.write_text(BALL.replace("[20, 20]", "[240, 240]"), encoding="utf-8")
+        recording = self.folder / "large.h5"
+        run("simulate", scene, "-o", recording)
+        for plan, planes in (((), 3), (("--outputs", "angles,uncertainty", "--noise", 0.5), 21)):
+            run("solve", recording, "-o", self.output, *plan)
+            dense = 6 * 240 * 240 * (4 * planes + 1)
+            self.assertLess(self.output.stat().st_size, 0.05 * dense)
+        with h5py.File(self.output, "r") as file:
+            status, normal = file["force/status"][()], file["force/normal"][()]
+            high = file["uncertainty/theta_high"][()]
+        self.assertGreater(numpy.count_nonzero(status), 6 * 50)
+        self.assertFalse(normal[status == 0].any())
+        numpy.testing.assert_array_equal(high[status == 0], numpy.float32(numpy.pi / 2))
+
+
+if __name__ == "__main__":
+    unittest.main()
