@@ -31,7 +31,7 @@ struct BodyPatch {
 /// The skin of a body: patches with a size, pose, calibration and clock of their own.
 struct BodySkin {
   std::string title;
-  double rate_hz = 1000;    ///< frames of each patch per second
+  double rate_hz = 1000;   ///< frames of each patch per second
   double refresh_s = 0.2;  ///< time in which a sensor sends every block at least once
   std::vector<BodyPatch> patches;
 };
