@@ -32,7 +32,7 @@ struct BodyPatch {
 struct BodySkin {
   std::string title;
   double rate_hz = 1000;   ///< frames of each patch per second
-  double refresh_s = 0.2;  ///< time in which a sensor sends every block at least once
+  double refresh_s = 0.1;  ///< time in which a sensor sends every block at least once
   std::vector<BodyPatch> patches;
 };
 
