@@ -5,6 +5,7 @@ WebSocket server change.
 
     bench/live.py --seconds 60          latency with all sinks
     bench/live.py --hostile --rounds 5  with and without hostile clients, in turns
+    bench/live.py --hostile --apart     the same, with the clients on a processor of their own
 """
 
 import argparse
@@ -127,7 +128,15 @@ def dies_mid_frame(port, stop):
 HOSTILE = (never_reads, sends_garbage, opens_many, dies_mid_frame)
 
 
-def measure(program, latency, path, seconds, rate, hostile=False):
+def start(command, apart):
+    """Starts a command; with `apart` on all processors but the last, which the clients have."""
+    if apart:
+        last = max(os.sched_getaffinity(0))  # the only one, since main()
+        command = ["taskset", "-c", f"0-{last - 1}", *command]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+def measure(program, latency, path, seconds, rate, apart, hostile=False):
     """One run over `path` ("shm" or "udp") with all sinks."""
     name = f"pillarfield-live-{os.getpid()}"
     ports = [free_port(socket.SOCK_DGRAM) for _ in range(3)]
@@ -137,11 +146,10 @@ def measure(program, latency, path, seconds, rate, hostile=False):
     frames_in, out = ends[path]
     other = (f"shm:{name}-out" if path == "udp" else f"udp:127.0.0.1:{ports[2]}")
     with tempfile.TemporaryDirectory() as folder:
-        stream = subprocess.Popen(
+        stream = start(
             [program, "stream", frames_in, "--to", out, "--to", other, "--to",
              f"foxglove:{foxglove}", "--to", f"{folder}/live.mcap", "--record",
-             f"{folder}/raw.h5", "--threshold", "2", "--end-when-idle", "2", "--json"],
-            stdout=subprocess.PIPE, text=True)
+             f"{folder}/raw.h5", "--threshold", "2", "--end-when-idle", "2", "--json"], apart)
         counters = [Counter(lambda: foxglove_messages(foxglove))]
         if path == "shm":
             counters.append(Counter(lambda: datagrams(ports[2])))
@@ -149,12 +157,15 @@ def measure(program, latency, path, seconds, rate, hostile=False):
         if hostile:
             for action in HOSTILE:
                 threading.Thread(target=action, args=(foxglove, stop), daemon=True).start()
-        measured = subprocess.run([latency, frames_in, out, "--seconds", str(seconds), "--rate",
-                                   str(rate)], stdout=subprocess.PIPE, check=True)
+        client = start([latency, frames_in, out, "--seconds", str(seconds), "--rate", str(rate)],
+                       apart)
+        measured = client.communicate()[0]
         stop.set()
+        if client.returncode != 0:
+            sys.exit(f"{latency} failed")
         lines = stream.communicate(timeout=60)[0].splitlines()
         summary = json.loads(lines[-1])["summary"]
-    result = json.loads(measured.stdout)
+    result = json.loads(measured)
     result["messages"] = [counter.count for counter in counters]
     result["stream"] = summary
     return result
@@ -176,18 +187,22 @@ def main():
     parser.add_argument("--seconds", type=float, default=10)
     parser.add_argument("--rate", type=float, default=1000)
     parser.add_argument("--hostile", action="store_true")
+    parser.add_argument("--apart", action="store_true",
+                        help="clients on the last processor, all else on the others")
     parser.add_argument("--rounds", type=int, default=3)
     options = parser.parse_args()
+    if options.apart:
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
     with tempfile.TemporaryDirectory() as folder:
         latency = compiled(pathlib.Path(folder))
         run = [options.program, latency]
         if not options.hostile:
             for path in ("shm", "udp"):
-                print_row(path, measure(*run, path, options.seconds, options.rate))
+                print_row(path, measure(*run, path, options.seconds, options.rate, options.apart))
             return
         pairs = []
         for _ in range(options.rounds):
-            pair = [measure(*run, "shm", options.seconds, options.rate, hostile)
+            pair = [measure(*run, "shm", options.seconds, options.rate, options.apart, hostile)
                     for hostile in (False, True)]
             for label, result in zip(("alone  ", "hostile"), pair):
                 print_row(label, result)

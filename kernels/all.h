@@ -5,10 +5,12 @@
 #include "portable.h"
 #include "pillar/status.h"
 #include "pillar/pillar_model.h"
+#ifndef PF_WHOLE /* The other programs compute fractions. */
+#include "pillar/elementary.h"
+#endif
 #include "pillar/sensel.h"
 #include "pillar/direct_solve.h"
-#ifndef PF_WHOLE /* The other files compute fractions. */
-#include "pillar/elementary.h"
+#ifndef PF_WHOLE
 #include "pillar/wires.h"
 #include "pillar/curve.h"
 #include "pillar/leak.h"
@@ -29,7 +31,9 @@
 #include "frame/load_store.h"
 #include "frame/wire_vectors.h"
 #include "frame/calibration_planes.h"
+#include "frame/changed.h"
 #include "frame/idle.h"
+#include "frame/idle_tiles.h"
 #include "frame/block.h"
 #include "frame/memory_planes.h"
 #include "frame/neighbours.h"

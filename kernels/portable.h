@@ -38,7 +38,7 @@
  * selections written c ? x : y with both sides of lane type; structs passed by value; of Counts in
  * programs of whole numbers + - and comparisons alone; if (any_lane(mask)) where the skipped code
  * changes no bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan,
- * atan2, pow. No contraction: the device and a host built with -ffp-contract=off then agree bit for
+ * atan2, pow (only in double precision). No contraction: the device and a host built with -ffp-contract=off then agree bit for
  * bit in all but the last six. */
 #ifndef __cplusplus /* OpenCL C */
 

@@ -26,21 +26,20 @@ py::dict render(const Simulator& simulator, std::uint64_t first, std::uint64_t c
   const SenselType type = simulator.sensel_type();
   py::array readings(dtype_of(type), Shape{static_cast<py::ssize_t>(count), skin.rows, skin.cols});
   auto* out = static_cast<std::byte*>(readings.mutable_data());
+  const std::size_t frame_bytes = skin.sensels() * size_of(type);
   ForceStack truth(skin.pillar_rows(), skin.pillar_cols());
   std::vector<double> times;
   {
     const py::gil_scoped_release unlocked;
     truth.reserve(count);
     SignalCheck check_signals;
-    FrameBuffer frame(type, skin.rows, skin.cols);
-    ForceField forces(skin.pillar_rows(), skin.pillar_cols());
-    for (std::uint64_t index = first; index < first + count; ++index) {
-      check_signals();
-      simulator.render(index, frame, forces);
-      out = std::ranges::copy(frame.bytes(), out).out;
-      truth.append(forces.view());
-      times.push_back(simulator.time_of(index));
-    }
+    simulator.render_all(
+        first, count, [&](std::uint64_t index, const FrameView& frame, const ForceField& forces) {
+          check_signals();
+          out = std::copy_n(static_cast<const std::byte*>(frame.data), frame_bytes, out);
+          truth.append(forces.view());
+          times.push_back(simulator.time_of(index));
+        });
   }
   py::dict result = truth.release();
   result["frames"] = readings;

@@ -16,6 +16,7 @@ void add_intrinsics_cases(const Session& session);  ///< intrinsics/
 void add_spread_cases(const Session& session);      ///< spread/
 void add_variant_cases(const Session& session);     ///< variant/
 void add_field_cases(const Session& session);       ///< field/
+void add_choice_cases(const Session& session);      ///< choice/
 void add_render_cases(const Session& session);      ///< render/
 
 }  // namespace pillarfield::bench

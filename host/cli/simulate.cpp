@@ -50,8 +50,6 @@ void simulate(const SimulateOptions& options) {
   check_outputs({options.scene}, {{options.output, OutputKind::recording}}, options.replace);
   const Simulator simulator(scene_of(options));
   const Scene& scene = simulator.scene();
-  FrameBuffer frame(simulator.sensel_type(), scene.skin.rows, scene.skin.cols);
-  ForceField truth(scene.skin.pillar_rows(), scene.skin.pillar_cols());
   Skin skin = scene.skin;
   if (options.uncalibrated) skin.power_law.reset();
   RecordingWriter writer(options.output, skin, simulator.sensel_type(),
@@ -59,12 +57,12 @@ void simulate(const SimulateOptions& options) {
                          {.truth = true, .replace = options.replace});
   {
     Progress progress("Simulating", scene.frames, options.quiet);
-    for (std::uint64_t index = 0; index < scene.frames; ++index) {
-      stop_if_interrupted(index, options.output);
-      simulator.render(index, frame, truth);
-      writer.append(frame.view(), simulator.time_of(index), &truth);
-      progress.show(index + 1);
-    }
+    simulator.render_all(0, scene.frames,
+                         [&](std::uint64_t index, const FrameView& frame, const ForceField& truth) {
+                           stop_if_interrupted(index, options.output);
+                           writer.append(frame, simulator.time_of(index), &truth);
+                           progress.show(index + 1);
+                         });
   }
   writer.finish();
   print_summary(options, scene, watch.seconds());

@@ -54,10 +54,15 @@ void copy_plane(const SolverPlan& plan, CalibrationPlane plane, std::byte* to) {
   copy_activation_thresholds(plan, to);
 }
 
-/// States of a sensel, and the frame of its last load.
-std::size_t memory_states(const SolverPlan& plan) {
+/// Bytes of the states of sensels, and of the frame of their last load, as laid out in
+/// kernels/frame/memory_planes.h.
+std::size_t bytes_of_states(const SolverPlan& plan) {
   const auto& memory = plan.calibration.effects.memory;
-  return memory ? memory->plays.size() + memory->creep.size() + 1 : 0;
+  if (!memory) return 0;
+  const std::size_t states = memory->plays.size() + memory->creep.size() + 1;
+  // blocks_of_row() times the lanes, at most.
+  const std::size_t pillars_of_row = std::size_t{plan.skin.pillar_cols()} + 32;
+  return page_aligned(4 * states * plan.skin.pillar_rows() * pillars_of_row * sizeof(float));
 }
 
 }  // namespace
@@ -86,7 +91,7 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
   add(bent, CalibrationPlane::bend_x);
   add(bent, CalibrationPlane::bend_y);
   add(bent, CalibrationPlane::bend_xy);
-  for (std::size_t i = 0; i < memory_states(plan); ++i) planes.push_back(CalibrationPlane::memory);
+  add(calibration.effects.memory.has_value(), CalibrationPlane::memory);
   return planes;
 }
 
@@ -95,10 +100,10 @@ CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPla
     : planes_(calibration_planes(plan, paths)),
       plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
   has_tare_ = std::ranges::count(planes_, CalibrationPlane::tare) > 0;
-  states_ = memory_states(plan);
-  first_state_ = planes_.size() - states_;
+  state_bytes_ = bytes_of_states(plan);
   if (planes_.empty()) return;
-  const std::size_t bytes = planes_.size() * plane_bytes_;
+  const std::size_t planes = planes_.size() - (state_bytes_ > 0 ? 1 : 0);
+  const std::size_t bytes = planes * plane_bytes_ + state_bytes_;
   memory_ = allocate_large_pages(bytes);
   std::memset(memory_.get(), 0, bytes);
   for (std::size_t i = 0; i < planes_.size(); ++i) {
@@ -117,10 +122,10 @@ cl::CommandQueue CalibrationMemory::queue() const {
 }
 
 void CalibrationMemory::clear_states() const {
-  if (states_ == 0) return;
+  if (state_bytes_ == 0) return;
   const cl::CommandQueue commands = queue();
-  commands.enqueueFillBuffer(buffer_, cl_float{0}, first_state_ * plane_bytes_,
-                             states_ * plane_bytes_);
+  commands.enqueueFillBuffer(buffer_, cl_float{0}, (planes_.size() - 1) * plane_bytes_,
+                             state_bytes_);
   commands.finish();
 }
 

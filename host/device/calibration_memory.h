@@ -18,7 +18,7 @@ enum class CalibrationPlane : std::uint8_t {
   bend_x,
   bend_y,
   bend_xy,
-  memory,  ///< the first state; the last planes
+  memory,  ///< the states of sensels; the last, and larger than a plane
 };
 
 /// The macro that holds the plane's index.
@@ -51,8 +51,7 @@ class CalibrationMemory {
   std::vector<CalibrationPlane> planes_;
   std::size_t plane_bytes_;
   bool has_tare_;
-  std::size_t first_state_ = 0;  ///< number of planes before the states
-  std::size_t states_ = 0;
+  std::size_t state_bytes_ = 0;  ///< behind the planes
   LargePages memory_;  ///< used if the device shares the host's memory
   cl::Buffer buffer_;
 };

@@ -208,17 +208,16 @@ std::vector<std::string> kernel_stages(const SolverPlan& plan) {
 }
 
 std::string kernel_source(const SolverPlan& plan, int device_lanes, const SpeedPaths& paths) {
-  SpeedPaths possible = paths;
-  possible.skip_idle = paths.skip_idle && may_skip_idle(plan);
   const int lanes = block_lanes(device_lanes, plan.skin.pillar_cols());
   // A single lane has 32 bits anyway.
   const bool whole = lanes > 1 && is_whole(plan);
   Definitions all = definitions(plan, whole);
   all["PF_LANES"] = fmt::format("{}", lanes);
-  if (possible.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
-  if (possible.skip_idle) define_idle_range(plan, all);
+  if (paths.stores == Stores::streaming && lanes > 1) all["PF_STREAM"] = "";
+  if (paths.skip_idle) define_idle_range(plan, all);
+  if (paths.changed_only) all["PF_CHANGED"] = "";
   std::size_t place = 0;
-  for (const CalibrationPlane plane : calibration_planes(plan, possible)) {
+  for (const CalibrationPlane plane : calibration_planes(plan, paths)) {
     all.emplace(macro_of(plane), fmt::format("{}", place++));
   }
   std::string source;

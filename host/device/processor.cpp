@@ -21,6 +21,7 @@ namespace pillarfield {
 namespace {
 
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
+constexpr const char* kSubmit = "Processor::submit";
 constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
@@ -48,13 +49,13 @@ bool decide_sharing(Memory memory, const Device& device) {
 SpeedPaths decide_paths(const Device& device, const SolverPlan& plan,
                         const Processor::Options& options, const ProcessorTuning& tuning) {
   SpeedPaths paths = tuning.paths;
-  paths.skip_idle = paths.skip_idle && may_skip_idle(plan);
+  paths.changed_only = options.changes;
   if (paths.stores != Stores::automatic) return paths;
   paths.stores = Stores::cached;
   const std::size_t bytes = ResultLayout(plan, 0).bytes;
   const auto cache = device.state().device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   const std::size_t all = bytes * static_cast<std::size_t>(options.frames_in_flight);
-  if (cache != 0 && all > cache) paths.stores = Stores::streaming;
+  if (cache != 0 && all > cache && !options.changes) paths.stores = Stores::streaming;
   return paths;
 }
 
@@ -108,6 +109,7 @@ struct Processor::State {
     if (!wanted.calibration.bend_x.empty()) curvature.emplace(wanted);
     if (wanted.estimator == Estimator::contact) contacts.emplace(device.state(), wanted);
     warm_up();
+    mark_all();
     order.rate = static_cast<float>(baseline_turn_rate(wanted));
     order.frame = 0;
     if (!calibration.has_tare()) return;
@@ -116,6 +118,15 @@ struct Processor::State {
     planes.dead_zone = planes.noise = {};
     planes.bend_x = planes.bend_y = planes.bend_xy = {};
   }
+
+  /// Lets the next frame of each slot be solved whole.
+  void mark_all() {
+    for (const auto& slot : slots) {
+      if (slot->changed()) slot->changed()->mark_all();
+    }
+  }
+  void mark(std::span<const SenselBlock> changed);
+  void submit(const FrameView& frame);
 
   /// Solves an empty frame, so that no real frame waits while drivers finish compiling and create
   /// buffers at the first launch. The rate of the tare is still zero, and sensels end at rest.
@@ -183,20 +194,54 @@ Processor::~Processor() = default;
 Processor::Processor(Processor&&) noexcept = default;
 Processor& Processor::operator=(Processor&&) noexcept = default;
 
-void Processor::submit(const FrameView& frame) {
-  check(frame, state_->skin, state_->sensel_type, "Processor::submit");
-  const std::optional<std::size_t> slot = state_->scheduler.next();
-  if (!slot) throw_no_slot(state_->scheduler);
+void Processor::State::submit(const FrameView& frame) {
+  const std::optional<std::size_t> slot = scheduler.next();
+  if (!slot) throw_no_slot(scheduler);
   try {
     std::optional<Curvature> bent;
-    if (state_->curvature) bent = state_->curvature->follow(frame);
-    with_opencl_errors(state_->device.info().name,
-                       [&] { state_->slots[*slot]->submit(frame, bent); });
+    if (curvature) bent = curvature->follow(frame);
+    with_opencl_errors(device.info().name, [&] { slots[*slot]->submit(frame, bent); });
   } catch (...) {
-    state_->scheduler.returned()->give_back(*slot);
+    scheduler.returned()->give_back(*slot);
+    mark_all();
     throw;
   }
-  state_->scheduler.submit(*slot);
+  scheduler.submit(*slot);
+}
+
+void Processor::submit(const FrameView& frame) {
+  check(frame, state_->skin, state_->sensel_type, kSubmit);
+  state_->mark_all();
+  state_->submit(frame);
+}
+
+void Processor::submit(const FrameView& frame, std::span<const SenselBlock> changed) {
+  check(frame, state_->skin, state_->sensel_type, kSubmit);
+  if (!state_->paths.changed_only) {
+    throw Error(kSubmit, "the processor solves whole frames", "construct it with Options::changes");
+  }
+  state_->mark(changed);
+  state_->submit(frame);
+}
+
+/// Checks all blocks before it marks one.
+void Processor::State::mark(std::span<const SenselBlock> changed) {
+  const auto is_within = [](std::uint32_t first, std::uint32_t count, std::uint32_t all) {
+    return first <= all && count <= all - first;
+  };
+  for (const SenselBlock& block : changed) {
+    if (is_within(block.first_row, block.rows, skin.rows) &&
+        is_within(block.first_col, block.cols, skin.cols)) {
+      continue;
+    }
+    throw Error(kSubmit,
+                fmt::format("a block of {} x {} sensels from ({}, {}) on reaches beyond the skin",
+                            block.rows, block.cols, block.first_row, block.first_col),
+                fmt::format("the skin has {} x {} sensels", skin.rows, skin.cols));
+  }
+  for (const auto& slot : slots) {
+    for (const SenselBlock& block : changed) slot->changed()->mark(block);
+  }
 }
 
 ForceFieldView Processor::receive() {
@@ -240,6 +285,7 @@ void Processor::set_tare(std::span<const float> tare) {
     for (const auto& slot : state_->slots) slot->wait();
     state_->calibration.set_tare(*state_->retared);
   });
+  state_->mark_all();
   if (state_->curvature) state_->curvature->set_tare(tare);
 }
 

@@ -5,15 +5,19 @@
 namespace pillarfield {
 namespace {
 
+/// Work-groups of a compute unit. Where only changed blocks are solved, these lie in few of the
+/// rows.
+constexpr std::size_t kBandsPerUnit = 8;
+constexpr std::size_t kBandsOfChanges = 32;
+
 /// Global and local size of a launch. With several lanes, a work-item solves a band of rows.
 /// Several bands per compute unit balance the load; each is a work-group of its own, because
 /// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row.
 struct Launch {
-  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
+  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, std::size_t bands) {
     constexpr std::size_t kGroup = 64;
-    constexpr std::size_t kBandsPerUnit = 8;
     if (lanes > 1) {
-      global = cl::NDRange(1, std::min<std::size_t>(rows, kBandsPerUnit * compute_units));
+      global = cl::NDRange(1, std::min<std::size_t>(rows, bands));
       local = cl::NDRange(1, 1);
       return;
     }
@@ -49,7 +53,7 @@ std::size_t wire_floats(const SolverPlan& plan, const cl::NDRange& tiles) {
   if (!plan.calibration.effects.wires) return 0;
   const std::size_t rows = 2 * std::size_t{plan.skin.pillar_rows()};
   const std::size_t cols = 2 * std::size_t{plan.skin.pillar_cols()};
-  return 2 * rows * tiles[0] + cols * tiles[1];
+  return 3 * rows * tiles[0] + cols * tiles[1];
 }
 
 single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& results,
@@ -62,6 +66,7 @@ single_precision::Layout layout_of(const SolverPlan& plan, const ResultLayout& r
           .result_bytes = results.plane_bytes,
           .status = results.status,
           .idle = results.bytes,
+          .changed = results.changed_begin(),
           .ring = results.scratch_begin(),
           .wires = results.scratch_begin(),
           .frame = 0,
@@ -76,11 +81,15 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
       order_(&order) {
+  const bool changed_only = settings.paths.changed_only;
   const Launch solve(rows_, cols_, settings.lanes,
-                     device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+                     (changed_only ? kBandsOfChanges : kBandsPerUnit) *
+                         device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
-  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0);
+  if (changed_only) changed_.emplace(plan, settings.lanes);
+  ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0,
+                       changed_ ? changed_->flags().size() : 0);
   if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);
   const std::size_t ring = ring_floats(plan, settings, global_[1]);
   const std::size_t forces = plan.calibration.effects.pillar_leak ? 3 * results.plane_bytes : 0;
@@ -101,7 +110,8 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
   const SensorEffects& effects = plan.calibration.effects;
   if (!plan.calibration.bend_x.empty()) bend_ = kernel("bend_tare");
   if (effects.pillar_leak) unleak_ = kernel("remove_pillar_leak");
-  if (effects.pillar_leak || effects.arm_mm) correct_ = kernel("correct_forces");
+  const bool derives = plan.angles || plan.uncertainty;
+  if (effects.arm_mm || (effects.pillar_leak && derives)) correct_ = kernel("correct_forces");
   if (!order.follows_baseline) return;
   follow_ = kernel("follow_baseline");
   follow_.setArg(kInterval, order.interval);
@@ -118,12 +128,15 @@ Slot::~Slot() {
 }
 
 void Slot::submit(const FrameView& frame, const std::optional<Curvature>& bent) {
+  if (changed_) {
+    memory_->set_changed(queue_, changed_->flags());
+    changed_->clear();
+  }
   const DeviceFrame on_device = memory_->upload(queue_, frame);
   frame_ = on_device.readings;
   done_ = {};
   layout_.row_stride = on_device.row_stride;
   layout_.frame = ++order_->frame;
-  if (wires_() != nullptr) launch(wires_, tiles_, {1, 1});
   solve(bent);
   if (unleak_() != nullptr) launch(unleak_, global_, local_);
   if (correct_() != nullptr) launch(correct_, global_, local_);
@@ -139,9 +152,8 @@ void Slot::launch(cl::Kernel& kernel, const cl::NDRange& global, const cl::NDRan
 }
 
 void Slot::solve(const std::optional<Curvature>& bent) {
-  if (!order_->is_needed) return launch(kernel_, global_, local_);
   std::vector<cl::Event> before;
-  if (order_->left() != nullptr) before.push_back(order_->left);
+  if (order_->is_needed && order_->left() != nullptr) before.push_back(order_->left);
   if (bent) {
     bend_.setArg(kBendX, static_cast<float>(bent->x));
     bend_.setArg(kBendX + 1, static_cast<float>(bent->y));
@@ -149,6 +161,12 @@ void Slot::solve(const std::optional<Curvature>& bent) {
     launch(bend_, global_, local_, &before);
     before.clear();
   }
+  // Tares and activation thresholds may change from frame to frame.
+  if (wires_() != nullptr) {
+    launch(wires_, tiles_, {1, 1}, &before);
+    before.clear();
+  }
+  if (!order_->is_needed) return launch(kernel_, global_, local_);
   cl::Event* const left = &order_->left;
   launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
   if (order_->follows_baseline) {

@@ -2,8 +2,9 @@
 
 namespace pillarfield {
 
-ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes)
-    : plane_bytes(page_aligned(plan.skin.pillars() * sizeof(float))) {
+ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed)
+    : plane_bytes(page_aligned(plan.skin.pillars() * sizeof(float))),
+      changed_flags(flags_of_changed) {
   for (std::size_t i = 0; i < kSolvedPlanes; ++i) {
     has[i] = has_planes(plan.angles, plan.uncertainty, kResultPlanes[i].set);
     planes[i] = status;

@@ -23,21 +23,27 @@ constexpr std::size_t page_aligned(std::size_t bytes) {
 /// Offsets of the planes of a result in one block of pages, bytes. Each plane begins on a page; the
 /// flags of idle blocks follow the planes.
 struct ResultLayout {
-  /// `lanes`: pillars of a block that may be idle; 0: no flags.
-  ResultLayout(const SolverPlan& plan, int lanes);
+  /// `lanes`: pillars of a block that may be idle; 0: no flags. `changed_flags`: bytes of
+  /// ChangedBlocks.
+  ResultLayout(const SolverPlan& plan, int lanes, std::size_t changed_flags = 0);
 
   std::array<std::size_t, kSolvedPlanes> planes{};  ///< offset from the first one
   std::array<bool, kSolvedPlanes> has{};            ///< planes of the plan
   std::size_t plane_bytes = 0;                      ///< distance between planes
   std::size_t status = 0;
-  std::size_t bytes = 0;        ///< of the block; the flags follow
-  std::size_t idle_flags = 0;   ///< number of flags
-  std::size_t scratch = 0;      ///< bytes that only the device uses, after the flags
-  std::size_t flag_stride = 0;  ///< flags of a pillar row
-  std::uint32_t lanes = 1;      ///< pillars of a flag
+  std::size_t bytes = 0;          ///< of the block; the flags follow
+  std::size_t idle_flags = 0;     ///< number of flags
+  std::size_t changed_flags = 0;  ///< bytes of ChangedBlocks, after the idle flags
+  std::size_t scratch = 0;        ///< bytes that only the device uses, after the flags
+  std::size_t flag_stride = 0;    ///< flags of a pillar row
+  std::uint32_t lanes = 1;        ///< pillars of a flag
 
+  /// Offset of the flags of changed blocks.
+  [[nodiscard]] std::size_t changed_begin() const { return bytes + idle_flags; }
   /// Offset of the scratch memory.
-  [[nodiscard]] std::size_t scratch_begin() const { return page_aligned(bytes + idle_flags); }
+  [[nodiscard]] std::size_t scratch_begin() const {
+    return page_aligned(changed_begin() + changed_flags);
+  }
   /// Bytes of everything.
   [[nodiscard]] std::size_t all_bytes() const { return scratch_begin() + scratch; }
 };
@@ -53,6 +59,9 @@ struct DeviceFrame {
 class SlotMemory {
  public:
   virtual ~SlotMemory() = default;
+
+  /// Sets the flags of changed blocks for the frame that is uploaded next.
+  virtual void set_changed(const cl::CommandQueue& queue, std::span<const std::uint8_t> flags) = 0;
 
   /// Makes the frame's readings and memory for its results available to the next commands on
   /// `queue`.

@@ -117,7 +117,7 @@ void Recording::take_skin(const ReadOptions& options) {
 void Recording::open_truth() {
   if (!hdf5::exists(file_, recording_format::kTruth)) return;
   for (const char* name : recording_format::kTruthPlanes) {
-    truth_.emplace_back(file_, name, 2);
+    truth_.emplace_back(file_, name, 2, true);
     require_floats(truth_.back(), path_);
     const auto shape = truth_.back().shape();
     if (shape[0] == skin_.pillar_rows() && shape[1] == skin_.pillar_cols()) continue;

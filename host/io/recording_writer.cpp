@@ -7,6 +7,7 @@
 #include "io/hdf5/attribute.h"
 #include "io/hdf5/file.h"
 #include "io/hdf5/frames.h"
+#include "io/hdf5/tiled_frames.h"
 #include "io/recording_format.h"
 #include "io/stored_skin.h"
 #include "io/stored_surface.h"
@@ -47,7 +48,7 @@ struct RecordingWriter::State {
   hdf5::File file;
   hdf5::ExtendibleDataset raw;
   hdf5::ExtendibleDataset time;
-  std::array<hdf5::ExtendibleDataset, 3> truth;  // shear_x, shear_y, normal
+  std::array<hdf5::TiledFrames, 3> truth;  // shear_x, shear_y, normal
   std::uint64_t frames = 0;
   std::uint64_t flushed = 0;
 };
@@ -73,6 +74,13 @@ RecordingWriter::State::State(const std::filesystem::path& final_path, const Ski
 
 RecordingWriter::State::~State() {
   const bool unflushed_are_safe = file.write_status->error_number == 0;
+  try {
+    if (unflushed_are_safe) {
+      for (auto& plane : truth) plane.flush();
+    }
+  } catch (const Error&) {
+    // Readers take the frames that all datasets have.
+  }
   if ((unflushed_are_safe ? frames : flushed) > 0) part.keep();
 }
 
@@ -84,10 +92,13 @@ void RecordingWriter::State::create_datasets() {
   if (!options.truth) return;
   const hdf5::Handle truth_group = hdf5::create_group(file, recording_format::kTruth);
   for (std::size_t plane = 0; plane < truth.size(); ++plane) {
+    constexpr float kUntouched = 0;
     truth[plane] = {file,
                     recording_format::kTruthPlanes[plane],
                     H5T_IEEE_F32LE,
-                    {skin.pillar_rows(), skin.pillar_cols()}};
+                    skin.pillar_rows(),
+                    skin.pillar_cols(),
+                    &kUntouched};
   }
 }
 
@@ -113,7 +124,7 @@ void RecordingWriter::State::check_frame(const FrameView& frame, double time_s,
 void RecordingWriter::State::put_truth(const ForceField& field) {
   const std::array planes = {&field.shear_x, &field.shear_y, &field.normal};
   for (std::size_t plane = 0; plane < planes.size(); ++plane) {
-    truth[plane].put(frames, H5T_NATIVE_FLOAT, planes[plane]->data());
+    truth[plane].append(planes[plane]->data());
   }
 }
 
@@ -123,6 +134,7 @@ void RecordingWriter::State::require_open() const {
 }
 
 void RecordingWriter::State::flush() {
+  for (auto& plane : truth) plane.flush();
   hdf5::flush(file);
   flushed = frames;
   part.sync_at_intervals();

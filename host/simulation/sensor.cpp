@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/random.h"
+#include "base/wide.h"
 #include "simulation/effects/known_effects.h"
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/sensel_leak.h"
@@ -51,6 +52,12 @@ std::vector<float> draw_tares(const Scene& scene) {
   });
 }
 
+/// Drift rates in units of their standard deviation; empty without drift.
+std::vector<float> draw_drift(const Scene& scene) {
+  if (!(scene.sensor.drift_counts_per_s > 0)) return {};
+  return normal_plane(scene, random::Stream::drift, [](double n) { return n; });
+}
+
 std::vector<std::uint8_t> draw_mask(const Scene& scene) {
   const std::uint32_t cols = scene.skin.cols;
   std::vector<std::uint8_t> mask;
@@ -85,14 +92,29 @@ Calibration draw_calibration(const Scene& scene) {
   return calibration;
 }
 
+PF_WIDE void add_scaled(std::span<const float> values, double factor, std::span<double> signal) {
+  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += factor * values[i];
+}
+
 /// To the nearest whole count, halves up, within the converter's range.
 template <class Count>
-void round_to(std::span<const double> signal, double full_scale, std::span<Count> out) {
-  std::transform(signal.begin(), signal.end(), out.begin(), [=](double value) {
+PF_WIDE_INLINE void round_each(std::span<const double> signal, double full_scale,
+                               std::span<Count> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
     // Avoids a library call per sensel; differs from lround just below a half.
-    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
-    return static_cast<Count>(std::clamp(value, 0.0, full_scale) + 0.5);
-  });
+    const double shifted = std::clamp(signal[i], 0.0, full_scale) + 0.5;
+    out[i] = static_cast<Count>(static_cast<std::int32_t>(shifted));
+  }
+}
+
+PF_WIDE void round_to(std::span<const double> signal, double full_scale,
+                      std::span<std::uint8_t> out) {
+  round_each(signal, full_scale, out);
+}
+
+PF_WIDE void round_to(std::span<const double> signal, double full_scale,
+                      std::span<std::uint16_t> out) {
+  round_each(signal, full_scale, out);
 }
 
 /// Curvature at a time: linear between keys, constant before the first and after the last.
@@ -119,6 +141,7 @@ Sensor::Sensor(const Scene& scene)
       seed_(scene.seed),
       rate_hz_(scene.rate_hz),
       calibration_(draw_calibration(scene)),
+      drift_(draw_drift(scene)),
       needs_frames_(calibration_.effects.sensel_leak || calibration_.effects.wires ||
                     MemoryHistory::is_needed(model_)) {}
 
@@ -191,23 +214,22 @@ void Sensor::add_bending(std::uint64_t frame, std::uint32_t row, std::span<doubl
 
 void Sensor::digitise(std::uint64_t frame, std::uint32_t row, std::span<double> signal,
                       FrameBuffer& raw) const {
-  if (model_.drift_counts_per_s > 0) add_drift(frame, row, signal);
+  if (!drift_.empty()) add_drift(frame, row, signal);
   if (model_.noise_counts > 0) add_noise(frame, row, signal);
   if (!calibration_.mask.empty()) clear_dead(row, signal);
   convert(row, signal, raw);
 }
 
 void Sensor::add_drift(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
-  std::vector<float> speed(signal.size());
-  random::fill_normal({seed_, random::Stream::drift, 0, row}, speed);
+  const auto speed = row_of(drift_, row, signal.size());
   const double spread_counts = model_.drift_counts_per_s * static_cast<double>(frame) / rate_hz_;
-  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += spread_counts * speed[i];
+  add_scaled(speed, spread_counts, signal);
 }
 
 void Sensor::add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
   std::vector<float> noise(signal.size());
   random::fill_normal({seed_, random::Stream::noise, frame, row}, noise);
-  for (std::size_t i = 0; i < signal.size(); ++i) signal[i] += model_.noise_counts * noise[i];
+  add_scaled(noise, model_.noise_counts, signal);
 }
 
 void Sensor::clear_dead(std::uint32_t row, std::span<double> signal) const {

@@ -59,6 +59,7 @@ class Sensor {
   std::uint64_t seed_;
   double rate_hz_;
   Calibration calibration_;
+  std::vector<float> drift_;  ///< rate of each sensel over its standard deviation
   bool needs_frames_;
 };
 

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <span>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,7 @@
 #include "simulation/effects/memory_history.h"
 #include "simulation/effects/pillar_model.h"
 #include "simulation/ideal_readings.h"
+#include "simulation/render_ahead.h"
 #include "simulation/scene/scene_limits.h"
 #include "simulation/sensor.h"
 
@@ -59,20 +62,32 @@ struct FrameLoad {
   PressureMoments moments;  ///< empty unless pillars need them
 };
 
+/// Whether no pillar of `count` from `first` on bears a force.
+bool is_untouched(const ForceField& truth, std::size_t first, std::size_t count) {
+  std::uint32_t any = 0;
+  for (const std::vector<float>* plane : {&truth.shear_x, &truth.shear_y, &truth.normal}) {
+    for (std::size_t i = first; i < first + count; ++i) {
+      any |= std::bit_cast<std::uint32_t>((*plane)[i]) << 1;  // without its sign
+    }
+  }
+  return any == 0;
+}
+
 /// Sets V of the two sensel rows under a row of pillars and their status bytes.
 void read_pillars(std::uint32_t row, const Scene& scene, const PillarModel& pillars,
                   FrameLoad& load, std::span<double> signal) {
+  constexpr std::uint32_t kGroup = 32;
   ForceField& truth = load.forces;
   const std::span<double> upper = signal.first(scene.skin.cols);
   const std::span<double> lower = signal.last(scene.skin.cols);
   std::ranges::fill(signal, 0.0);
   const std::size_t first = std::size_t{row} * truth.cols;
-  for (std::uint32_t col = 0; col < truth.cols; ++col) {
+  const auto read = [&](std::uint32_t col) {
     const std::size_t pillar = first + col;
     double_precision::Force force = {truth.shear_x[pillar], truth.shear_y[pillar],
                                      truth.normal[pillar]};
     if (!pillars.is_ideal()) force = pillars.force_on_sensels(truth, load.moments, row, col);
-    if (force.normal == 0 && force.shear_x == 0 && force.shear_y == 0) continue;
+    if (force.normal == 0 && force.shear_x == 0 && force.shear_y == 0) return;
     const double_precision::Readings v = ideal_readings(force, scene.skin.counts_per_newton);
     truth.status[pillar] = usable_bits(v);
     const std::size_t left = std::size_t{2} * col;
@@ -80,6 +95,11 @@ void read_pillars(std::uint32_t row, const Scene& scene, const PillarModel& pill
     upper[left + 1] = v.v1;
     lower[left] = v.v3;
     lower[left + 1] = v.v4;
+  };
+  for (std::uint32_t begin = 0; begin < truth.cols; begin += kGroup) {
+    const std::uint32_t end = std::min(begin + kGroup, truth.cols);
+    if (pillars.is_ideal() && is_untouched(truth, first + begin, end - begin)) continue;
+    for (std::uint32_t col = begin; col < end; ++col) read(col);
   }
 }
 
@@ -205,6 +225,14 @@ void Simulator::render(std::uint64_t index, FrameBuffer& raw, ForceField& truth)
   } else {
     state_->render_rows(index, raw, truth);
   }
+}
+
+void Simulator::render_all(std::uint64_t first, std::uint64_t count, const TakeFrame& take,
+                           unsigned threads) const {
+  constexpr unsigned kMostThreads = 16;
+  const unsigned processors = std::max(1U, std::thread::hardware_concurrency());
+  const unsigned used = std::min(threads == 0 ? processors : threads, kMostThreads);
+  RenderAhead(*this, first, count, used, state_->memory != nullptr).deliver(take);
 }
 
 }  // namespace pillarfield

@@ -11,7 +11,7 @@ namespace pillarfield {
 /// Blocks begin at multiples of `pillars` in the row-by-row index of pillars. A block that crosses
 /// the end of a row is divided: its rest is the first block of the next row.
 struct IdleBlocks {
-  /// [rows, stride]: 1 for a block without a loaded pillar, else 0. Each row uses as many as it has
+  /// [rows, stride]: odd for a block without a loaded pillar, else 0. Each row uses as many as it has
   /// blocks. Empty: unknown.
   std::span<const std::uint8_t> flags;
   std::size_t stride = 0;

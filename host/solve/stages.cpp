@@ -22,13 +22,11 @@ constexpr std::array kStages = {
     Stage{"mask", "PF_MASK", [](const Plan& plan) { return !plan.calibration.mask.empty(); }},
     Stage{"saturation", "PF_FULL_SCALE",
           [](const Plan& plan) { return plan.skin.full_scale_counts.has_value(); }},
-    // A row's crosstalk raises idle readings, so that no threshold of raw readings holds.
     Stage{.name = "wires",
           .macro = "PF_WIRES",
           .is_named = [](const Plan& plan) { return effects(plan).wires.has_value(); },
           .place = StagePlace::frame,
-          .needs_neighbours = true,
-          .may_skip_idle = false},
+          .needs_neighbours = true},
     Stage{.name = "bend",
           .macro = "PF_BEND",
           .is_named = is_bent,
@@ -104,8 +102,13 @@ bool has_memory_on_device(const SolverPlan& plan) {
   });
 }
 
-bool may_skip_idle(const SolverPlan& plan) {
-  return std::ranges::all_of(stages_of(plan), &Stage::may_skip_idle);
+bool may_solve_changes(const SolverPlan& plan) {
+  return !effects(plan).wires && std::ranges::none_of(stages_of(plan), &Stage::has_memory);
+}
+
+std::uint32_t neighbour_reach(const SolverPlan& plan) {
+  return static_cast<std::uint32_t>(
+      std::ranges::count_if(stages_of(plan), &Stage::needs_neighbours));
 }
 
 }  // namespace pillarfield

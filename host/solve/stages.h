@@ -20,9 +20,6 @@ struct Stage {
   StagePlace place = StagePlace::pillar;
   bool needs_neighbours = false;  ///< reads sensels or pillars beyond one pillar
   bool has_memory = false;  ///< keeps state from frame to frame; frames are solved in their order
-  /// Idle blocks may be skipped: activation_thresholds() and threshold_of_sensel() in
-  /// kernels/frame/idle.h include the stage.
-  bool may_skip_idle = true;
 };
 
 /// The stages that a plan names, in order.
@@ -31,7 +28,11 @@ struct Stage {
 /// True if frames must be solved in their order on the device.
 [[nodiscard]] bool has_memory_on_device(const SolverPlan& plan);
 
-/// True if idle blocks may be skipped under all stages of a plan.
-[[nodiscard]] bool may_skip_idle(const SolverPlan& plan);
+/// True if pillars whose readings, and those of their neighbours, did not change keep their forces:
+/// no stage has a memory, reads whole wires or runs on the host.
+[[nodiscard]] bool may_solve_changes(const SolverPlan& plan);
+
+/// How many pillars beyond its own a sensel's reading may change the force of.
+[[nodiscard]] std::uint32_t neighbour_reach(const SolverPlan& plan);
 
 }  // namespace pillarfield

@@ -36,4 +36,8 @@ typedef struct {
   Place bottom;
   size_t index;
   Lanes lanes;
+#ifdef PF_MEMORY
+  uint at;     /* number of the block in its row */
+  uint blocks; /* blocks_of_row() */
+#endif
 } Block;

@@ -48,6 +48,15 @@ PF_INLINE OwnBlock own_block(uint at, uint skew, uint cols) {
   return block;
 }
 
+/* Idle flag of a block; zero where none are kept. */
+PF_INLINE uchar idle_flag(global const uchar* results, Layout layout, uint row, uint at) {
+#ifdef PF_SKIP_IDLE
+  return results[layout.idle + (size_t)row * blocks_of_row((uint)layout.cols) + at];
+#else
+  return 0;
+#endif
+}
+
 #endif
 
 #ifdef PF_PILLAR_LEAK
@@ -74,9 +83,13 @@ kernel void remove_pillar_leak(global const PF_SENSEL* restrict raw,
   const uint cols = (uint)layout.cols;
   const uint step = (uint)get_global_size(0);
   for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
     const uint skew = skew_of(row, cols);
     for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
          at_block += step) {
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) == PF_IDLE) continue;
       const OwnBlock block = own_block(at_block, skew, cols);
       const uint col = block.col;
       const Mask loaded = is_loaded(results + layout.status, layout, row, col);
@@ -136,9 +149,13 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
   const Output output = {results, results, layout.result_bytes, results + layout.status,
                          results + layout.idle};
   for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) continue;
     const uint skew = skew_of(row, cols);
     for (uint at_block = (uint)get_global_id(0); at_block * PF_LANES < skew + cols;
          at_block += step) {
+      if (!is_changed(changed, at_block)) continue;
+      if (idle_flag(results, layout, row, at_block) != 0) continue;
       const OwnBlock block = own_block(at_block, skew, cols);
       const uint col = block.col;
       if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;

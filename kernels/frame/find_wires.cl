@@ -1,28 +1,28 @@
-/* Finds how the wires of each tile act on its readings, before solve_frame reads them. Stage
- * PF_WIRES, with PF_ROW_PER_COUNT, PF_COLUMN_PER_COUNT, PF_IDLE_PER_COUNT, PF_TILE_ROWS and
- * PF_TILE_COLS. */
+/* Finds how the wires of each tile act on its readings, before solve_frame reads them, and which
+ * tiles are idle. Stage PF_WIRES, with PF_ROW_PER_COUNT, PF_COLUMN_PER_COUNT, PF_IDLE_PER_COUNT,
+ * PF_TILE_ROWS and PF_TILE_COLS. */
 #ifdef PF_WIRES
 
 #define PF_TILE_PARTS ((PF_TILE_COLS + PF_WIRE_PARTS - 1) / PF_WIRE_PARTS * PF_WIRE_PARTS)
 
-/* Raw readings for the sums; missing sensels count as zero. */
-#define PF_DEFINE_SUMMED(name, type)                                          \
-  PF_INLINE type name(type reading, type good) {                              \
-    const type none = (type)(0.0f);                                           \
-    reading = good == (type)(1.0f) ? reading : none;                          \
-    return fabs(reading) <= (type)(PF_WIRE_LARGEST_READING) ? reading : none; \
-  }
 #ifdef PF_LARGEST_READING
-#define PF_WIRE_LARGEST_READING PF_LARGEST_READING
+#define PF_IN_RANGE(type, reading) (fabs(reading) <= (type)(PF_LARGEST_READING))
 #else
-#define PF_WIRE_LARGEST_READING 1e9f
+#define PF_IN_RANGE(type, reading) ((type)(0.0f) == (type)(0.0f))
 #endif
+/* Raw readings for the sums; missing sensels count as zero. */
+#define PF_DEFINE_SUMMED(name, type)                    \
+  PF_INLINE type name(type reading, type good) {        \
+    const type none = (type)(0.0f);                     \
+    reading = good == (type)(1.0f) ? reading : none;    \
+    return PF_IN_RANGE(type, reading) ? reading : none; \
+  }
 PF_DEFINE_SUMMED(summed_reading, float)
 #if PF_LANES > 1
 PF_DEFINE_SUMMED(summed_readings, Real)
 #endif
 
-/* Reads the first `cols` sensels of a tile's row. */
+/* Reads the sensels of a tile's row. */
 PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibration, size_t offset,
                              uint cols, float* readings) {
   uint col = 0;
@@ -48,44 +48,60 @@ PF_INLINE void read_tile_row(global const PF_SENSEL* raw, Calibration calibratio
   }
 }
 
+/* Finds the wires of a tile: those of its rows, then the gains of its columns. */
+PF_INLINE void sweep_tile(global const PF_SENSEL* raw, Calibration calibration, Layout layout,
+                          Tile tile, global float* row_gains, global float* idle_parts,
+                          float* columns) {
+  const WireModel model = {(float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT),
+                           (float)(PF_IDLE_PER_COUNT)};
+  float readings[PF_TILE_PARTS];
+  float losses[PF_TILE_PARTS];
+  for (uint i = 0; i < PF_TILE_PARTS; ++i) {
+    readings[i] = 0.0f;
+    columns[i] = 1.0f;
+  }
+  for (uint i = 0; i < tile.rows; ++i) row_gains[i] = idle_parts[i] = 1.0f;
+  for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
+    for (uint i = 0; i < PF_TILE_PARTS; ++i) losses[i] = 0.0f;
+    for (uint row = 0; row < tile.rows; ++row) {
+      const size_t at = tile.row + row;
+      read_tile_row(raw + at * layout.row_stride + tile.col, calibration,
+                    at * calibration.stride + tile.col, tile.cols, readings);
+      const RowWires before = {row_gains[row], idle_parts[row]};
+      const RowWires after = wires_of_row(readings, columns, PF_TILE_PARTS, before, model);
+      add_row(readings, losses, PF_TILE_PARTS, after, model);
+      row_gains[row] = after.row;
+      idle_parts[row] = after.idle;
+    }
+    for (uint i = 0; i < PF_TILE_PARTS; ++i) columns[i] = gain_of_loss(losses[i]);
+  }
+}
+
 /* A work-item finds the wires of one tile. */
 kernel void find_wires(global const PF_SENSEL* restrict raw,
                        global const uchar* restrict calibration, global uchar* restrict results,
                        Layout layout) {
   const Calibration planes = calibration_of(calibration, results, layout);
   const WireVectors wires = planes.wires;
-  const WireModel model = {(float)(PF_ROW_PER_COUNT), (float)(PF_COLUMN_PER_COUNT),
-                           (float)(PF_IDLE_PER_COUNT)};
   const uint across = (uint)get_global_id(0);
   const uint down = (uint)get_global_id(1);
-  const uint first_row = down * PF_TILE_ROWS;
-  const uint first_col = across * PF_TILE_COLS;
-  const uint rows = min((uint)PF_TILE_ROWS, wires.rows - first_row);
-  const uint cols = min((uint)PF_TILE_COLS, wires.cols - first_col);
-  global float* const row_factors = wires.row + (size_t)across * wires.rows + first_row;
-  global float* const idle_factors = wires.idle + (size_t)across * wires.rows + first_row;
-  float readings[PF_TILE_PARTS];
+  Tile tile;
+  tile.row = down * PF_TILE_ROWS;
+  tile.col = across * PF_TILE_COLS;
+  tile.rows = min((uint)PF_TILE_ROWS, wires.rows - tile.row);
+  tile.cols = min((uint)PF_TILE_COLS, wires.cols - tile.col);
+  const size_t first = (size_t)across * wires.rows + tile.row;
+  global float* const gains = wires.column + (size_t)down * wires.cols + tile.col;
   float columns[PF_TILE_PARTS];
-  float next[PF_TILE_PARTS];
-  float conductances[PF_TILE_PARTS];
-  for (uint i = 0; i < PF_TILE_PARTS; ++i) readings[i] = columns[i] = 0.0f;
-  for (uint i = 0; i < rows; ++i) row_factors[i] = idle_factors[i] = 1.0f;
-  for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
-    for (uint i = 0; i < PF_TILE_PARTS; ++i) next[i] = 0.0f;
-    for (uint row = 0; row < rows; ++row) {
-      const size_t at = first_row + row;
-      read_tile_row(raw + at * layout.row_stride + first_col, planes,
-                    at * planes.stride + first_col, cols, readings);
-      const RowWires before = {row_factors[row], idle_factors[row]};
-      const RowWires after =
-          sweep_row(readings, columns, next, conductances, PF_TILE_PARTS, before, model);
-      row_factors[row] = after.row;
-      idle_factors[row] = after.idle;
-    }
-    for (uint i = 0; i < PF_TILE_PARTS; ++i) columns[i] = next[i];
-  }
-  global float* const loads = wires.column + (size_t)down * wires.cols + first_col;
-  for (uint col = 0; col < cols; ++col) loads[col] = columns[col];
+#ifdef PF_SKIP_IDLE
+  const TileRange range = range_of_tile(raw, planes, layout, tile);
+  if (find_idle_tile(range, tile, wires, first, gains)) return;
+#endif
+  sweep_tile(raw, planes, layout, tile, wires.row + first, wires.idle + first, columns);
+  for (uint col = 0; col < tile.cols; ++col) gains[col] = columns[col];
+#ifdef PF_SKIP_IDLE
+  bound_rows(range, tile, wires, first, columns);
+#endif
 }
 
 #endif

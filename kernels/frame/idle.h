@@ -15,6 +15,16 @@ PF_INLINE global const PF_SENSEL* activation_thresholds(Calibration calibration)
 #endif
 }
 
+/* Idle flag of a block. Zero: active. Its lowest bit is set while the block is idle. With a leak
+ * between pillars, whose correction writes the results, PF_NEWLY_IDLE is that of the first idle
+ * frame. */
+#define PF_IDLE 1
+#ifdef PF_PILLAR_LEAK
+#define PF_NEWLY_IDLE 3
+#else
+#define PF_NEWLY_IDLE PF_IDLE
+#endif
+
 #ifdef PF_SKIP_IDLE
 
 #if defined(PF_BASELINE) || defined(PF_BEND)

@@ -126,13 +126,15 @@ PF_DEFINE_LOAD(mask, uchar, RealPair, split_uchar)
  * requests in flight, for blocks that are likely idle. Addresses past the end of a plane are
  * harmless. Only PoCL is certain to have the builtin. */
 #if PF_LANES > 1 && defined(POCL_DEVICE_ADDRESS_BITS)
-#define PF_PREFETCH_TO(row, locality)                                          \
-  for (size_t byte_ = 0; byte_ < 2 * PF_LANES * sizeof(*(row)); byte_ += 64) { \
-    __builtin_prefetch((const void*)((size_t)(row) + byte_), 0, locality);     \
+#define PF_PREFETCH_SPAN(row, count, locality)                             \
+  for (size_t byte_ = 0; byte_ < (count) * sizeof(*(row)); byte_ += 64) {  \
+    __builtin_prefetch((const void*)((size_t)(row) + byte_), 0, locality); \
   }
+#define PF_PREFETCH_TO(row, locality) PF_PREFETCH_SPAN(row, 2 * PF_LANES, locality)
 #define PF_PREFETCH(row) PF_PREFETCH_TO(row, 3)
 #define PF_PREFETCH_FAR(row) PF_PREFETCH_TO(row, 2)
 #else
+#define PF_PREFETCH_SPAN(row, count, locality)
 #define PF_PREFETCH(row)
 #define PF_PREFETCH_FAR(row)
 #endif

@@ -39,10 +39,13 @@ PF_INLINE Ring ring_of(global float* rings, uint cols) {
 
 /* True if no sensel of one row under PF_LANES pillars is active, as far as raw readings tell. */
 PF_INLINE bool leaks_nothing(Input input, Place place) {
-#ifdef PF_SKIP_IDLE
+  global const PF_SENSEL* const raw = input.raw + place.row * input.row_stride + place.col;
+#if defined(PF_SKIP_IDLE) && defined(PF_WIRES)
+  const float bound = bound_of(input.calibration.wires, place, 1);
+  return bound == PF_IDLE_TILE || rows_are_idle(raw, 0, input.calibration, place, 1, bound);
+#elif defined(PF_SKIP_IDLE)
   return row_is_idle(
-      input.raw + place.row * input.row_stride + place.col,
-      activation_thresholds(input.calibration) + offset_of(input.calibration, place));
+      raw, activation_thresholds(input.calibration) + offset_of(input.calibration, place));
 #else
   return false;
 #endif

@@ -38,6 +38,7 @@
  *   PF_BASELINE                     stage: follow_baseline.cl
  *   PF_STREAM                       results bypass the caches: load_store.h
  *   PF_SKIP_IDLE                    skips idle blocks: idle.h
+ *   PF_CHANGED                      solves only what changed: changed.h
  *   PF_ACTIVATION_PLANE, or PF_ACTIVATION     activation thresholds: one per sensel, or one
  *
  * A stage without its macro is not compiled. Constants are exact (hexadecimal); with PF_WHOLE those
@@ -79,8 +80,8 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   bottom = without_leak(bottom, around, 1);
 #endif
 #ifdef PF_MEMORY
-  top = recall_row(top, calibration, block.top, block.lanes);
-  bottom = recall_row(bottom, calibration, block.bottom, block.lanes);
+  top = recall_row(top, calibration, block.top.row, block);
+  bottom = recall_row(bottom, calibration, block.bottom.row, block);
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
@@ -142,10 +143,15 @@ typedef struct {
   global const PF_SENSEL* activation; /* its activation threshold */
   size_t row_stride;
   size_t activation_stride;
-  global uchar* idle; /* flag of the first block */
+  global uchar* idle;          /* flag of the first block */
+  global const uchar* changed; /* flag of the first block */
   uint skew;          /* pillars by which the first block would begin before the row */
   uint last_col;      /* first column of the last block */
   uint blocks;
+#ifdef PF_WIRES
+  Calibration calibration;
+  uint sensel_row;
+#endif
 } Row;
 
 PF_INLINE uint col_of_block(Row row, uint at) {
@@ -168,16 +174,32 @@ PF_INLINE void prefetch_readings(Row row, size_t sensel, bool idle) {
 #endif
 }
 
+#ifdef PF_SKIP_IDLE
+/* True if a block is idle, as far as raw readings tell. */
+PF_INLINE bool block_is_idle(Row row, size_t sensel, bool was_idle) {
+#ifdef PF_WIRES
+  const Place place = {row.sensel_row, (uint)sensel};
+  const float bound = bound_of(row.calibration.wires, place, 2);
+  if (bound == PF_IDLE_TILE) return true;
+  prefetch_readings(row, sensel, was_idle);
+  return rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, 2, bound);
+#else
+  prefetch_readings(row, sensel, was_idle);
+  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
+#endif
+}
+#endif
+
 /* True if a block is idle and its stored results are already those of an idle block; updates its
  * flag. */
 PF_INLINE bool may_skip(Row row, uint at, size_t sensel) {
+  if (!is_changed(row.changed, at)) return true;
 #ifdef PF_SKIP_IDLE
-  const bool was_idle = row.idle[at];
-  prefetch_readings(row, sensel, was_idle);
-  const bool idle =
-      is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
-  if (idle != was_idle) row.idle[at] = idle;
-  return idle && was_idle;
+  const uchar before = row.idle[at];
+  const bool idle = block_is_idle(row, sensel, before != 0);
+  const uchar now = idle ? (before != 0 ? PF_IDLE : PF_NEWLY_IDLE) : 0;
+  if (now != before) row.idle[at] = now;
+  return idle && before != 0;
 #else
   prefetch_readings(row, sensel, false);
   return false;
@@ -201,7 +223,7 @@ PF_INLINE Lanes own_lanes(uint place, uint skew, uint col, uint cols) {
 }
 
 /* Solves this work-item's blocks of a pillar row. */
-PF_INLINE void solve_row(Input input, Output output, uint at_row) {
+PF_INLINE void solve_row(Input input, Output output, uint at_row, global const uchar* changed) {
   const uint pillar_cols = input.cols;
   const size_t first_index = (size_t)at_row * pillar_cols;
   const Calibration calibration = input.calibration;
@@ -213,9 +235,14 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
   row.row_stride = input.row_stride;
   row.activation_stride = calibration.stride;
   row.idle = output.idle + (size_t)at_row * blocks_of_row(pillar_cols);
+  row.changed = changed;
   row.skew = skew;
   row.last_col = pillar_cols - PF_LANES;
   row.blocks = (skew + pillar_cols + PF_LANES - 1) / PF_LANES;
+#ifdef PF_WIRES
+  row.calibration = calibration;
+  row.sensel_row = 2 * at_row;
+#endif
   const uint step = (uint)get_global_size(0);
   for (uint at = next_active(row, (uint)get_global_id(0)); at < row.blocks;
        at = next_active(row, at + step)) {
@@ -223,12 +250,17 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row) {
     const Place top = {2 * at_row, 2 * col};
     const Place bottom = {2 * at_row + 1, 2 * col};
     prefetch_planes(calibration, first_offset + 2 * col + 2 * calibration.stride);
-#if defined(PF_STREAM) || defined(PF_MEMORY)
+#if defined(PF_STREAM) || defined(PF_MEMORY) || defined(PF_CHANGED)
     const Lanes lanes = own_lanes(at * PF_LANES, skew, col, pillar_cols);
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
-    const Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
+    Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
+#ifdef PF_MEMORY
+    block.at = at;
+    block.blocks = blocks_of_row(pillar_cols);
+    prefetch_states(calibration, block);
+#endif
     store_solution(solve_block(block, input), output, block.index, block.lanes);
   }
 }
@@ -260,10 +292,17 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
 #ifdef PF_LEAK
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);
 #endif
+  bool first = true; /* row of several without a gap */
   for (uint row = band.first; row < band.end; ++row) {
+    global const uchar* const changed = changed_in_row(results, layout, row);
+    if (!changed) {
+      first = true;
+      continue;
+    }
 #ifdef PF_LEAK
-    fill_ring(input, row, row == band.first);
+    fill_ring(input, row, first);
 #endif
-    solve_row(input, output, row);
+    solve_row(input, output, row, changed);
+    first = false;
   }
 }

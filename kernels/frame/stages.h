@@ -195,8 +195,7 @@ PF_INLINE Sensel correct_sensel(Counts raw, Correction at, Stages stages) {
 PF_INLINE Real corrected_noise(Real noise, Counts raw, Correction at, Stages stages) {
 #ifdef PF_WIRES
   if (PF_NAMED(wires)) {
-    noise =
-        noise * (at.wires.row * column_load(raw, at.wires, PF_CONSTANT(Real, PF_COLUMN_PER_COUNT)));
+    noise = noise * wire_gain(raw, at.wires, PF_CONSTANT(Real, PF_COLUMN_PER_COUNT));
   }
 #endif
 #ifdef PF_GAIN

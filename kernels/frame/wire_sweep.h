@@ -1,8 +1,10 @@
-/* One sweep over a row of a tile's sensels, which finds how its wires act on readings
- * (docs/derivations/sensor_effects.md, E5). For the device and, as C++, for the host. */
+/* Sweeps over a tile's sensels, which find how its wires act on readings
+ * (docs/derivations/sensor_effects.md, E5). For the device and, as C++, for the host. Rows of
+ * numbers are padded with zeros to a multiple of PF_WIRE_PARTS. */
 
-#define PF_WIRE_SWEEPS 3
-#define PF_WIRE_PARTS 16 /* partial sums, added in a fixed order */
+#define PF_WIRE_SWEEPS 2
+#define PF_WIRE_PARTS 16          /* partial sums, added in a fixed order */
+#define PF_WIRE_LEAST_SHARE 0.125f /* of the voltage; a wire keeps at least this */
 
 /* Resistances times the conductance of one count. */
 typedef struct {
@@ -26,55 +28,72 @@ typedef struct {
 #define PF_LOAD_WIRES(place) (*(place))
 #define PF_STORE_WIRES(value, place) *(place) = (value)
 #else
-#define PF_LOAD_WIRES(place) PF_JOIN(vload, PF_LANES)(0, place)
-#define PF_STORE_WIRES(value, place) PF_JOIN(vstore, PF_LANES)(value, 0, place)
+#define PF_LOAD_WIRES(place) (((const WireLanes*)(place))->lanes)
+#define PF_STORE_WIRES(value, place) ((WireLanes*)(place))->lanes = (value)
+/* As in load_store.h. */
+typedef struct __attribute__((packed)) {
+  Real lanes;
+} WireLanes;
 #endif
 #define PF_WIRE_GROUPS (PF_WIRE_PARTS / PF_WIRE_LANES)
 
-/* Their sum, by pairs; overwrites them. */
-PF_INLINE float sum_of_parts(float* parts) {
-  for (int lower = PF_WIRE_PARTS / 2; lower > 0; lower /= 2) {
+/* Sum of lanes, by pairs. */
+#if PF_WIRE_LANES == 1
+PF_INLINE float sum_of_lanes(Real lanes) { return lanes; }
+#else
+PF_INLINE float sum_of_2(float2 lanes) { return lanes.x + lanes.y; }
+PF_INLINE float sum_of_4(float4 lanes) { return sum_of_2(lanes.lo + lanes.hi); }
+PF_INLINE float sum_of_8(float8 lanes) { return sum_of_4(lanes.lo + lanes.hi); }
+PF_INLINE float sum_of_16(float16 lanes) { return sum_of_8(lanes.lo + lanes.hi); }
+PF_INLINE float sum_of_lanes(Real lanes) { return PF_JOIN(sum_of_, PF_LANES)(lanes); }
+#endif
+
+/* Sum of the parts in all lanes, by pairs; overwrites them. */
+PF_INLINE float sum_of_parts(Real* parts) {
+  for (int lower = PF_WIRE_GROUPS / 2; lower > 0; lower /= 2) {
     for (int i = 0; i < lower; ++i) parts[i] = parts[i] + parts[i + lower];
   }
-  return parts[0];
+  return sum_of_lanes(parts[0]);
 }
 
-/* Finds the row's factors from its readings, counts, and from the loads of the columns before, and
- * adds the row to the loads `next`. `cols` is a multiple of PF_WIRE_PARTS; readings beyond the tile
- * are zero. `conductances` is room for a row. */
-PF_INLINE RowWires sweep_row(const float* readings, const float* columns, float* next,
-                             float* conductances, int cols, RowWires before, WireModel model) {
-  const Real column = PF_CONSTANT(Real, model.column);
-  Wires at_row;
-  at_row.row = PF_CONSTANT(Real, before.row);
-  at_row.idle = PF_CONSTANT(Real, before.idle);
-  Real all[PF_WIRE_GROUPS];
-  Real driven[PF_WIRE_GROUPS];
-  for (int i = 0; i < PF_WIRE_GROUPS; ++i) all[i] = driven[i] = PF_REAL(0.0);
+/* 1 / (1 - loss), bounded. */
+PF_INLINE float gain_of_loss(float loss) {
+  const float share = 1.0f - loss;
+  return 1.0f / (share > PF_WIRE_LEAST_SHARE ? share : PF_WIRE_LEAST_SHARE);
+}
+
+/* The wires of a row with these readings, counts, under columns with the gains `columns`. */
+PF_INLINE RowWires wires_of_row(const float* readings, const float* columns, int cols,
+                                RowWires before, WireModel model) {
+  Real loads[PF_WIRE_GROUPS];   /* m l */
+  Real squares[PF_WIRE_GROUPS]; /* m^2 l */
+  for (int i = 0; i < PF_WIRE_GROUPS; ++i) loads[i] = squares[i] = PF_REAL(0.0);
   for (int at = 0; at < cols; at += PF_WIRE_PARTS) {
     for (int i = 0; i < PF_WIRE_GROUPS; ++i) {
       const int place = at + i * PF_WIRE_LANES;
       const Real reading = PF_LOAD_WIRES(readings + place);
-      at_row.column = PF_LOAD_WIRES(columns + place);
-      const Real load = column_load(reading, at_row, column);
-      const Real conductance = reading * at_row.row * load;
-      all[i] = all[i] + conductance;
-      driven[i] = driven[i] + conductance * (PF_REAL(1.0) - column * conductance / load);
-      PF_STORE_WIRES(conductance, conductances + place);
+      const Real load = reading * PF_LOAD_WIRES(columns + place);
+      loads[i] = loads[i] + load;
+      squares[i] = squares[i] + reading * load;
     }
   }
-  float all_parts[PF_WIRE_PARTS];
-  float driven_parts[PF_WIRE_PARTS];
-  for (int i = 0; i < PF_WIRE_GROUPS; ++i) {
-    PF_STORE_WIRES(all[i], all_parts + i * PF_WIRE_LANES);
-    PF_STORE_WIRES(driven[i], driven_parts + i * PF_WIRE_LANES);
-  }
+  const float load = sum_of_parts(loads);
+  const float square = before.row * sum_of_parts(squares);
+  const float own = model.column * (1.0f - before.idle);
   RowWires after;
-  after.row = 1.0f + model.row * sum_of_parts(driven_parts);
-  after.idle = 1.0f / (1.0f + model.idle * sum_of_parts(all_parts));
-  for (int at = 0; at < cols; at += PF_WIRE_LANES) {
-    const Real more = PF_LOAD_WIRES(conductances + at) * PF_CONSTANT(Real, after.idle);
-    PF_STORE_WIRES(PF_LOAD_WIRES(next + at) + more, next + at);
-  }
+  after.row = gain_of_loss(model.row * (load + (own - model.column) * square));
+  after.idle = 1.0f / (1.0f + model.idle * after.row * (load + own * square));
   return after;
+}
+
+/* Adds what a row that is not driven lets its columns lose, over their gain, to `losses`. */
+PF_INLINE void add_row(const float* readings, float* losses, int cols, RowWires wires,
+                       WireModel model) {
+  const Real first = PF_CONSTANT(Real, model.column * wires.idle * wires.row);
+  const Real second = PF_CONSTANT(Real, model.column * (1.0f - wires.idle) * wires.row);
+  for (int at = 0; at < cols; at += PF_WIRE_LANES) {
+    const Real reading = PF_LOAD_WIRES(readings + at);
+    const Real loss = first * reading * (PF_REAL(1.0) + second * reading);
+    PF_STORE_WIRES(PF_LOAD_WIRES(losses + at) + loss, losses + at);
+  }
 }

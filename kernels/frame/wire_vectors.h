@@ -1,10 +1,11 @@
 /* What the wires of each tile do (WireCrosstalk), found by find_wires.cl: a and the idle factor for
- * each row of sensels and tile across, the load for each column and tile down. */
+ * each row of sensels and tile across, the gain for each column and tile down. */
 #ifdef PF_WIRES
 
 typedef struct {
   global float* row;    /* [tiles across, sensel rows] */
   global float* idle;   /* [tiles across, sensel rows] */
+  global float* bound;  /* [tiles across, sensel rows]: idle_tiles.h */
   global float* column; /* [tiles down, sensel columns] */
   uint rows;            /* of sensels, an even number */
   uint cols;
@@ -14,9 +15,22 @@ PF_INLINE uint tiles_across(uint cols) { return (cols + PF_TILE_COLS - 1) / PF_T
 
 PF_INLINE WireVectors wire_vectors(global float* memory, uint rows, uint cols) {
   const size_t per_row = (size_t)rows * tiles_across(cols);
-  const WireVectors wires = {memory, memory + per_row, memory + 2 * per_row, rows, cols};
+  const WireVectors wires = {memory,
+                             memory + per_row,
+                             memory + 2 * per_row,
+                             memory + 3 * per_row,
+                             rows,
+                             cols};
   return wires;
 }
+
+/* The sensels of a tile: the first one, and how many there are. */
+typedef struct {
+  uint row;
+  uint col;
+  uint rows;
+  uint cols;
+} Tile;
 
 typedef struct {
   Wires left;

@@ -1,6 +1,6 @@
-/* Lengths and angles. Single precision uses only + - * / and sqrt: every device that rounds them
- * correctly gives the same bits, and a vector of lanes needs no call. Double precision uses the C++
- * library. Largest errors, measured against 113 bits: docs/derivations/elementary.md. */
+/* Lengths, angles and powers. Single precision uses only + - * / and sqrt: every device that rounds
+ * them correctly gives the same bits, and a vector of lanes needs no call. Double precision uses
+ * the C++ library. Largest errors, measured against 113 bits: docs/derivations/elementary.md. */
 
 static inline Real larger_of(Real a, Real b) { return a < b ? b : a; }
 
@@ -96,6 +96,44 @@ static inline Real upper_angle_of(Real y, Real x) {
 /* Polar angle of (x, y): [-pi, pi], with the sign of y as atan2; zero at the origin; 3 ULP. */
 static inline Real angle_of(Real y, Real x) { return copysign(upper_angle_of(fabs(y), x), y); }
 
+/* base^exponent for a normal base above zero and |exponent| up to 10; 3 + |exponent| ULP. Below
+ * 2^-126 and from 2^128 on it stays near these. */
+PF_INLINE Real power_of(Real base, Real exponent) {
+  const Real one = PF_REAL(1.0);
+  const Word word = word_of(base) + PF_WORD(0x004afb0d); /* 1 - sqrt(1/2), in last places */
+  const Real whole = real_of_word((word >> PF_WORD(23)) | PF_WORD(0x4b000000)) -
+                     PF_REAL(8388735.0); /* 2^23 + 127 */
+  const Real above =
+      real_of_word((word & PF_WORD(0x007fffff)) + PF_WORD(0x3f3504f3)) - one; /* sqrt(1/2) */
+  const Real logarithm =
+      above *
+      (PF_REAL(1.4426947832107544) +
+       above *
+           (PF_REAL(-0.7213566303253174) +
+            above *
+                (PF_REAL(0.48093846440315247) +
+                 above * (PF_REAL(-0.3601038157939911) +
+                          above * (PF_REAL(0.28672733902931213) +
+                                   above * (PF_REAL(-0.2499236911535263) +
+                                            above * (PF_REAL(0.23674611747264862) +
+                                                     above * PF_REAL(-0.14599063992500305))))))));
+  const Real coarse = real_of_word(word_of(exponent) & PF_WORD(0xffff0000));
+  const Real fine = (exponent - coarse) * whole + exponent * logarithm;
+  const Real product = coarse * whole; /* exact */
+  const Real least = PF_REAL(-126.0);
+  const Real most = PF_REAL(128.0);
+  const Real rounded = floor(product + fine + PF_REAL(0.5));
+  const Real steps = rounded < least ? least : (rounded < most ? rounded : most);
+  const Real part = (product - rounded) + fine;
+  const Real scale = real_of_word((word_of(steps + PF_REAL(12582912.0)) << PF_WORD(23)) +
+                                  PF_WORD(0x3f800000)); /* 1.5 x 2^23: the last bits are whole */
+  return scale * (one + part * (PF_REAL(0.6931470036506653) +
+                                part * (PF_REAL(0.24022242426872253) +
+                                        part * (PF_REAL(0.05550733581185341) +
+                                                part * (PF_REAL(0.009671512991189957) +
+                                                        part * PF_REAL(0.001326472731307149))))));
+}
+
 #else
 
 static inline Real length_2(Real x, Real y) { return hypot(x, y); }
@@ -103,5 +141,6 @@ static inline Real length_3(Real x, Real y, Real z) { return hypot(hypot(x, y), 
 static inline Real acute_angle_of(Real y, Real x) { return atan2(y, x); }
 static inline Real upper_angle_of(Real y, Real x) { return atan2(y, x); }
 static inline Real angle_of(Real y, Real x) { return atan2(y, x); }
+static inline Real power_of(Real base, Real exponent) { return pow(base, exponent); }
 
 #endif

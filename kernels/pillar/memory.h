@@ -42,10 +42,15 @@ PF_INLINE Real play_after(Real before, Real reading, Real width) {
   return raised > PF_REAL(0.0) ? raised : PF_REAL(0.0);
 }
 
-/* States after `idle` frames without load. */
-PF_INLINE Memory rested(Memory before, MemoryModel model, Real idle) {
+/* Only a sensel whose V before this stage is above the threshold has a load. */
+PF_INLINE Mask is_touched(Sensel sensel, Real threshold) {
+  return (sensel.reading > threshold) && !sensel.missing;
+}
+
+/* States of a touched sensel after `idle` frames without load; of others they do not count. */
+PF_INLINE Memory rested(Memory before, MemoryModel model, Real idle, Mask touched) {
   const Real zero = PF_REAL(0.0);
-  const Mask rests = idle > zero;
+  const Mask rests = (idle > zero) && touched;
   if (!any_lane(rests)) return before;
   for (int i = 0; i < model.plays; ++i) before.play[i] = rests ? zero : before.play[i];
   for (int i = 0; i < model.creeps; ++i) {
@@ -67,7 +72,8 @@ typedef struct {
 PF_INLINE Recalled recall(Sensel sensel, Memory stored, MemoryModel model, Real threshold,
                           Real idle) {
   const Real zero = PF_REAL(0.0);
-  const Memory before = rested(stored, model, idle);
+  const Mask touched = is_touched(sensel, threshold);
+  const Memory before = rested(stored, model, idle, touched);
   Recalled result;
   result.memory = before;
   Real held = zero;
@@ -86,8 +92,8 @@ PF_INLINE Recalled recall(Sensel sensel, Memory stored, MemoryModel model, Real 
     result.memory.creep[i] =
         before.creep[i] + PF_CONSTANT(Real, model.creep_rate[i]) * (load - before.creep[i]);
   }
-  result.active = (load > threshold) && !sensel.missing;
+  result.active = (load > threshold) && touched;
   result.sensel = sensel;
-  result.sensel.reading = load;
+  result.sensel.reading = touched ? load : sensel.reading;
   return result;
 }

@@ -56,8 +56,8 @@ static inline Sensel apply_gain(Sensel sensel, Real gain) {
 
 /* Linearises a reading r above zero by the power law V = reference (r / reference)^exponent,
  * `largest` at most. */
-static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real reference, Real largest) {
-  const Real straight = reference * pow(fabs(sensel.reading) / reference, exponent);
+PF_INLINE Sensel apply_power_law(Sensel sensel, Real exponent, Real reference, Real largest) {
+  const Real straight = reference * power_of(fabs(sensel.reading) / reference, exponent);
   const Real bounded = straight < largest ? straight : largest;
   sensel.reading = sensel.reading > PF_REAL(0.0) ? bounded : sensel.reading;
   return sensel;
@@ -65,9 +65,9 @@ static inline Sensel apply_power_law(Sensel sensel, Real exponent, Real referenc
 
 /* dV / dr of the power law, the factor on small noise; at most 1e6, so that its square is finite.
  */
-static inline Real power_law_slope(Real reading, Real exponent, Real reference) {
+PF_INLINE Real power_law_slope(Real reading, Real exponent, Real reference) {
   const Real most = PF_REAL(1e6);
-  const Real slope = exponent * pow(fabs(reading) / reference, exponent - PF_REAL(1.0));
+  const Real slope = exponent * power_of(fabs(reading) / reference, exponent - PF_REAL(1.0));
   return slope < most ? slope : most;
 }
 

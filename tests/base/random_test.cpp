@@ -63,6 +63,22 @@ TEST(Random, NormalVariatesFollowTheNormalDistribution) {
   EXPECT_LT(largest, 1.95 / std::sqrt(count));
 }
 
+/// The method of Box and Muller in double precision, from the words of philox() one by one.
+TEST(Random, NormalVariatesAreThoseOfTheirWords) {
+  constexpr std::uint64_t kFrame = (7ULL << 32) + 5;
+  const std::vector<float> values = normal_row({11ULL << 32, Stream::noise, kFrame, 3}, 40003);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Block words = philox({(3U << 16) | static_cast<std::uint32_t>(i / 4),
+                                static_cast<std::uint32_t>(Stream::noise), 5, 7},
+                               {0, 11});
+    const std::size_t pair = i % 4 / 2 * 2;
+    const double radius = std::sqrt(-2 * std::log(((words[pair] >> 8) + 1) * 0x1p-24));
+    const double angle = 2 * std::numbers::pi * (words[pair + 1] >> 8) * 0x1p-24;
+    const double expected = radius * (i % 2 == 0 ? std::cos(angle) : std::sin(angle));
+    ASSERT_NEAR(double{values[i]}, expected, 4e-7 * std::max(1.0, radius)) << i;
+  }
+}
+
 double correlation(const std::vector<float>& a, const std::vector<float>& b) {
   double sum = 0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) sum += double{a[i]} * double{b[i]};

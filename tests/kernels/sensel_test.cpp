@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "pillars.h"
@@ -148,6 +149,24 @@ TYPED_TEST(SenselStages, APowerLawKeepsItsReferenceAndReadingsUpToZero) {
   }
   EXPECT_TRUE(std::isnan(straight(Limits::quiet_NaN(), Real{1.75})));
   EXPECT_EQ(straight(static_cast<Real>(2e35), 5), static_cast<Real>(1e33));
+}
+
+TEST(PowerLaw, PowersHaveTheStatedError) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> logarithm(-30, 30);
+  std::uniform_real_distribution<float> exponents(-4, 4);
+  for (int i = 0; i < 100'000; ++i) {
+    const auto base = static_cast<float>(std::exp2(logarithm(random)));
+    const float exponent = exponents(random);
+    const double expected = std::pow(double{base}, double{exponent});
+    if (!(expected > 1e-37 && expected < 1e38)) continue;
+    EXPECT_NEAR(single_precision::power_of(base, exponent), expected,
+                (3 + std::abs(exponent)) * 0x1p-23 * expected)
+        << base << " ^ " << exponent;
+  }
+  EXPECT_EQ(single_precision::power_of(1, 3.7F), 1);
+  EXPECT_GE(single_precision::power_of(1e38F, 9), 0x1p126F) << "stays near the largest number";
+  EXPECT_LE(single_precision::power_of(1e-37F, 9), 0x1p-125F);
 }
 
 TEST(PowerLaw, ItsSlopeIsItsDerivative) {

@@ -12,6 +12,12 @@ namespace {
 
 using std::numbers::pi;
 
+double value_of(CornerFunction corner, double x, double y) {
+  double value = 0;
+  corner({&x, 1}, {&y, 1}, {&value, 1});
+  return value;
+}
+
 /// The midpoint rule in theta, x = limit·sin(theta), which takes the root singularity at the end of
 /// a chord; its nodes crowd at x = 0, where the integrand may bend sharply.
 template <class Function>
@@ -49,9 +55,9 @@ const std::vector<double> kPlaces = {0,   1e-14, 1e-9, 1e-5,  1e-3, 0.009,
 TEST(CornerFunction, SpinIsTheIntegralAlongAnEdgeAtAnyDistanceFromTheCentre) {
   for (const double x : kPlaces) {
     for (const double y : kPlaces) {
-      EXPECT_NEAR(sphere_spin_corner(x, y), spin_by_quadrature(x, y, sphere_reach), 2e-9)
+      EXPECT_NEAR(value_of(sphere_spin_corner, x, y), spin_by_quadrature(x, y, sphere_reach), 2e-9)
           << x << " " << y;
-      EXPECT_NEAR(punch_spin_corner(x, y), spin_by_quadrature(x, y, punch_reach), 2e-9)
+      EXPECT_NEAR(value_of(punch_spin_corner, x, y), spin_by_quadrature(x, y, punch_reach), 2e-9)
           << x << " " << y;
     }
   }
@@ -61,8 +67,8 @@ TEST(CornerFunction, SpinIsOddAlongTheEdgeAndEvenAcross) {
   for (const CornerFunction corner : {sphere_spin_corner, punch_spin_corner}) {
     for (const double x : kPlaces) {
       for (const double y : kPlaces) {
-        EXPECT_DOUBLE_EQ(corner(-x, y), -corner(x, y));
-        EXPECT_DOUBLE_EQ(corner(x, -y), corner(x, y));
+        EXPECT_DOUBLE_EQ(value_of(corner, -x, y), -value_of(corner, x, y));
+        EXPECT_DOUBLE_EQ(value_of(corner, x, -y), value_of(corner, x, y));
       }
     }
   }
@@ -88,8 +94,10 @@ double punch_by_quadrature(double x, double y) {
 TEST(CornerFunction, PressureIsTheIntegralFromTheAxes) {
   for (const double x : kPlaces) {
     for (const double y : kPlaces) {
-      EXPECT_NEAR(sphere_pressure_corner(x, y), sphere_by_quadrature(x, y), 1e-7) << x << " " << y;
-      EXPECT_NEAR(punch_pressure_corner(x, y), punch_by_quadrature(x, y), 1e-6) << x << " " << y;
+      EXPECT_NEAR(value_of(sphere_pressure_corner, x, y), sphere_by_quadrature(x, y), 1e-7)
+          << x << " " << y;
+      EXPECT_NEAR(value_of(punch_pressure_corner, x, y), punch_by_quadrature(x, y), 1e-6)
+          << x << " " << y;
     }
   }
 }
@@ -97,9 +105,28 @@ TEST(CornerFunction, PressureIsTheIntegralFromTheAxes) {
 TEST(CornerFunction, EachQuadrantBearsAQuarterOfTheLoad) {
   for (const CornerFunction corner : {sphere_pressure_corner, punch_pressure_corner}) {
     for (const double far : {1.0, 1.5, 1e100}) {
-      EXPECT_DOUBLE_EQ(corner(far, far), 0.25);
-      EXPECT_DOUBLE_EQ(corner(-far, far), -0.25);
-      EXPECT_DOUBLE_EQ(corner(-far, -far), 0.25);
+      EXPECT_DOUBLE_EQ(value_of(corner, far, far), 0.25);
+      EXPECT_DOUBLE_EQ(value_of(corner, -far, far), -0.25);
+      EXPECT_DOUBLE_EQ(value_of(corner, -far, -far), 0.25);
+    }
+  }
+}
+
+TEST(CornerFunction, NeighboursDoNotMatter) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const double first : kPlaces) {
+    for (const double second : kPlaces) {
+      x.push_back(-first);
+      y.push_back(second);
+    }
+  }
+  for (const CornerFunction corner :
+       {sphere_pressure_corner, punch_pressure_corner, sphere_spin_corner, punch_spin_corner}) {
+    std::vector<double> together(x.size());
+    corner(x, y, together);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      EXPECT_NEAR(together[i], value_of(corner, x[i], y[i]), 3e-16) << x[i] << " " << y[i];
     }
   }
 }

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "pillarfield/error.h"
@@ -106,6 +108,71 @@ TEST(Simulator, SeveralThreadsMakeTheSameFrames) {
   render_part(0);
   other.join();
   for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(frames[i], render(simulator, i)) << i;
+}
+
+/// Readings and truth of frames rendered together.
+std::vector<Rendered> render_all(const Simulator& simulator, std::uint64_t first,
+                                 std::uint64_t count, unsigned threads) {
+  std::vector<Rendered> frames;
+  const auto take = [&](std::uint64_t index, const FrameView& raw, const ForceField& truth) {
+    EXPECT_EQ(index, first + frames.size());
+    frames.emplace_back(simulator);
+    std::memcpy(frames.back().raw.bytes().data(), raw.data, frames.back().raw.bytes().size());
+    frames.back().truth = truth;
+  };
+  simulator.render_all(first, count, take, threads);
+  EXPECT_EQ(frames.size(), count);
+  return frames;
+}
+
+/// A frame depends on its index alone: neither on threads nor on where a run starts.
+void expect_same_frames(const Scene& scene, std::uint64_t frames) {
+  const Simulator alone(scene);
+  std::vector<Rendered> expected;
+  for (std::uint64_t i = 0; i < frames; ++i) expected.push_back(render(alone, i));
+  for (const unsigned threads : {0U, 1U, 2U, 7U}) {
+    const Simulator simulator(scene);
+    for (const auto& [first, count] :
+         {std::pair{std::uint64_t{0}, frames}, {3, frames - 4}, {0, 3}, {frames - 1, 1}, {1, 0}}) {
+      const std::vector<Rendered> made = render_all(simulator, first, count, threads);
+      for (std::size_t i = 0; i < made.size(); ++i) {
+        EXPECT_EQ(made[i], expected[first + i]) << threads << " threads, frame " << first + i;
+      }
+    }
+  }
+}
+
+TEST(Simulator, ThreadsAndSplitsMakeTheSameFrames) { expect_same_frames(noisy_scene(4), 23); }
+
+TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfASensorWithAMemory) {
+  Scene scene = noisy_scene(4);
+  scene.sensor.hysteresis = 0.1;
+  scene.sensor.creep_per_decade = 0.05;
+  scene.sensor.leak_inside = 0.03;
+  expect_same_frames(scene, 11);
+}
+
+TEST(Simulator, ThreadsAndSplitsMakeTheSameFramesOfABody) {
+  Scene scene = noisy_scene(4);
+  scene.load = std::vector<Contact>();
+  Body ball;
+  ball.path = {{0, -1, 0, 0, 2}, {0.05, 1, 0, 10, 3}};
+  scene.bodies = {ball, ball};
+  scene.bodies.back().path = {{0, 5, 5, 0, 2}, {0.05, 4, 5, 0, 1}};
+  expect_same_frames(scene, 6);
+}
+
+TEST(Simulator, WhatTakingAFrameThrowsEndsTheRendering) {
+  const Simulator simulator(noisy_scene(4));
+  std::uint64_t taken = 0;
+  const auto take = [&](std::uint64_t, const FrameView&, const ForceField&) {
+    if (++taken == 5) throw Error("sink", "is full", "empty it");
+  };
+  for (const unsigned threads : {1U, 2U, 7U}) {
+    taken = 0;
+    EXPECT_THROW(simulator.render_all(0, 1'000'000'000, take, threads), Error);
+    EXPECT_EQ(taken, 5);
+  }
 }
 
 TEST(Simulator, FramesFollowTheClockAndThePath) {

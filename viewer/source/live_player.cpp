@@ -61,13 +61,18 @@ LiveSinkInfo recording_info(const SourceInfo& source, const SolverPlan& plan,
   return info;
 }
 
-/// A field on display and its readings, copied.
+/// The readings of a field on display, and its forces where pillars without readings were taken
+/// out.
 struct LiveField {
-  LiveField(const SolverPlan& plan)
-      : planes(plan.skin.pillar_rows(), plan.skin.pillar_cols(), plan.uncertainty),
-        readings(plan.sensel_type, plan.skin.rows, plan.skin.cols) {}
-  PlaneBlock planes;
+  LiveField(const SolverPlan& plan) : readings(plan.sensel_type, plan.skin.rows, plan.skin.cols) {}
   FrameBuffer readings;
+  std::optional<PlaneBlock> planes;
+};
+
+/// Keeps the memory of a field alive.
+struct LiveFieldOwner {
+  std::shared_ptr<LiveField> field;
+  std::optional<Processor::PinnedResult> result;  ///< released first: then `field` implies a slot
 };
 
 void copy_readings(const FrameView& from, FrameBuffer& to) {
@@ -100,7 +105,6 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   void take_tare(const StreamedFrame& frame);
   void follow_clock(const SolvedFrame& frame);
   [[nodiscard]] ShownField field_of(const SolvedFrame& frame, std::uint64_t index) const;
-  [[nodiscard]] bool waits_for_display(LiveTime now) const;
   void publish(const SolvedFrame& frame);
   void wake_display();
 
@@ -117,8 +121,6 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   LiveTare live_tare;
   PeakHold peak;
   ObjectPool<LiveField> fields;
-  LiveTime copy_time{0};
-  std::optional<SolvedFrame> skipped;  ///< the frame solved last, if it was not published
   bool tracks = false;
   double last_time_s = -1;               ///< of the frame solved last, since `start`
   std::optional<double> clock_offset_s;  ///< that time less the sensor's
@@ -139,7 +141,6 @@ struct LivePlayer::State final : FrameStream, ForceSink {
   StreamHealth health;
   std::vector<float> tare;
   std::unique_ptr<ShownField> waiting;
-  LiveTime waiting_since{0};
   std::uint64_t taken = 0;
   RecentTimes times;
   std::string message;
@@ -199,8 +200,6 @@ void LivePlayer::State::run_pipeline() {
 }
 
 Arrival LivePlayer::State::next(StreamedFrame& frame, std::chrono::nanoseconds timeout) {
-  // Without frames in flight: the memory of the last one is not used again yet.
-  if (timeout.count() > 0 && skipped) publish(*std::exchange(skipped, std::nullopt));
   const Arrival arrival = stream->next(frame, timeout);
   {
     const std::scoped_lock lock(mutex);
@@ -265,7 +264,6 @@ void LivePlayer::State::follow_clock(const SolvedFrame& frame) {
 }
 
 void LivePlayer::State::append(const SolvedFrame& frame) {
-  const LiveTime begin = live_now();
   follow_clock(frame);
   {
     const std::scoped_lock lock(recording_mutex);
@@ -277,31 +275,29 @@ void LivePlayer::State::append(const SolvedFrame& frame) {
     peak.add(frame.forces);
   }
   ++solved;
-  skipped.reset();
-  if (!paused && waits_for_display(begin)) skipped = frame;
-  if (!paused && !skipped) publish(frame);
+  if (!paused) publish(frame);
   const std::scoped_lock lock(mutex);
   times.add(frame.arrived, live_now());
 }
 
-/// True if a field waits that is younger than the time of two copies.
-bool LivePlayer::State::waits_for_display(LiveTime now) const {
-  const std::scoped_lock lock(mutex);
-  return waiting != nullptr && now < waiting_since + 2 * copy_time;
-}
-
-/// Copies the frame solved last for the display.
+/// Hands the frame solved last to the display: its forces in place, its readings copied.
 void LivePlayer::State::publish(const SolvedFrame& frame) {
-  const LiveTime begin = live_now();
-  const std::shared_ptr<LiveField> copy = fields.acquire();
-  if (copy == nullptr) return;
-  copy->planes.copy(frame.forces);
-  copy_readings(frame.readings, copy->readings);
+  const auto owner = std::make_shared<LiveFieldOwner>(fields.acquire());
+  if (owner->field == nullptr) return;
+  copy_readings(frame.readings, owner->field->readings);
   auto field = std::make_unique<ShownField>(field_of(frame, solved - 1));
-  field->forces = copy->planes.view();
-  field->raw = copy->readings.view();
-  field->pages = copy->planes.pages();
-  field->keep_alive = copy;
+  field->raw = owner->field->readings.view();
+  if (frame.missing.empty()) {
+    owner->result = processor.pin();
+    field->pages = owner->result->pages();
+  } else {
+    std::optional<PlaneBlock>& planes = owner->field->planes;
+    if (!planes) planes.emplace(frame.forces.rows, frame.forces.cols, plan.uncertainty);
+    planes->copy(frame.forces);
+    field->forces = planes->view();
+    field->pages = planes->pages();
+  }
+  field->keep_alive = owner;
   if (tracks) {
     field->contacts = std::make_shared<const ShownContacts>(
         with_extents(*frame.contacts, tracker.labels(), info.contacts.noise_n));
@@ -310,8 +306,6 @@ void LivePlayer::State::publish(const SolvedFrame& frame) {
   {
     const std::scoped_lock lock(mutex);
     std::swap(waiting, field);
-    waiting_since = live_now();
-    copy_time = waiting_since - begin;
   }
   field.reset();
   wake_display();
@@ -460,7 +454,7 @@ OpenedSensor open_sensor(const std::string& source, const LiveOptions& options) 
   const SolverPlan plan = live_plan(*stream, options);
   Processor processor(open_device(options.producer.device), plan,
                       {.memory = options.producer.memory,
-                       .frames_in_flight = 2,
+                       .frames_in_flight = LivePlayer::kFramesInFlight,
                        .on_compiling = options.producer.on_compiling});
   OpenedSensor opened;
   opened.curves = std::make_shared<Curves>(plan.skin.pillar_pitch_mm(), kMostLivePoints);

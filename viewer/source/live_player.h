@@ -50,6 +50,10 @@ struct LiveOptions {
 /// field is the sensor's, counted from the start of the player.
 class LivePlayer final : public Player, public LiveControl {
  public:
+  /// Frames in flight of the processor: two, and the fields that the display holds in place.
+  static constexpr int kFramesInFlight = FieldProducer::kMostShown + 2;
+
+  /// `processor` is made for `plan`, with kFramesInFlight slots.
   LivePlayer(std::unique_ptr<FrameStream> stream, const std::string& name, const SolverPlan& plan,
              Processor processor, std::shared_ptr<Curves> curves);
   ~LivePlayer() override;

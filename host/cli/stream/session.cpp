@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <future>
 #include <sstream>
 #include <utility>
 
@@ -99,13 +100,28 @@ class StreamSession::Sinks final : public ForceSink {
 
   void finish() override {
     for (const auto& sink : sinks_) sink->finish();
+    for (const Finishing& finishing : finishing_) finishing.done.wait();
   }
 
-  /// Completes and removes a sink.
-  void finish(const std::string& name) {
-    std::erase_if(sinks_, [&](const auto& sink) {
-      if (sink->name() != name) return false;
-      sink->finish();
+  /// Removes the sink `name` and completes it in a thread, which waits for the disk; then
+  /// take_finished() reports it to `client`.
+  void finish_later(const std::string& name, std::uint64_t client) {
+    const auto sink = std::ranges::find(sinks_, name, &LiveSink::name);
+    if (sink == sinks_.end()) return;
+    Finishing& last = finishing_.emplace_back(client, std::move(*sink));
+    sinks_.erase(sink);
+    last.done = std::async(std::launch::async, [to = last.sink.get()] { to->finish(); });
+  }
+
+  /// Calls `done` with client and sink for each sink that is complete since the last call.
+  template <class Done>
+  void take_finished(Done done) {
+    std::erase_if(finishing_, [&](Finishing& finishing) {
+      if (finishing.done.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+        return false;
+      finishing.done.get();
+      note_failure(*finishing.sink);
+      done(finishing.client, *finishing.sink);
       return true;
     });
   }
@@ -113,10 +129,7 @@ class StreamSession::Sinks final : public ForceSink {
   void report(const HealthReport& health) {
     for (const auto& sink : sinks_) {
       sink->report(health);
-      const std::string failure = sink->statistics().failure;
-      if (failure.empty() || std::ranges::count(failed_, sink->name()) > 0) continue;
-      failed_.push_back(sink->name());
-      fmt::print(stderr, "pillarfield: {}: {}\n", printable(sink->name()), printable(failure));
+      note_failure(*sink);
     }
   }
 
@@ -124,8 +137,22 @@ class StreamSession::Sinks final : public ForceSink {
   [[nodiscard]] const std::vector<std::unique_ptr<LiveSink>>& all() const { return sinks_; }
 
  private:
+  struct Finishing {
+    std::uint64_t client;
+    std::unique_ptr<LiveSink> sink;
+    std::future<void> done = {};
+  };
+
+  void note_failure(const LiveSink& sink) {
+    const std::string failure = sink.statistics().failure;
+    if (failure.empty() || std::ranges::count(failed_, sink.name()) > 0) return;
+    failed_.push_back(sink.name());
+    fmt::print(stderr, "pillarfield: {}: {}\n", printable(sink.name()), printable(failure));
+  }
+
   StreamSession& session_;
   std::vector<std::unique_ptr<LiveSink>> sinks_;
+  std::vector<Finishing> finishing_;
   std::vector<std::string> failed_;
 };
 
@@ -163,6 +190,7 @@ void StreamSession::run() {
   report_health();
   if (line_drawn_) fmt::print(stderr, "\n");
   sinks_->finish();
+  answer_finished();
   sinks_->report(last_health_);
   if (sinks_->has_failed()) {
     throw Error(options_.source, "an output failed; see above", "mend it and start again");
@@ -171,6 +199,7 @@ void StreamSession::run() {
 
 bool StreamSession::should_stop() {
   control_.poll([this](std::uint64_t client, std::string_view line) { return obey(client, line); });
+  answer_finished();
   const auto now = Clock::now();
   if (now >= next_report_) report_health();
   return quit_ || is_interrupted() || (options_.frames && solved_ >= *options_.frames) ||
@@ -192,6 +221,14 @@ void StreamSession::take_tare(const FrameView& frame, std::chrono::nanoseconds a
     if (tare_client_ == 0) fmt::print(stderr, "pillarfield: {}\n", printable(error.what()));
   }
   control_.answer(std::exchange(tare_client_, 0), said);
+}
+
+/// Answers the clients whose recordings are complete.
+void StreamSession::answer_finished() {
+  sinks_->take_finished([this](std::uint64_t client, const LiveSink& sink) {
+    const std::string failure = sink.statistics().failure;
+    control_.answer(client, failure.empty() ? done_line("record stop") : failed_line(failure));
+  });
 }
 
 HealthReport StreamSession::health() const {
@@ -280,7 +317,7 @@ std::string StreamSession::obey(std::uint64_t client, std::string_view line) {
   if (words.empty()) return "";
   const std::string& verb = words.front();
   if (verb == "tare") return start_tare(client, words);
-  if (verb == "record") return record(words);
+  if (verb == "record") return record(client, words);
   if (words.size() == 1) {
     if (verb == "pause" || verb == "resume") {
       paused_ = verb == "pause";
@@ -320,13 +357,13 @@ std::string StreamSession::start_tare(std::uint64_t client, const std::vector<st
   return "";  // take_tare() answers.
 }
 
-std::string StreamSession::record(const std::vector<std::string>& words) {
+std::string StreamSession::record(std::uint64_t client, const std::vector<std::string>& words) {
   if (words.size() != 2) return failed_line("record: give a file, or stop");
   try {
     if (words[1] == "stop") {
       if (recording_.empty()) return failed_line("record: nothing is being recorded");
-      sinks_->finish(std::exchange(recording_, ""));
-      return done_line("record stop");
+      sinks_->finish_later(std::exchange(recording_, ""), client);
+      return "";  // answer_finished() answers.
     }
     if (!recording_.empty()) {
       return failed_line(fmt::format("record: {} is being recorded; give 'record stop' first",

@@ -49,6 +49,7 @@ class StreamSession {
 
   bool should_stop();
   void take_tare(const FrameView& frame, std::chrono::nanoseconds arrived);
+  void answer_finished();
   void report_health();
   [[nodiscard]] HealthReport health() const;
   [[nodiscard]] nlohmann::ordered_json health_json(const HealthReport& health) const;
@@ -56,7 +57,7 @@ class StreamSession {
 
   std::string obey(std::uint64_t client, std::string_view line);
   std::string start_tare(std::uint64_t client, const std::vector<std::string>& words);
-  std::string record(const std::vector<std::string>& words);
+  std::string record(std::uint64_t client, const std::vector<std::string>& words);
 
   const StreamOptions& options_;
   SolverPlan plan_;

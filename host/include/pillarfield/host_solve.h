@@ -17,9 +17,9 @@ class CurvatureFollower;
 ///     ForceField forces = solve_on_host(plan, frame.view());
 ///
 /// It computes what Processor computes, from the same source in single precision. Results agree bit
-/// for bit, except for the power law and the estimator `paper`, which call library functions. It is
-/// the reference for tests of devices, and the simplest choice for small skins and single frames:
-/// it compiles no kernel but solves one pillar at a time.
+/// for bit, except for the estimator `paper`, which calls library functions. It is the reference
+/// for tests of devices, and the simplest choice for small skins and single frames: it compiles no
+/// kernel but solves one pillar at a time.
 ///
 /// `frame` has the plan's size and type, with any row stride; the result is [pillar rows, pillar
 /// cols] and owns its memory. The function has no state: the estimator `contact` treats each frame

@@ -81,8 +81,8 @@ struct ProcessorTuning;  // tuning.h
 /// receive() waits for the oldest frame in flight and returns a view of the slot's memory. Call
 /// pin() to hold a result beyond the ring's lifetime, as a display does that draws it in place.
 ///
-/// Results agree bit for bit with solve_on_host(), except for the power law and the estimator
-/// `paper`, which call library functions.
+/// Results agree bit for bit with solve_on_host(), except for the estimator `paper`, which calls
+/// library functions.
 ///
 /// Threads: one at a time. A PinnedResult may be destroyed in any thread.
 class Processor {
@@ -90,6 +90,9 @@ class Processor {
   struct Options {
     Memory memory = Memory::automatic;
     int frames_in_flight = 2;  ///< slots, 1 to 64
+    /// Frames come as changes of their predecessors: submit() with `changed`, at the cost of what
+    /// changed. Each slot solves a change once, so one frame in flight costs least.
+    bool changes = false;
     /// Called at most once, from another thread, if the constructor takes longer than 0.3 s because
     /// kernels are compiled, with a line of text for the user. It must not throw.
     std::function<void(const std::string& line)> on_compiling = {};
@@ -131,6 +134,13 @@ class Processor {
   /// the caller must not change the frame until it is received; with staged memory it may change at
   /// once. Throws Error if all slots are in flight or pinned, or the frame does not fit the plan.
   void submit(const FrameView& frame);
+
+  /// Starts to solve a frame that differs from the one submitted before, if any, only in the
+  /// sensels of `changed`; needs Options::changes. Pillars that depend on none of these keep their
+  /// forces: the same bits as submit(frame). Plans with a baseline rate, bending, memory of
+  /// sensels, crosstalk of wires or the estimator `contact` solve the whole frame. Throws Error in
+  /// the cases of submit(frame), and if a block reaches beyond the skin.
+  void submit(const FrameView& frame, std::span<const SenselBlock> changed);
 
   /// Waits for the oldest frame in flight and returns its forces. The view stays valid until
   /// submit() reuses its slot, that is for as many further frames as there are slots that are not

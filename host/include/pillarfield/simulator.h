@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "pillarfield/calibration.h"
@@ -41,6 +42,17 @@ class Simulator {
   /// The status of `truth` has the bits of the sensels that its pillar loads. Throws Error if
   /// the contact of a body cannot be solved, or is_interrupted() becomes true meanwhile.
   void render(std::uint64_t index, FrameBuffer& raw, ForceField& truth) const;
+
+  /// What render_all() calls with the index, readings and truth of a frame.
+  using TakeFrame =
+      std::function<void(std::uint64_t index, const FrameView& raw, const ForceField& truth)>;
+
+  /// Renders `count` frames from `first` on in `threads` threads, the calling one included (0: one
+  /// per processor), and calls `take` for each in order, in the calling thread. The frames are
+  /// those of render(), whatever the threads. Holds `threads` + 2 frames. Throws what render() and
+  /// `take` throw, after the frames before it are taken.
+  void render_all(std::uint64_t first, std::uint64_t count, const TakeFrame& take,
+                  unsigned threads = 0) const;
 
  private:
   struct State;

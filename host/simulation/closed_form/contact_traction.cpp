@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "simulation/closed_form/pillar_shares.h"
@@ -17,19 +18,22 @@ PlaneVector unit_vector(double angle_deg) {
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// The corner functions of one shape's spin, counter-clockwise (C12).
+/// The corner functions of a spin counter-clockwise (C12): of its x component times −1, and of its
+/// y component.
 struct SpinCorners {
   CornerFunction x;
   CornerFunction y;
 };
 
+/// W(y, x) of a corner function W(x, y).
+template <CornerFunction corner>
+void swapped(std::span<const double> x, std::span<const double> y, std::span<double> values) {
+  corner(y, x, values);
+}
+
 SpinCorners spin_corners(ContactShape shape) {
-  if (shape == ContactShape::sphere) {
-    return {[](double x, double y) { return -sphere_spin_corner(x, y); },
-            [](double x, double y) { return sphere_spin_corner(y, x); }};
-  }
-  return {[](double x, double y) { return -punch_spin_corner(x, y); },
-          [](double x, double y) { return punch_spin_corner(y, x); }};
+  if (shape == ContactShape::sphere) return {sphere_spin_corner, swapped<sphere_spin_corner>};
+  return {punch_spin_corner, swapped<punch_spin_corner>};
 }
 
 /// A contact at an instant, over the pillars of its bounding box.
@@ -165,7 +169,7 @@ void add_contact(const Contact& contact, const ContactKey& state, double pitch_m
   if (contact.motion == ContactMotion::spin) {
     const SpinCorners corners = spin_corners(contact.shape);
     const double turning_n = contact.clockwise ? -friction_n : friction_n;
-    add(footprint.spin(corners.x), turning_n, forces.shear_x);
+    add(footprint.spin(corners.x), -turning_n, forces.shear_x);
     add(footprint.spin(corners.y), turning_n, forces.shear_y);
     return;
   }

@@ -6,6 +6,9 @@
 #include <numbers>
 #include <span>
 
+#include "base/wide.h"
+#include "simulation/closed_form/arc.h"
+
 namespace pillarfield {
 namespace {
 
@@ -38,23 +41,27 @@ Polygon clip(std::span<const LinePoint> points, double sign, double limit) {
 }
 
 /// The load between the axis and u half widths from it, per length: −1/2 to 1/2 (C18).
-double load_to(double u) {
-  u = std::clamp(u, -1.0, 1.0);
-  return (u * std::sqrt(1 - u * u) + std::asin(u)) / pi;
+PF_WIDE_INLINE double load_to(double u) {
+  const double inside = std::clamp(u, -1.0, 1.0);
+  const double height = std::sqrt(1 - inside * inside);
+  return (inside * height + arc(inside, height)) / pi;
 }
 
 /// The integral of load_to from 0 to u (C18).
-double integral_of_load_to(double u) {
+PF_WIDE_INLINE double integral_of_load_to(double u) {
   const double inside = std::min(1.0, std::abs(u));
   const double height = std::sqrt(1 - inside * inside);
   const double integral =
-      inside * std::asin(inside) + height - height * height * height / 3 - 2.0 / 3;
+      inside * arc(inside, height) + height - height * height * height / 3 - 2.0 / 3;
   return integral / pi + (std::abs(u) - inside) / 2;
 }
 
-/// Mean of load_to over [u0, u1]; the midpoint value if the quotient loses digits.
+/// Below it the quotient of (C19) loses digits, and the value in the middle serves.
+constexpr double kShortEdge = 1e-6;
+
+/// Mean of load_to over [u0, u1].
 double mean_load_to(double u0, double u1) {
-  if (std::abs(u1 - u0) < 1e-6) return load_to((u0 + u1) / 2);
+  if (std::abs(u1 - u0) < kShortEdge) return load_to((u0 + u1) / 2);
   return (integral_of_load_to(u1) - integral_of_load_to(u0)) / (u1 - u0);
 }
 
@@ -79,6 +86,23 @@ double line_share(const std::array<LinePoint, 4>& cell, double half_width, doubl
              (to.along - from.along) / length;
   }
   return std::max(0.0, share);
+}
+
+PF_WIDE void integrals_of_load(std::span<const double> u, std::span<double> values) {
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = integral_of_load_to(u[i]);
+}
+
+PF_WIDE void means_of_load(std::span<const double> from, std::span<const double> from_integral,
+                           std::span<const double> to, std::span<const double> to_integral,
+                           std::span<double> values) {
+  if (values.empty()) return;
+  if (std::abs(to[0] - from[0]) < kShortEdge) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = load_to((from[i] + to[i]) / 2);
+    return;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = (to_integral[i] - from_integral[i]) / (to[i] - from[i]);
+  }
 }
 
 }  // namespace pillarfield

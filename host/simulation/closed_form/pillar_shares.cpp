@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
+#include <utility>
 
 #include "simulation/closed_form/line_integrals.h"
 
@@ -30,7 +32,7 @@ Edges edges_of(const PillarGrid& grid, const PillarBox& box, const Disc& disc) {
 
 std::vector<double> corners_along(const std::vector<double>& x, double y, CornerFunction corner) {
   std::vector<double> values(x.size());
-  std::transform(x.begin(), x.end(), values.begin(), [=](double at) { return corner(at, y); });
+  corner(x, std::vector<double>(x.size(), y), values);
   return values;
 }
 
@@ -127,6 +129,67 @@ double strip_share(const Strip& strip, const Rectangle& at) {
                     strip.half_width_mm, strip.length_mm);
 }
 
+/// A line of corners on a strip, and the integrals of (C19) at them.
+struct StripLine {
+  StripLine(const PillarGrid& grid, const PillarBox& box, const Strip& strip, std::uint32_t row)
+      : across(box.cols + 1), along(across.size()), integral(across.size()), mean(box.cols) {
+    for (std::uint32_t i = 0; i <= box.cols; ++i) {
+      const LinePoint point =
+          on_strip(strip, grid.left_mm(box.first_col + i), grid.top_mm(box.first_row + row));
+      across[i] = point.across / strip.half_width_mm;
+      along[i] = point.along;
+    }
+    integrals_of_load(across, integral);
+    const auto from = [](const std::vector<double>& values) {
+      return std::span(values).first(values.size() - 1);
+    };
+    const auto to = [](const std::vector<double>& values) { return std::span(values).subspan(1); };
+    means_of_load(from(across), from(integral), to(across), to(integral), mean);
+  }
+
+  std::vector<double> across;  ///< in half widths
+  std::vector<double> along;
+  std::vector<double> integral;
+  std::vector<double> mean;  ///< of the edges between neighbours
+};
+
+/// A row of cells on a strip.
+class StripRow {
+ public:
+  StripRow(const StripLine& above, const StripLine& below, double length_mm)
+      : above_(above), below_(below), length_mm_(length_mm), mean_(above.across.size()) {
+    means_of_load(below.across, below.integral, above.across, above.integral, mean_);
+  }
+
+  enum class Place : std::uint8_t { outside, inside, at_an_end };
+
+  [[nodiscard]] Place place(std::size_t col) const {
+    const auto [inner, outer] = std::minmax(
+        {above_.across[col], above_.across[col + 1], below_.across[col], below_.across[col + 1]});
+    const auto [first, last] = std::minmax(
+        {above_.along[col], above_.along[col + 1], below_.along[col], below_.along[col + 1]});
+    if (inner >= 1 || outer <= -1) return Place::outside;
+    if (first >= length_mm_ / 2 || last <= -length_mm_ / 2) return Place::outside;
+    const bool inside = first >= -length_mm_ / 2 && last <= length_mm_ / 2;
+    return inside ? Place::inside : Place::at_an_end;
+  }
+
+  /// (C19) of a cell inside.
+  [[nodiscard]] double share(std::size_t col) const {
+    const double horizontal = below_.mean[col] * (below_.along[col + 1] - below_.along[col]) -
+                              above_.mean[col] * (above_.along[col + 1] - above_.along[col]);
+    const double vertical = mean_[col + 1] * (above_.along[col + 1] - below_.along[col + 1]) -
+                            mean_[col] * (above_.along[col] - below_.along[col]);
+    return std::max(0.0, (horizontal + vertical) / length_mm_);
+  }
+
+ private:
+  const StripLine& above_;
+  const StripLine& below_;
+  double length_mm_;
+  std::vector<double> mean_;  ///< of the edges from below to above
+};
+
 }  // namespace
 
 Shares disc_shares(const PillarGrid& grid, const PillarBox& box, const Disc& disc,
@@ -155,19 +218,30 @@ ShareMoments disc_moments(const PillarGrid& grid, const PillarBox& box, const Di
     const double x1 = (at.right - disc.centre_mm.x) * scale;
     const double y0 = (at.bottom - disc.centre_mm.y) * scale;
     const double y1 = (at.top - disc.centre_mm.y) * scale;
-    return (corner(x1, y1) - corner(x0, y1)) - (corner(x1, y0) - corner(x0, y0));
+    std::array<double, 4> at_corner{};
+    corner(std::array{x1, x0, x1, x0}, std::array{y1, y1, y0, y0}, at_corner);
+    return (at_corner[0] - at_corner[1]) - (at_corner[2] - at_corner[3]);
   });
 }
 
 Shares strip_shares(const PillarGrid& grid, const PillarBox& box, const Strip& strip) {
   Shares shares;
   shares.reserve(box.pillars());
-  for (std::uint32_t row = box.first_row; row < box.first_row + box.rows; ++row) {
-    const double top = grid.top_mm(row);
-    const double bottom = grid.top_mm(row + 1);
-    for (std::uint32_t col = box.first_col; col < box.first_col + box.cols; ++col) {
-      shares.push_back(strip_share(strip, {grid.left_mm(col), bottom, grid.left_mm(col + 1), top}));
+  StripLine above(grid, box, strip, 0);
+  for (std::uint32_t row = 0; row < box.rows; ++row) {
+    StripLine below(grid, box, strip, row + 1);
+    const StripRow cells(above, below, strip.length_mm);
+    for (std::uint32_t i = 0; i < box.cols; ++i) {
+      const StripRow::Place place = cells.place(i);
+      double share = place == StripRow::Place::inside ? cells.share(i) : 0;
+      if (place == StripRow::Place::at_an_end) {
+        const std::uint32_t col = box.first_col + i;
+        share = strip_share(strip, {grid.left_mm(col), grid.top_mm(box.first_row + row + 1),
+                                    grid.left_mm(col + 1), grid.top_mm(box.first_row + row)});
+      }
+      shares.push_back(share);
     }
+    std::swap(above, below);
   }
   return shares;
 }

@@ -87,8 +87,9 @@ struct LiveFixture {
     auto sensor = std::make_unique<FakeSensor>(wire);
     const SolverPlan plan = live_plan(*sensor, {});
     curves = std::make_shared<Curves>(plan.skin.pillar_pitch_mm());
-    player = std::make_unique<LivePlayer>(std::move(sensor), "fake", plan,
-                                          Processor(open_device(), plan), curves);
+    player = std::make_unique<LivePlayer>(
+        std::move(sensor), "fake", plan,
+        Processor(open_device(), plan, {.frames_in_flight = LivePlayer::kFramesInFlight}), curves);
   }
   template <class Condition>
   static void wait_until(Condition condition) {

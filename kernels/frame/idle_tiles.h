@@ -1,0 +1,199 @@
+/* Skips idle tiles and blocks behind wires, which make readings too small by a gain that differs
+ * from tile to tile. A tile whose readings stay below their activation thresholds under the largest
+ * gain that its readings allow is idle: its gains are not needed, and its blocks are skipped
+ * unread. Elsewhere a bound on the gain of each row tells which blocks are idle. Stages PF_WIRES
+ * and PF_SKIP_IDLE. */
+#if defined(PF_WIRES) && defined(PF_SKIP_IDLE)
+
+/* Bound of an idle tile; of a row whose readout is saturated: no reading is idle behind it. */
+#define PF_IDLE_TILE 0.0f
+#define PF_SATURATED_ROW INFINITY
+#define PF_WIRE_LARGEST_GAIN_ONE 1.4f
+#define PF_ROWS_AHEAD 16 /* that are prefetched */
+/* More than rounding takes from a bound. */
+#define PF_BOUND_RESERVE 1.00001f
+
+/* Pillars do not share tiles, and no other stage needs the gains of idle sensels. */
+#if PF_TILE_ROWS % 2 == 0 && PF_TILE_COLS % 2 == 0 && !defined(PF_BASELINE)
+#define PF_SKIP_IDLE_TILES
+#endif
+
+/* Greatest absolute reading of a tile, and least distance of a reading from its threshold, both in
+ * counts; negative where a reading is out of range. */
+typedef struct {
+  float largest;
+  float distance;
+} TileRange;
+
+#if PF_LANES == 1
+typedef PF_SENSEL SenselLanes;
+#define PF_READINGS_AT(place) (*(place))
+#define PF_REALS_OF(readings) ((Real)(readings))
+#else
+typedef PF_LANE_TYPE(PF_SENSEL) SenselLanes;
+#define PF_READINGS_AT(place) PF_LOAD_WHOLE(PF_SENSEL, place)
+#define PF_REALS_OF(readings) PF_TO_REAL(readings)
+#endif
+#ifdef PF_ACTIVATION_PLANE
+#define PF_THRESHOLDS_AT(place) PF_READINGS_AT(place)
+#else
+#define PF_THRESHOLDS_AT(place) ((SenselLanes)(PF_ACTIVATION))
+#endif
+
+/* The same by lanes. */
+typedef struct {
+  SenselLanes largest;
+  SenselLanes distance;
+} LaneRange;
+
+PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
+#ifdef PF_LARGEST_READING
+  const Real size = fabs(reading);
+  const Real distance =
+      size <= (Real)(PF_LARGEST_READING) ? threshold - reading : (Real)(-1.0f);
+  range.largest = size > range.largest ? size : range.largest;
+#else
+  const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
+  range.largest = max(reading, range.largest);
+#endif
+  range.distance = min(distance, range.distance);
+  return range;
+}
+
+PF_INLINE TileRange range_of_lanes(LaneRange range) {
+#if PF_LANES == 1
+  const TileRange result = {(float)range.largest, (float)range.distance};
+#else
+  float largest[PF_LANES];
+  float distances[PF_LANES];
+  PF_VSTORE(PF_REALS_OF(range.largest), 0, largest);
+  PF_VSTORE(PF_REALS_OF(range.distance), 0, distances);
+  TileRange result = {largest[0], distances[0]};
+  for (uint i = 1; i < PF_LANES; ++i) {
+    result.largest = max(result.largest, largest[i]);
+    result.distance = min(result.distance, distances[i]);
+  }
+#endif
+  return result;
+}
+
+/* Prefetches a row of a tile with the thresholds; rows are too short for hardware prefetching. */
+PF_INLINE void prefetch_tile_row(global const PF_SENSEL* raw, Calibration calibration,
+                                 Layout layout, Tile tile, uint row) {
+  PF_PREFETCH_SPAN(raw + row * layout.row_stride + tile.col, tile.cols + 63 / sizeof(PF_SENSEL), 2);
+#ifdef PF_ACTIVATION_PLANE
+  PF_PREFETCH_SPAN(activation_thresholds(calibration) + row * calibration.stride + tile.col,
+                   tile.cols + 63 / sizeof(PF_SENSEL), 2);
+#endif
+}
+
+PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
+                                  Layout layout, Tile tile) {
+  if (tile.cols < PF_LANES) return (TileRange){0.0f, -1.0f};
+  global const PF_SENSEL* const activation = activation_thresholds(calibration);
+  LaneRange range = {(SenselLanes)(0), (SenselLanes)(PF_ACTIVATION_NEVER)};
+  for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
+    prefetch_tile_row(raw, calibration, layout, tile, row);
+  }
+  for (uint row = tile.row; row < tile.row + tile.rows; ++row) {
+    if (row + PF_ROWS_AHEAD < tile.row + tile.rows) {
+      prefetch_tile_row(raw, calibration, layout, tile, row + PF_ROWS_AHEAD);
+    }
+    global const PF_SENSEL* const readings = raw + row * layout.row_stride + tile.col;
+    global const PF_SENSEL* const thresholds = activation + row * calibration.stride + tile.col;
+    for (uint at = 0; at < tile.cols; at += PF_LANES) {
+      const uint col = min(at, tile.cols - PF_LANES);
+      range = range_with(range, PF_READINGS_AT(readings + col), PF_THRESHOLDS_AT(thresholds + col));
+    }
+  }
+  return range_of_lanes(range);
+}
+
+/* A bound on the gains of all sensels of a tile, by the sweeps of find_wires with the largest
+ * reading everywhere. */
+PF_INLINE float largest_gain(float largest, Tile tile) {
+  const float own = 1.0f + 2.0f * (float)(PF_COLUMN_PER_COUNT)*largest;
+  float row = 1.0f;
+  float column = 1.0f;
+  for (uint sweep = 0; sweep < PF_WIRE_SWEEPS; ++sweep) {
+    row = gain_of_loss((float)(PF_ROW_PER_COUNT) * (float)tile.cols * largest * own * column);
+    column = gain_of_loss((float)(PF_COLUMN_PER_COUNT) * (float)tile.rows * largest * own * row);
+  }
+  return row * column * own * PF_BOUND_RESERVE;
+}
+
+/* True if a tile is idle; then writes gains of 1. */
+PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, size_t first,
+                              global float* columns) {
+#ifdef PF_SKIP_IDLE_TILES
+  const float gain = largest_gain(range.largest, tile);
+  const bool idle = gain <= PF_WIRE_LARGEST_GAIN_ONE &&
+                    range.largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
+  for (uint i = 0; idle && i < tile.rows; ++i) {
+    wires.row[first + i] = wires.idle[first + i] = 1.0f;
+    wires.bound[first + i] = PF_IDLE_TILE;
+  }
+  for (uint i = 0; idle && i < tile.cols; ++i) columns[i] = 1.0f;
+  return idle;
+#else
+  return false;
+#endif
+}
+
+/* Bounds of a tile's rows: how far a gain of their sensels is from 1 at most, plus 1. */
+PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t first,
+                          const float* columns) {
+  float least = columns[0];
+  float most = columns[0];
+  for (uint col = 1; col < tile.cols; ++col) {
+    least = min(least, columns[col]);
+    most = max(most, columns[col]);
+  }
+  for (uint at = first; at < first + tile.rows; ++at) {
+    const float row = wires.row[at];
+    const float own =
+        (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
+    const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
+    const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
+    wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN_ONE ? max(high, low) : PF_SATURATED_ROW;
+  }
+}
+
+/* The largest bound of `rows` rows of sensels under PF_LANES pillars. */
+PF_INLINE float bound_of(WireVectors wires, Place place, uint rows) {
+  float bound = PF_IDLE_TILE;
+  for (uint tile = place.col / PF_TILE_COLS; tile * PF_TILE_COLS < place.col + 2 * PF_LANES; ++tile) {
+    global const float* const of_rows = wires.bound + (size_t)tile * wires.rows + place.row;
+    for (uint row = 0; row < rows; ++row) bound = max(bound, of_rows[row]);
+  }
+  return bound;
+}
+
+PF_INLINE Mask stays_idle(SenselLanes reading, SenselLanes threshold, Real rise) {
+  const Real counts = PF_REALS_OF(reading);
+  const Mask idle =
+      counts + fabs(counts) * rise <= PF_REALS_OF(threshold) - (Real)(PF_ACTIVATION_STEP);
+#ifdef PF_LARGEST_READING
+  return idle && fabs(counts) <= (Real)(PF_LARGEST_READING);
+#else
+  return idle;
+#endif
+}
+
+/* As is_idle() and row_is_idle(), of 2 rows and of 1, behind wires with this bound_of(). */
+PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
+                             Calibration calibration, Place place, uint rows, float bound) {
+  const Real rise = (Real)(bound - 1.0f);
+  Mask idle = mask_of(PF_BITS(-1));
+  for (uint row = 0; row < rows; ++row) {
+    global const PF_SENSEL* const activation = activation_thresholds(calibration) +
+                                               (place.row + row) * calibration.stride + place.col;
+    for (uint side = 0; side < 2; ++side) {
+      idle = idle && stays_idle(PF_READINGS_AT(raw + row * row_stride + side * PF_LANES),
+                                PF_THRESHOLDS_AT(activation + side * PF_LANES), rise);
+    }
+  }
+  return !any_lane(!idle);
+}
+
+#endif
