@@ -134,6 +134,10 @@ class PartsTest(PartsFolder):
             self.assert_fails("join", self.output, names=["differs from the other parts"])
             self.assertEqual(run_json("solve", self.recording, "-o", self.output, "--part",
                                       "2/4")["parts"]["skipped"], [])
+        with h5py.File(self.recording, "r+") as file:
+            file["frames/raw"][11, 3, 3] += 1
+        self.assertEqual(run_json("solve", self.recording, "-o", self.output, "--part",
+                                  "2/4")["parts"]["skipped"], [])
         self.solve("--part", "2/5")
         self.assert_fails("join", self.output, names=["00002.h5", "number of parts"])
 

@@ -41,7 +41,7 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
                                const std::vector<ForceSink*>& sinks);
 
 /// 16 hexadecimal digits that differ, but for chance, if frames, plan, calibration or options of
-/// contacts do. Reads the first and the last frame.
+/// contacts do. Of the frames, 32 are read: the first, the last, and evenly spaced ones.
 [[nodiscard]] std::string fingerprint_of(FrameSource& source, const SolverPlan& plan,
                                          const std::optional<ContactOptions>& contacts);
 
