@@ -6,19 +6,15 @@
 namespace pillarfield {
 namespace {
 
-/// Work-groups of a compute unit. Where only changed blocks are solved, these lie in few of the
-/// rows.
-constexpr std::size_t kBandsPerUnit = 8;
-constexpr std::size_t kBandsOfChanges = 32;
-
 /// Global and local size of a launch. With several lanes, a work-item solves a band of rows.
 /// Several bands per compute unit balance the load; each is a work-group of its own, because
 /// drivers group them badly (PoCL: 790 rows in one group). With one lane, work-items share a row.
 struct Launch {
-  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, std::size_t bands) {
+  Launch(std::uint32_t rows, std::uint32_t cols, int lanes, cl_uint compute_units) {
     constexpr std::size_t kGroup = 64;
+    constexpr std::size_t kBandsPerUnit = 8;
     if (lanes > 1) {
-      global = cl::NDRange(1, std::min<std::size_t>(rows, bands));
+      global = cl::NDRange(1, std::min<std::size_t>(rows, kBandsPerUnit * compute_units));
       local = cl::NDRange(1, 1);
       return;
     }
@@ -82,13 +78,11 @@ Slot::Slot(Device::State& device, const SolverPlan& plan, const SlotSettings& se
       cols_(plan.skin.pillar_cols()),
       queue_(device.context, device.device),
       order_(&order) {
-  const bool changed_only = settings.paths.changed_only;
   const Launch solve(rows_, cols_, settings.lanes,
-                     (changed_only ? kBandsOfChanges : kBandsPerUnit) *
-                         device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+                     device.device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
   global_ = solve.global;
   local_ = solve.local;
-  if (changed_only) changed_.emplace(plan, settings.lanes);
+  if (settings.paths.changed_only) changed_.emplace(plan, settings.lanes);
   ResultLayout results(plan, settings.paths.skip_idle ? settings.lanes : 0,
                        changed_ ? changed_->flags().size() : 0);
   if (const auto& wires = plan.calibration.effects.wires) tiles_ = tiles_of(plan, *wires);

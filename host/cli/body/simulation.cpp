@@ -1,9 +1,10 @@
 #include "cli/body/simulation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
 #include <random>
+#include <utility>
 
 #include "cli/progress.h"
 #include "pillarfield/error.h"
@@ -81,89 +82,130 @@ const FrameBuffer& BodySimulation::frame(std::size_t patch, std::uint64_t index)
   return frames[turn < frames.size() ? turn : 2 * frames.size() - 2 - turn];
 }
 
+/// Runs a simulation frame by frame.
+class BodySimulation::Runner {
+ public:
+  Runner(BodySimulation& simulation, WholeBody& receiver, double loss, std::uint64_t seed)
+      : simulation_(simulation),
+        receiver_(receiver),
+        period_s_(1 / simulation.body_.skin.rate_hz),
+        random_(seed),
+        is_lost_(loss) {}
+
+  /// Makes the packets of some frames, then receives and solves them.
+  void run_batch(std::uint64_t first, std::uint64_t end) {
+    for (std::uint64_t frame = first; frame < end; ++frame) send(frame, stores_[frame - first]);
+    for (std::uint64_t frame = first; frame < end; ++frame) {
+      stop_if_interrupted_body();
+      receive(frame, stores_[frame - first]);
+    }
+  }
+
+  [[nodiscard]] BodyRun finish(std::uint64_t frames);
+
+ private:
+  void send(std::uint64_t frame, PacketStore& store);
+  void receive(std::uint64_t frame, const PacketStore& store);
+  void count_losses(std::uint64_t frame, const PacketStore& store);
+  void count_time(std::uint64_t frame, double receive_ms, double frame_ms);
+
+  BodySimulation& simulation_;
+  WholeBody& receiver_;
+  double period_s_;
+  std::mt19937_64 random_;
+  std::bernoulli_distribution is_lost_;
+  std::exponential_distribution<double> delay_s_{1 / 50e-6};
+  Nanos origin_ = BodyClock::now().time_since_epoch();
+  std::array<PacketStore, kBatch> stores_;
+  std::uint64_t blocks_ = 0;
+  std::uint64_t changed_ = 0;
+  std::uint64_t sent_ = 0;
+  double free_s_ = 0;  ///< when the receiver is done with the frame before
+  BodyRun run_;
+};
+
+void BodySimulation::Runner::send(std::uint64_t frame, PacketStore& store) {
+  store.clear();
+  const double scanned_s = static_cast<double>(frame) * period_s_;
+  for (std::size_t i = 0; i < simulation_.patches_.size(); ++i) {
+    Patch& patch = *simulation_.patches_[i];
+    patch.sender.send(simulation_.frame(i, frame), frame + 1, patch.device_ns(scanned_s),
+                      [&](const PillarfieldPacket& header, std::span<const std::byte> readings) {
+                        store.add(header, readings, frame > 0 && is_lost_(random_));
+                      });
+    blocks_ += patch.sender.blocks();
+    changed_ += patch.sender.changed();
+    sent_ += patch.sender.sent();
+  }
+  run_.packets += store.packets().size();
+  run_.bytes += store.bytes();
+}
+
+void BodySimulation::Runner::receive(std::uint64_t frame, const PacketStore& store) {
+  count_losses(frame, store);
+  const Nanos arrived =
+      origin_ +
+      Nanos(std::llround(1e9 * (static_cast<double>(frame) * period_s_ + delay_s_(random_))));
+  const auto begin = BodyClock::now();
+  for (const PacketStore::Entry& packet : store.packets()) {
+    if (!packet.lost) receiver_.receive(packet.header, store.readings(packet), arrived);
+  }
+  const double receive_ms = since_ms(begin);
+  receiver_.solve();
+  if (frame > 0) count_time(frame, receive_ms, since_ms(begin));  // The first sends all blocks.
+  for (const PacketStore::Entry& packet : store.packets()) {
+    if (packet.lost) continue;
+    simulation_.patches_[packet.header.patch]->losses.heal(store.readings(packet), frame + 1);
+  }
+}
+
+void BodySimulation::Runner::count_losses(std::uint64_t frame, const PacketStore& store) {
+  for (const PacketStore::Entry& packet : store.packets()) {
+    if (!packet.lost) continue;
+    ++run_.lost_packets;
+    const std::uint32_t patch = packet.header.patch;
+    simulation_.patches_[patch]->losses.lose(store.readings(packet), receiver_.readings(patch),
+                                             frame + 1);
+  }
+}
+
+void BodySimulation::Runner::count_time(std::uint64_t frame, double receive_ms, double frame_ms) {
+  const double scanned_s = static_cast<double>(frame) * period_s_;
+  run_.receive_ms.push_back(receive_ms);
+  run_.frame_ms.push_back(frame_ms);
+  free_s_ = std::max(free_s_, scanned_s) + 1e-3 * frame_ms;
+  if (free_s_ > scanned_s + period_s_) ++run_.late;
+}
+
+BodyRun BodySimulation::Runner::finish(std::uint64_t frames) {
+  const Nanos scanned =
+      origin_ + Nanos(std::llround(1e9 * static_cast<double>(frames - 1) * period_s_));
+  for (std::size_t i = 0; i < simulation_.patches_.size(); ++i) {
+    const LossRecord& losses = simulation_.patches_[i]->losses;
+    run_.old_blocks += losses.lost();
+    run_.old_at_end += losses.old_now();
+    run_.longest_healing_s =
+        std::max(run_.longest_healing_s, static_cast<double>(losses.longest(frames)) * period_s_);
+    const PatchState& state = receiver_.patch(i);
+    if (state.sequence != frames) continue;  // Its last packets were lost.
+    const double error_s = 1e-9 * static_cast<double>((state.host_time - scanned).count());
+    run_.worst_clock_s = std::max(run_.worst_clock_s, std::abs(error_s));
+  }
+  run_.changed_share = static_cast<double>(changed_) / static_cast<double>(blocks_);
+  run_.sent_share = static_cast<double>(sent_) / static_cast<double>(blocks_);
+  return std::move(run_);
+}
+
 BodyRun BodySimulation::run(WholeBody& receiver, std::uint64_t frames, double loss,
                             std::uint64_t seed, bool quiet) {
-  std::mt19937_64 random(seed);
-  std::bernoulli_distribution is_lost(loss);
-  std::exponential_distribution<double> delay_s(1 / 50e-6);
-  const double period_s = 1 / body_.skin.rate_hz;
-  const BodyClock::duration origin = BodyClock::now().time_since_epoch();
-  std::vector<PacketStore> stores(kBatch);
-  std::uint64_t blocks = 0;
-  std::uint64_t changed = 0;
-  std::uint64_t sent = 0;
-  double free_s = 0;  // When the receiver is done with the frame before.
-  BodyRun run;
+  Runner runner(*this, receiver, loss, seed);
   Progress progress("Running", frames, quiet);
   for (std::uint64_t first = 0; first < frames; first += kBatch) {
     const std::uint64_t end = std::min(first + kBatch, frames);
-    for (std::uint64_t i = first; i < end; ++i) {
-      PacketStore& store = stores[i - first];
-      store.clear();
-      for (std::size_t at = 0; at < patches_.size(); ++at) {
-        Patch& patch = *patches_[at];
-        const double host_s = static_cast<double>(i) * period_s;
-        patch.sender.send(frame(at, i), i + 1, patch.device_ns(host_s),
-                          [&](const PillarfieldPacket& header, std::span<const std::byte> bytes) {
-                            store.add(header, bytes, i > 0 && is_lost(random));
-                          });
-        blocks +=
-            FrameShape{body_.skin.patches[at].plan.sensel_type,
-                       body_.skin.patches[at].plan.skin.rows, body_.skin.patches[at].plan.skin.cols}
-                .blocks();
-        changed += patch.sender.changed();
-        sent += patch.sender.sent();
-      }
-      run.packets += store.packets().size();
-      run.bytes += store.bytes();
-    }
-    for (std::uint64_t i = first; i < end; ++i) {
-      stop_if_interrupted_body();
-      const PacketStore& store = stores[i - first];
-      for (const PacketStore::Entry& packet : store.packets()) {
-        if (!packet.lost) continue;
-        ++run.lost_packets;
-        patches_[packet.header.patch]->losses.lose(store.readings(packet),
-                                                   receiver.readings(packet.header.patch), i + 1);
-      }
-      const double scanned_s = static_cast<double>(i) * period_s;
-      const Nanos arrived = origin + Nanos(std::llround(1e9 * (scanned_s + delay_s(random))));
-      const auto begin = BodyClock::now();
-      for (const PacketStore::Entry& packet : store.packets()) {
-        if (!packet.lost) receiver.receive(packet.header, store.readings(packet), arrived);
-      }
-      const double receive_ms = since_ms(begin);
-      receiver.solve();
-      const double frame_ms = since_ms(begin);
-      for (const PacketStore::Entry& packet : store.packets()) {
-        if (packet.lost) continue;
-        patches_[packet.header.patch]->losses.heal(store.readings(packet), i + 1);
-      }
-      if (i == 0) continue;  // All blocks of all patches.
-      run.receive_ms.push_back(receive_ms);
-      run.frame_ms.push_back(frame_ms);
-      free_s = std::max(free_s, scanned_s) + 1e-3 * frame_ms;
-      if (free_s > scanned_s + period_s) ++run.late;
-      progress.show(i + 1);
-    }
+    runner.run_batch(first, end);
+    progress.show(end);
   }
-  const Nanos scanned =
-      origin + Nanos(std::llround(1e9 * static_cast<double>(frames - 1) * period_s));
-  for (std::size_t at = 0; at < patches_.size(); ++at) {
-    const LossRecord& losses = patches_[at]->losses;
-    run.old_blocks += losses.lost();
-    run.old_at_end += losses.old_now();
-    run.longest_healing_s =
-        std::max(run.longest_healing_s, static_cast<double>(losses.longest(frames)) * period_s);
-    const PatchState& state = receiver.patch(at);
-    if (state.sequence != frames) continue;  // Its last packets were lost.
-    run.worst_clock_s =
-        std::max(run.worst_clock_s,
-                 std::abs(1e-9 * static_cast<double>((state.host_time - scanned).count())));
-  }
-  run.changed_share = static_cast<double>(changed) / static_cast<double>(blocks);
-  run.sent_share = static_cast<double>(sent) / static_cast<double>(blocks);
-  return run;
+  return runner.finish(frames);
 }
 
 }  // namespace pillarfield::cli

@@ -46,6 +46,7 @@ class BodySimulation {
 
  private:
   struct Patch;
+  class Runner;
   const BodyFile& body_;
   std::vector<std::unique_ptr<Patch>> patches_;
 };

@@ -4,6 +4,7 @@
 #ifndef PILLARFIELD_STREAM_FORMAT_H
 #define PILLARFIELD_STREAM_FORMAT_H
 
+/* NOLINTBEGIN(modernize-use-using, modernize-deprecated-headers): it is C. */
 #include <stdint.h>
 
 #define PILLARFIELD_PACKET_MAGIC 0x31524650u /* "PFR1" */
@@ -43,7 +44,7 @@ typedef struct PillarfieldPacket {
   uint32_t parts;    /* packets of the frame, at least 1 */
   uint32_t first;    /* ROWS: the first row */
   uint32_t count;    /* ROWS: rows; BLOCKS: blocks */
-  uint32_t patch;    /* 0 */
+  uint32_t patch;    /* of a body, from 0; else 0 */
   uint32_t bytes;    /* after this header */
 } PillarfieldPacket;
 
@@ -124,5 +125,6 @@ typedef struct PillarfieldResultSlot {
   PillarfieldContact total; /* of all loaded pillars; track_id 0 */
   PillarfieldContact contact[PILLARFIELD_MAX_CONTACTS]; /* the strongest, by normal force */
 } PillarfieldResultSlot;
+/* NOLINTEND(modernize-use-using, modernize-deprecated-headers) */
 
 #endif

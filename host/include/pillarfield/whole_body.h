@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pillarfield/contact_quantities.h"
@@ -30,8 +31,8 @@ struct BodyPatch {
 /// The skin of a body: patches with a size, pose, calibration and clock of their own.
 struct BodySkin {
   std::string title;
-  double rate_hz = 1000;    ///< frames of each patch per second
-  double refresh_s = 0.25;  ///< time in which a sensor sends every block at least once
+  double rate_hz = 1000;   ///< frames of each patch per second
+  double refresh_s = 0.1;  ///< time in which a sensor sends every block at least once
   std::vector<BodyPatch> patches;
 };
 
@@ -50,6 +51,9 @@ struct BodyFile {
 /// Reads a body (docs/whole_body.md), and its scenes and calibrations, whose paths are relative to
 /// the file. Throws Error with file, line, key and the allowed values.
 [[nodiscard]] BodyFile load_body(const std::filesystem::path& path);
+
+/// Reads a body from text; `name` stands for its file.
+[[nodiscard]] BodyFile parse_body(std::string_view text, const std::filesystem::path& name);
 
 /// Sum of the forces of many pillars, in the body's frame: their force on the skin and its moment
 /// about the origin of the body.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "solve/activation_thresholds.h"
 #include "solve/stages.h"
@@ -18,24 +17,30 @@ std::vector<float> thresholds_of(const SolverPlan& plan) {
   return thresholds;
 }
 
-/// Whether a reading that became another one may change a force. NaN may.
+/// Whether readings that became others may change a force; NaN may. Without branches, which idle
+/// sensels with noise would mispredict.
 template <class Reading>
-bool matters(Reading before, Reading after, float threshold) {
-  return before != after &&
-         !(static_cast<float>(before) < threshold && static_cast<float>(after) < threshold);
+bool any_matters(const Reading* before, const Reading* after, const float* thresholds,
+                 std::uint32_t count) {
+  bool any = false;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const bool idle = (static_cast<float>(before[i]) < thresholds[i]) &
+                      (static_cast<float>(after[i]) < thresholds[i]);
+    any |= (before[i] != after[i]) & !idle;
+  }
+  return any;
 }
 
 template <class Reading>
 bool any_matters(const FrameShape& shape, const SenselBlock& place, const FrameBuffer& before,
                  const FrameBuffer& after, const std::vector<float>& thresholds) {
+  const Reading* const old = before.readings<Reading>().data();
+  const Reading* const now = after.readings<Reading>().data();
   for (std::uint32_t row = 0; row < place.rows; ++row) {
-    const std::size_t first = std::size_t{place.first_row + row} * shape.cols + place.first_col;
-    for (std::size_t at = first; at < first + place.cols; ++at) {
-      const float threshold =
-          thresholds.empty() ? std::numeric_limits<float>::lowest() : thresholds[at];
-      if (matters(before.readings<Reading>()[at], after.readings<Reading>()[at], threshold)) {
-        return true;
-      }
+    const std::size_t at = std::size_t{place.first_row + row} * shape.cols + place.first_col;
+    if (std::memcmp(old + at, now + at, place.cols * sizeof(Reading)) == 0) continue;
+    if (thresholds.empty() || any_matters(old + at, now + at, &thresholds[at], place.cols)) {
+      return true;
     }
   }
   return false;

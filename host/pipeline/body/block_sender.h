@@ -31,6 +31,7 @@ class BlockSender {
   /// Blocks of the frame sent last that changed, and in all.
   [[nodiscard]] std::size_t changed() const { return changed_; }
   [[nodiscard]] std::size_t sent() const { return numbers_.size(); }
+  [[nodiscard]] std::size_t blocks() const { return shape_.blocks(); }
 
  private:
   [[nodiscard]] bool has_changed(const FrameBuffer& frame, std::uint32_t block) const;

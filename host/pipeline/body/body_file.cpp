@@ -48,7 +48,9 @@ Pose read_pose(TomlSection& section) {
 
 /// Gives the skin of a scene another size.
 void read_size(TomlSection& section, Scene& scene) {
-  const auto size_mm = section.numbers("size_mm", 2, {1, 1e5});
+  // A packet is refused beyond 2^24 sensels.
+  const Range side_mm = {scene.skin.pillar_pitch_mm(), 4096 * scene.skin.sensel_pitch_mm};
+  const auto size_mm = section.numbers("size_mm", 2, side_mm);
   if (!size_mm) return;
   const auto sensels = [&](double mm) {
     return 2 * static_cast<std::uint32_t>(std::llround(mm / scene.skin.pillar_pitch_mm()));
@@ -125,24 +127,27 @@ BodyFile read_body(const toml::table& table, const std::filesystem::path& path) 
 
 }  // namespace
 
+BodyFile parse_body(std::string_view text, const std::filesystem::path& name) {
+  check_key_depth(text, name.string());
+  try {
+    return read_body(toml::parse(text, name.string()), name);
+  } catch (const toml::parse_error& error) {
+    throw Error(fmt::format("{}:{}", name.string(), error.source().begin.line),
+                fmt::format("is not TOML: {}", error.description()),
+                "mend the line, or see docs/whole_body.md for an example");
+  }
+}
+
 BodyFile load_body(const std::filesystem::path& path) {
-  const std::string name = path.string();
   std::error_code failed;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
   std::ifstream file(path, std::ios::binary);
   constexpr std::uintmax_t kMostBytes = 1 << 20;
   if (failed || bytes > kMostBytes || !file.is_open()) {
-    throw Error(name, "cannot be read as a body", "name a TOML file of at most 1 MiB");
+    throw Error(path.string(), "cannot be read as a body", "name a TOML file of at most 1 MiB");
   }
   const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  check_key_depth(text, name);
-  try {
-    return read_body(toml::parse(text, name), path);
-  } catch (const toml::parse_error& error) {
-    throw Error(fmt::format("{}:{}", name, error.source().begin.line),
-                fmt::format("is not TOML: {}", error.description()),
-                "mend the line, or see docs/whole_body.md for an example");
-  }
+  return parse_body(text, path);
 }
 
 }  // namespace pillarfield

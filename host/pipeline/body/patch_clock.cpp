@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace pillarfield {
 namespace {
@@ -30,37 +31,31 @@ void PatchClock::add(std::uint64_t device_ns, Time arrived) {
     windows_ = 1;
     return;
   }
+  Least& least = least_[(windows_ - 1) % kWindows];
   if (device_s - window_began_s_ >= kWindowS) {
+    if (windows_ >= kFewestWindows) fit();
     window_began_s_ = device_s;
     least_[windows_++ % kWindows] = {device_s, ahead_s};
-    fit();
-    return;
+  } else if (ahead_s < least.ahead_s) {
+    least = {device_s, ahead_s};
   }
-  Least& least = least_[(windows_ - 1) % kWindows];
-  if (ahead_s >= least.ahead_s) return;
-  least = {device_s, ahead_s};
-  fit();
+  if (windows_ <= kFewestWindows) offset_s_ = std::min(offset_s_, ahead_s);
 }
 
+/// Fits the line to complete windows.
 void PatchClock::fit() {
   const std::size_t count = std::min(windows_, kWindows);
-  const auto* const end = least_.begin() + count;
-  if (count < kFewestWindows) {
-    const auto* const least = std::min_element(
-        least_.cbegin(), end, [](const Least& a, const Least& b) { return a.ahead_s < b.ahead_s; });
-    offset_s_ = least->ahead_s;
-    return;
-  }
+  const std::span<const Least> all(least_.data(), count);
   mean_s_ = offset_s_ = 0;
-  for (const auto* each = least_.cbegin(); each != end; ++each) {
-    mean_s_ += each->device_s / static_cast<double>(count);
-    offset_s_ += each->ahead_s / static_cast<double>(count);
+  for (const Least& each : all) {
+    mean_s_ += each.device_s / static_cast<double>(count);
+    offset_s_ += each.ahead_s / static_cast<double>(count);
   }
   double square = 0;
   double product = 0;
-  for (const auto* each = least_.cbegin(); each != end; ++each) {
-    square += (each->device_s - mean_s_) * (each->device_s - mean_s_);
-    product += (each->device_s - mean_s_) * (each->ahead_s - offset_s_);
+  for (const Least& each : all) {
+    square += (each.device_s - mean_s_) * (each.device_s - mean_s_);
+    product += (each.device_s - mean_s_) * (each.ahead_s - offset_s_);
   }
   drift_ = std::clamp(product / square, -kMostDrift, kMostDrift);
 }

@@ -100,34 +100,38 @@ void PatchLoad::mark_all() {
 }
 
 LoadSum PatchLoad::sum_on_plane(const ForceFieldView& forces, const Tile& tile) const {
-  double normal = 0, shear_x = 0, shear_y = 0;    // N
-  double normal_x = 0, normal_y = 0, shears = 0;  // N times pitches from the middle
+  // A row first: its y is one. Places count in pitches.
+  struct Sums {
+    double normal = 0;
+    double shear_x = 0;
+    double shear_y = 0;
+    double normal_x = 0;
+    double shear_y_x = 0;
+  };
+  LoadSum sum;
   const double first_x = tile.first_col - 0.5 * (pillars_.cols - 1);
+  const double pitch = pillars_.pitch_mm;
   for (std::uint32_t row = tile.first_row; row < tile.end_row; ++row) {
     const std::size_t first = std::size_t{row} * pillars_.cols;
-    const double y = 0.5 * (pillars_.rows - 1) - row;
-    double row_normal = 0, row_shear_x = 0, row_shear_y = 0;
+    Sums sums;
     for (std::uint32_t col = tile.first_col; col < tile.end_col; ++col) {
       const double x = first_x + (col - tile.first_col);
-      const double n = forces.normal[first + col];
-      const double upward = forces.shear_y[first + col];
-      row_normal += n;
-      row_shear_x += forces.shear_x[first + col];
-      row_shear_y += upward;
-      normal_x += x * n;
-      shears += x * upward;
+      const double normal = forces.normal[first + col];
+      const double shear_y = forces.shear_y[first + col];
+      sums.normal += normal;
+      sums.shear_x += forces.shear_x[first + col];
+      sums.shear_y += shear_y;
+      sums.normal_x += x * normal;
+      sums.shear_y_x += x * shear_y;
     }
-    normal += row_normal;
-    shear_x += row_shear_x;
-    shear_y += row_shear_y;
-    normal_y += y * row_normal;
-    shears -= y * row_shear_x;
+    const double y_mm = y_of(row);
+    sum.add(
+        {{sums.shear_x, sums.shear_y, -sums.normal},
+         {-y_mm * sums.normal, pitch * sums.normal_x, pitch * sums.shear_y_x - y_mm * sums.shear_x},
+         sums.normal,
+         {pitch * sums.normal_x, y_mm * sums.normal, 0}});
   }
-  const double pitch = pillars_.pitch_mm;
-  return {{shear_x, shear_y, -normal},
-          {-pitch * normal_y, pitch * normal_x, pitch * shears},
-          normal,
-          {pitch * normal_x, pitch * normal_y, 0}};
+  return sum;
 }
 
 LoadSum PatchLoad::sum_on_surface(const ForceFieldView& forces, const Tile& tile) const {

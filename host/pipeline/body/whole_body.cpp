@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 
+#include "base/thread_pool.h"
 #include "pillarfield/error.h"
 #include "pipeline/body/patch_load.h"
 #include "pipeline/body/patch_memory.h"
@@ -76,8 +78,10 @@ struct WholeBody::State {
   std::vector<PatchStack> stacks;
   std::vector<WholePatch> patches;
   std::vector<PatchStack*> submitted;
+  std::vector<std::size_t> solved;  ///< patches of these
   BodyLoad load;
   std::uint64_t invalid = 0;
+  ThreadPool pool{std::max(std::thread::hardware_concurrency(), 1U)};
 
   [[nodiscard]] bool submit(PatchStack& stack) {
     for (std::size_t at = 0; at < stack.members().size(); ++at) {
@@ -88,11 +92,16 @@ struct WholeBody::State {
   void receive(PatchStack& stack) {
     stack.receive();
     for (std::size_t at = 0; at < stack.members().size(); ++at) {
-      const std::size_t index = stack.members()[at];
-      WholePatch& patch = patches[index];
-      patch.state.forces = stack.forces(at);
-      patch.state.load = load_of(patch.load.update(patch.state.forces), skin.patches[index].pose);
+      patches[stack.members()[at]].state.forces = stack.forces(at);
+      solved.push_back(stack.members()[at]);
     }
+  }
+  void sum_loads() {
+    pool.run(solved.size(), [this](std::size_t piece, std::size_t /*member*/) {
+      WholePatch& patch = patches[solved[piece]];
+      patch.state.load =
+          load_of(patch.load.update(patch.state.forces), skin.patches[solved[piece]].pose);
+    });
   }
 };
 
@@ -139,7 +148,9 @@ void WholeBody::solve() {
   for (PatchStack& stack : body.stacks) {
     if (body.submit(stack)) body.submitted.push_back(&stack);
   }
+  body.solved.clear();
   for (PatchStack* const stack : body.submitted) body.receive(*stack);
+  body.sum_loads();
   body.load = {};
   for (WholePatch& patch : body.patches) {
     patch.memory.describe(patch.state);
