@@ -80,7 +80,8 @@ void add_residual(SolverPlan& plan) {
 }
 
 /// Patterns of the tare of a bent skin. The frames are those of a flat one, whose idle sensels read
-/// zero: so do their tares, or the curvature would explain the difference. Below the noise it stays.
+/// zero: so do their tares, or the curvature would explain the difference. Below the noise it
+/// stays.
 void add_bending(SolverPlan& plan) {
   plan.noise_counts = 1;
   plan.calibration.tare.assign(plan.skin.sensels(), 0);
