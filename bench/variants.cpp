@@ -79,8 +79,10 @@ void add_residual(SolverPlan& plan) {
   effects(plan).residual = {0.02, 0.5};
 }
 
-/// Patterns of the tare of a bent skin. The frames are those of a flat one.
+/// Patterns of the tare of a bent skin. The frames are those of a flat one, whose idle sensels read
+/// their tare of up to 3 counts as nothing: within the noise.
 void add_bending(SolverPlan& plan) {
+  plan.noise_counts = 1;
   plan.calibration.bend_x = uneven_plane(plan.skin, -60, 60, 5);
   plan.calibration.bend_y = uneven_plane(plan.skin, -60, 60, 6);
   plan.calibration.bend_xy = uneven_plane(plan.skin, -60, 60, 7);

@@ -22,8 +22,8 @@
  *   any_lane(m)   true if m is true in any lane
  *   PF_CONSTANT(T, x)  the constant x of a program or plan in every lane of a T
  *   PF_INLINE     specifier of a function of lanes; PoCL always inlines it
- *   word_of(r)    the bits of r
- *   real_of_word(w)  the Real whose bits are w
+ *   PF_UNROLL     before a loop of few turns; PoCL, which would keep its arrays in memory, unrolls
+ * it word_of(r)    the bits of r real_of_word(w)  the Real whose bits are w
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are
@@ -38,8 +38,8 @@
  * selections written c ? x : y with both sides of lane type; structs passed by value; of Counts in
  * programs of whole numbers + - and comparisons alone; if (any_lane(mask)) where the skipped code
  * changes no bit; + - * /, comparisons, fabs, copysign, floor, sqrt, hypot, sin, cos, asin, atan,
- * atan2, pow (only in double precision). No contraction: the device and a host built with -ffp-contract=off then agree bit for
- * bit in all but the last six. */
+ * atan2, pow (only in double precision). No contraction: the device and a host built with
+ * -ffp-contract=off then agree bit for bit in all but the last six. */
 #ifndef __cplusplus /* OpenCL C */
 
 #pragma OPENCL FP_CONTRACT OFF
@@ -110,8 +110,10 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
  * inline; Oclgrind lacks the attribute. */
 #ifdef POCL_DEVICE_ADDRESS_BITS
 #define PF_INLINE static inline __attribute__((always_inline))
+#define PF_UNROLL _Pragma("unroll")
 #else
 #define PF_INLINE static inline
+#define PF_UNROLL
 #endif
 
 #define PF_CONSTANT(type, x) ((type)(x))
@@ -123,6 +125,7 @@ static inline bool any_lane(Mask mask) { return any_bits(bits_of(mask)); }
 #else /* C++ */
 
 #define PF_INLINE static inline
+#define PF_UNROLL
 #define PF_CONSTANT(type, x) static_cast<type>(x)
 #undef PF_REAL
 #undef PF_COUNTS

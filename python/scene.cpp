@@ -8,6 +8,7 @@
 
 #include "pillarfield/error.h"
 #include "pillarfield/simulator.h"
+#include "pillarfield/skin_calibration.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/force_planes.h"

@@ -14,9 +14,7 @@ namespace pillarfield::viewer {
 struct Options {
   std::filesystem::path source;       ///< a file, or a live source; empty: the start page
   std::filesystem::path beside;       ///< a second source, shown at the right; empty: none
-  bool truth = false;                 ///< the true forces beside those solved
   std::filesystem::path calibration;  ///< of a sensor
-  bool trust_input = false;
   ReadOptions plain;   ///< of plain data: array, times, size of a frame, rate, constants, tare
   std::string device;  ///< OpenCL device that solves
   std::string gpu;     ///< Vulkan device that draws
@@ -25,6 +23,8 @@ struct Options {
   double scale = 0;          ///< 0: the display's scale, 1 without a display
   bool copy_fields = false;  ///< copy fields even where the graphics device could import them
   bool validate = false;
+  bool trust_input = false;
+  bool truth = false;  ///< the true forces beside those solved
   bool headless = false;
   bool paused = false;
   bool statistics = false;  ///< printed when the window closes
@@ -50,9 +50,9 @@ struct Options {
   std::filesystem::path video;
   std::filesystem::path csv;
   bool overwrite = false;
+  bool has_frame = false;         ///< first_frame was given
   std::optional<double> fps;      ///< pictures a second of the video; unset: rate times speed
   double speed = 1;               ///< of the video, relative to the source
-  bool has_frame = false;         ///< first_frame was given
   std::uint64_t first_frame = 0;  ///< first frame shown (--frame, --frames)
   std::uint64_t end_frame = 0;    ///< one past the last rendered frame; 0: first_frame + 1
 };

@@ -182,8 +182,8 @@ HWY_INLINE void solve_half_block(const Row& row, const EighthCounts& solve) {
 HWY_INLINE void solve_some(const Row& row, std::size_t count, const EighthCounts& solve) {
   std::array<std::uint8_t, 2 * kLanes> top{};
   std::array<std::uint8_t, 2 * kLanes> bottom{};
-  std::array<std::array<float, kLanes>, 3> forces;
-  std::array<std::uint8_t, kLanes> status;
+  std::array<std::array<float, kLanes>, 3> forces{};
+  std::array<std::uint8_t, kLanes> status{};
   std::copy_n(row.top, 2 * count, top.data());
   std::copy_n(row.bottom, 2 * count, bottom.data());
   const ForcePlanes planes = {forces[0].data(), forces[1].data(), forces[2].data(), status.data()};

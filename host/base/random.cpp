@@ -102,7 +102,7 @@ PF_WIDE_INLINE void box_muller(const Words& first, const Words& second, Variates
 
 /// The variates of kLanes blocks from `block` on.
 PF_WIDE void draw(const Row& row, std::size_t block, float* values) {
-  std::array<Words, 4> words;
+  std::array<Words, 4> words{};
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
     words[0][lane] = (row.row << 16) | static_cast<std::uint32_t>(block + lane);
     words[1][lane] = static_cast<std::uint32_t>(row.stream);
@@ -110,7 +110,7 @@ PF_WIDE void draw(const Row& row, std::size_t block, float* values) {
     words[3][lane] = high_word(row.frame);
   }
   philox(words, {low_word(row.seed), high_word(row.seed)});
-  std::array<Variates, 4> variates;
+  std::array<Variates, 4> variates{};
   box_muller(words[0], words[1], variates[0], variates[1]);
   box_muller(words[2], words[3], variates[2], variates[3]);
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -135,7 +135,7 @@ void fill_normal(const Row& row, std::span<float> values) {
   std::size_t first = 0;
   for (; first + kDrawn <= values.size(); first += kDrawn) draw(row, first / 4, &values[first]);
   if (first == values.size()) return;
-  std::array<float, kDrawn> last;
+  std::array<float, kDrawn> last{};
   draw(row, first / 4, last.data());
   std::copy_n(last.begin(), values.size() - first, &values[first]);
 }

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "calibration/linear_readings.h"
@@ -81,6 +83,66 @@ std::array<std::vector<double>, 3> weights_of(std::span<const BentSkin> shapes) 
   return weights;
 }
 
+/// Sums over the sensels that can be read on all shapes, and the patterns fitted to each.
+struct PatternSums {
+  double sensels = 0;
+  double noise_squares = 0;
+  Triple squares{};
+  double residual_before = 0;
+  double residual_after = 0;
+  std::array<std::vector<float>, 3> patterns;
+};
+
+/// Changes of a sensel's tare by shape; false if a shape does not show it.
+bool tare_changes(const Calibration& planes, std::span<const BentSkin> shapes, std::size_t sensel,
+                  std::vector<double>& changes) {
+  bool good = planes.mask.empty() || planes.mask[sensel] != 0;
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    const SenselStatistics& seen = shapes[s].frames.sensels()[sensel];
+    good = good && seen.saturated == 0 && seen.readings > 0;
+    changes[s] = seen.mean - planes.tare[sensel];
+  }
+  return good;
+}
+
+PatternSums fit_patterns(const Calibration& planes, std::span<const BentSkin> shapes,
+                         const std::array<std::vector<double>, 3>& weights) {
+  PatternSums sums;
+  for (auto& pattern : sums.patterns) pattern.assign(planes.tare.size(), 0);
+  std::vector<double> changes(shapes.size());
+  for (std::size_t i = 0; i < planes.tare.size(); ++i) {
+    if (!tare_changes(planes, shapes, i, changes)) continue;
+    ++sums.sensels;
+    sums.noise_squares += double{planes.noise[i]} * planes.noise[i];
+    Triple fitted{};
+    for (std::size_t p = 0; p < 3; ++p) {
+      for (std::size_t s = 0; s < shapes.size(); ++s) fitted.at(p) += weights.at(p)[s] * changes[s];
+      sums.patterns.at(p)[i] = static_cast<float>(fitted.at(p));
+      sums.squares.at(p) += fitted.at(p) * fitted.at(p);
+    }
+    for (std::size_t s = 0; s < shapes.size(); ++s) {
+      const Triple row = triple_of(shapes[s].curvature);
+      const double rest = changes[s] - fitted[0] * row[0] - fitted[1] * row[1] - fitted[2] * row[2];
+      sums.residual_before += changes[s] * changes[s];
+      sums.residual_after += rest * rest;
+    }
+  }
+  return sums;
+}
+
+/// Variance of a pattern by a sensel's noise of variance 1. The tare's error is common to all
+/// shapes.
+double variance_of(const std::vector<double>& weights, std::span<const BentSkin> shapes,
+                   double tare_frames) {
+  double variance = 0;
+  double sum = 0;
+  for (std::size_t s = 0; s < shapes.size(); ++s) {
+    variance += weights[s] * weights[s] / shapes[s].frames.frames();
+    sum += weights[s];
+  }
+  return variance + sum * sum / tare_frames;
+}
+
 }  // namespace
 
 Curvature curvature_of_cylinder(double radius_mm, double axis_deg) {
@@ -93,55 +155,20 @@ Curvature curvature_of_cylinder(double radius_mm, double axis_deg) {
 BendingResult calibrate_bending(const SkinCalibration& before, std::span<const BentSkin> shapes) {
   require_shapes(before, shapes);
   const std::array<std::vector<double>, 3> weights = weights_of(shapes);
-  const Calibration& planes = before.planes;
-  const std::size_t sensels = planes.tare.size();
-  std::array<std::vector<float>, 3> patterns;
-  for (auto& pattern : patterns) pattern.assign(sensels, 0);
-  BendingResult result;
-  std::vector<double> changes(shapes.size());
-  double count = 0;
-  double noise_squares = 0;
-  for (std::size_t i = 0; i < sensels; ++i) {
-    bool good = planes.mask.empty() || planes.mask[i] != 0;
-    for (std::size_t s = 0; s < shapes.size(); ++s) {
-      const SenselStatistics& sensel = shapes[s].frames.sensels()[i];
-      good = good && sensel.saturated == 0 && sensel.readings > 0;
-      changes[s] = sensel.mean - planes.tare[i];
-    }
-    if (!good) continue;
-    ++count;
-    noise_squares += double{planes.noise[i]} * planes.noise[i];
-    Triple fitted{};
-    for (std::size_t p = 0; p < 3; ++p) {
-      for (std::size_t s = 0; s < shapes.size(); ++s) fitted.at(p) += weights.at(p)[s] * changes[s];
-      patterns.at(p)[i] = static_cast<float>(fitted.at(p));
-      result.rms[p] += fitted.at(p) * fitted.at(p);
-    }
-    for (std::size_t s = 0; s < shapes.size(); ++s) {
-      const Triple row = triple_of(shapes[s].curvature);
-      const double rest = changes[s] - fitted[0] * row[0] - fitted[1] * row[1] - fitted[2] * row[2];
-      result.residual_before += changes[s] * changes[s];
-      result.residual_after += rest * rest;
-    }
-  }
+  PatternSums sums = fit_patterns(before.planes, shapes, weights);
+  const double count = sums.sensels;
   if (count == 0) throw Error("bending", "no sensel can be read on all shapes", "check the frames");
+  BendingResult result;
   const auto shapes_of_sensels = count * static_cast<double>(shapes.size());
-  result.residual_before = std::sqrt(result.residual_before / shapes_of_sensels);
-  result.residual_after = std::sqrt(result.residual_after / shapes_of_sensels);
+  result.residual_before = std::sqrt(sums.residual_before / shapes_of_sensels);
+  result.residual_after = std::sqrt(sums.residual_after / shapes_of_sensels);
+  const double tare_frames = frames_of_tare(before, shapes[0].frames.frames());
   double signal = 0;
   for (std::size_t p = 0; p < 3; ++p) {
-    // The tare's error is common to all shapes.
-    double per_frame = 0;
-    double sum = 0;
-    for (std::size_t s = 0; s < shapes.size(); ++s) {
-      const double weight = weights.at(p)[s];
-      per_frame += weight * weight / shapes[s].frames.frames();
-      sum += weight;
-    }
-    per_frame += sum * sum / frames_of_tare(before, shapes[0].frames.frames());
-    const double variance = noise_squares / count * per_frame;
+    const double variance =
+        sums.noise_squares / count * variance_of(weights.at(p), shapes, tare_frames);
     result.standard_error[p] = std::sqrt(variance);
-    result.rms[p] = std::sqrt(result.rms[p] / count);
+    result.rms[p] = std::sqrt(sums.squares.at(p) / count);
     if (variance > 0) signal = std::max(signal, result.rms[p] * result.rms[p] / variance);
   }
   result.found = signal > kLeastSignal;
@@ -149,9 +176,9 @@ BendingResult calibrate_bending(const SkinCalibration& before, std::span<const B
   Calibration& after = result.calibration.planes;
   after.bend_x = after.bend_y = after.bend_xy = {};
   if (!result.found) return result;
-  after.bend_x = std::move(patterns[0]);
-  after.bend_y = std::move(patterns[1]);
-  after.bend_xy = std::move(patterns[2]);
+  after.bend_x = std::move(sums.patterns[0]);
+  after.bend_y = std::move(sums.patterns[1]);
+  after.bend_xy = std::move(sums.patterns[2]);
   return result;
 }
 

@@ -23,8 +23,8 @@ namespace pillarfield {
                                      std::size_t sensel) {
   const std::size_t row = sensel / skin.cols;
   const std::size_t col = sensel % skin.cols;
-  const int at_row_edge = row == 0 || row + 1 == 2 * skin.pillar_rows() ? 1 : 0;
-  const int at_col_edge = col == 0 || col + 1 == 2 * skin.pillar_cols() ? 1 : 0;
+  const int at_row_edge = row == 0 || row + 1 == std::size_t{2} * skin.pillar_rows() ? 1 : 0;
+  const int at_col_edge = col == 0 || col + 1 == std::size_t{2} * skin.pillar_cols() ? 1 : 0;
   return full_leak_sum(effects, at_row_edge + at_col_edge);
 }
 

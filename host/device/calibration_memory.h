@@ -52,7 +52,7 @@ class CalibrationMemory {
   std::size_t plane_bytes_;
   bool has_tare_;
   std::size_t state_bytes_ = 0;  ///< behind the planes
-  LargePages memory_;  ///< used if the device shares the host's memory
+  LargePages memory_;            ///< used if the device shares the host's memory
   cl::Buffer buffer_;
 };
 

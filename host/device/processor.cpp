@@ -4,11 +4,15 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 
 #include "device/block_lanes.h"
+#include "device/host_start.h"
 #include "device/late_call.h"
 #include "device/slot.h"
 #include "device/slot_scheduler.h"
@@ -23,6 +27,8 @@ namespace {
 constexpr int kMaxFramesInFlight = static_cast<int>(kMostSlots);
 constexpr const char* kSubmit = "Processor::submit";
 constexpr std::chrono::milliseconds kCompileNotice{300};  ///< wait without a message
+constexpr std::chrono::milliseconds kCompiledBefore{
+    150};  ///< wait for kernels of the driver's cache
 
 void check_options(const Processor::Options& options, const ProcessorTuning& tuning) {
   if (options.frames_in_flight < 1 || options.frames_in_flight > kMaxFramesInFlight) {
@@ -69,11 +75,13 @@ std::string line_on_compiling(const DeviceInfo& device) {
                      device.kernels_not_kept);
 }
 
+[[noreturn]] void throw_all_in_flight(std::size_t slots) {
+  throw Error("Processor::submit", fmt::format("all {} frames are in flight", slots),
+              "receive() one first, or set more frames_in_flight");
+}
+
 [[noreturn]] void throw_no_slot(const SlotScheduler& scheduler) {
-  if (scheduler.pinned() == 0) {
-    throw Error("Processor::submit", fmt::format("all {} frames are in flight", scheduler.slots()),
-                "receive() one first, or set more frames_in_flight");
-  }
+  if (scheduler.pinned() == 0) throw_all_in_flight(scheduler.slots());
   throw Error("Processor::submit",
               fmt::format("of {} frames {} are in flight and {} are pinned", scheduler.slots(),
                           scheduler.in_flight(), scheduler.pinned()),
@@ -93,6 +101,7 @@ struct Processor::State {
         calibration(opened.state().context, wanted, paths),
         scheduler(static_cast<std::size_t>(options.frames_in_flight)) {
     order.is_needed = has_memory_on_device(wanted);
+    order.each_writes = wanted.baseline_rate || wanted.calibration.effects.memory;
     order.follows_baseline = wanted.baseline_rate.has_value();
     order.interval = static_cast<cl_uint>(wanted.baseline_interval);
     SlotSettings settings;
@@ -132,7 +141,7 @@ struct Processor::State {
   /// buffers at the first launch. The rate of the tare is still zero, and sensels end at rest.
   void warm_up() {
     const FrameBuffer frame(sensel_type, skin.rows, skin.cols);
-    slots.front()->submit(frame.view());
+    slots.front()->submit(frame.view(), curvature ? std::optional(Curvature{}) : std::nullopt);
     slots.front()->wait();
     calibration.clear_states();
   }
@@ -164,6 +173,18 @@ struct Processor::PinnedResult::State {
   std::size_t slot_index;
 };
 
+/// What serves frames while the kernels are compiled in another thread. Its results outlive that.
+struct Processor::Start {
+  [[nodiscard]] bool is_over() const {
+    return compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+
+  Device device;
+  bool shares_memory;
+  HostStart host;
+  std::future<std::unique_ptr<State>> compiled;
+};
+
 Processor::PinnedResult::PinnedResult(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Processor::PinnedResult::PinnedResult(PinnedResult&&) noexcept = default;
 Processor::PinnedResult& Processor::PinnedResult::operator=(PinnedResult&&) noexcept = default;
@@ -175,14 +196,54 @@ Processor::Processor(const Device& device, const SolverPlan& plan, const Options
                      const ProcessorTuning& tuning) {
   check_options(options, tuning);
   check(plan, "solver plan");
-  std::function<void()> notify;
-  if (options.on_compiling) {
-    notify = [&] { options.on_compiling(line_on_compiling(device.info())); };
+  const auto compile = [=] {
+    std::function<void()> notify;
+    if (options.on_compiling) {
+      notify = [&] { options.on_compiling(line_on_compiling(device.info())); };
+    }
+    const LateCall notice(kCompileNotice, notify);
+    return with_opencl_errors(
+        device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
+  };
+  if (options.start_on_host && !options.changes && HostStart::serves(plan)) {
+    try {
+      start_ = std::make_unique<Start>(Start{device, decide_sharing(options.memory, device),
+                                             HostStart(plan, options.frames_in_flight),
+                                             std::async(std::launch::async, compile)});
+      start_->compiled.wait_for(kCompiledBefore);
+      end_start();
+      return;
+    } catch (const std::system_error&) {
+      start_.reset();  // The limit of threads is reached.
+    }
   }
-  const LateCall notice(kCompileNotice, notify);
-  state_ = with_opencl_errors(
-      device.info().name, [&] { return std::make_unique<State>(device, plan, options, tuning); });
+  state_ = compile();
 }
+
+/// Takes the kernels if they are compiled.
+void Processor::end_start() {
+  if (state_ == nullptr && start_->is_over()) state_ = start_->compiled.get();
+}
+
+/// Waits for the kernels.
+void Processor::await_kernels() {
+  if (state_ == nullptr) state_ = start_->compiled.get();
+}
+
+/// Solves the frame on the host if the kernels are not compiled yet; false if they are.
+bool Processor::submit_on_host(const FrameView& frame) {
+  if (start_ == nullptr) return false;
+  end_start();
+  const auto in_flight_now = static_cast<std::size_t>(in_flight());
+  if (start_->host.in_flight() > 0 && in_flight_now == start_->host.slots()) {
+    throw_all_in_flight(in_flight_now);
+  }
+  if (state_ != nullptr) return false;
+  start_->host.submit(frame);
+  return true;
+}
+
+bool Processor::is_compiling() const { return start_ != nullptr && !state_ && !start_->is_over(); }
 
 Processor::Processor(const Device& device, const SolverPlan& plan, const Options& options)
     : Processor(device, plan, options, ProcessorTuning{}) {}
@@ -210,12 +271,14 @@ void Processor::State::submit(const FrameView& frame) {
 }
 
 void Processor::submit(const FrameView& frame) {
+  if (submit_on_host(frame)) return;
   check(frame, state_->skin, state_->sensel_type, kSubmit);
   state_->mark_all();
   state_->submit(frame);
 }
 
 void Processor::submit(const FrameView& frame, std::span<const SenselBlock> changed) {
+  await_kernels();
   check(frame, state_->skin, state_->sensel_type, kSubmit);
   if (!state_->paths.changed_only) {
     throw Error(kSubmit, "the processor solves whole frames", "construct it with Options::changes");
@@ -245,7 +308,8 @@ void Processor::State::mark(std::span<const SenselBlock> changed) {
 }
 
 ForceFieldView Processor::receive() {
-  if (state_->scheduler.in_flight() == 0) {
+  if (start_ && start_->host.in_flight() > 0) return start_->host.receive();
+  if (in_flight() == 0) {
     throw Error("Processor::receive", "no frame is in flight", "submit() one first");
   }
   Slot& slot = *state_->slots[state_->scheduler.oldest()];
@@ -259,7 +323,8 @@ ForceFieldView Processor::receive() {
 }
 
 std::optional<ForceFieldView> Processor::try_receive() {
-  if (state_->scheduler.in_flight() == 0) return std::nullopt;
+  if (in_flight() == 0) return std::nullopt;
+  if (start_ && start_->host.in_flight() > 0) return receive();
   const bool done = with_opencl_errors(state_->device.info().name, [&] {
     return state_->slots[state_->scheduler.oldest()]->is_done();
   });
@@ -269,6 +334,7 @@ std::optional<ForceFieldView> Processor::try_receive() {
 
 void Processor::set_tare(std::span<const float> tare) {
   constexpr const char* kWhere = "Processor::set_tare";
+  await_kernels();
   if (!state_->retared) {
     throw Error(kWhere, "the plan has no tare",
                 "give it one in its calibration, for instance zero");
@@ -290,7 +356,7 @@ void Processor::set_tare(std::span<const float> tare) {
 }
 
 Processor::PinnedResult Processor::pin() {
-  const std::optional<std::size_t> slot = state_->scheduler.pin();
+  const std::optional<std::size_t> slot = state_ ? state_->scheduler.pin() : std::nullopt;
   if (!slot) {
     throw Error("Processor::pin", "there is no frame to pin",
                 "call pin() once per frame, after receive() and before its slot is used again");
@@ -300,19 +366,23 @@ Processor::PinnedResult Processor::pin() {
 }
 
 FoundContacts Processor::contacts() const {
-  if (!state_->contacts || !state_->received) return {};
+  if (!state_ || !state_->contacts || !state_->received) return {};
   return state_->contacts->contacts();
 }
 
 Curvature Processor::curvature() const {
-  return state_->curvature ? state_->curvature->curvature() : Curvature{};
+  return state_ && state_->curvature ? state_->curvature->curvature() : Curvature{};
 }
 
-int Processor::in_flight() const { return static_cast<int>(state_->scheduler.in_flight()); }
+int Processor::in_flight() const {
+  const std::size_t on_device = state_ ? state_->scheduler.in_flight() : 0;
+  return static_cast<int>(on_device + (start_ ? start_->host.in_flight() : 0));
+}
 
-int Processor::pinned() const { return static_cast<int>(state_->scheduler.pinned()); }
+int Processor::pinned() const { return state_ ? static_cast<int>(state_->scheduler.pinned()) : 0; }
 
 std::vector<float> Processor::tare() const {
+  if (!state_) return start_->host.plan().calibration.tare;
   return with_opencl_errors(state_->device.info().name, [&] {
     if (!state_->calibration.has_tare()) return std::vector<float>();
     std::vector<float> tare(state_->skin.sensels());
@@ -324,8 +394,10 @@ std::vector<float> Processor::tare() const {
   });
 }
 
-bool Processor::shares_memory() const { return state_->shares_memory; }
+bool Processor::shares_memory() const {
+  return state_ ? state_->shares_memory : start_->shares_memory;
+}
 
-const Device& Processor::device() const { return state_->device; }
+const Device& Processor::device() const { return state_ ? state_->device : start_->device; }
 
 }  // namespace pillarfield

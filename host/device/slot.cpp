@@ -1,6 +1,7 @@
 #include "device/slot.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace pillarfield {
 namespace {
@@ -149,10 +150,13 @@ void Slot::solve(const std::optional<Curvature>& bent) {
   std::vector<cl::Event> before;
   if (order_->is_needed && order_->left() != nullptr) before.push_back(order_->left);
   if (bent) {
+    for (cl::Event& reader : order_->readers) {
+      if (reader() != nullptr) before.push_back(std::exchange(reader, {}));
+    }
     bend_.setArg(kBendX, static_cast<float>(bent->x));
     bend_.setArg(kBendX + 1, static_cast<float>(bent->y));
     bend_.setArg(kBendX + 2, static_cast<float>(bent->xy));
-    launch(bend_, global_, local_, &before);
+    launch(bend_, global_, local_, &before, &order_->left);
     before.clear();
   }
   // Tares and activation thresholds may change from frame to frame.
@@ -161,7 +165,8 @@ void Slot::solve(const std::optional<Curvature>& bent) {
     before.clear();
   }
   if (!order_->is_needed) return launch(kernel_, global_, local_);
-  cl::Event* const left = &order_->left;
+  cl::Event* const left =
+      order_->each_writes ? &order_->left : &order_->readers[order_->frame % kMostSlots];
   launch(kernel_, global_, local_, &before, order_->follows_baseline ? nullptr : left);
   if (order_->follows_baseline) {
     follow_.setArg(kRate, order_->rate);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -9,19 +10,23 @@
 #include "device/contact_stage.h"
 #include "device/device_state.h"
 #include "device/slot_memory.h"
+#include "device/slot_scheduler.h"
 #include "pillarfield/tuning.h"
 
 namespace pillarfield {
 
-/// What frames leave to the next one on the device: the tare of a followed baseline, and the states
-/// of sensels. Then frames in flight wait for each other.
+/// What frames leave to the next one on the device: the tare of a followed baseline or of a bent
+/// skin, and the states of sensels. Then frames in flight wait for each other: each for the last
+/// one that wrote, and one that writes for all that may still read.
 struct FrameOrder {
   bool is_needed = false;
+  bool each_writes = false;  ///< every frame; else those with a change of curvature
   bool follows_baseline = false;
   float rate = 0;           ///< rate of the tare per update of a row
   cl_uint interval = 1;     ///< frames between updates of a pillar row
   std::uint64_t frame = 0;  ///< number of frames submitted
-  cl::Event left;           ///< completion of the last frame; null before the first
+  cl::Event left;           ///< completion of the last that wrote; null before the first
+  std::array<cl::Event, kMostSlots> readers;  ///< the last frames, which read what that left
 };
 
 /// Settings that all slots of a processor share.

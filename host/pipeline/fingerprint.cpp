@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <span>
@@ -79,6 +80,16 @@ void add_frame(Hash& hash, FrameSource& source, std::uint64_t index) {
   hash.add(std::as_bytes(frame.bytes()));
 }
 
+/// Adds evenly spaced frames, the first and the last among them: all would take as long as solving.
+void add_frames(Hash& hash, FrameSource& source) {
+  constexpr std::uint64_t kMostFrames = 32;
+  const std::uint64_t last = source.frames() - std::min<std::uint64_t>(source.frames(), 1);
+  const std::uint64_t frames = std::min(source.frames(), kMostFrames);
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    add_frame(hash, source, i * last / std::max<std::uint64_t>(frames - 1, 1));
+  }
+}
+
 }  // namespace
 
 std::string fingerprint_of(FrameSource& source, const SolverPlan& plan,
@@ -86,10 +97,7 @@ std::string fingerprint_of(FrameSource& source, const SolverPlan& plan,
   Hash hash;
   hash.add(std::string(kVersion));
   hash.add(source.frames());
-  if (source.frames() > 0) {
-    add_frame(hash, source, 0);
-    add_frame(hash, source, source.frames() - 1);
-  }
+  add_frames(hash, source);
   add(hash, plan);
   if (contacts) {
     hash.add(contacts->minimum_pillars);

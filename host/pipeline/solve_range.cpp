@@ -6,7 +6,7 @@
 
 #include "pillarfield/calibration_file.h"
 #include "pillarfield/error.h"
-#include "pillarfield/interrupt.h"
+#include "pipeline/baseline_survey.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
@@ -109,6 +109,12 @@ bool is_damaged(const std::filesystem::path& file) {
   }
 }
 
+/// Whether the tare follows drift. That of a bent skin also follows its curvature, which a
+/// checkpoint finds anew.
+bool follows_drift(const SolverPlan& plan) {
+  return plan.baseline_rate.has_value() && plan.calibration.bend_x.empty();
+}
+
 }  // namespace
 
 bool carries_state(const SolverPlan& plan, bool contacts) {
@@ -125,11 +131,17 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
     require_start(checkpoints.every > 0 && range.first % checkpoints.every == 0,
                   fmt::format("the range from frame {}", range.first));
   }
+  std::optional<BaselineSurvey> survey;
+  if (has_state && checkpoints.every > 0 && follows_drift(plan)) {
+    survey.emplace(source, device, plan, checkpoints);
+  }
   PipelineStatistics done;
   for (std::uint64_t first = range.first; first < range.end && !done.stopped;) {
     const std::uint64_t end = end_of_segment(first, range, checkpoints);
-    RangeStream stream(source, {first - std::min(first, checkpoints.warm_up), end});
+    const std::uint64_t warm = first - std::min(first, checkpoints.warm_up);
+    RangeStream stream(source, {warm, end});
     Processor processor(device, plan, options.processor);
+    if (survey && warm > 0) processor.set_tare(survey->tare_at(warm));
     std::optional<ContactTracker> tracker;
     if (options.contacts) tracker.emplace(plan.skin.pillar_pitch_mm(), *options.contacts);
     SegmentSink segment(first, done.contacts, sinks);

@@ -139,6 +139,7 @@ Sensor::Sensor(const Scene& scene)
           scene.skin.full_scale_counts.value_or(std::numeric_limits<double>::infinity())),
       power_law_(inverse(scene.skin.power_law)),
       seed_(scene.seed),
+      first_frame_of_noise_(std::uint64_t{scene.recording} << 32),
       rate_hz_(scene.rate_hz),
       calibration_(draw_calibration(scene)),
       drift_(draw_drift(scene)),
@@ -228,7 +229,7 @@ void Sensor::add_drift(std::uint64_t frame, std::uint32_t row, std::span<double>
 
 void Sensor::add_noise(std::uint64_t frame, std::uint32_t row, std::span<double> signal) const {
   std::vector<float> noise(signal.size());
-  random::fill_normal({seed_, random::Stream::noise, frame, row}, noise);
+  random::fill_normal({seed_, random::Stream::noise, frame + first_frame_of_noise_, row}, noise);
   add_scaled(noise, model_.noise_counts, signal);
 }
 

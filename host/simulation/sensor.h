@@ -57,6 +57,7 @@ class Sensor {
   double full_scale_counts_;
   std::optional<PowerLaw> power_law_;  ///< its inverse
   std::uint64_t seed_;
+  std::uint64_t first_frame_of_noise_;  ///< differs between recordings
   double rate_hz_;
   Calibration calibration_;
   std::vector<float> drift_;  ///< rate of each sensel over its standard deviation

@@ -43,6 +43,23 @@ CurvatureTriple solved(NormalMatrix normal, const CurvatureTriple& right) {
   return solution;
 }
 
+/// Normal equations of least squares.
+class CurvatureEquations {
+ public:
+  void add(const CurvatureTriple& pattern, double difference, double weight) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      const double weighted = weight * pattern[row];
+      right_[row] += weighted * difference;
+      for (std::size_t col = 0; col < 3; ++col) normal_[row][col] += weighted * pattern[col];
+    }
+  }
+  [[nodiscard]] CurvatureTriple solution() const { return solved(normal_, right_); }
+
+ private:
+  NormalMatrix normal_{};
+  CurvatureTriple right_{};
+};
+
 CurvatureTriple triple_of_curvature(const Curvature& curvature) {
   return {curvature.x, curvature.y, curvature.xy};
 }
@@ -86,19 +103,23 @@ double CurvatureFollower::left(const std::vector<double>& differences, std::size
 
 CurvatureFollower::Triple CurvatureFollower::fit(const std::vector<double>& differences,
                                                  const std::vector<double>& weights) const {
-  NormalMatrix normal{};
-  Triple right{};
+  CurvatureEquations equations;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
-    if (weights[i] == 0) continue;
-    const Triple& pattern = samples_[i].pattern;
-    for (std::size_t row = 0; row < 3; ++row) {
-      right[row] += weights[i] * pattern[row] * differences[i];
-      for (std::size_t col = 0; col < 3; ++col) {
-        normal[row][col] += weights[i] * pattern[row] * pattern[col];
-      }
-    }
+    equations.add(samples_[i].pattern, differences[i], weights[i]);
   }
-  return solved(normal, right);
+  return equations.solution();
+}
+
+CurvatureFollower::NearFit CurvatureFollower::fit_near(const std::vector<double>& differences,
+                                                       const Triple& curvature) const {
+  CurvatureEquations equations;
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < samples_.size(); ++i) {
+    if (!(std::abs(left(differences, i, curvature)) <= limit_)) continue;
+    equations.add(samples_[i].pattern, differences[i], 1);
+    ++near;
+  }
+  return {equations.solution(), static_cast<double>(near) / static_cast<double>(samples_.size())};
 }
 
 CurvatureFollower::Triple CurvatureFollower::rough_fit(
@@ -114,21 +135,6 @@ CurvatureFollower::Triple CurvatureFollower::rough_fit(
   return curvature;
 }
 
-std::optional<CurvatureFollower::Triple> CurvatureFollower::refined(
-    const std::vector<double>& differences, Triple from, int passes) const {
-  std::vector<double> weights(samples_.size());
-  for (int pass = 0; pass < passes; ++pass) {
-    double untouched = 0;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      weights[i] = std::abs(left(differences, i, from)) <= limit_ ? 1 : 0;
-      untouched += weights[i];
-    }
-    if (untouched < kLeastUntouched * static_cast<double>(samples_.size())) return std::nullopt;
-    from = fit(differences, weights);
-  }
-  return from;
-}
-
 std::optional<Curvature> CurvatureFollower::follow(const FrameView& frame) {
   std::vector<double> differences(samples_.size());
   for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -137,27 +143,23 @@ std::optional<Curvature> CurvatureFollower::follow(const FrameView& frame) {
     differences[i] = std::isfinite(reading) ? reading - samples_[i].tare : kMaxPlaneCounts;
   }
   const Triple before = triple_of_curvature(applied_);
-  const auto fraction_near = [&](const Triple& curvature) {
-    double count = 0;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      count += std::abs(left(differences, i, curvature)) <= limit_ ? 1 : 0;
-    }
-    return count / static_cast<double>(samples_.size());
-  };
-  Triple from = before;
-  if (!started_ || fraction_near(before) < kTrustedUntouched) {
-    const Triple rough = rough_fit(differences);
-    if (fraction_near(rough) > fraction_near(before)) from = rough;
+  NearFit now = fit_near(differences, before);
+  if (!started_ || now.part < kTrustedUntouched) {
+    const NearFit rough = fit_near(differences, rough_fit(differences));
+    if (rough.part > now.part) now = rough;
   }
-  const std::optional<Triple> now = refined(differences, from, started_ ? 1 : kRefiningPasses);
-  if (!now) return std::nullopt;
+  const int passes = started_ ? 1 : kRefiningPasses;
+  for (int pass = 1; pass < passes && now.part >= kLeastUntouched; ++pass) {
+    now = fit_near(differences, now.curvature);
+  }
+  if (now.part < kLeastUntouched) return std::nullopt;
   started_ = true;
   double change = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    change = std::max(change, std::abs((*now)[k] - before[k]) * spread_[k]);
+    change = std::max(change, std::abs(now.curvature[k] - before[k]) * spread_[k]);
   }
   if (change < kAppliedPart * noise_) return std::nullopt;
-  applied_ = {(*now)[0], (*now)[1], (*now)[2]};
+  applied_ = {now.curvature[0], now.curvature[1], now.curvature[2]};
   return Curvature{applied_.x - before[0], applied_.y - before[1], applied_.xy - before[2]};
 }
 

@@ -47,9 +47,14 @@ class CurvatureFollower {
                             const Triple& curvature) const;
   /// Curvature of least absolute differences, approximately: where to begin.
   [[nodiscard]] Triple rough_fit(const std::vector<double>& differences) const;
-  /// Refines a curvature by the sensels near it; unset with too few.
-  [[nodiscard]] std::optional<Triple> refined(const std::vector<double>& differences, Triple from,
-                                              int passes) const;
+  /// A curvature, and the part of the sensels from which it was found.
+  struct NearFit {
+    Triple curvature;
+    double part;
+  };
+  /// Least squares over the sensels near a curvature.
+  [[nodiscard]] NearFit fit_near(const std::vector<double>& differences,
+                                 const Triple& curvature) const;
 
   std::size_t cols_;
   std::vector<Sample> samples_;

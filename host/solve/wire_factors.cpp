@@ -60,8 +60,8 @@ void WireFactors::find_tile(const SolverPlan& plan, const FrameView& frame, std:
       }
       auto& factors = row_factors_[col / wires_.tile_cols * rows_ + r];
       const auto count = static_cast<int>(padded);
-      factors = single_precision::wires_of_row(readings.data(), columns.data(), count, factors,
-                                               model);
+      factors =
+          single_precision::wires_of_row(readings.data(), columns.data(), count, factors, model);
       single_precision::add_row(readings.data(), losses.data(), count, factors, model);
     }
     std::ranges::transform(losses, columns.begin(), single_precision::gain_of_loss);

@@ -26,7 +26,7 @@ class WireFactors {
   std::size_t rows_ = 0;  ///< sensels under pillars; 0: no crosstalk
   std::size_t cols_ = 0;
   std::vector<single_precision::RowWires> row_factors_;  ///< [tiles across, rows]
-  std::vector<float> column_gains_;                             ///< [tiles down, columns]
+  std::vector<float> column_gains_;                      ///< [tiles down, columns]
 };
 
 }  // namespace pillarfield

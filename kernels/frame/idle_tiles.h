@@ -25,19 +25,30 @@ typedef struct {
   float distance;
 } TileRange;
 
+/* Readings in their own type, which is narrower, if all are valid numbers. */
 #if PF_LANES == 1
-typedef PF_SENSEL SenselLanes;
-#define PF_READINGS_AT(place) (*(place))
+#define PF_SENSELS_AT(place) (*(place))
 #define PF_REALS_OF(readings) ((Real)(readings))
 #else
-typedef PF_LANE_TYPE(PF_SENSEL) SenselLanes;
-#define PF_READINGS_AT(place) PF_LOAD_WHOLE(PF_SENSEL, place)
+#define PF_SENSELS_AT(place) PF_LOAD_WHOLE(PF_SENSEL, place)
 #define PF_REALS_OF(readings) PF_TO_REAL(readings)
 #endif
-#ifdef PF_ACTIVATION_PLANE
-#define PF_THRESHOLDS_AT(place) PF_READINGS_AT(place)
+#ifdef PF_LARGEST_READING
+typedef Real SenselLanes;
+#define PF_READINGS_AT(place) PF_REALS_OF(PF_SENSELS_AT(place))
 #else
-#define PF_THRESHOLDS_AT(place) ((SenselLanes)(PF_ACTIVATION))
+#if PF_LANES == 1
+typedef PF_SENSEL SenselLanes;
+#else
+typedef PF_LANE_TYPE(PF_SENSEL) SenselLanes;
+#endif
+#define PF_READINGS_AT(place) PF_SENSELS_AT(place)
+#endif
+#ifdef PF_ACTIVATION_PLANE
+#define PF_THRESHOLDS_AT(calibration, offset) \
+  PF_READINGS_AT(activation_thresholds(calibration) + (offset))
+#else
+#define PF_THRESHOLDS_AT(calibration, offset) ((SenselLanes)((PF_SENSEL)(PF_ACTIVATION)))
 #endif
 
 /* The same by lanes. */
@@ -49,8 +60,7 @@ typedef struct {
 PF_INLINE LaneRange range_with(LaneRange range, SenselLanes reading, SenselLanes threshold) {
 #ifdef PF_LARGEST_READING
   const Real size = fabs(reading);
-  const Real distance =
-      size <= (Real)(PF_LARGEST_READING) ? threshold - reading : (Real)(-1.0f);
+  const Real distance = size <= (Real)(PF_LARGEST_READING) ? threshold - reading : (Real)(-1.0f);
   range.largest = size > range.largest ? size : range.largest;
 #else
   const SenselLanes distance = max(threshold, reading) - reading; /* No less than zero. */
@@ -90,8 +100,7 @@ PF_INLINE void prefetch_tile_row(global const PF_SENSEL* raw, Calibration calibr
 PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calibration,
                                   Layout layout, Tile tile) {
   if (tile.cols < PF_LANES) return (TileRange){0.0f, -1.0f};
-  global const PF_SENSEL* const activation = activation_thresholds(calibration);
-  LaneRange range = {(SenselLanes)(0), (SenselLanes)(PF_ACTIVATION_NEVER)};
+  LaneRange range = {(SenselLanes)(0), (SenselLanes)((PF_SENSEL)(PF_ACTIVATION_NEVER))};
   for (uint row = tile.row; row < tile.row + min(tile.rows, (uint)PF_ROWS_AHEAD); ++row) {
     prefetch_tile_row(raw, calibration, layout, tile, row);
   }
@@ -100,10 +109,10 @@ PF_INLINE TileRange range_of_tile(global const PF_SENSEL* raw, Calibration calib
       prefetch_tile_row(raw, calibration, layout, tile, row + PF_ROWS_AHEAD);
     }
     global const PF_SENSEL* const readings = raw + row * layout.row_stride + tile.col;
-    global const PF_SENSEL* const thresholds = activation + row * calibration.stride + tile.col;
     for (uint at = 0; at < tile.cols; at += PF_LANES) {
       const uint col = min(at, tile.cols - PF_LANES);
-      range = range_with(range, PF_READINGS_AT(readings + col), PF_THRESHOLDS_AT(thresholds + col));
+      range = range_with(range, PF_READINGS_AT(readings + col),
+                         PF_THRESHOLDS_AT(calibration, row * calibration.stride + tile.col + col));
     }
   }
   return range_of_lanes(range);
@@ -151,8 +160,7 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
   }
   for (uint at = first; at < first + tile.rows; ++at) {
     const float row = wires.row[at];
-    const float own =
-        (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
+    const float own = (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
     const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
     wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN_ONE ? max(high, low) : PF_SATURATED_ROW;
@@ -162,7 +170,8 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
 /* The largest bound of `rows` rows of sensels under PF_LANES pillars. */
 PF_INLINE float bound_of(WireVectors wires, Place place, uint rows) {
   float bound = PF_IDLE_TILE;
-  for (uint tile = place.col / PF_TILE_COLS; tile * PF_TILE_COLS < place.col + 2 * PF_LANES; ++tile) {
+  for (uint tile = place.col / PF_TILE_COLS; tile * PF_TILE_COLS < place.col + 2 * PF_LANES;
+       ++tile) {
     global const float* const of_rows = wires.bound + (size_t)tile * wires.rows + place.row;
     for (uint row = 0; row < rows; ++row) bound = max(bound, of_rows[row]);
   }
@@ -186,11 +195,12 @@ PF_INLINE bool rows_are_idle(global const PF_SENSEL* raw, size_t row_stride,
   const Real rise = (Real)(bound - 1.0f);
   Mask idle = mask_of(PF_BITS(-1));
   for (uint row = 0; row < rows; ++row) {
-    global const PF_SENSEL* const activation = activation_thresholds(calibration) +
-                                               (place.row + row) * calibration.stride + place.col;
     for (uint side = 0; side < 2; ++side) {
-      idle = idle && stays_idle(PF_READINGS_AT(raw + row * row_stride + side * PF_LANES),
-                                PF_THRESHOLDS_AT(activation + side * PF_LANES), rise);
+      idle =
+          idle && stays_idle(PF_READINGS_AT(raw + row * row_stride + side * PF_LANES),
+                             PF_THRESHOLDS_AT(calibration, (place.row + row) * calibration.stride +
+                                                               place.col + side * PF_LANES),
+                             rise);
     }
   }
   return !any_lane(!idle);

@@ -22,8 +22,7 @@ PF_INLINE global float* state_at(Calibration calibration, int state, int side, u
 #if PF_LANES == 1
   return states + ((size_t)row * (2 * PF_STATES) + number) * block.blocks + block.at;
 #else
-  return states +
-         (((size_t)row * block.blocks + block.at) * (2 * PF_STATES) + number) * PF_LANES;
+  return states + (((size_t)row * block.blocks + block.at) * (2 * PF_STATES) + number) * PF_LANES;
 #endif
 }
 
@@ -75,11 +74,13 @@ PF_INLINE SenselPair recall_row(SenselPair sensels, Calibration calibration, uin
   const RealPair last = load_states(calibration, PF_STATES - 1, row, block);
   Memory left;
   Memory right;
+  PF_UNROLL
   for (int i = 0; i < PF_PLAYS; ++i) {
     const RealPair pair = load_states(calibration, i, row, block);
     left.play[i] = pair.left;
     right.play[i] = pair.right;
   }
+  PF_UNROLL
   for (int i = 0; i < PF_CREEPS; ++i) {
     const RealPair pair = load_states(calibration, PF_PLAYS + i, row, block);
     left.creep[i] = pair.left;
@@ -89,11 +90,13 @@ PF_INLINE SenselPair recall_row(SenselPair sensels, Calibration calibration, uin
                                   idle_frames(last.left, calibration.frame));
   const Recalled to_right = recall(sensels.right, right, memory_model(), threshold,
                                    idle_frames(last.right, calibration.frame));
+  PF_UNROLL
   for (int i = 0; i < PF_PLAYS; ++i) {
     const RealPair pair = {to_left.active ? to_left.memory.play[i] : left.play[i],
                            to_right.active ? to_right.memory.play[i] : right.play[i]};
     store_states(pair, calibration, i, row, block);
   }
+  PF_UNROLL
   for (int i = 0; i < PF_CREEPS; ++i) {
     const RealPair pair = {to_left.active ? to_left.memory.creep[i] : left.creep[i],
                            to_right.active ? to_right.memory.creep[i] : right.creep[i]};

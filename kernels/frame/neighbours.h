@@ -37,13 +37,26 @@ PF_INLINE Ring ring_of(global float* rings, uint cols) {
   return ring;
 }
 
+/* Prefetches the readings two rows of sensels below, which the ring needs next, with their
+ * thresholds. */
+PF_INLINE void prefetch_row_below(Input input, Place place) {
+  PF_PREFETCH_FAR(input.raw + (place.row + 2) * input.row_stride + place.col);
+#ifdef PF_ACTIVATION_PLANE
+  PF_PREFETCH_FAR(activation_thresholds(input.calibration) + offset_of(input.calibration, place) +
+                  2 * input.calibration.stride);
+#endif
+}
+
 /* True if no sensel of one row under PF_LANES pillars is active, as far as raw readings tell. */
 PF_INLINE bool leaks_nothing(Input input, Place place) {
   global const PF_SENSEL* const raw = input.raw + place.row * input.row_stride + place.col;
 #if defined(PF_SKIP_IDLE) && defined(PF_WIRES)
   const float bound = bound_of(input.calibration.wires, place, 1);
-  return bound == PF_IDLE_TILE || rows_are_idle(raw, 0, input.calibration, place, 1, bound);
+  if (bound == PF_IDLE_TILE) return true;
+  prefetch_row_below(input, place);
+  return rows_are_idle(raw, 0, input.calibration, place, 1, bound);
 #elif defined(PF_SKIP_IDLE)
+  prefetch_row_below(input, place);
   return row_is_idle(
       raw, activation_thresholds(input.calibration) + offset_of(input.calibration, place));
 #else
@@ -84,6 +97,7 @@ PF_INLINE void fill_ring(Input input, uint row, bool first) {
 PF_INLINE Surroundings surroundings_of(Block block, Input input) {
   const uint col = block.top.col / 2;
   Surroundings around;
+  PF_UNROLL
   for (uint i = 0; i < 4; ++i) {
     global const float* const left = ring_row(input.ring, block.top.row + i - 1, 0) + col;
     global const float* const right = ring_row(input.ring, block.top.row + i - 1, 1) + col;
@@ -115,6 +129,7 @@ PF_INLINE RealPair sources_at(Input input, uint row, uint col) {
 PF_INLINE Surroundings surroundings_of(Block block, Input input) {
   const uint col = block.top.col / 2;
   Surroundings around;
+  PF_UNROLL
   for (uint i = 0; i < 4; ++i) {
     const uint row = block.top.row + i - 1;
     const RealPair own = sources_at(input, row, col);

@@ -145,8 +145,8 @@ typedef struct {
   size_t activation_stride;
   global uchar* idle;          /* flag of the first block */
   global const uchar* changed; /* flag of the first block */
-  uint skew;          /* pillars by which the first block would begin before the row */
-  uint last_col;      /* first column of the last block */
+  uint skew;                   /* pillars by which the first block would begin before the row */
+  uint last_col;               /* first column of the last block */
   uint blocks;
 #ifdef PF_WIRES
   Calibration calibration;
@@ -255,7 +255,12 @@ PF_INLINE void solve_row(Input input, Output output, uint at_row, global const u
 #else
     const Lanes lanes = {0, PF_LANES};
 #endif
-    Block block = {row.raw + 2 * col, top, bottom, first_index + col, lanes};
+    Block block;
+    block.raw = row.raw + 2 * col;
+    block.top = top;
+    block.bottom = bottom;
+    block.index = first_index + col;
+    block.lanes = lanes;
 #ifdef PF_MEMORY
     block.at = at;
     block.blocks = blocks_of_row(pillar_cols);
@@ -292,17 +297,15 @@ kernel void solve_frame(global const PF_SENSEL* restrict raw,
 #ifdef PF_LEAK
   input.ring = ring_of((global float*)(results + layout.ring), input.cols);
 #endif
+#ifdef PF_LEAK
   bool first = true; /* row of several without a gap */
+#endif
   for (uint row = band.first; row < band.end; ++row) {
     global const uchar* const changed = changed_in_row(results, layout, row);
-    if (!changed) {
-      first = true;
-      continue;
-    }
 #ifdef PF_LEAK
-    fill_ring(input, row, first);
+    if (changed) fill_ring(input, row, first);
+    first = !changed;
 #endif
-    solve_row(input, output, row, changed);
-    first = false;
+    if (changed) solve_row(input, output, row, changed);
   }
 }

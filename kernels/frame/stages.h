@@ -13,8 +13,8 @@
  * or after it (correct_forces.cl, follow_baseline.cl).
  * - Stage with state: planes of states that solve_frame.cl updates (memory.h), or a plane that an
  *   entry point updates for the next frame. Frames then wait for each other on the device.
- * The host's table gives the kind of each stage, and whether idle blocks may be skipped: whether
- * activation_thresholds() and threshold_of_sensel() include it. */
+ * The host's table gives the kind of each stage. Idle blocks are skipped: activation_thresholds()
+ * and threshold_of_sensel() must include a stage that moves small readings across the threshold. */
 
 #ifdef __cplusplus
 #define PF_NAMED(stage) stages.stage

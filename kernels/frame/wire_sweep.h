@@ -3,7 +3,7 @@
  * numbers are padded with zeros to a multiple of PF_WIRE_PARTS. */
 
 #define PF_WIRE_SWEEPS 2
-#define PF_WIRE_PARTS 16          /* partial sums, added in a fixed order */
+#define PF_WIRE_PARTS 16           /* partial sums, added in a fixed order */
 #define PF_WIRE_LEAST_SHARE 0.125f /* of the voltage; a wire keeps at least this */
 
 /* Resistances times the conductance of one count. */

@@ -15,12 +15,8 @@ PF_INLINE uint tiles_across(uint cols) { return (cols + PF_TILE_COLS - 1) / PF_T
 
 PF_INLINE WireVectors wire_vectors(global float* memory, uint rows, uint cols) {
   const size_t per_row = (size_t)rows * tiles_across(cols);
-  const WireVectors wires = {memory,
-                             memory + per_row,
-                             memory + 2 * per_row,
-                             memory + 3 * per_row,
-                             rows,
-                             cols};
+  const WireVectors wires = {
+      memory, memory + per_row, memory + 2 * per_row, memory + 3 * per_row, rows, cols};
   return wires;
 }
 

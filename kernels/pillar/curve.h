@@ -23,6 +23,7 @@ PF_INLINE Real curve_position(Real reading, CurvePolynomial curve) {
 /* P(t). */
 PF_INLINE Real curve_factor(Real t, CurvePolynomial curve) {
   Real sum = PF_CONSTANT(Real, curve.terms[PF_CURVE_TERMS - 1]);
+  PF_UNROLL
   for (int i = PF_CURVE_TERMS - 2; i >= 0; --i) sum = sum * t + PF_CONSTANT(Real, curve.terms[i]);
   return sum;
 }
@@ -38,6 +39,7 @@ PF_INLINE Real curve_slope(Real reading, CurvePolynomial curve) {
   const float step = curve.root ? 0.5f : 1.0f;
   float weight = 1.0f + step * PF_CURVE_LAST_POWER;
   Real sum = PF_REAL(0.0);
+  PF_UNROLL
   for (int i = PF_CURVE_TERMS - 1; i >= 0; --i) {
     sum = sum * t + PF_CONSTANT(Real, curve.terms[i] * weight);
     weight = weight - step;

@@ -29,6 +29,7 @@ PF_INLINE Real decay_of(Real x) {
   const Real y = x * PF_REAL(0.00390625); /* 1 / 256 */
   const Real cubic = PF_REAL(0.5) - y * PF_REAL(0.16666666666666666667);
   Real decay = PF_REAL(1.0) - y * (PF_REAL(1.0) - y * cubic);
+  PF_UNROLL
   for (int i = 0; i < 8; ++i) decay = decay * decay;
   return x < PF_REAL(32.0) ? decay : PF_REAL(0.0);
 }
@@ -52,7 +53,9 @@ PF_INLINE Memory rested(Memory before, MemoryModel model, Real idle, Mask touche
   const Real zero = PF_REAL(0.0);
   const Mask rests = (idle > zero) && touched;
   if (!any_lane(rests)) return before;
+  PF_UNROLL
   for (int i = 0; i < model.plays; ++i) before.play[i] = rests ? zero : before.play[i];
+  PF_UNROLL
   for (int i = 0; i < model.creeps; ++i) {
     before.creep[i] = before.creep[i] * decay_of(idle * PF_CONSTANT(Real, model.creep_decay[i]));
   }
@@ -78,16 +81,19 @@ PF_INLINE Recalled recall(Sensel sensel, Memory stored, MemoryModel model, Real 
   result.memory = before;
   Real held = zero;
   Real crept = zero;
+  PF_UNROLL
   for (int i = 0; i < model.creeps; ++i) {
     crept = crept + PF_CONSTANT(Real, model.creep_weight[i]) * before.creep[i];
   }
   const Real fast = sensel.reading - crept;
+  PF_UNROLL
   for (int i = 0; i < model.plays; ++i) {
     const Real play = play_after(before.play[i], fast, PF_CONSTANT(Real, model.play_width[i]));
     result.memory.play[i] = play;
     held = held + PF_CONSTANT(Real, model.play_weight[i]) * play;
   }
   const Real load = fast + held;
+  PF_UNROLL
   for (int i = 0; i < model.creeps; ++i) {
     result.memory.creep[i] =
         before.creep[i] + PF_CONSTANT(Real, model.creep_rate[i]) * (load - before.creep[i]);

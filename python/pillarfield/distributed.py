@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import time
 from typing import Any, Optional
@@ -34,11 +35,7 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
 
     Raises Error if a part fails, with the reason.
     """
-    try:
-        from distributed import as_completed
-    except ImportError:
-        raise Error("pillarfield.distributed", "the package 'distributed' is not installed",
-                    "install python3-distributed, or use solve_part()") from None
+    as_completed = _dask().as_completed
     recording, output = os.path.abspath(recording), os.path.abspath(output)
     _require_portable(how)
     frames = len(_recording_of(recording, how))
@@ -113,6 +110,14 @@ def join(output: Path, *, copy: bool = False, allow_missing: bool = False, overw
     Returns the number of missing parts. Raises Error if parts differ in source or plan.
     """
     return _core.join_parts(output, copy, allow_missing, overwrite, trust)
+
+
+def _dask() -> Any:
+    try:
+        return importlib.import_module("distributed")
+    except ImportError:
+        raise Error("pillarfield.distributed", "the package 'distributed' is not installed",
+                    "install python3-distributed, or use solve_part()") from None
 
 
 def _recording_of(recording: Path, how: dict[str, Any]) -> Recording:

@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <sstream>
 
@@ -16,6 +17,7 @@ namespace {
 using io_test::bytes_of;
 using io_test::error_of;
 using io_test::has_all;
+using io_test::number_at;
 using io_test::sample_forces;
 using io_test::TemporaryDirectory;
 using io_test::write_bytes;
@@ -94,6 +96,54 @@ TEST(ForceFile, KeepsEverythingOfAnySize) {
         EXPECT_EQ(read.status, expected.status);
       }
       EXPECT_TRUE(has_all(error_of([&] { reader.read(reader.frames(), read); }), {"has no frame"}));
+    }
+  }
+}
+
+/// A field that is idle but for single pillars, which come and go; some values are −0 and NaN.
+ForceField sparse_forces(std::uint64_t index, std::uint32_t rows, std::uint32_t cols) {
+  ForceField forces(rows, cols);
+  if (index % 5 == 0) return forces;
+  for (std::uint64_t touched = 0; touched < 3; ++touched) {
+    const std::uint64_t number = number_at(index / 9, touched);
+    const std::size_t pillar = number % forces.pillars();
+    forces.normal[pillar] = static_cast<float>(index) + 0.5F;
+    forces.shear_x[pillar] = touched == 0 ? -0.0F : std::numeric_limits<float>::quiet_NaN();
+    forces.status[pillar] = touched == 1 ? 0 : 15;  // A value counts, whatever the status.
+  }
+  return forces;
+}
+
+TEST(ForceFile, LeavesOutWhatNothingTouchesAndKeepsEveryBit) {
+  for (const auto& [rows, cols, frames] :
+       {std::tuple{1u, 1u, 40u}, {13u, 29u, 37u}, {79u, 20u, 16u}, {200u, 333u, 53u}}) {
+    const TemporaryDirectory directory;
+    const auto path = directory / "f.h5";
+    {
+      const auto sink = create_force_sink(path, info_of(rows, cols));
+      for (std::uint64_t index = 0; index < frames; ++index) {
+        const ForceField forces = sparse_forces(index, rows, cols);
+        sink->append({.forces = forces.view(), .time_s = static_cast<double>(index)});
+      }
+      sink->finish();
+    }
+    const std::uint64_t dense = std::uint64_t{rows} * cols * frames * 13;
+    if (rows == 200) {
+      EXPECT_LT(std::filesystem::file_size(path), dense / 10);
+    }
+    const ForceFileReader reader(path);
+    ForceField read;
+    for (std::uint64_t index : {std::uint64_t{frames - 1}, std::uint64_t{0}}) {
+      for (; index < frames; ++index) {
+        reader.read(index, read);
+        const ForceField expected = sparse_forces(index, rows, cols);
+        const auto same = [](const std::vector<float>& a, const std::vector<float>& b) {
+          return a.size() == b.size() && std::memcmp(a.data(), b.data(), 4 * a.size()) == 0;
+        };
+        ASSERT_TRUE(same(read.shear_x, expected.shear_x)) << index;
+        ASSERT_TRUE(same(read.normal, expected.normal)) << index;
+        ASSERT_EQ(read.status, expected.status) << index;
+      }
     }
   }
 }

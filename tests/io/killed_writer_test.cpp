@@ -204,6 +204,21 @@ TEST(KilledForces, GiveEveryFlushedFrame) {
   }
 }
 
+/// Tiles that nothing touches are not stored; those that the cut took are not taken for them.
+TEST(KilledForces, TruncatedNeverGiveWrongForces) {
+  const TemporaryDirectory directory;
+  flushed_by_killed("forces", directory / "f.h5", "20", 200, 0);
+  const std::string whole = bytes_of(directory / "f.h5.part");
+  for (std::size_t part = 1; part < 60; ++part) {
+    write_bytes(directory / "cut.h5", whole.substr(0, whole.size() * part / 60));
+    try {
+      expect_written_frames(ForceFileReader(directory / "cut.h5"));
+    } catch (const Error& error) {
+      EXPECT_TRUE(has_all(error.what(), {"cut.h5"}));
+    }
+  }
+}
+
 TEST(KilledForces, GiveTheContactsOfEveryFlushedFrame) {
   for (std::uint64_t trial = 0; trial < 6; ++trial) {
     const TemporaryDirectory directory;

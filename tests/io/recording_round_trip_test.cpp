@@ -274,6 +274,39 @@ TEST(RecordingWriter, WritesOnAfterItWasMoved) {
   EXPECT_EQ(open_frames(directory / "r.h5")->frames(), 2u);
 }
 
+/// A touch of one pillar that moves, at the edges of tiles and in a corner of the skin.
+TEST(RecordingRoundTrip, LeavesOutTilesOfTheTruthThatNothingTouches) {
+  constexpr std::uint32_t kPillars = 200;  // pillars each way
+  constexpr std::uint64_t kTouches = 40;
+  const TemporaryDirectory directory;
+  const FrameBuffer frame(SenselType::u8, 2 * kPillars, 2 * kPillars);
+  const auto truth_of = [](std::uint64_t index) {
+    constexpr std::size_t kPlaces[] = {0, 31, 32, 33 * kPillars, kPillars * kPillars - 1};
+    ForceField truth(kPillars, kPillars);
+    if (index % 6 < 5) truth.normal[kPlaces[index % 6]] = static_cast<float>(index + 1);
+    if (index == 17) truth.shear_x[kPlaces[3]] = -2;
+    return truth;
+  };
+  RecordingWriter writer(directory / "r.h5", skin_of(2 * kPillars, 2 * kPillars), SenselType::u8,
+                         {}, {.truth = true});
+  for (std::uint64_t index = 0; index < kTouches; ++index) {
+    const ForceField truth = truth_of(index);
+    writer.append(frame.view(), static_cast<double>(index), &truth);
+  }
+  writer.finish();
+  const std::size_t readings = kTouches * frame.bytes().size();
+  const std::size_t dense_truth = kTouches * 3 * kPillars * kPillars * sizeof(float);
+  EXPECT_LT(std::filesystem::file_size(directory / "r.h5"), readings + dense_truth / 5);
+  const auto source = open_frames(directory / "r.h5");
+  for (std::uint64_t index = kTouches; index-- > 0;) {
+    ForceField truth;
+    source->read_truth(index, truth);
+    EXPECT_EQ(truth.shear_x, truth_of(index).shear_x) << index;
+    EXPECT_EQ(truth.shear_y, truth_of(index).shear_y) << index;
+    EXPECT_EQ(truth.normal, truth_of(index).normal) << index;
+  }
+}
+
 TEST(RecordingWriter, RefusesUnfitFramesAndContinues) {
   const TemporaryDirectory directory;
   RecordingWriter writer(directory / "r.h5", skin_of(4, 4), SenselType::u8, {}, {.truth = true});

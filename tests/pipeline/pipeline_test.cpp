@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "pillarfield/contact_file.h"
@@ -73,7 +74,7 @@ class Presses final : public FrameStream {
     std::uint32_t rows = kSkin.rows;             ///< sensel rows of its frames
     std::vector<SenselBlock> missing = {};       ///< of every other frame, from the second on
   };
-  explicit Presses(const Options& options) : options_(options) {}
+  explicit Presses(Options options) : options_(std::move(options)) {}
 
   [[nodiscard]] const Skin& skin() const override { return kSkin; }
   [[nodiscard]] SenselType sensel_type() const override { return SenselType::u8; }
@@ -352,8 +353,8 @@ TEST(Pipeline, WritesTheBytesOfExplicitCalls) {
     };
 
     const auto sinks = sinks_named("pipeline");
-    std::vector<ForceSink*> all;
-    for (const auto& sink : sinks) all.push_back(sink.get());
+    std::vector<ForceSink*> all(sinks.size());
+    std::ranges::transform(sinks, all.begin(), [](const auto& sink) { return sink.get(); });
     Processor processor(test_device(), plan);
     ContactTracker tracker(info.pillar_pitch_mm, options);
     const auto stream = file_stream(*source);

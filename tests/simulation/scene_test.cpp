@@ -72,6 +72,7 @@ path = [{ time_s = 0, curvature_per_mm = [0, 0, 0] }, { time_s = 2, curvature_pe
 rate_hz = 250
 frames = 12
 seed = 99
+recording = 3
 [solver]
 parity_tolerance_counts = 4
 baseline_time_s = 30
@@ -145,6 +146,7 @@ load_n = 0.5
   EXPECT_EQ(scene.rate_hz, 250);
   EXPECT_EQ(scene.frames, 12U);
   EXPECT_EQ(scene.seed, 99U);
+  EXPECT_EQ(scene.recording, 3U);
   EXPECT_EQ(scene.parity_tolerance_counts, 4);
   EXPECT_EQ(scene.baseline_time_s, 30);
   EXPECT_EQ(scene.estimator, Estimator::direct);
@@ -402,6 +404,7 @@ TEST(ScenesPage, HasAnExampleThatParsesAndEveryKey) {
                                    "rate_hz",
                                    "frames",
                                    "seed",
+                                   "recording",
                                    "shape",
                                    "motion",
                                    "clockwise",

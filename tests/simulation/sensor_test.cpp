@@ -70,6 +70,28 @@ TEST(Sensor, NoiseHasItsDeviationAndIsNewInEveryFrame) {
   EXPECT_TRUE(Sensor(scene).calibration().empty());
 }
 
+TEST(Sensor, RecordingsHaveOneSensorAndIndependentNoise) {
+  SensorModel model;
+  model.noise_counts = 1;
+  model.gain_spread = 0.1;
+  model.tare_counts = 4;
+  model.tare_spread_counts = 1;
+  Scene scene = scene_with(model);
+  const Sensor first(scene);
+  const FrameBuffer at_first = reading_of(0, scene);
+  scene.recording = 1;
+  EXPECT_EQ(Sensor(scene).calibration().gain, first.calibration().gain);
+  EXPECT_EQ(Sensor(scene).calibration().tare, first.calibration().tare);
+  const FrameBuffer at_second = reading_of(0, scene);
+  double product = 0;
+  for (std::size_t i = 0; i < scene.skin.sensels(); ++i) {
+    const float tare = first.calibration().tare[i];
+    product += double{at_first.readings<float>()[i] - tare} *
+               double{at_second.readings<float>()[i] - tare};
+  }
+  EXPECT_NEAR(product / (kSize * kSize), 0, 5.0 / kSize);
+}
+
 TEST(Sensor, SensitivitiesHaveMeanOneAndTheirSpread) {
   SensorModel model;
   model.gain_spread = 0.2;

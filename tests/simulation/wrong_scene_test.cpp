@@ -128,6 +128,9 @@ TEST(WrongScene, SkinSensorTimeAndSolver) {
       {"[time]\nseed = -1",
        "s.toml:3: key 'seed' in [time] is -1; allowed: a whole number from 0 to "
        "9223372036854775807"},
+      {"[time]\nrecording = 1000000001",
+       "s.toml:3: key 'recording' in [time] is 1000000001; allowed: a whole number from 0 to "
+       "1000000000"},
       {"[solver]\nbaseline_time_s = 0",
        "s.toml:3: key 'baseline_time_s' in [solver] is 0; allowed: a number in [1e-06, "
        "1000000000]"},

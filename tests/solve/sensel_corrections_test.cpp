@@ -142,6 +142,12 @@ TEST(SenselLeak, LeavesAUniformFieldExact) {
 }
 
 /// Why it needs an experiment of its own (E3).
+TEST(SenselLeak, LeavesSenselsBelowTheThresholdInactive) {
+  const SolverPlan plan = pressed_plan(kPatchSide, kPatchSide, with_leak({0.2, 0.1}));
+  const std::vector<double> below(kPatchSensels * kPatchSensels, 0.49);  // times c_0 above 0.5
+  EXPECT_EQ(pressed_count(solve_readings(plan, below)), 0);
+}
+
 TEST(SenselLeak, InsideAPillarHidesFromParity) {
   SolverPlan plan = pressed_plan(kPatchSide, kPatchSide, {});
   plan.parity_tolerance_counts = 0.01;
@@ -202,6 +208,19 @@ std::vector<ForceField> random_history(unsigned seed) {
                   force);
   }
   return frames;
+}
+
+/// Weights below zero raise a reading; idle blocks could not be skipped if they made it active.
+TEST(SenselMemory, LeavesSenselsBelowTheThresholdInactive) {
+  SensorEffects effects;
+  effects.memory = {{{0, -0.5}}, {{0.01, -0.5}}};
+  const SolverPlan plan = pressed_plan(1, 1, effects);
+  SensorState state;
+  for (const double reading : {200.0, 200.0, 200.0, 0.4}) {
+    const ForceField solved =
+        solve_readings(plan, std::vector<double>{reading, reading, reading, reading}, state);
+    EXPECT_EQ(pressed_count(solved), reading > 0.5 ? 1 : 0);
+  }
 }
 
 TEST(SenselMemory, OfAnyHistoryComesBack) {
@@ -290,7 +309,7 @@ TEST(Wires, OfTheNodalSolveComeBack) {
     const std::vector<double> readings = through_wires(v, effects, kPatchSide);
     const ForceField solved =
         solve_readings(pressed_plan(kPatchSide, kPatchSide, effects), readings);
-    EXPECT_LT(largest_error(solved, truth), 0.003 * 150);
+    EXPECT_LT(largest_error(solved, truth), 0.001 * 150);
     EXPECT_GT(
         largest_error(solve_readings(pressed_plan(kPatchSide, kPatchSide, {}), readings), truth),
         3);

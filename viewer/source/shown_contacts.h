@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pillarfield/contact_labels.h"
@@ -30,8 +31,8 @@ struct ShownContacts {
 /// restarts tracking with ids from 1.
 class FieldContacts {
  public:
-  explicit FieldContacts(double pillar_pitch_mm, const ContactOptions& options = {})
-      : pitch_mm_(pillar_pitch_mm), options_(options) {}
+  explicit FieldContacts(double pillar_pitch_mm, ContactOptions options = {})
+      : pitch_mm_(pillar_pitch_mm), options_(std::move(options)) {}
 
   /// See ContactTracker::update() for time.
   [[nodiscard]] ShownContacts contacts_of(const ShownField& field);

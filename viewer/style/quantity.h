@@ -69,7 +69,7 @@ struct Range {
 
 /// Largest finite |value| over pillars that are neither idle, saturated nor inconsistent; 0 for
 /// none.
-[[nodiscard]] float largest(Quantity quantity, const ShownField& field);
+[[nodiscard]] float largest(Quantity quantity, const ShownField& shown);
 
 /// Range for a largest value: its round_ceiling(), 1 for a value of 0; always [0, pi/2] for theta,
 /// [-pi, pi] for phi and [0, number of classes] for classes.
@@ -90,7 +90,7 @@ struct Range {
 ///
 /// NaN where the source lacks the data or the pillar is idle: not is_pressed(); for region no
 /// usable sensel; for status not pressed and no fault.
-[[nodiscard]] float value_of(Quantity quantity, const ShownField& field, std::uint32_t row,
+[[nodiscard]] float value_of(Quantity quantity, const ShownField& shown, std::uint32_t row,
                              std::uint32_t col);
 
 }  // namespace pillarfield::viewer

@@ -105,6 +105,7 @@ void stream(const StreamOptions& options) {
   Processor processor(device, plan,
                       {.memory = options.device.memory,
                        .frames_in_flight = options.frames_in_flight,
+                       .start_on_host = true,
                        .on_compiling = terminal_line(options.quiet)});
   StreamSession session(options, *source, plan, processor, sink_info(options, plan, device));
   session.run();

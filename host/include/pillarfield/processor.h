@@ -93,8 +93,14 @@ class Processor {
     /// Frames come as changes of their predecessors: submit() with `changed`, at the cost of what
     /// changed. Each slot solves a change once, so one frame in flight costs least.
     bool changes = false;
-    /// Called at most once, from another thread, if the constructor takes longer than 0.3 s because
-    /// kernels are compiled, with a line of text for the user. It must not throw.
+    /// While kernels are compiled, which takes seconds where the driver's cache does not hold them,
+    /// submit() solves on the host instead, in the calling thread and with the same bits, so that
+    /// forces come at once; pin() finds no frame, and set_tare() waits for the kernels. Has no
+    /// effect with angles, changes, estimators other than `direct`, and plans whose frames leave
+    /// something to the next ones (a followed baseline, a bent skin, hysteresis, creep).
+    bool start_on_host = false;
+    /// Called at most once, from another thread, if compiling the kernels takes longer than 0.3 s,
+    /// with a line of text for the user. It must not throw.
     std::function<void(const std::string& line)> on_compiling = {};
   };
 
@@ -180,12 +186,20 @@ class Processor {
 
   [[nodiscard]] int in_flight() const;       ///< frames submitted and not yet received
   [[nodiscard]] int pinned() const;          ///< results held now
+  [[nodiscard]] bool is_compiling() const;   ///< submit() still solves on the host
   [[nodiscard]] bool shares_memory() const;  ///< whether frames and results stay in place
   [[nodiscard]] const Device& device() const;
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  struct Start;
+
+  void end_start();
+  void await_kernels();
+  bool submit_on_host(const FrameView& frame);
+
+  std::unique_ptr<State> state_;  ///< null while kernels are compiled
+  std::unique_ptr<Start> start_;  ///< null without Options::start_on_host
 };
 
 }  // namespace pillarfield

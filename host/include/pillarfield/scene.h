@@ -102,6 +102,7 @@ struct Scene {
   double rate_hz = 100;
   std::uint32_t frames = 1;
   std::uint64_t seed = 1;
+  std::uint32_t recording = 0;  ///< number of this recording of the seed's sensor; sets its noise
   std::optional<double> parity_tolerance_counts;  ///< as in SolverPlan, like the next five members
   Estimator estimator = Estimator::direct;
   double segment_point = kSegmentPoint;

@@ -47,10 +47,10 @@ class Simulator {
   using TakeFrame =
       std::function<void(std::uint64_t index, const FrameView& raw, const ForceField& truth)>;
 
-  /// Renders `count` frames from `first` on in `threads` threads, the calling one included (0: one
-  /// per processor), and calls `take` for each in order, in the calling thread. The frames are
-  /// those of render(), whatever the threads. Holds `threads` + 2 frames. Throws what render() and
-  /// `take` throw, after the frames before it are taken.
+  /// Renders `count` frames from `first` on in `threads` threads, the calling one included (at most
+  /// 16; 0: one per processor), and calls `take` for each in order, in the calling thread. The
+  /// frames are those of render(), whatever the threads. Holds `threads` + 2 frames. Throws what
+  /// render() and `take` throw, after the frames before it are taken.
   void render_all(std::uint64_t first, std::uint64_t count, const TakeFrame& take,
                   unsigned threads = 0) const;
 

@@ -30,8 +30,10 @@ struct RangeOptions {
 /// Solves the frames of a range and passes them to sinks, which it does not finish.
 ///
 /// At each checkpoint, state begins anew: the processor and the tracker of contacts are made again
-/// and given Checkpoints::warm_up frames before. Hence the same bits in a range that begins at a
-/// checkpoint and in all frames. Contacts after a checkpoint have new ids.
+/// and given Checkpoints::warm_up frames before. A followed baseline begins with the drift that ten
+/// frames of each earlier distance show. Hence the same
+/// bits in a range that begins at a checkpoint and in all frames. Contacts after a checkpoint have
+/// new ids.
 ///
 /// Throws Error if the plan carries state and the range begins at no checkpoint, and as Pipeline.
 PipelineStatistics solve_range(FrameSource& source, const Device& device, const SolverPlan& plan,
@@ -39,7 +41,7 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
                                const std::vector<ForceSink*>& sinks);
 
 /// 16 hexadecimal digits that differ, but for chance, if frames, plan, calibration or options of
-/// contacts do. Reads the first and the last frame.
+/// contacts do. Of the frames, 32 are read: the first, the last, and evenly spaced ones.
 [[nodiscard]] std::string fingerprint_of(FrameSource& source, const SolverPlan& plan,
                                          const std::optional<ContactOptions>& contacts);
 

@@ -4,6 +4,7 @@
 #ifndef PILLARFIELD_STREAM_FORMAT_H
 #define PILLARFIELD_STREAM_FORMAT_H
 
+/* NOLINTBEGIN(modernize-use-using, modernize-deprecated-headers): it is C. */
 #include <stdint.h>
 
 #define PILLARFIELD_PACKET_MAGIC 0x31524650u /* "PFR1" */
@@ -124,5 +125,6 @@ typedef struct PillarfieldResultSlot {
   PillarfieldContact total; /* of all loaded pillars; track_id 0 */
   PillarfieldContact contact[PILLARFIELD_MAX_CONTACTS]; /* the strongest, by normal force */
 } PillarfieldResultSlot;
+/* NOLINTEND(modernize-use-using, modernize-deprecated-headers) */
 
 #endif

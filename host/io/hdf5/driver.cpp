@@ -12,6 +12,7 @@
 #include <cstring>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "pillarfield/error.h"
 
@@ -28,6 +29,8 @@ struct DriverFile : H5FD_t {
   int descriptor = -1;
   haddr_t allocated_end = 0;
   haddr_t file_end = 0;
+  std::vector<char> waiting;  ///< adjacent small blocks, which one call writes
+  haddr_t waiting_at = 0;     ///< their address
   std::shared_ptr<WriteStatus> write_status;
 };
 
@@ -57,8 +60,25 @@ H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
   return file.release();
 }
 
+void write_through(DriverFile& target, haddr_t address, const char* next, std::size_t size) {
+  while (size > 0 && target.write_status->error_number == 0) {
+    const ssize_t put = pwrite(target.descriptor, next, size, static_cast<off_t>(address));
+    if (put < 0 && errno != EINTR) target.write_status->error_number = errno;
+    if (put < 0) continue;
+    next += put;
+    address += static_cast<haddr_t>(put);
+    size -= static_cast<size_t>(put);
+  }
+}
+
+void write_waiting(DriverFile& target) {
+  write_through(target, target.waiting_at, target.waiting.data(), target.waiting.size());
+  target.waiting.clear();
+}
+
 herr_t close_file(H5FD_t* file) {
   const std::unique_ptr<DriverFile> owned(&ours(file));
+  write_waiting(*owned);
   if (::close(owned->descriptor) != 0 && owned->write_status->error_number == 0) {
     owned->write_status->error_number = errno;
   }
@@ -83,6 +103,7 @@ haddr_t file_end(const H5FD_t* file, H5FD_mem_t) { return ours(file).file_end; }
 
 herr_t read_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size, void* block) {
   auto* out = static_cast<char*>(block);
+  write_waiting(ours(file));
   while (size > 0) {
     const ssize_t got = pread(ours(file).descriptor, out, size, static_cast<off_t>(address));
     if (got < 0 && errno == EINTR) continue;
@@ -98,24 +119,34 @@ herr_t read_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size,
   return 0;
 }
 
+/// Small blocks wait for adjacent ones; all reach the file in their order.
 herr_t write_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size,
                    const void* block) {
+  constexpr std::size_t kSmallBytes = 64 << 10;
+  constexpr std::size_t kMostWaitingBytes = 1 << 20;
   DriverFile& target = ours(file);
   target.file_end = std::max<haddr_t>(target.file_end, address + size);
-  const auto* next = static_cast<const char*>(block);
-  while (size > 0 && target.write_status->error_number == 0) {
-    const ssize_t put = pwrite(target.descriptor, next, size, static_cast<off_t>(address));
-    if (put < 0 && errno != EINTR) target.write_status->error_number = errno;
-    if (put < 0) continue;
-    next += put;
-    address += static_cast<haddr_t>(put);
-    size -= static_cast<size_t>(put);
+  const auto* const bytes = static_cast<const char*>(block);
+  std::vector<char>& waiting = target.waiting;
+  const bool is_adjacent = address == target.waiting_at + waiting.size();
+  if (!is_adjacent || waiting.size() + size > kMostWaitingBytes) write_waiting(target);
+  if (size > kSmallBytes && waiting.empty()) {
+    write_through(target, address, bytes, size);
+    return 0;
   }
+  if (waiting.empty()) target.waiting_at = address;
+  waiting.insert(waiting.end(), bytes, bytes + size);
+  return 0;
+}
+
+herr_t flush_file(H5FD_t* file, hid_t, hbool_t) {
+  write_waiting(ours(file));
   return 0;
 }
 
 herr_t truncate_file(H5FD_t* file, hid_t, hbool_t) {
   DriverFile& target = ours(file);
+  write_waiting(target);
   if (target.file_end == target.allocated_end || target.write_status->error_number != 0) return 0;
   if (ftruncate(target.descriptor, static_cast<off_t>(target.allocated_end)) != 0) {
     target.write_status->error_number = errno;
@@ -156,6 +187,7 @@ H5FD_class_t driver_class() {
   driver.get_eof = file_end;
   driver.read = read_block;
   driver.write = write_block;
+  driver.flush = flush_file;
   driver.truncate = truncate_file;
   driver.lock = lock_file;
   driver.unlock = unlock_file;

@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "io/file_kind.h"
 #include "io/hdf5/attribute.h"
+#include "io/hdf5/links.h"
+#include "io/hdf5/stored_frames.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {
@@ -13,6 +18,7 @@ namespace {
 
 constexpr const char* kLayout = "docs/formats.md describes the expected file";
 constexpr const char* kCannotWrite = "cannot be written";
+constexpr const char* kFlushedBytes = "flushed_bytes";
 
 std::string advice_for(std::string_view found, std::string_view wanted) {
   if (found == "pillarfield-forces") {
@@ -35,6 +41,33 @@ Handle reading_access(const std::filesystem::path& path, bool unclosed) {
   return access;
 }
 
+std::uint64_t size_of(const std::filesystem::path& path) {
+  std::error_code failed;
+  const auto bytes = std::filesystem::file_size(path, failed);
+  if (!failed) return bytes;
+  throw Error(path.string(), failed.message(), "do not move it while it is open");
+}
+
+void note_size(const File& file) {
+  const std::uint64_t bytes = size_of(file.path);
+  require(
+      H5Dwrite(file.flushed_bytes.get(), H5T_NATIVE_UINT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, &bytes),
+      file.path, kCannotWrite);
+  require(H5Dflush(file.flushed_bytes.get()), file.path, kCannotWrite);
+}
+
+/// Throws Error if an unclosed file is shorter than its writer had flushed.
+void require_whole(const File& file) {
+  if (!exists(file, kFlushedBytes)) return;
+  const StoredFrames number(file, kFlushedBytes, 0);
+  std::uint64_t flushed = 0;
+  if (number.frames() > 0) number.get(0, H5T_NATIVE_UINT64, &flushed);
+  const std::uint64_t bytes = size_of(file.path);
+  if (bytes >= flushed) return;
+  throw Error(file.path.string(),
+              fmt::format("lost its end: {} bytes are left of {}", bytes, flushed), kDamaged);
+}
+
 }  // namespace
 
 File open_to_read(const std::filesystem::path& path, bool probing) {
@@ -52,6 +85,7 @@ File open_to_read(const std::filesystem::path& path, bool probing) {
   const Handle access = reading_access(path, file.unclosed);
   file.id =
       own(H5Fopen(path.c_str(), mode, access.get()), path, "cannot be opened as HDF5", kDamaged);
+  if (file.unclosed) require_whole(file);
   return file;
 }
 
@@ -89,7 +123,13 @@ File create(const OutputFile& output) {
   return file;
 }
 
-void start_appending(const File& file) {
+void start_appending(File& file) {
+  constexpr hsize_t kOne = 1;
+  const Handle one = own(H5Screate_simple(1, &kOne, nullptr), file.path, kCannotWrite);
+  file.flushed_bytes = own(H5Dcreate2(file.id.get(), kFlushedBytes, H5T_STD_U64LE, one.get(),
+                                      H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                           file.path, kCannotWrite);
+  note_size(file);
   flush(file);  // HDF5 reads back what it has written
   require(H5Fstart_swmr_write(file.id.get()), file.path, kCannotWrite);
   require_written(*file.write_status, file.path);
@@ -98,9 +138,11 @@ void start_appending(const File& file) {
 void flush(const File& file) {
   require(H5Fflush(file.id.get(), H5F_SCOPE_GLOBAL), file.path, kCannotWrite);
   require_written(*file.write_status, file.path);
+  if (file.flushed_bytes.valid()) note_size(file);
 }
 
 void close(File& file) {
+  (void)file.flushed_bytes.close();
   if (!file.id.close()) fail(file.path, kCannotWrite);
   require_written(*file.write_status, file.path);
 }

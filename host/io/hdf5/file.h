@@ -17,6 +17,7 @@ struct File {
   std::shared_ptr<WriteStatus> write_status;  ///< set for created files
   bool unclosed = false;                      ///< its writer was killed or is still writing
   bool probing = false;                       ///< see open_to_read
+  Handle flushed_bytes;  ///< set after start_appending(): a number, see flush()
 };
 
 /// Opens a file for reading, as a SWMR reader if its writer has not closed it. With `probing`, for
@@ -31,7 +32,10 @@ void require_format(const File& file, std::string_view format, int version);
 /// the process. Create groups, attributes and datasets before start_appending(); after it, datasets
 /// can only be extended.
 [[nodiscard]] File create(const OutputFile& output);
-void start_appending(const File& file);
+void start_appending(File& file);
+
+/// After start_appending() it notes the file's size too: open_to_read() refuses an unclosed file
+/// that became shorter, whose missing chunks HDF5 would read as zeros.
 void flush(const File& file);
 
 /// Closes a created file whose datasets are closed. Throws Error if a write failed.

@@ -20,8 +20,8 @@ class ExtendibleDataset {
   ExtendibleDataset(const File& file, const char* name, hid_t stored_type, const FrameShape& shape);
 
   /// Writes frame `index`, at most one past the last. `row_stride` is the number of values from one
-  /// row to the next. The data reach the operating system at once, the new length of the dataset
-  /// with the next flush.
+  /// row to the next. The data and the new length of the dataset reach the operating system with
+  /// the next flush.
   void put(std::uint64_t index, hid_t memory_type, const void* frame, std::size_t row_stride = 1);
 
   /// Writes `count` dense frames after the last one.

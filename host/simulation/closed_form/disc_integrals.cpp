@@ -50,7 +50,7 @@ PF_WIDE_INLINE void set_spin_points(const CarlsonLanes& x, const CarlsonLanes& y
   // Keep the integrals finite at y = 0 and |y| = 1, where their factors vanish.
   constexpr double kLeastYSquared = 1e-24;
   constexpr double kLeastChord = 1e-30;
-  CarlsonArguments at;
+  CarlsonArguments at{};
   CarlsonLanes y_squared;
   for (std::size_t i = 0; i < kCarlsonLanes; ++i) {
     points.y[i] = std::clamp(y[i], -1.0, 1.0);
@@ -76,7 +76,7 @@ PF_WIDE_INLINE void set_spin_points(const CarlsonLanes& x, const CarlsonLanes& y
 }
 
 PF_WIDE void sphere_spin(const CarlsonLanes& x, const CarlsonLanes& y, CarlsonLanes& values) {
-  SpinPoints c;
+  SpinPoints c{};
   set_spin_points(x, y, c);
   for (std::size_t i = 0; i < kCarlsonLanes; ++i) {
     const double elliptic = c.first[i] - (1 + c.y[i] * c.y[i]) * c.second[i];
@@ -88,7 +88,7 @@ PF_WIDE void sphere_spin(const CarlsonLanes& x, const CarlsonLanes& y, CarlsonLa
 }
 
 PF_WIDE void punch_spin(const CarlsonLanes& x, const CarlsonLanes& y, CarlsonLanes& values) {
-  SpinPoints c;
+  SpinPoints c{};
   set_spin_points(x, y, c);
   for (std::size_t i = 0; i < kCarlsonLanes; ++i) {
     const double inside = c.x[i] * arc(c.radius[i], c.height[i]) - c.half_chord[i] * c.second[i];

@@ -74,7 +74,7 @@ PF_WIDE void carlson_integrals(CarlsonArguments at, CarlsonLanes& first, Carlson
 }
 
 CarlsonIntegrals carlson_integrals(double x, double y, double z) {
-  CarlsonArguments at;
+  CarlsonArguments at{};
   at.x.fill(x);
   at.y.fill(y);
   at.z.fill(z);

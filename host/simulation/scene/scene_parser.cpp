@@ -208,6 +208,9 @@ void read_time(TomlSection section, Scene& scene) {
   if (const auto seed = section.whole_number("seed", 0, std::numeric_limits<std::int64_t>::max())) {
     scene.seed = static_cast<std::uint64_t>(*seed);
   }
+  if (const auto number = section.whole_number("recording", 0, kMaxRecording)) {
+    scene.recording = static_cast<std::uint32_t>(*number);
+  }
   section.finish();
 }
 
