@@ -220,6 +220,13 @@ std::uint64_t common_frames(const ForceFileReader& forces, const FrameSource& re
                             options.recording, skin.pillar_rows(), skin.pillar_cols()),
                 "give the recording that these forces were solved from");
   }
+  if (info.part) {
+    if (info.part->frames == recording.frames()) return forces.frames();
+    throw Error(options.forces,
+                fmt::format("it is part of {} frames and {} has {}", info.part->frames,
+                            options.recording, recording.frames()),
+                "give the recording that these forces were solved from");
+  }
   const std::uint64_t frames = std::min(forces.frames(), recording.frames());
   if (forces.frames() != recording.frames()) {
     fmt::print(stderr, "{}: it has {} frames and {} has {}; the first {} are compared\n",
@@ -244,6 +251,7 @@ void compare(const CompareOptions& options) {
   const std::uint64_t all_frames = common_frames(forces, *recording, options);
   std::uint64_t frames = 0;
   const ForceFileInfo& info = forces.info();
+  const std::uint64_t first = info.part ? frames_of(*info.part).first : 0;
   ForceField solved(info.rows, info.cols);
   ForceField truth(info.rows, info.cols);
   Comparison comparison;
@@ -257,7 +265,7 @@ void compare(const CompareOptions& options) {
       if (is_lost(index)) continue;
       ++frames;
       forces.read(index, solved);
-      recording->read_truth(index, truth);
+      recording->read_truth(first + index, truth);
       comparison.add(solved.view(), truth.view());
       resultants.add(solved.view(), truth.view());
       if (coverage) coverage->add(solved.view(), truth.view());

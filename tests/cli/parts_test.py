@@ -1,6 +1,7 @@
 """Parts of a solve: their bits, joining, restarts, lost parts, claims, launchers, hostile files."""
 
 import fcntl
+import json
 import os
 import shutil
 import subprocess
@@ -65,6 +66,9 @@ class PartsTest(PartsFolder):
                     self.assert_same(serial, self.output)
                     self.assertEqual(run_json("info", self.output).get("lost_parts"),
                                      None if how else [])
+        # A part is compared with its own frames.
+        part = run("compare", self.parts / "00003.h5", self.recording, "--json").stdout
+        self.assertLess(json.loads(part)["resultant"]["error_rms_n"], 1)
         # The reader sees the forces that h5py sees.
         run("join", self.output)
         self.assertEqual(run("compare", self.output, self.recording).stdout.splitlines()[1:],
