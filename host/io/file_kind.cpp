@@ -87,22 +87,4 @@ WriterState writer_state(const std::filesystem::path& path) {
   return (flags & 1u) != 0 ? WriterState::abandoned : WriterState::closed;
 }
 
-std::uint64_t flushed_bytes(const std::filesystem::path& path) {
-  std::ifstream file = open_binary(path);
-  const auto offset = superblock_offset(file, size_of(file));
-  if (!offset) return 0;
-  constexpr std::size_t kVersionAt = 8;
-  constexpr std::size_t kOffsetBytesAt = 9;
-  constexpr std::size_t kEndAt = 28;
-  std::uint64_t end = 0;
-  const std::string superblock = bytes_at(file, *offset, kEndAt + sizeof end);
-  const bool tells = superblock.size() == kEndAt + sizeof end && superblock[kVersionAt] >= 2 &&
-                     superblock[kOffsetBytesAt] == sizeof end;
-  if (!tells) return 0;
-  for (std::size_t byte = sizeof end; byte-- > 0;) {
-    end = end << 8 | static_cast<unsigned char>(superblock[kEndAt + byte]);
-  }
-  return end;
-}
-
 }  // namespace pillarfield

@@ -36,8 +36,4 @@ enum class WriterState : std::uint8_t {
 /// Reads the consistency flags of an HDF5 file's superblock (HDF5 file format, section II.A).
 [[nodiscard]] WriterState writer_state(const std::filesystem::path& path);
 
-/// The least size that an HDF5 file had at the last flush of its writer, bytes; 0 if its superblock
-/// does not tell.
-[[nodiscard]] std::uint64_t flushed_bytes(const std::filesystem::path& path);
-
 }  // namespace pillarfield

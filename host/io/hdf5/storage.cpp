@@ -8,7 +8,6 @@
 #include <numeric>
 #include <system_error>
 
-#include "io/file_kind.h"
 #include "pillarfield/error.h"
 
 namespace pillarfield::hdf5 {
@@ -92,15 +91,6 @@ std::uint64_t bytes_of(const File& file) {
   throw Error(file.path.string(), failed.message(), "do not move it while it is read");
 }
 
-/// Throws Error if the end of an unclosed file is lost, where HDF5 would read zeros.
-void require_flushed(const File& file) {
-  if (!file.unclosed) return;
-  const std::uint64_t flushed = flushed_bytes(file.path);
-  if (flushed <= bytes_of(file)) return;
-  throw Error(file.path.string(),
-              fmt::format("has lost its end: its writer flushed {} bytes", flushed), kDamaged);
-}
-
 }  // namespace
 
 bool Storage::holds_values() const { return std::ranges::find(extent, 0U) == extent.end(); }
@@ -134,8 +124,7 @@ Storage storage_of(const File& file, const Handle& dataset, const std::string& n
 
 void require_stored(const File& file, const Handle& dataset, const std::string& name,
                     const Storage& storage, bool may_lack_chunks) {
-  if (!storage.holds_values()) return;
-  if (may_lack_chunks && storage.is_filled) return require_flushed(file);
+  if (!storage.holds_values() || (may_lack_chunks && storage.is_filled)) return;
   const std::uint64_t file_bytes = bytes_of(file);
   if (least_bytes(storage) > static_cast<double>(file_bytes)) {
     throw Error(file.path.string(),
