@@ -22,8 +22,10 @@
  *   any_lane(m)   true if m is true in any lane
  *   PF_CONSTANT(T, x)  the constant x of a program or plan in every lane of a T
  *   PF_INLINE     specifier of a function of lanes; PoCL always inlines it
- *   PF_UNROLL     before a loop of few turns; PoCL, which would keep its arrays in memory, unrolls
- * it word_of(r)    the bits of r real_of_word(w)  the Real whose bits are w
+ *   PF_UNROLL     before a loop of few iterations: PoCL unrolls it, else its arrays stay in memory
+ *
+ *   word_of(r)    the bits of r
+ *   real_of_word(w)  the Real whose bits are w
  *
  * Counts are readings, their sums and differences. With PF_WHOLE they are whole numbers of
  * 1 / PF_WHOLE counts, which is exact for 8-bit readings without calibration, and whose lanes are

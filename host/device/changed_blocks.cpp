@@ -50,6 +50,8 @@ void ChangedBlocks::mark(const SenselBlock& sensels) {
 }
 
 void ChangedBlocks::mark_all() { std::ranges::fill(flags_, std::uint8_t{1}); }
-void ChangedBlocks::clear() { std::ranges::fill(flags_, std::uint8_t{0}); }
+void ChangedBlocks::clear() {
+  std::ranges::fill(flags_, solves_all_ ? std::uint8_t{1} : std::uint8_t{0});
+}
 
 }  // namespace pillarfield

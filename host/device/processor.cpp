@@ -176,13 +176,25 @@ struct Processor::PinnedResult::State {
 /// What serves frames while the kernels are compiled in another thread. Its results outlive that.
 struct Processor::Start {
   [[nodiscard]] bool is_over() const {
-    return compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+    return failed || compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }
+
+  /// Waits for the kernels; throws the Error of their compilation at every call.
+  std::unique_ptr<State> take() {
+    if (failed) std::rethrow_exception(failed);
+    try {
+      return compiled.get();
+    } catch (...) {
+      failed = std::current_exception();
+      throw;
+    }
   }
 
   Device device;
   bool shares_memory;
   HostStart host;
   std::future<std::unique_ptr<State>> compiled;
+  std::exception_ptr failed = {};
 };
 
 Processor::PinnedResult::PinnedResult(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -222,12 +234,12 @@ Processor::Processor(const Device& device, const SolverPlan& plan, const Options
 
 /// Takes the kernels if they are compiled.
 void Processor::end_start() {
-  if (state_ == nullptr && start_->is_over()) state_ = start_->compiled.get();
+  if (state_ == nullptr && start_->is_over()) state_ = start_->take();
 }
 
 /// Waits for the kernels.
 void Processor::await_kernels() {
-  if (state_ == nullptr) state_ = start_->compiled.get();
+  if (state_ == nullptr) state_ = start_->take();
 }
 
 /// Solves the frame on the host if the kernels are not compiled yet; false if they are.

@@ -64,6 +64,25 @@ bool holds_part(const std::filesystem::path& file, const ForcePart& part) {
   }
 }
 
+void require_same_division(const std::filesystem::path& file, const ForcePart& part) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) return;
+  std::optional<ForcePart> held;
+  try {
+    held = ForceFileReader(file).info().part;
+  } catch (const Error&) {
+    return;  // Damaged: it is solved again.
+  }
+  if (!held || held->fingerprint != part.fingerprint) return;
+  if (held->count == part.count && held->checkpoints == part.checkpoints) return;
+  throw Error(
+      file.string(),
+      fmt::format("holds part {} of {} of this solve, not of {}", held->index, held->count,
+                  part.count),
+      fmt::format("give --part K/{} or --parts {} with its checkpoints, or remove its folder",
+                  held->count, held->count));
+}
+
 std::string name_of(const LostPart& part) {
   return fmt::format("part {} (frames {} to {})", part.index, part.frames.first,
                      part.frames.end - 1);

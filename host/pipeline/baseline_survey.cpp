@@ -34,8 +34,9 @@ BaselineSurvey::BaselineSurvey(FrameSource& source, const Device& device, const 
       frame_(plan.sensel_type, plan.skin.rows, plan.skin.cols),
       processor_(device, survey_plan(plan, step_)) {}
 
-std::vector<float> BaselineSurvey::tare_at(std::uint64_t frame) {
+std::vector<float> BaselineSurvey::tare_at(std::uint64_t frame, const std::function<bool()>& stop) {
   for (; next_ < frame; next_ += step_) {
+    if (stop && stop()) break;
     source_.read(next_, frame_);
     processor_.submit(frame_.view());
     static_cast<void>(processor_.receive());

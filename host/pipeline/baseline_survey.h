@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "pillarfield/force_parts.h"
@@ -17,8 +18,9 @@ class BaselineSurvey {
   BaselineSurvey(FrameSource& source, const Device& device, const SolverPlan& plan,
                  const Checkpoints& checkpoints);
 
-  /// The tare at a frame, not before that of the last call, [sensel rows, cols], counts.
-  [[nodiscard]] std::vector<float> tare_at(std::uint64_t frame);
+  /// The tare at a frame, not before that of the last call, [sensel rows, cols], counts; of an
+  /// earlier one once `stop` returns true.
+  [[nodiscard]] std::vector<float> tare_at(std::uint64_t frame, const std::function<bool()>& stop);
 
  private:
   FrameSource& source_;

@@ -72,6 +72,13 @@ void add(Hash& hash, const SolverPlan& plan) {
     hash.add_all(*plane);
   }
   hash.add_all(planes.mask);
+  const std::optional<Surface>& surface = plan.skin.surface;
+  hash.add(std::uint64_t{surface.has_value()});
+  if (!surface) return;
+  hash.add(std::uint64_t(surface->shape));
+  hash.add(surface->radius_mm);
+  hash.add(surface->axis_deg);
+  hash.add_all(surface->heights_mm);
 }
 
 void add_frame(Hash& hash, FrameSource& source, std::uint64_t index) {

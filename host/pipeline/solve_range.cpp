@@ -141,7 +141,7 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
     const std::uint64_t warm = first - std::min(first, checkpoints.warm_up);
     RangeStream stream(source, {warm, end});
     Processor processor(device, plan, options.processor);
-    if (survey && warm > 0) processor.set_tare(survey->tare_at(warm));
+    if (survey && warm > 0) processor.set_tare(survey->tare_at(warm, options.stop));
     std::optional<ContactTracker> tracker;
     if (options.contacts) tracker.emplace(plan.skin.pillar_pitch_mm(), *options.contacts);
     SegmentSink segment(first, done.contacts, sinks);
@@ -191,6 +191,7 @@ std::optional<PipelineStatistics> solve_part(FrameSource& source, const Device& 
   part.fingerprint = fingerprint_of(source, plan, options.contacts);
   const std::filesystem::path file = part_file(output, part.index);
   if (holds_part(file, part)) return std::nullopt;
+  require_same_division(file, part);
   std::error_code failed;
   std::filesystem::create_directory(file.parent_path(), failed);
   if (failed) throw Error(file.parent_path().string(), failed.message(), "check its directory");

@@ -9,8 +9,8 @@
 namespace pillarfield {
 namespace {
 
-/// The reading at which the response reaches the threshold, reduced by more than tables and pow()
-/// of other devices are off.
+/// The reading at which the response reaches the threshold, reduced by more than the error of the
+/// curve and of power_of().
 double threshold_before_response(const SolverPlan& plan) {
   const double threshold = plan.skin.threshold_counts;
   const ResponseCurve& curve = plan.calibration.effects.curve;

@@ -27,7 +27,7 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
     client: distributed.Client; its workers see both paths, and have this package
     recording: path of a file of frames
     output: path of the result, .h5; parts that are whole already are not solved again
-    parts: number of parts; by default four for each worker
+    parts: number of parts; by default 64, or as many as there can be
     copy: copy all values into the output; otherwise it refers to its parts
     overwrite: replace an output of any kind
     attempts: how often a part is tried, since workers may die
@@ -41,7 +41,7 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
     frames = len(_recording_of(recording, how))
     most = _core.most_parts(frames, how.get("checkpoint_every", 0))
     if parts is None:
-        parts = max(1, min(4 * len(client.scheduler_info()["workers"]), most))
+        parts = max(1, min(64, most))  # Not by the workers: the same call continues with others.
 
     def submit(part: int) -> Any:
         return client.submit(solve_part, recording, output, part, parts, pure=False, **how)
@@ -61,7 +61,8 @@ def solve(client: Any, recording: Path, output: Path, *, parts: Optional[int] = 
             raise Error(str(output), f"part {part} of {parts} failed {tried[part]} times: {failure}",
                         "look at the workers' logs; the same call continues") from failure
         tried[part] += 1
-        time.sleep(0.2)
+        # Another worker may still hold the part: Dask gives up workers that it does not hear.
+        time.sleep(min(30, 0.2 * 2 ** tried[part]))
         again = submit(part)
         waiting[again] = part
         finished.add(again)

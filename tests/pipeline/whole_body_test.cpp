@@ -251,8 +251,23 @@ TEST(WholeBody, DoesNotUsePacketsOfFramesBeforeTheNewest) {
   EXPECT_EQ(receive(8, 40), 40);
   EXPECT_EQ(body.patch(0).health.late, 2U);
   EXPECT_EQ(body.patch(0).health.lost, 2U);
-  EXPECT_EQ(receive(1'000'000, 50), 50) << "a sequence that began anew";
+  EXPECT_EQ(receive(2'000'000, 50), 50) << "a sequence that began anew";
   EXPECT_EQ(body.patch(0).health.restarts, 1U);
+}
+
+TEST(WholeBody, APartThatComesTwiceDoesNotCountForAnother) {
+  WholeBody body(test_device(), body_of({bare_plan(16, 32, SenselType::u8)}));
+  const FrameShape shape = {SenselType::u8, 16, 32};
+  for (const std::uint32_t part : {0U, 0U, 1U}) {
+    BlockPacket packet(shape, 7, part, 30);
+    packet.header.parts = 2;
+    packet.header.part = static_cast<decltype(packet.header.part)>(part);
+    EXPECT_TRUE(body.receive(packet.header, packet.bytes, milliseconds(7)));
+  }
+  EXPECT_EQ(body.patch(0).health.packets, 0U) << "before solve()";
+  body.solve();
+  EXPECT_EQ(body.patch(0).health.packets, 2U);
+  EXPECT_EQ(body.patch(0).health.late, 1U);
 }
 
 TEST(WholeBody, RefusesPacketsThatContradictThePatch) {

@@ -82,9 +82,9 @@ def deviation_rows(kept):
                    *time_cells(kept, f"{known}/{way}_and_deviations")]
 
 
-def heads(kept):
+def heads(kept, outputs=""):
     """Names of the columns of times."""
-    return " | ".join(f"{one['processor']}: time over bare | frames/s" for one in kept)
+    return " | ".join(f"{outputs}{one['processor']}: time over bare | frames/s" for one in kept)
 
 
 def draw(measured, kept, folder):
@@ -118,7 +118,7 @@ def main(docs, measured, timed):
              for estimator, found in by_estimator.items()}
     page.write(docs, "speed_and_error", choice_rows=list(choice_rows(measured, kept)),
                deviation_rows=list(deviation_rows(kept)), heads=heads(kept),
-               aligns="--:|" * (2 * len(kept)), twice_heads=heads(kept) + " | " + heads(kept),
+               aligns="--:|" * (2 * len(kept)), twice_heads=heads(kept, "forces, ") + " | " + heads(kept, "and deviations, "),
                twice_aligns="--:|" * (4 * len(kept)),
                peak=scenes.PEAK_COUNTS, noise=scenes.NOISE_COUNTS,
                ideal=of_text(score, "ideal", "none"), ignored=of_text(score, "real", "none"),

@@ -54,6 +54,10 @@ void check(const ForcePart& part, const std::string& where);
 /// Whether the file exists and is this part, complete: what a restart need not solve again.
 [[nodiscard]] bool holds_part(const std::filesystem::path& file, const ForcePart& part);
 
+/// Throws Error if `file` holds a part of the same solve in another number of parts, or with other
+/// checkpoints: array jobs that repeat some tasks count them anew, and would replace good parts.
+void require_same_division(const std::filesystem::path& file, const ForcePart& part);
+
 /// A part whose file is absent or cannot be used.
 struct LostPart {
   std::uint64_t index = 0;

@@ -28,6 +28,8 @@ struct BodyPatch {
   Pose pose;        ///< of the middle of the patch, in the body's frame
 };
 
+inline constexpr std::size_t kMostPatches = 1024;  ///< of a body
+
 /// The skin of a body: patches with a size, pose, calibration and clock of their own.
 struct BodySkin {
   std::string title;
@@ -84,7 +86,8 @@ struct PatchState {
   /// and drift are followed through the packets that waited least.
   std::chrono::nanoseconds host_time{0};
   /// A packet was lost less than BodySkin::refresh_s ago, or no whole refresh has come yet: blocks
-  /// may have readings from before.
+  /// may have readings from before. A sensor that falls silent does not become stale: compare
+  /// host_time with the clock.
   bool stale = true;
   PatchHealth health;
 };
@@ -115,7 +118,9 @@ class WholeBody {
   bool receive(const PillarfieldPacket& header, std::span<const std::byte> readings,
                std::chrono::nanoseconds arrived);
 
-  /// Solves the blocks whose readings changed since the last call; the first call solves all.
+  /// Solves the blocks whose readings changed since the last call; the first call solves all. For a
+  /// patch whose solve has a memory, such as creep, a call that follows a packet is a frame: call
+  /// it once per frame.
   void solve();
 
   [[nodiscard]] const PatchState& patch(std::size_t index) const;

@@ -119,8 +119,9 @@ herr_t read_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size,
   return 0;
 }
 
-/// Small blocks wait for adjacent ones; all reach the file in their order.
-herr_t write_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size,
+/// Small blocks of values wait for adjacent ones; all reach the file in their order. Metadata do
+/// not wait: a process that is killed in a call leaves part of it, and each block has a checksum.
+herr_t write_block(H5FD_t* file, H5FD_mem_t type, hid_t, haddr_t address, size_t size,
                    const void* block) {
   constexpr std::size_t kSmallBytes = 64 << 10;
   constexpr std::size_t kMostWaitingBytes = 1 << 20;
@@ -129,8 +130,9 @@ herr_t write_block(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size
   const auto* const bytes = static_cast<const char*>(block);
   std::vector<char>& waiting = target.waiting;
   const bool is_adjacent = address == target.waiting_at + waiting.size();
-  if (!is_adjacent || waiting.size() + size > kMostWaitingBytes) write_waiting(target);
-  if (size > kSmallBytes && waiting.empty()) {
+  const bool waits = type == H5FD_MEM_DRAW && is_adjacent;
+  if (!waits || waiting.size() + size > kMostWaitingBytes) write_waiting(target);
+  if (type != H5FD_MEM_DRAW || (size > kSmallBytes && waiting.empty())) {
     write_through(target, address, bytes, size);
     return 0;
   }

@@ -24,6 +24,7 @@
 #include "io/hdf5/virtual_frames.h"
 #include "pillarfield/error.h"
 #include "pillarfield/force_file.h"
+#include "pillarfield/interrupt.h"
 #include "pillarfield/status.h"
 
 namespace pillarfield {
@@ -60,8 +61,7 @@ void require_same(const ForceFileInfo& info, const ForceFileInfo& first,
 }
 
 void add_part(FoundParts& found, const std::filesystem::path& file, std::uint64_t index,
-              const ReadOptions& options) {
-  const ForceFileReader reader(file, options);
+              const ForceFileReader& reader) {
   const ForceFileInfo& info = reader.info();
   if (!info.part || info.part->index != index) {
     throw Error(file.string(), fmt::format("is not part {}", index), "solve it again");
@@ -93,8 +93,23 @@ std::map<std::uint64_t, std::filesystem::path> files_in(const std::filesystem::p
 FoundParts find_parts(const std::filesystem::path& output, const JoinOptions& options) {
   const std::filesystem::path folder = part_file(output, 1).parent_path();
   FoundParts found;
-  for (const auto& [index, file] : files_in(folder)) add_part(found, file, index, options.read);
+  std::map<std::uint64_t, std::string> unreadable;
+  for (const auto& [index, file] : files_in(folder)) {
+    std::optional<ForceFileReader> reader;
+    try {
+      reader.emplace(file, options.read);
+    } catch (const Error& error) {
+      unreadable[index] = error.what();
+      continue;
+    }
+    add_part(found, file, index, *reader);
+  }
   if (found.files.empty()) {
+    if (!unreadable.empty()) {
+      throw Error(folder.string(),
+                  fmt::format("has no usable part: {}", unreadable.begin()->second),
+                  "solve it again");
+    }
     throw Error(folder.string(), "has no parts", "solve some with 'pillarfield solve --part'");
   }
   const ForcePart& part = *found.info.part;
@@ -103,7 +118,10 @@ FoundParts find_parts(const std::filesystem::path& output, const JoinOptions& op
   for (std::uint64_t index = 1; index <= part.count; ++index) {
     if (found.files.contains(index)) continue;
     const std::string file = part_file(output, index).string();
-    found.joined.lost.push_back({index, found.frames(index), file + " is absent"});
+    const auto damaged = unreadable.find(index);
+    found.joined.lost.push_back(
+        {index, found.frames(index),
+         damaged != unreadable.end() ? damaged->second : file + " is absent"});
   }
   const auto& lost = found.joined.lost;
   if (lost.empty() || options.allow_lost) return found;
@@ -153,6 +171,8 @@ class Joined {
  private:
   void write_times(bool copy);
   void map_plane(const char* name, hid_t stored_type, const void* fill);
+  [[nodiscard]] hdf5::StoredFrames open_plane(const hdf5::File& file, const char* name,
+                                              const FrameRange& range) const;
   template <class Value>
   void copy_plane(const char* name, hid_t type, Value lost);
   void write_contacts();
@@ -207,6 +227,17 @@ Value fill_value(const hdf5::File& file, const char* name, hid_t type) {
   return value;
 }
 
+/// A plane of a part; the reader checked only those that it reads.
+hdf5::StoredFrames Joined::open_plane(const hdf5::File& file, const char* name,
+                                      const FrameRange& range) const {
+  hdf5::StoredFrames plane(file, name, 2, true);
+  const bool fits = plane.shape() == std::vector<hsize_t>{info_.rows, info_.cols} &&
+                    plane.frames() >= range.frames();
+  if (fits) return plane;
+  throw Error(file.path.string(), fmt::format("{} differs in size from its status", name),
+              "solve this part again");
+}
+
 template <class Value>
 void Joined::copy_plane(const char* name, hid_t type, Value lost) {
   const auto idle = fill_value<Value>(*open(found_.files.begin()->first), name, type);
@@ -216,9 +247,10 @@ void Joined::copy_plane(const char* name, hid_t type, Value lost) {
     const FrameRange range = found_.frames(index);
     const std::optional<hdf5::File> file = open(index);
     std::optional<hdf5::StoredFrames> source;
-    if (file) source.emplace(*file, name, 2, true);
+    if (file) source = open_plane(*file, name, range);
     if (!source) std::ranges::fill(values, lost);
     for (std::uint64_t frame = range.first; frame < range.end; ++frame) {
+      if (is_interrupted()) throw Error(output_.part_path().string(), "interrupted", "start again");
       if (source) source->get(frame - range.first, type, values.data());
       target.append(values.data());
     }

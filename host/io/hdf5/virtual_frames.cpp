@@ -5,6 +5,16 @@
 #include <string>
 
 namespace pillarfield::hdf5 {
+namespace {
+
+/// HDF5 takes % in the name of a source for a format.
+std::string escaped(const std::string& name) {
+  std::string result;
+  for (const char c : name) result.append(c == '%' ? 2 : 1, c);
+  return result;
+}
+
+}  // namespace
 
 void create_virtual_frames(const File& file, const char* name, hid_t stored_type,
                            const std::vector<hsize_t>& extent,
@@ -23,8 +33,9 @@ void create_virtual_frames(const File& file, const char* name, hid_t stored_type
     require(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(),
                                 nullptr),
             file.path, failure);
-    require(H5Pset_virtual(layout.get(), space.get(), part.file.c_str(), name, source.get()),
-            file.path, failure);
+    require(
+        H5Pset_virtual(layout.get(), space.get(), escaped(part.file).c_str(), name, source.get()),
+        file.path, failure);
   }
   require(H5Sselect_all(space.get()), file.path, failure);
   const Handle dataset = own(H5Dcreate2(file.id.get(), name, stored_type, space.get(), H5P_DEFAULT,

@@ -24,9 +24,11 @@ bool any_matters(const Reading* before, const Reading* after, const float* thres
                  std::uint32_t count) {
   bool any = false;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const bool idle = (static_cast<float>(before[i]) < thresholds[i]) &
-                      (static_cast<float>(after[i]) < thresholds[i]);
-    any |= (before[i] != after[i]) & !idle;
+    const auto is_idle = [limit = thresholds[i]](Reading value) {
+      const auto reading = static_cast<float>(value);
+      return (reading < limit) & (reading >= -static_cast<float>(kMaxCounts));
+    };
+    any |= (before[i] != after[i]) & !(is_idle(before[i]) & is_idle(after[i]));
   }
   return any;
 }

@@ -120,6 +120,10 @@ BodyFile read_body(const toml::table& table, const std::filesystem::path& path) 
   auto patches = section.tables("patch", "[[patch]]");
   section.finish();
   if (!patches) section.fail_missing("patch", "a list of tables, [[patch]]");
+  if (patches->size() > kMostPatches) {
+    section.fail("patch", "has too many tables",
+                 fmt::format("1 to {} tables, [[patch]]", kMostPatches));
+  }
   for (TomlSection& patch : *patches) read_patch(patch, path.parent_path(), body);
   refuse_repeated_names(file, body.skin);
   return body;

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "streams/source/restart_limits.h"
+
 namespace pillarfield {
 namespace {
-
-/// A sequence further back or ahead is that of a sensor that began anew.
-constexpr std::uint64_t kFar = 1000;
 
 /// Whether bytes that are replaced differ.
 bool replace(std::byte* to, const std::byte* from, std::size_t bytes) {
@@ -43,6 +42,7 @@ void PatchMemory::add(const Packet& packet) {
     return;
   }
   ++health_.packets;
+  received_ = true;
   arrived_ = packet.arrived;
   if (header.time_ns != 0) {
     device_time_ns_ = header.time_ns;
@@ -63,23 +63,28 @@ bool PatchMemory::follow_sequence(const PillarfieldPacket& header, Time arrived)
   if (session == Sessions::Kind::replaced) return false;
   const std::uint64_t ahead = header.sequence - sequence_;
   const std::uint64_t back = sequence_ - header.sequence;
-  const bool is_far = ahead > kFar && back > kFar;
-  if (!began_ || session == Sessions::Kind::started || is_far) {
+  const bool is_ahead = ahead <= kFarAhead;
+  const bool began_anew =
+      !is_ahead && (back > kFarBack || (header.sequence < kNearZero && back > kFewFrames));
+  if (!began_ || session == Sessions::Kind::started || began_anew) {
     if (began_) ++health_.restarts;
     began_ = true;
     whole_since_ = arrived;
-  } else if (ahead > kFar) {
+  } else if (!is_ahead) {
     return false;
   } else if (ahead > 0) {
     // Of frames that did not come at all one packet is counted: how many they had is unknown.
     if (parts_left_ + ahead > 1) count_lost(parts_left_ + ahead - 1, arrived);
   } else {
-    if (parts_left_ == 0) return false;
+    if (header.part >= came_.size() || came_[header.part]) return false;
+    came_[header.part] = true;
     --parts_left_;
     return true;
   }
   sequence_ = header.sequence;
   parts_left_ = header.parts - 1;
+  came_.assign(header.parts, false);
+  came_[header.part] = true;
   return true;
 }
 

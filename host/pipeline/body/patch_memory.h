@@ -35,7 +35,12 @@ class PatchMemory {
   }
   /// Sensels whose readings changed since forget_changes().
   [[nodiscard]] std::span<const SenselBlock> changed() const { return changed_; }
-  void forget_changes() { changed_.clear(); }
+  /// Whether a packet came since forget_changes().
+  [[nodiscard]] bool received() const { return received_; }
+  void forget_changes() {
+    changed_.clear();
+    received_ = false;
+  }
 
   /// Sets all of `state` but forces and load.
   void describe(PatchState& state) const;
@@ -58,6 +63,8 @@ class PatchMemory {
   bool began_ = false;
   std::uint64_t sequence_ = 0;
   std::uint32_t parts_left_ = 0;  ///< of the newest frame
+  std::vector<bool> came_;        ///< its parts
+  bool received_ = false;
   std::uint64_t device_time_ns_ = 0;
   Time arrived_{0};
   Time whole_since_{0};  ///< nothing was lost from then on

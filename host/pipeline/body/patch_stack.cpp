@@ -101,8 +101,9 @@ void PatchStack::mark(std::size_t at, std::span<const SenselBlock> changed) {
   }
 }
 
-bool PatchStack::submit() {
+bool PatchStack::submit(bool received) {
   if (solves_all()) {
+    if (solved_ && !received) return false;
     processor_.submit(frame_.view());
   } else if (changed_.empty()) {
     return false;

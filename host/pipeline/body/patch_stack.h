@@ -30,8 +30,8 @@ class PatchStack {
   void mark(std::size_t at, std::span<const SenselBlock> changed);
 
   /// Starts to solve what was marked; false if nothing was. Everything is marked at first, and
-  /// always where a stage needs all readings of each frame.
-  bool submit();
+  /// where a stage needs all readings of each frame whenever a packet was `received`.
+  bool submit(bool received);
   /// Waits for it.
   void receive() { forces_ = processor_.receive(); }
   /// The forces of a member after receive().

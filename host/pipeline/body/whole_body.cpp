@@ -17,8 +17,6 @@
 namespace pillarfield {
 namespace {
 
-constexpr std::size_t kMostPatches = 1024;
-
 bool is_finite(const Vector3& vector) {
   return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);
 }
@@ -43,7 +41,7 @@ void check_skin(const BodySkin& skin) {
   }
   for (const BodyPatch& patch : skin.patches) {
     if (is_right_handed(patch.pose)) continue;
-    throw Error("patch " + patch.name, "its pose is no rotation and place",
+    throw Error("patch " + patch.name, "its pose is not a rigid motion",
                 "give perpendicular unit vectors with tangent_x x tangent_y = normal");
   }
 }
@@ -84,10 +82,13 @@ struct WholeBody::State {
   ThreadPool pool{std::max(std::thread::hardware_concurrency(), 1U)};
 
   [[nodiscard]] bool submit(PatchStack& stack) {
+    bool received = false;
     for (std::size_t at = 0; at < stack.members().size(); ++at) {
-      patches[stack.members()[at]].mark(stack, at);
+      WholePatch& patch = patches[stack.members()[at]];
+      received = received || patch.memory.received();
+      patch.mark(stack, at);
     }
-    return stack.submit();
+    return stack.submit(received);
   }
   void receive(PatchStack& stack) {
     stack.receive();

@@ -6,18 +6,12 @@
 #include <utility>
 
 #include "pillarfield/error.h"
+#include "streams/source/restart_limits.h"
 
 namespace pillarfield {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// A sequence number that is further back or ahead is that of a sensor that began anew.
-constexpr std::uint64_t kFarBack = 1000;
-constexpr std::uint64_t kFarAhead = 1 << 20;
-/// So is one near zero after at least as many frames as PartHistory can tell late packets of.
-constexpr std::uint64_t kNearZero = 8;
-constexpr std::uint64_t kFewFrames = 32;
 
 }  // namespace
 
