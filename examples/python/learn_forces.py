@@ -40,7 +40,8 @@ def touch(seed: int, frames: int) -> pf.Simulation:
 def readings_of(frames: npt.NDArray[np.uint8]) -> Floats:
     """The four readings of each pillar, about newtons: [T, P, Q, 4]."""
     corners = [frames[:, row::2, col::2] for row, col in ((0, 1), (0, 0), (1, 0), (1, 1))]
-    return np.stack(corners, -1).astype(np.float32) / K
+    newtons: Floats = np.stack(corners, -1).astype(np.float32) / np.float32(K)
+    return newtons
 
 
 def forces_of(field: pf.ForceField) -> Floats:
