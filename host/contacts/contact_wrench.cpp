@@ -5,11 +5,6 @@
 #include "skin/vectors.h"
 
 namespace pillarfield {
-namespace {
-
-double finite_or_zero(float force) { return std::isfinite(force) ? double{force} : 0.0; }
-
-}  // namespace
 
 Wrench wrench_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
                  std::span<const Pose> poses) {
@@ -18,9 +13,9 @@ Wrench wrench_of(const ForceFieldView& forces, std::span<const ContactRun> runs,
     for (std::uint32_t col = run.first; col < run.end; ++col) {
       const std::size_t pillar = std::size_t{run.row} * forces.cols + col;
       const Pose& pose = poses[pillar];
-      const Vector3 force_n = finite_or_zero(forces.shear_x[pillar]) * pose.tangent_x +
-                              finite_or_zero(forces.shear_y[pillar]) * pose.tangent_y -
-                              finite_or_zero(forces.normal[pillar]) * pose.normal;
+      const Vector3 force_n = rotated(
+          pose, {finite_or_zero(forces.shear_x[pillar]), finite_or_zero(forces.shear_y[pillar]),
+                 -finite_or_zero(forces.normal[pillar])});
       add(wrench, {force_n, cross(pose.position_mm, force_n)});
     }
   }

@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <bit>
 
+#include "device/block_lanes.h"
 #include "solve/stages.h"
 
 namespace pillarfield {
-namespace {
-
-std::size_t flags_of_row(std::uint32_t cols, std::uint32_t lanes) { return cols / lanes + 2; }
-
-}  // namespace
 
 std::size_t ChangedBlocks::bytes(const Skin& skin, int lanes) {
   return skin.pillar_rows() *
-         (flags_of_row(skin.pillar_cols(), static_cast<std::uint32_t>(lanes)) + 1);
+         (blocks_of_row(skin.pillar_cols(), static_cast<std::uint32_t>(lanes)) + 1);
 }
 
 ChangedBlocks::ChangedBlocks(const SolverPlan& plan, int lanes)
@@ -38,7 +34,7 @@ void ChangedBlocks::mark(const SenselBlock& sensels) {
   const std::uint32_t first_col = before(sensels.first_col);
   const std::uint32_t end_col = after(sensels.first_col + sensels.cols - 1, cols_);
   if (first_col >= end_col) return;  // The last odd column has no pillar.
-  const std::size_t stride = flags_of_row(cols_, lanes_);
+  const std::size_t stride = blocks_of_row(cols_, lanes_);
   const std::uint32_t end_row = after(sensels.first_row + sensels.rows - 1, rows_);
   for (std::uint32_t row = before(sensels.first_row); row < end_row; ++row) {
     const std::size_t skew = std::size_t{row} * cols_ & (lanes_ - 1);  // A power of two.

@@ -1,5 +1,7 @@
 #include "device/slot_memory.h"
 
+#include "device/block_lanes.h"
+
 namespace pillarfield {
 
 ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed)
@@ -13,7 +15,7 @@ ResultLayout::ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t 
   bytes = status + page_aligned(plan.skin.pillars());
   if (block_lanes == 0) return;
   lanes = static_cast<std::uint32_t>(block_lanes);
-  flag_stride = plan.skin.pillar_cols() / lanes + 2;
+  flag_stride = blocks_of_row(plan.skin.pillar_cols(), lanes);
   idle_flags = plan.skin.pillar_rows() * flag_stride;
 }
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "pillarfield/frame_stream.h"
 
 namespace pillarfield {
@@ -5,7 +7,8 @@ namespace {
 
 class FileStream final : public FrameStream {
  public:
-  explicit FileStream(FrameSource& source) : source_(source) {}
+  FileStream(FrameSource& source, std::uint64_t first, std::uint64_t end)
+      : source_(source), next_(first), end_(end) {}
 
   [[nodiscard]] const Skin& skin() const override { return source_.skin(); }
   [[nodiscard]] SenselType sensel_type() const override { return source_.sensel_type(); }
@@ -13,7 +16,7 @@ class FileStream final : public FrameStream {
 
   [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds) override {
     frame.sequence = next_;
-    if (next_ >= source_.frames()) return Arrival::ended;
+    if (next_ >= std::min(end_, source_.frames())) return Arrival::ended;
     frame.time_s = source_.read(next_++, frame.buffer);
     frame.readings = frame.buffer.view();
     frame.missing.clear();
@@ -23,13 +26,15 @@ class FileStream final : public FrameStream {
 
  private:
   FrameSource& source_;
-  std::uint64_t next_ = 0;
+  std::uint64_t next_;
+  std::uint64_t end_;
 };
 
 }  // namespace
 
-std::unique_ptr<FrameStream> file_stream(FrameSource& source) {
-  return std::make_unique<FileStream>(source);
+std::unique_ptr<FrameStream> file_stream(FrameSource& source, std::uint64_t first,
+                                         std::uint64_t end) {
+  return std::make_unique<FileStream>(source, first, end);
 }
 
 }  // namespace pillarfield

@@ -12,32 +12,6 @@
 namespace pillarfield {
 namespace {
 
-/// Frames of a file, from `first` to before `end`.
-class RangeStream final : public FrameStream {
- public:
-  RangeStream(FrameSource& source, const FrameRange& range)
-      : source_(source), next_(range.first), end_(range.end) {}
-
-  [[nodiscard]] const Skin& skin() const override { return source_.skin(); }
-  [[nodiscard]] SenselType sensel_type() const override { return source_.sensel_type(); }
-  [[nodiscard]] const Calibration& calibration() const override { return source_.calibration(); }
-
-  [[nodiscard]] Arrival next(StreamedFrame& frame, std::chrono::nanoseconds) override {
-    frame.sequence = next_;
-    if (next_ >= end_) return Arrival::ended;
-    frame.time_s = source_.read(next_++, frame.buffer);
-    frame.readings = frame.buffer.view();
-    frame.missing.clear();
-    frame.arrived = std::chrono::steady_clock::now().time_since_epoch();
-    return Arrival::arrived;
-  }
-
- private:
-  FrameSource& source_;
-  std::uint64_t next_;
-  std::uint64_t end_;
-};
-
 /// Passes frames on, without those of a warm-up, and with ids of contacts above those before.
 class SegmentSink final : public ForceSink {
  public:
@@ -139,13 +113,13 @@ PipelineStatistics solve_range(FrameSource& source, const Device& device, const 
   for (std::uint64_t first = range.first; first < range.end && !done.stopped;) {
     const std::uint64_t end = end_of_segment(first, range, checkpoints);
     const std::uint64_t warm = first - std::min(first, checkpoints.warm_up);
-    RangeStream stream(source, {warm, end});
+    const auto stream = file_stream(source, warm, end);
     Processor processor(device, plan, options.processor);
     if (survey && warm > 0) processor.set_tare(survey->tare_at(warm, options.stop));
     std::optional<ContactTracker> tracker;
     if (options.contacts) tracker.emplace(plan.skin.pillar_pitch_mm(), *options.contacts);
     SegmentSink segment(first, done.contacts, sinks);
-    Pipeline pipeline(stream, processor, {&segment},
+    Pipeline pipeline(*stream, processor, {&segment},
                       {.frames_in_flight = options.processor.frames_in_flight,
                        .contacts = tracker ? &*tracker : nullptr,
                        .stop = options.stop});

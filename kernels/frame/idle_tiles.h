@@ -8,9 +8,9 @@
 /* Bound of an idle tile; of a row whose readout is saturated: no reading is idle behind it. */
 #define PF_IDLE_TILE 0.0f
 #define PF_SATURATED_ROW INFINITY
-#define PF_WIRE_LARGEST_GAIN_ONE 1.4f
+#define PF_FLOAT(x) x##f
 #define PF_ROWS_AHEAD 16 /* that are prefetched */
-/* More than rounding takes from a bound. */
+/* Factor above 1 that covers the rounding of a bound. */
 #define PF_BOUND_RESERVE 1.00001f
 
 /* Pillars do not share tiles, and no other stage needs the gains of idle sensels. */
@@ -136,7 +136,7 @@ PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, siz
                               global float* columns) {
 #ifdef PF_SKIP_IDLE_TILES
   const float gain = largest_gain(range.largest, tile);
-  const bool idle = gain <= PF_WIRE_LARGEST_GAIN_ONE &&
+  const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
                     range.largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
   for (uint i = 0; idle && i < tile.rows; ++i) {
     wires.row[first + i] = wires.idle[first + i] = 1.0f;
@@ -163,7 +163,7 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
     const float own = (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
     const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
-    wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN_ONE ? max(high, low) : PF_SATURATED_ROW;
+    wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) ? max(high, low) : PF_SATURATED_ROW;
   }
 }
 

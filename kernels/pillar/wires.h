@@ -1,7 +1,7 @@
 /* Row and column crosstalk of a scanned array (docs/derivations/sensor_effects.md, E5). */
 
-/* Largest gain of a row; beyond it the readout is saturated. */
-#define PF_WIRE_LARGEST_GAIN PF_REAL(1.4)
+/* Largest gain of a row, of the type that `constant` gives; beyond it the readout is saturated. */
+#define PF_WIRE_LARGEST_GAIN(constant) constant(1.4)
 
 /* What the wires do to a sensel. */
 typedef struct {
@@ -21,7 +21,7 @@ PF_INLINE Real wire_gain(Real reading, Wires at, Real column_per_count) {
 /* Removes the crosstalk from a raw reading; where the readout is saturated the sensel is missing.
  */
 PF_INLINE Sensel remove_crosstalk(Sensel sensel, Wires at, Real column_per_count) {
-  sensel.missing = sensel.missing || !(at.row <= PF_WIRE_LARGEST_GAIN);
+  sensel.missing = sensel.missing || !(at.row <= PF_WIRE_LARGEST_GAIN(PF_REAL));
   sensel.reading = sensel.reading * wire_gain(sensel.reading, at, column_per_count);
   return sensel;
 }

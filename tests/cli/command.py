@@ -12,6 +12,8 @@ import subprocess
 import tempfile
 import unittest
 
+import h5py
+
 PROGRAM = os.environ["PILLARFIELD"]
 SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
 SCENES = SOURCE / "scenes"
@@ -35,6 +37,16 @@ position_mm = [0, 0]
 friction = 0.5
 direction_deg = 30
 """
+
+
+def datasets(path):
+    """The datasets of an HDF5 file by name, but for the size that its writer noted."""
+    found = {}
+    with h5py.File(path, "r") as file:
+        file.visititems(lambda name, item: found.update(
+            {name: item[()]} if isinstance(item, h5py.Dataset) else {}))
+    found.pop("flushed_bytes", None)
+    return found
 
 
 def run(*arguments, expect=0, **options):

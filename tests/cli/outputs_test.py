@@ -11,7 +11,7 @@ import unittest
 import h5py
 import numpy
 
-from command import PROGRAM, CommandTest, run, run_json
+from command import PROGRAM, CommandTest, datasets, run, run_json
 
 SCENE = """
 [skin]
@@ -33,12 +33,8 @@ position_mm = [0, 0]
 
 
 def content_of(path):
-    """The datasets of an HDF5 file, for comparison."""
-    found = {}
-    with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update(
-            {name: item[()].tobytes()} if isinstance(item, h5py.Dataset) else {}))
-    return found
+    """The bytes of an HDF5 file's datasets, for comparison."""
+    return {name: values.tobytes() for name, values in datasets(path).items()}
 
 
 class OutputTest(CommandTest):

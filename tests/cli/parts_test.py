@@ -10,19 +10,9 @@ import unittest
 import h5py
 import numpy
 
-from command import BALL, PROGRAM, CommandTest, run, run_json
+from command import BALL, PROGRAM, CommandTest, datasets, run, run_json
 
 CARRYING = ("--estimator", "contact", "--follow-baseline", 0.05, "--noise", 0.5)
-
-
-def datasets(path):
-    """The datasets of an HDF5 file by name, but for the size that its writer noted."""
-    found = {}
-    with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update(
-            {name: item[()]} if isinstance(item, h5py.Dataset) else {}))
-    found.pop("flushed_bytes", None)
-    return found
 
 
 class PartsFolder(CommandTest):

@@ -16,14 +16,15 @@
 namespace pillarfield {
 namespace {
 
-/// Overwrites random rectangles of a frame, some with readings of an idle skin, and names them.
+/// Overwrites up to three random rectangles of a frame, some with readings of an idle skin, and
+/// names them.
 class RandomChanges {
  public:
   explicit RandomChanges(const SolverPlan& plan) : plan_(plan) {}
 
   std::vector<SenselBlock> apply(FrameBuffer& frame) {
     std::vector<SenselBlock> changed;
-    for (std::uint32_t i = below(4) + 1; i > 0; --i) {
+    for (std::uint32_t i = below(4); i > 0; --i) {
       const SenselBlock block = random_block();
       const bool idle = below(3) == 0;
       for (std::uint32_t row = 0; row < block.rows; ++row) {

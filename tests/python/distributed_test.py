@@ -6,14 +6,17 @@ import pathlib
 import random
 import shutil
 import signal
+import sys
 import threading
 import time
 import unittest
 from unittest import mock
 
-import h5py
-
 import pillarfield as pf
+
+sys.path.insert(0, f"{os.environ['PILLARFIELD_SOURCE']}/tests/cli")
+
+from command import datasets  # noqa: E402
 
 WORK = pathlib.Path(os.environ["PILLARFIELD_WORK"])
 PLAN = {"contacts": True, "estimator": "contact", "baseline_time_s": 0.5, "noise_counts": 0.5,
@@ -27,16 +30,6 @@ def make_recording(path):
                           "position_mm": [0, 0], "load_n": 30, "friction": 0.8}]}
     simulation = pf.simulate(scene)
     pf.save_recording(path, simulation, overwrite=True)
-
-
-def datasets(path):
-    """The datasets of an HDF5 file by name, but for the size that its writer noted."""
-    found = {}
-    with h5py.File(path, "r") as file:
-        file.visititems(lambda name, item: found.update(
-            {name: item[()]} if isinstance(item, h5py.Dataset) else {}))
-    found.pop("flushed_bytes", None)
-    return found
 
 
 class Distributed(unittest.TestCase):

@@ -6,12 +6,6 @@
 namespace pillarfield::cli {
 namespace {
 
-std::uint32_t block_number(std::span<const std::byte> blocks, std::size_t at) {
-  std::uint32_t number = 0;
-  std::memcpy(&number, &blocks[at], sizeof number);
-  return number;
-}
-
 bool differs(const FrameShape& shape, std::uint32_t number, const std::byte* readings,
              const FrameView& received) {
   const SenselBlock place = sensels_of_block(shape, number);
@@ -30,8 +24,9 @@ bool differs(const FrameShape& shape, std::uint32_t number, const std::byte* rea
 void LossRecord::lose(std::span<const std::byte> blocks, const FrameView& received,
                       std::uint64_t frame) {
   for (std::size_t at = 0; at < blocks.size(); at += shape_.block_bytes()) {
-    const std::uint32_t number = block_number(blocks, at);
-    if (since_[number] != 0 || !differs(shape_, number, &blocks[at + 8], received)) continue;
+    const std::uint32_t number = block_number(&blocks[at]);
+    if (since_[number] != 0 || !differs(shape_, number, &blocks[at + kBlockHead], received))
+      continue;
     since_[number] = frame;
     ++lost_;
     ++old_;
@@ -40,7 +35,7 @@ void LossRecord::lose(std::span<const std::byte> blocks, const FrameView& receiv
 
 void LossRecord::heal(std::span<const std::byte> blocks, std::uint64_t frame) {
   for (std::size_t at = 0; at < blocks.size(); at += shape_.block_bytes()) {
-    std::uint64_t& since = since_[block_number(blocks, at)];
+    std::uint64_t& since = since_[block_number(&blocks[at])];
     if (since == 0) continue;
     longest_ = std::max(longest_, frame - since);
     since = 0;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -82,8 +83,11 @@ class FrameStream {
   [[nodiscard]] virtual Arrival next(StreamedFrame& frame, std::chrono::nanoseconds timeout) = 0;
 };
 
-/// Streams the frames of a file, each on request. `source` must outlive the stream.
-[[nodiscard]] std::unique_ptr<FrameStream> file_stream(FrameSource& source);
+/// Streams the frames of a file from `first` to before `end`, or its last one, each on request.
+/// `source` must outlive the stream.
+[[nodiscard]] std::unique_ptr<FrameStream> file_stream(
+    FrameSource& source, std::uint64_t first = 0,
+    std::uint64_t end = std::numeric_limits<std::uint64_t>::max());
 
 /// Timing of a paced stream.
 struct Pace {

@@ -86,7 +86,7 @@ struct PatchState {
   /// and drift are followed through the packets that waited least.
   std::chrono::nanoseconds host_time{0};
   /// A packet was lost less than BodySkin::refresh_s ago, or no whole refresh has come yet: blocks
-  /// may have readings from before. A sensor that falls silent does not become stale: compare
+  /// may have readings from before. A sensor that stops sending does not become stale: compare
   /// host_time with the clock.
   bool stale = true;
   PatchHealth health;

@@ -78,7 +78,7 @@ void BlockSender::copy_block(const FrameBuffer& frame, std::uint32_t block,
   std::memcpy(&to[begin], &block, sizeof block);
   for (std::uint32_t row = 0; row < place.rows; ++row) {
     const std::size_t at = (place.first_row + row) * shape_.row_bytes() + place.first_col * size;
-    std::memcpy(&to[begin + 8 + row * size * PILLARFIELD_BLOCK_SIDE], &frame.bytes()[at],
+    std::memcpy(&to[begin + kBlockHead + row * size * PILLARFIELD_BLOCK_SIDE], &frame.bytes()[at],
                 place.cols * size);
     std::memcpy(&last_.bytes()[at], &frame.bytes()[at], place.cols * size);
   }

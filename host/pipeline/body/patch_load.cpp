@@ -12,12 +12,6 @@ constexpr std::uint32_t kTile = PILLARFIELD_BLOCK_SIDE / 2;  ///< pillars
 
 std::uint32_t tiles_along(std::uint32_t pillars) { return (pillars + kTile - 1) / kTile; }
 
-double finite_or_zero(float force) { return std::isfinite(force) ? double{force} : 0.0; }
-
-Vector3 rotated(const Pose& pose, const Vector3& vector) {
-  return vector.x * pose.tangent_x + vector.y * pose.tangent_y + vector.z * pose.normal;
-}
-
 constexpr std::uint8_t kIdleTile = 0;  ///< without force
 constexpr std::uint8_t kLoadedTile = 1;
 constexpr std::uint8_t kMarkedTile = 2;  ///< to be summed again

@@ -109,9 +109,7 @@ void PatchMemory::store_blocks(const Packet& packet) {
   const std::size_t row_bytes = size_of(shape_.type) * PILLARFIELD_BLOCK_SIDE;
   for (std::uint32_t i = 0; i < packet.header.count; ++i) {
     const std::byte* const block = &packet.bytes[i * shape_.block_bytes()];
-    std::uint32_t number = 0;
-    std::memcpy(&number, block, sizeof number);
-    store(sensels_of_block(shape_, number), block + 8, row_bytes);
+    store(sensels_of_block(shape_, block_number(block)), block + kBlockHead, row_bytes);
   }
   health_.blocks += packet.header.count;
 }

@@ -142,13 +142,12 @@ void FrameAssembler::store(Slot& slot, const Packet& packet) {
   const std::size_t size = size_of(shape_.type);
   for (std::uint32_t i = 0; i < header.count; ++i) {
     const std::byte* const block = &packet.bytes[i * shape_.block_bytes()];
-    std::uint32_t number = 0;
-    std::memcpy(&number, block, sizeof number);
+    const std::uint32_t number = block_number(block);
     slot.marks[number] = 1;
     const SenselBlock place = sensels_of_block(shape_, number);
     for (std::uint32_t row = 0; row < place.rows; ++row) {
       std::memcpy(&readings[(place.first_row + row) * shape_.row_bytes() + place.first_col * size],
-                  block + 8 + row * size * PILLARFIELD_BLOCK_SIDE, place.cols * size);
+                  block + kBlockHead + row * size * PILLARFIELD_BLOCK_SIDE, place.cols * size);
     }
   }
 }

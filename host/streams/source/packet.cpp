@@ -9,7 +9,6 @@ namespace pillarfield {
 namespace {
 
 constexpr std::uint32_t kSide = PILLARFIELD_BLOCK_SIDE;
-constexpr std::size_t kBlockHead = 8;
 constexpr std::size_t kChecksumBytes = 4;
 
 std::optional<SenselType> type_of(const PillarfieldPacket& header) {
@@ -69,6 +68,12 @@ bool names_blocks_of_frame(const Packet& packet, const FrameShape& shape) {
 std::uint32_t FrameShape::block_cols() const { return (cols + kSide - 1) / kSide; }
 
 std::uint32_t FrameShape::blocks() const { return (rows + kSide - 1) / kSide * block_cols(); }
+
+std::uint32_t block_number(const std::byte* block) {
+  std::uint32_t number = 0;
+  std::memcpy(&number, block, sizeof number);
+  return number;
+}
 
 std::size_t FrameShape::block_bytes() const { return kBlockHead + size_of(type) * kSide * kSide; }
 

@@ -28,6 +28,12 @@ struct FrameShape {
   bool operator==(const FrameShape&) const = default;
 };
 
+/// Bytes before the readings of a block: its number, and zeros.
+inline constexpr std::size_t kBlockHead = 8;
+
+/// The number of a block at the begin of its bytes.
+[[nodiscard]] std::uint32_t block_number(const std::byte* block);
+
 /// The sensels of a block that are on the skin.
 [[nodiscard]] SenselBlock sensels_of_block(const FrameShape& shape, std::uint32_t block);
 

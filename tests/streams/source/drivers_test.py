@@ -1,25 +1,15 @@
 """Builds the drivers of examples/driver with a C99 compiler, and lets them feed the program."""
 
 import json
-import os
-import pathlib
 import re
 import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-PROGRAM = os.environ["PILLARFIELD"]
-SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
-DRIVERS = SOURCE / "examples/driver"
-NAME = f"pillarfield-drivers-{os.getpid()}"
-
-
-def segments():
-    return sorted(path.name for path in pathlib.Path("/dev/shm").glob(f"{NAME}*"))
+from drivers import DRIVERS, NAME, PROGRAM, DriverTest, segments
 
 
 def free_port():
@@ -28,18 +18,7 @@ def free_port():
         return probe.getsockname()[1]
 
 
-class Drivers(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(scratch.cleanup)
-        cls.addClassCleanup(lambda: [pathlib.Path("/dev/shm", name).unlink() for name in segments()])
-        cls.folder = pathlib.Path(scratch.name)
-        for name in ("ring_driver", "control_loop"):
-            subprocess.run([os.environ.get("CC", "cc"), "-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic",
-                            "-Werror", "-I", SOURCE / "host/include", "-o", cls.folder / name,
-                            DRIVERS / f"{name}.c", "-lm"], check=True)
-
+class Drivers(DriverTest):
     def start(self, *words, **options):
         process = subprocess.Popen([str(word) for word in words], text=True, **options)
         self.addCleanup(lambda: (process.kill(), process.wait(), process.stdout and process.stdout.close()))

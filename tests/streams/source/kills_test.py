@@ -1,29 +1,22 @@
 """Kills driver, program and reader (SIGKILL) in every order, and starts each again.
 
-Arguments: the number of rounds. Frames carry their number, so that a recording can be checked."""
+Argument: the number of rounds. The driver's spot moves across the skin, which orders the frames of a
+recording."""
 
 import itertools
-import os
-import pathlib
 import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
 import h5py
 
-PROGRAM = os.environ["PILLARFIELD"]
-SOURCE = pathlib.Path(os.environ["PILLARFIELD_SOURCE"])
-NAME = f"pillarfield-kills-{os.getpid()}"
+from drivers import NAME, PROGRAM, DriverTest, segments
+
 ROUNDS = int(sys.argv.pop(1))
 COLS = 48
-
-
-def segments():
-    return sorted(path.name for path in pathlib.Path("/dev/shm").glob(f"{NAME}*"))
 
 
 def spot_column(readings):
@@ -32,17 +25,7 @@ def spot_column(readings):
     return (loaded[0] + loaded[-1]) / 2
 
 
-class Kills(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        scratch = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(scratch.cleanup)
-        cls.addClassCleanup(lambda: [pathlib.Path("/dev/shm", name).unlink() for name in segments()])
-        cls.folder = pathlib.Path(scratch.name)
-        for name in ("ring_driver", "control_loop"):
-            subprocess.run([os.environ.get("CC", "cc"), "-O2", "-I", SOURCE / "host/include", "-o",
-                            cls.folder / name, SOURCE / f"examples/driver/{name}.c", "-lm"], check=True)
-
+class Kills(DriverTest):
     def setUp(self):
         self.recordings = []
         self.processes = {}
