@@ -71,8 +71,8 @@ SolverPlan plan_of_patch(const Simulator& simulator) {
   return plan;
 }
 
-/// Throws Error if the body, with a patch of this scene, has more than kMostBodySensels: a short file
-/// may describe a thousand large patches.
+/// Throws Error if the body, with a patch of this scene, has more than kMostBodySensels: a short
+/// file may describe a thousand large patches.
 void require_size(TomlSection& section, const BodyFile& body, const Scene& scene) {
   std::uint64_t sensels = scene.skin.sensels();
   for (const BodyFile::Simulated& other : body.simulated) sensels += other.scene.skin.sensels();
