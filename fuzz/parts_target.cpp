@@ -46,10 +46,10 @@ void write_parts(const std::filesystem::path& output, const ForceFileInfo& info,
   }
 }
 
-/// Puts the file at `path` beside others.
-void place(const std::filesystem::path& file, const std::filesystem::path& path) {
-  std::filesystem::create_directory(path.parent_path());
-  std::filesystem::copy_file(file, path);
+/// Copies a file beside others.
+void place(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::filesystem::create_directory(to.parent_path());
+  std::filesystem::copy_file(from, to);
 }
 
 /// Reads a joined file with two parts, of the fingerprint `seed` that the corpus has.

@@ -39,10 +39,10 @@ TiledFrames::TiledFrames(const File& file, const char* name, hid_t type, hsize_t
       value_bytes_(H5Tget_size(type)),
       rows_(rows),
       cols_(cols),
+      chunk_frames_(frames_of(rows * cols * value_bytes_, tiling)),
       tile_rows_(tile_of(rows, tiling == Tiling::strips ? kStripRows : kTile)),
       tile_cols_(tiling == Tiling::strips ? cols : tile_of(cols, kTile)) {
   const hsize_t tile_values = tile_rows_ * tile_cols_;
-  chunk_frames_ = frames_of(rows * cols * value_bytes_, tiling);
   fill_.resize(chunk_frames_ * tile_values * value_bytes_);
   for (std::size_t at = 0; at < fill_.size(); at += value_bytes_) {
     std::memcpy(fill_.data() + at, fill, value_bytes_);
