@@ -26,11 +26,11 @@ namespace pillarfield {
 namespace {
 
 struct OpenForces {
-  explicit OpenForces(hdf5::File opened);
+  OpenForces(hdf5::File opened, const ReadOptions& options);
 
   void open_planes();
   void read_size(const std::vector<hsize_t>& shape);
-  void open_parts();
+  void open_parts(const ReadOptions& options);
   void read_info();
   void read_surface_of_skin();
   void count_frames();
@@ -75,7 +75,7 @@ std::vector<hsize_t> shape_of_virtual(const hdf5::File& file, const char* name) 
   return {extent[1], extent[2]};
 }
 
-OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
+OpenForces::OpenForces(hdf5::File opened, const ReadOptions& options) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
   hdf5::require_format(file, force_format::kName, force_format::kVersion);
   info.angles = hdf5::exists(file, force_format::kMagnitude);
@@ -92,7 +92,7 @@ OpenForces::OpenForces(hdf5::File opened) : file(std::move(opened)) {
   read_info();
   read_surface_of_skin();
   if (is_joined) {
-    open_parts();
+    open_parts(options);
   } else {
     info.part = read_part(file, force_format::kPart);
     count_frames();
@@ -128,7 +128,7 @@ void OpenForces::read_size(const std::vector<hsize_t>& shape) {
 }
 
 /// Opens the folder of parts, which lies beside the file.
-void OpenForces::open_parts() {
+void OpenForces::open_parts(const ReadOptions& options) {
   const auto part = read_part(file, force_format::kParts);
   const hdf5::Handle group = hdf5::open_object(file, force_format::kParts);
   const std::string folder = hdf5::read_text(file, group.get(), force_format::kFolder).value_or("");
@@ -141,7 +141,7 @@ void OpenForces::open_parts() {
     throw Error(file.path.string(), "its tables do not fit the frames of its parts",
                 "join them again");
   }
-  parts.emplace(file.path.parent_path() / folder, *part, info);
+  parts.emplace(file.path.parent_path() / folder, *part, info, ReadOptions{.trust = options.trust});
   for (const LostPart& lost : parts->lost()) {
     warnings.push_back(fmt::format("It lacks {}: {}.", name_of(lost), lost.reason));
   }
@@ -198,11 +198,11 @@ struct ForceFileReader::State : OpenForces {
   using OpenForces::OpenForces;
 };
 
-void try_forces(hdf5::File file) { (void)OpenForces(std::move(file)); }
+void try_forces(hdf5::File file) { (void)OpenForces(std::move(file), {}); }
 
 ForceFileReader::ForceFileReader(const std::filesystem::path& path, const ReadOptions& options) {
   const hdf5::QuietErrors quiet;
-  state_ = std::make_unique<State>(open_probed(path, options));
+  state_ = std::make_unique<State>(open_probed(path, options), options);
 }
 
 ForceFileReader::~ForceFileReader() = default;
@@ -220,8 +220,9 @@ const std::vector<LostPart>& ForceFileReader::lost_parts() const {
 
 std::uint64_t ForceFileReader::parts() const { return state_->parts ? state_->parts->parts() : 0; }
 
-std::vector<LostPart> ForceFileReader::examine_parts() const {
-  return state_->parts ? state_->parts->examine() : std::vector<LostPart>();
+std::vector<LostPart> ForceFileReader::examine_parts(const StepProgress& progress) const {
+  const hdf5::QuietErrors quiet;
+  return state_->parts ? state_->parts->examine(progress) : std::vector<LostPart>();
 }
 
 double ForceFileReader::read(std::uint64_t index, ForceField& forces) const {
