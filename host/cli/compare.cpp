@@ -202,10 +202,7 @@ void print_coverage(const Coverage& coverage) {
 std::vector<LostPart> lost_parts(const ForceFileReader& forces, const CompareOptions& options) {
   std::vector<LostPart> lost = examined_parts(forces, options.forces, options.quiet);
   if (options.allow_missing) {
-    for (const LostPart& part : lost) {
-      print_file_warnings(options.forces,
-                          {fmt::format("{} is left out: {}", name_of(part), part.reason)});
-    }
+    print_file_warnings(options.forces, sentences_about(lost));
     return lost;
   }
   if (lost.empty()) return lost;

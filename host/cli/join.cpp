@@ -7,6 +7,7 @@
 #include "cli/json_text.h"
 #include "cli/number_text.h"
 #include "cli/progress.h"
+#include "cli/warnings.h"
 #include "pillarfield/force_parts.h"
 #include "pillarfield/printable.h"
 
@@ -42,9 +43,7 @@ void join(const JoinCommand& command) {
                                   {"copied", command.copy}}));
     return;
   }
-  for (const LostPart& part : joined.lost) {
-    fmt::print(stderr, "{}: it lacks {}\n", printable(command.output), name_of(part));
-  }
+  print_file_warnings(command.output, sentences_about(joined.lost));
   if (command.quiet) return;
   fmt::print("Joined {} of {} parts, {}, in {}\n", joined.parts - joined.lost.size(), joined.parts,
              counted(joined.frames, "frame"), printable(command.output));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "io/file_kind.h"
 #include "io/force_format.h"
@@ -142,9 +143,7 @@ void OpenForces::open_parts(const ReadOptions& options) {
                 "join them again");
   }
   parts.emplace(file.path.parent_path() / folder, *part, info, ReadOptions{.trust = options.trust});
-  for (const LostPart& lost : parts->lost()) {
-    warnings.push_back(fmt::format("It lacks {}: {}.", name_of(lost), lost.reason));
-  }
+  std::ranges::move(sentences_about(parts->lost()), std::back_inserter(warnings));
 }
 
 void OpenForces::read_info() {

@@ -181,7 +181,7 @@ class PartsTest(PartsFolder):
         for trusted in ((), ("--trust-input",)):
             damaged = run("compare", self.output, self.recording, "--allow-missing", *trusted)
             self.assertEqual(damaged.stdout, table)
-            self.assertIn("part 2 (frames 7 to 14) is left out", damaged.stderr)
+            self.assertIn("It lacks part 2 (frames 7 to 14)", damaged.stderr)
         # A lost part that comes back is found again.
         run("join", self.output, "--allow-missing")
         self.solve("--part", "2/3")

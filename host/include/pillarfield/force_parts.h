@@ -69,6 +69,10 @@ struct LostPart {
 /// "part 7 (frames 600 to 699)".
 [[nodiscard]] std::string name_of(const LostPart& part);
 
+/// A sentence for each lost part, "It lacks part 7 (frames 600 to 699): REASON.", and one for all
+/// beyond the first ten.
+[[nodiscard]] std::vector<std::string> sentences_about(const std::vector<LostPart>& lost);
+
 /// Called often during a long work on parts, with the steps done so far and all of them; both may
 /// stay as they were. What it throws ends the work.
 using StepProgress = std::function<void(std::uint64_t done, std::uint64_t all)>;
