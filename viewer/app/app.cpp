@@ -91,21 +91,12 @@ void Application::route(const InputEvent& event) {
     if (quits && !ImGui::GetIO().WantTextInput) pending_.quit = true;
     return;
   }
-  const bool types = ImGui::GetIO().WantTextInput;
-  const bool covered = GuiInput::has_open_list();
-  if (const auto* key = std::get_if<KeyEvent>(&event)) {
-    if (types || !key->pressed) gui_input_.take(event);
-    if (covered && key->pressed) {
-      GuiInput::close_lists();
-    } else if (!types) {
-      controls_.take(event, command());
-    }
-    return;
-  }
+  if (const auto* key = std::get_if<KeyEvent>(&event)) return route_key(*key);
   if (std::holds_alternative<TextEvent>(event)) {
-    if (types) gui_input_.take(event);
+    if (ImGui::GetIO().WantTextInput) gui_input_.take(event);
     return;
   }
+  const bool covered = GuiInput::has_open_list();
   const auto* const button = std::get_if<ButtonEvent>(&event);
   const bool presses = button != nullptr && button->pressed;
   if (presses && state_.show_help) {
@@ -122,6 +113,16 @@ void Application::route(const InputEvent& event) {
   if (over_panel && !std::holds_alternative<MotionEvent>(event)) return;
   if (!covered || (button != nullptr && !presses)) {
     controls_.take(over_panel ? LeaveEvent{} : in_first_half(event), command());
+  }
+}
+
+void Application::route_key(const KeyEvent& key) {
+  const bool types = ImGui::GetIO().WantTextInput;
+  if (types || !key.pressed) gui_input_.take(key);
+  if (key.pressed && GuiInput::has_open_list()) {
+    GuiInput::close_lists();
+  } else if (!types) {
+    controls_.take(key, command());
   }
 }
 

@@ -31,6 +31,7 @@ namespace pillarfield::viewer {
 class Application {
  public:
   explicit Application(const Options& options);
+  // NOLINTNEXTLINE(bugprone-exception-escape): without memory the program ends anyway
   ~Application() { close(); }
   Application(const Application&) = delete;
   Application& operator=(const Application&) = delete;
@@ -55,6 +56,7 @@ class Application {
   void wait();
   void take_input();
   void route(const InputEvent& event);
+  void route_key(const KeyEvent& key);
   [[nodiscard]] InputEvent in_first_half(InputEvent event) const;
   void take_newest_field();
   void take_beside();
