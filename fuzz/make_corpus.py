@@ -235,13 +235,16 @@ def in_parts(name, item):
     return layout
 
 
-def convert(source, target, variable=False, layout=None, swmr=False, joined=False, **file_options):
+def convert(source, target, variable=False, layout=None, swmr=False, joined=False, version=None, **file_options):
     """Copies a file object by object: with strings of variable length if `variable`, datasets of frames
     in the h5py `layout`, and the file version of `file_options`. With `swmr`, `target` is left as by a
-    writer that was killed after a flush. With `joined`, planes lie in two parts."""
+    writer that was killed after a flush. With `joined`, planes lie in two parts.
+    `version` is the format's, by default that of `source`."""
     unfinished = target.with_name("unfinished.h5") if swmr else target
     with h5py.File(source, "r") as old, h5py.File(unfinished, "w", **file_options) as new:
         copy_attributes(old, new, variable)
+        if version:
+            new.attrs["version"] = version
 
         def visit(name, item):
             if isinstance(item, h5py.Group):
@@ -267,7 +270,7 @@ def convert(source, target, variable=False, layout=None, swmr=False, joined=Fals
 
 # Variants of an HDF5 file: old and new format, compressed, checksummed, with strings of variable length.
 VARIANTS = {
-    "old": {},
+    "old": {"version": 1},
     "old_gzip_variable": {"variable": True, "layout": {"compression": "gzip", "shuffle": True}},
     "latest": {"libver": "latest"},
     "latest_gzip": {"libver": "latest", "layout": {"compression": "gzip", "fletcher32": True}},

@@ -29,7 +29,7 @@ namespace {
 struct OpenForces {
   OpenForces(hdf5::File opened, const ReadOptions& options);
 
-  void open_planes();
+  void open_planes(bool may_lack_chunks);
   void read_size(const std::vector<hsize_t>& shape);
   void open_parts(const ReadOptions& options);
   void read_info();
@@ -78,11 +78,11 @@ std::vector<hsize_t> shape_of_virtual(const hdf5::File& file, const char* name) 
 
 OpenForces::OpenForces(hdf5::File opened, const ReadOptions& options) : file(std::move(opened)) {
   const std::filesystem::path& path = file.path;
-  hdf5::require_format(file, force_format::kName, force_format::kVersion);
+  const int version = hdf5::require_format(file, force_format::kName, force_format::kVersion);
   info.angles = hdf5::exists(file, force_format::kMagnitude);
   info.uncertainty = hdf5::exists(file, force_format::kUncertainty);
   const bool is_joined = hdf5::exists(file, force_format::kParts);
-  if (!is_joined) open_planes();
+  if (!is_joined) open_planes(version >= force_format::kSparseSince);
   time = {file, force_format::kTime, 0};
   require_class(time, H5T_FLOAT, "floats", path);
   if (hdf5::exists(file, force_format::kContacts)) {
@@ -100,13 +100,13 @@ OpenForces::OpenForces(hdf5::File opened, const ReadOptions& options) : file(std
   }
 }
 
-void OpenForces::open_planes() {
+void OpenForces::open_planes(bool may_lack_chunks) {
   for (const ResultPlane& plane : planes_of(info)) {
     if (!is_read(plane)) continue;
-    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2, true);
+    planes.emplace_back(file, fmt::format("/{}/{}", plane.group(), plane.name), 2, may_lack_chunks);
     require_class(planes.back(), H5T_FLOAT, "floats", file.path);
   }
-  status = {file, force_format::kStatus, 2, true};
+  status = {file, force_format::kStatus, 2, may_lack_chunks};
   require_class(status, H5T_INTEGER, "integers", file.path);
 }
 

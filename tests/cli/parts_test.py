@@ -306,6 +306,31 @@ class PartsTest(PartsFolder):
         self.assertFalse(normal[status == 0].any())
         numpy.testing.assert_array_equal(high[status == 0], numpy.float32(numpy.pi / 2))
 
+    def test_strips_of_skins_where_most_is_loaded(self):
+        """Small planes are buffered for some frames, large ones written in place."""
+        random = numpy.random.default_rng(5)
+        for rows, cols, frames in ((120, 90, 37), (1230, 1000, 4)):
+            raw = random.integers(60, 200, (frames, rows, cols), "u1")
+            raw[1] = 0
+            raw[2, :200], raw[3, 7:9, 5:] = 0, 0
+            numpy.save(self.folder / "raw.npy", raw)
+            plain = (self.folder / "raw.npy", "--rate", 100, "--threshold", 2)
+            run("solve", *plain, "-o", self.output)
+            run("solve", *plain, "-o", self.folder / "forces.npy")
+            forces = numpy.load(self.folder / "forces.npy", mmap_mode="r")
+            for part in (1, 2):
+                run("solve", *plain, "-o", self.folder / "apart.h5", "--part", f"{part}/2")
+            run("join", self.folder / "apart.h5", "--copy")
+            for path in (self.output, self.folder / "apart.h5"):
+                with h5py.File(path, "r") as file:
+                    normal = file["force/normal"]
+                    self.assertEqual(normal.chunks[2], cols // 2)
+                    self.assertLess(normal.id.get_num_chunks(),
+                                    -(-frames // normal.chunks[0]) * -(-rows // 2 // normal.chunks[1])
+                                    + (normal.chunks[0] > 1))
+                    for name in forces.dtype.names:
+                        numpy.testing.assert_array_equal(file["force"][name][()], forces[name])
+
 
 class ManyPartsTest(PartsFolder):
     FRAMES = 300

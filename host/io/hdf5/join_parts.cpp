@@ -271,16 +271,27 @@ void Joined::map_plane(const char* name, hid_t stored_type, const void* fill) {
                               {found_.joined.frames, info_.rows, info_.cols}, parts, fill);
 }
 
-/// Value of a dataset in pillars that nothing touches.
+/// What a copy of a part's plane takes from it.
 template <class Value>
-Value fill_value(const hdf5::File& file, const char* name, hid_t type) {
+struct PlaneLayout {
+  Value idle = 0;  ///< value in pillars that nothing touches
+  hdf5::Tiling tiling = hdf5::Tiling::squares;
+};
+
+template <class Value>
+PlaneLayout<Value> layout_of(const hdf5::File& file, const char* name, hid_t type, hsize_t cols) {
   const std::string failure = fmt::format("the layout of {} cannot be read", name);
   const hdf5::Handle dataset = hdf5::open_object(file, name);
   const hdf5::Handle layout =
       hdf5::own(H5Dget_create_plist(dataset.get()), file.path, failure, hdf5::kDamaged);
-  Value value = 0;
-  hdf5::require(H5Pget_fill_value(layout.get(), type, &value), file.path, failure, hdf5::kDamaged);
-  return value;
+  PlaneLayout<Value> found;
+  hdf5::require(H5Pget_fill_value(layout.get(), type, &found.idle), file.path, failure,
+                hdf5::kDamaged);
+  std::array<hsize_t, 3> chunk{};
+  const bool is_chunked = H5Pget_layout(layout.get()) == H5D_CHUNKED &&
+                          H5Pget_chunk(layout.get(), 3, chunk.data()) == 3;
+  if (is_chunked && chunk[2] == cols) found.tiling = hdf5::Tiling::strips;
+  return found;
 }
 
 /// A plane of a part; the reader checked only those that it reads.
@@ -296,8 +307,9 @@ hdf5::StoredFrames Joined::open_plane(const hdf5::File& file, const char* name,
 
 template <class Value>
 void Joined::copy_plane(const char* name, hid_t type, Value lost) {
-  const auto idle = fill_value<Value>(hdf5::open_to_read(found_.files.begin()->second), name, type);
-  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &idle);
+  const auto layout =
+      layout_of<Value>(hdf5::open_to_read(found_.files.begin()->second), name, type, info_.cols);
+  hdf5::TiledFrames target(file_, name, type, info_.rows, info_.cols, &layout.idle, layout.tiling);
   std::vector<Value> values(std::size_t{info_.rows} * info_.cols);
   for (std::uint64_t index = 1; index <= found_.joined.parts; ++index) {
     const FrameRange range = found_.frames(index);
