@@ -80,8 +80,12 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   bottom = without_leak(bottom, around, 1);
 #endif
 #ifdef PF_MEMORY
-  top = recall_row(top, calibration, block.top.row, block);
-  bottom = recall_row(bottom, calibration, block.bottom.row, block);
+  const Pillar before = {top.right, top.left, bottom.left, bottom.right};
+  const Pillar recalled = recall_block(before, calibration, block);
+  top.right = recalled.s1;
+  top.left = recalled.s2;
+  bottom.left = recalled.s3;
+  bottom.right = recalled.s4;
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
