@@ -186,7 +186,8 @@ PF_INLINE bool block_is_idle(Row row, size_t sensel, bool was_idle) {
   const float bound = bound_of(row.calibration.wires, place, 2);
   if (bound == PF_IDLE_TILE) return true;
   prefetch_readings(row, sensel, was_idle);
-  return rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, 2, bound);
+  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride) &&
+         rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, 2, bound);
 #else
   prefetch_readings(row, sensel, was_idle);
   return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
