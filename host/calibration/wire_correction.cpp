@@ -28,7 +28,6 @@ WireCorrection::WireCorrection(const Skin& skin, SenselType type,
 FrameView WireCorrection::operator()(const FrameView& raw) {
   if (!corrected_) return raw;
   const WireFactors factors(plan_, raw);
-  const auto per_count = static_cast<float>(plan_.calibration.effects.wires->column_per_count);
   const auto out = corrected_->readings<float>();
   for_each_row(raw, [&](std::size_t row, const auto* readings) {
     for (std::size_t col = 0; col < raw.cols; ++col) {
@@ -41,7 +40,7 @@ FrameView WireCorrection::operator()(const FrameView& raw) {
       const single_precision::Wires at = factors.at(row, col);
       single_precision::Sensel sensel{};
       sensel.reading = reading;
-      sensel = single_precision::remove_crosstalk(sensel, at, per_count);
+      sensel = single_precision::remove_crosstalk(sensel, at);
       corrected = sensel.missing != 0 ? std::nanf("") : sensel.reading;
       if (plan_.skin.full_scale_counts && reading >= *plan_.skin.full_scale_counts) {
         corrected = static_cast<float>(*skin_.full_scale_counts);
