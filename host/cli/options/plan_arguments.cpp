@@ -28,7 +28,7 @@ void add_sensor(CLI::App* command, PlanOptions& plan) {
                 1e-6, 1e9);
   sensor.whole("--baseline-interval", plan.baseline_interval, "N",
                "Follow it in one of N pillar rows per frame, at 1/N of the cost [1; with "
-               "--everything up to 16]",
+               "--everything up to 64]",
                1, 1024);
 }
 
