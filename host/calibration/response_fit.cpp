@@ -104,10 +104,11 @@ Response ResponseFit::operator()(std::size_t sensel) const {
 Response ResponseFit::ratio(const Sums& sums, std::size_t sensel) const {
   const double mean_response = sums.y / sums.w;
   const double dead_zone = planes_.dead_zone.empty() ? 0 : planes_.dead_zone[sensel];
-  return {.kind = Response::Kind::good,
-          .newtons_per_count = sums.n / sums.w / mean_response,
-          .dead_zone_gain = leak_sum(planes_.effects, presses_.front().frames.skin(), sensel) *
-                            dead_zone / mean_response};
+  return {
+      .kind = Response::Kind::good,
+      .newtons_per_count = sums.n / sums.w / mean_response,
+      .dead_zone_gain = sensel_leak_sum(planes_.effects, presses_.front().frames.skin(), sensel) *
+                        dead_zone / mean_response};
 }
 
 /// Several pressures: least squares of y = s (n − n0) under n0 >= 0, or n0 = 0 for multiples of the
