@@ -213,8 +213,8 @@ std::uint64_t ForceFileReader::frames() const { return state_->frames; }
 const std::vector<std::string>& ForceFileReader::warnings() const { return state_->warnings; }
 
 const std::vector<LostPart>& ForceFileReader::lost_parts() const {
-  static const std::vector<LostPart> kNone;
-  return state_->parts ? state_->parts->lost() : kNone;
+  static const std::vector<LostPart> none;
+  return state_->parts ? state_->parts->lost() : none;
 }
 
 std::uint64_t ForceFileReader::parts() const { return state_->parts ? state_->parts->parts() : 0; }
