@@ -115,7 +115,7 @@ PF_INLINE RealPair read_noise(global const PF_SENSEL* raw, Calibration calibrati
 #define PF_PREFETCH_PLANE(type, plane) \
   PF_PREFETCH(PF_PLANE_OF(calibration, type, plane) + offset + row * calibration.stride)
 
-/* Prefetches the calibration of both rows of sensels under a block, one pillar row ahead: hardware
+/* Prefetches the calibration of two rows of sensels under a block that is solved later: hardware
  * prefetching stops at the end of a page. */
 PF_INLINE void prefetch_planes(Calibration calibration, size_t offset) {
   for (uint row = 0; row < 2; ++row) {
