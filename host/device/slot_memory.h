@@ -31,9 +31,9 @@ constexpr std::size_t plane_distance(std::size_t bytes) {
 /// Offsets of the planes of a result in one block of pages, bytes; the flags of idle blocks follow
 /// the planes.
 struct ResultLayout {
-  /// `lanes`: pillars of a block that may be idle; 0: no flags. `changed_flags`: bytes of
+  /// `block_lanes`: pillars of a block that may be idle; 0: no flags. `flags_of_changed`: bytes of
   /// ChangedBlocks.
-  ResultLayout(const SolverPlan& plan, int lanes, std::size_t changed_flags = 0);
+  ResultLayout(const SolverPlan& plan, int block_lanes, std::size_t flags_of_changed = 0);
 
   std::array<std::size_t, kSolvedPlanes> planes{};  ///< offset from the first one
   std::array<bool, kSolvedPlanes> has{};            ///< planes of the plan

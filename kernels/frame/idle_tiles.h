@@ -139,7 +139,8 @@ PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, siz
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
                     range.largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
   for (uint i = 0; idle && i < tile.rows; ++i) {
-    wires.row[first + i] = wires.idle[first + i] = 1.0f;
+    wires.row[first + i] = 1.0f;
+    wires.own[first + i] = 0.0f;
     wires.bound[first + i] = PF_IDLE_TILE;
   }
   for (uint i = 0; idle && i < tile.cols; ++i) columns[i] = 1.0f;
@@ -160,7 +161,7 @@ PF_INLINE void bound_rows(TileRange range, Tile tile, WireVectors wires, size_t 
   }
   for (uint at = first; at < first + tile.rows; ++at) {
     const float row = wires.row[at];
-    const float own = (float)(PF_COLUMN_PER_COUNT) * (1.0f - wires.idle[at]) * row * range.largest;
+    const float own = wires.own[at] * range.largest;
     const float high = row * most * (1.0f + own) * PF_BOUND_RESERVE;
     const float low = 2.0f - row * least * (1.0f - own) / PF_BOUND_RESERVE;
     wires.bound[at] = row <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) ? max(high, low) : PF_SATURATED_ROW;

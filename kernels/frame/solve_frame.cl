@@ -80,8 +80,12 @@ PF_INLINE Solution solve_block(Block block, Input input) {
   bottom = without_leak(bottom, around, 1);
 #endif
 #ifdef PF_MEMORY
-  top = recall_row(top, calibration, block.top.row, block);
-  bottom = recall_row(bottom, calibration, block.bottom.row, block);
+  const Pillar before = {top.right, top.left, bottom.left, bottom.right};
+  const Pillar recalled = recall_block(before, calibration, block);
+  top.right = recalled.s1;
+  top.left = recalled.s2;
+  bottom.left = recalled.s3;
+  bottom.right = recalled.s4;
 #endif
   top = finish_sensels(top, calibration, block.top);
   bottom = finish_sensels(bottom, calibration, block.bottom);
@@ -183,7 +187,8 @@ PF_INLINE bool block_is_idle(Row row, size_t sensel, bool was_idle) {
   const float bound = bound_of(row.calibration.wires, place, 2);
   if (bound == PF_IDLE_TILE) return true;
   prefetch_readings(row, sensel, was_idle);
-  return rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, 2, bound);
+  return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride) &&
+         rows_are_idle(row.raw + sensel, row.row_stride, row.calibration, place, 2, bound);
 #else
   prefetch_readings(row, sensel, was_idle);
   return is_idle(row.raw + sensel, row.row_stride, row.activation + sensel, row.activation_stride);
