@@ -249,7 +249,7 @@ void fill_planes(const std::vector<Response>& responses, double k, bool several,
     planes.gain[i] = static_cast<float>(k * response.newtons_per_count - response.dead_zone_gain);
     if (!several) continue;
     planes.dead_zone[i] =
-        static_cast<float>(k * response.dead_zone_n / leak_sum(planes.effects, skin, i));
+        static_cast<float>(k * response.dead_zone_n / sensel_leak_sum(planes.effects, skin, i));
   }
   planes.mask = found.mask_plane();
 }
@@ -281,7 +281,7 @@ EquilibrationResult equilibrate(const SkinCalibration& before,
   result.shear = shear_of(responses, skin, found);
   result.gain_spread = summary.gain_spread(k);
   result.nonlinearity = result.levels > 2 ? summary.nonlinearity() : 0;
-  result.dead_zone_counts = summary.median_dead_zone(k, full_leak_sum(before.planes.effects));
+  result.dead_zone_counts = summary.median_dead_zone(k, sensel_leak_sum(before.planes.effects));
   result.calibration = before;
   SkinCalibration& after = result.calibration;
   fill_planes(responses, k, result.levels > 1, skin, found, after.planes);

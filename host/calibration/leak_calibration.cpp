@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "base/quantile.h"
 #include "calibration/leak_fit.h"
@@ -34,9 +35,17 @@ constexpr int kFitSteps = 12;
 /// Factor on the standard error within which a leak counts as absent.
 constexpr double kLeakInsignificant = 3;
 constexpr double kMostLeak = 0.2;
+/// Least reading by which a leak shows above a dead zone, in multiples of the noise.
+constexpr double kLeastShown = 2;
 
 bool is_significant(double leak, double error) {
   return std::abs(leak) > kLeakInsignificant * error && error > 0;
+}
+
+double mean_dead_zone(const SkinCalibration& calibration) {
+  const std::vector<float>& zones = calibration.planes.dead_zone;
+  const double sum = std::accumulate(zones.begin(), zones.end(), 0.0);
+  return zones.empty() ? 0 : sum / static_cast<double>(zones.size());
 }
 
 }  // namespace
@@ -110,13 +119,27 @@ class LeakFinder::Fit {
       for (const Press* press : presses_) {
         visit(*press, [&](const auto& row, double residual) { equations.add(row, residual); });
       }
-      active_ = {inactive_ > 0, true, true, true};
+      active_ = {inactive_ > 0, true, pillars_seen_[0], pillars_seen_[1]};
       const auto change = equations.solve(active_);
       if (!change) return;
       for (std::size_t i = 0; i < leaks_.size(); ++i) {
         leaks_.at(i) = std::clamp(leaks_.at(i) + (*change)[i], -2 * kMostLeak, 2 * kMostLeak);
       }
     }
+  }
+
+  /// Estimates the leaks again, now below a dead zone. It hides a part of each leak between
+  /// pillars; one that does not show above the noise counts as absent. The start lies above the
+  /// hidden part.
+  void estimate_below(double zone) {
+    const double largest = largest_reading();
+    zone_ = zone;
+    for (std::size_t i = 0; i < pillars_seen_.size(); ++i) {
+      double& leak = leaks_.at(2 + i);
+      pillars_seen_.at(i) = leak * largest > kLeastShown * noise_;
+      leak = pillars_seen_.at(i) ? leak + zone / largest : 0;
+    }
+    estimate();
   }
 
   /// Leaves out the presses whose residual is far above the median; returns their number.
@@ -195,7 +218,7 @@ class LeakFinder::Fit {
     const auto inactive =
         inactive_sensel(pressed, std::max(kLeastSurplus * sum, kSurplusNoise * 2 * noise_));
     if (inactive) ++inactive_;
-    const LeakedPatch read = leak_patch(unleak(pressed, leaks_, inactive), leaks_);
+    const LeakedPatch read = leak_patch(unleak(pressed, leaks_, zone_, inactive), leaks_, zone_);
     for (std::size_t i = 0; i < read.readings.size(); ++i) {
       const auto* const own = std::ranges::find(kPressedSensels, i);
       const bool loaded =
@@ -206,6 +229,15 @@ class LeakFinder::Fit {
       for (std::size_t p = 0; p < row.size(); ++p) row.at(p) = read.derivatives.at(p).at(i);
       use(row, press.readings.at(i) - read.readings.at(i));
     }
+  }
+
+  /// Largest reading of the pressed pillars.
+  [[nodiscard]] double largest_reading() const {
+    float largest = 0;
+    for (const Press* press : presses_) {
+      largest = std::max(largest, std::ranges::max(press->readings));
+    }
+    return largest;
   }
 
   /// RMS residual of a press over the mean reading of its pressed sensels.
@@ -224,6 +256,8 @@ class LeakFinder::Fit {
   std::vector<const Press*> presses_;
   double noise_;
   Leaks leaks_{};
+  double zone_ = 0;                                  ///< counts
+  std::array<bool, 2> pillars_seen_ = {true, true};  ///< edge, corner
   std::vector<bool> active_ = {false, true, true, true};
   std::size_t inactive_ = 0;  ///< presses with an inactive sensel in the last pass
   std::size_t places_ = 0;
@@ -241,6 +275,7 @@ LeakResult LeakFinder::result() const {
   fit.estimate();
   result.left_out = fit.leave_out();
   fit.estimate();
+  if (const double zone = mean_dead_zone(calibration_); zone > 0) fit.estimate_below(zone);
   const Leaks errors = fit.standard_errors();
   const Leaks leaks = fit.leaks();
   for (const double leak : leaks) {
@@ -278,7 +313,8 @@ void rescale_for_leaks(SkinCalibration& calibration, const Skin& skin,
   effects.pillar_leak = pillar;
   const double inner = full_leak_sum(effects) / full_leak_sum(before);
   if (calibration.counts_per_newton) *calibration.counts_per_newton /= inner;
-  for (float& zone : calibration.planes.dead_zone) zone /= static_cast<float>(inner);
+  const double inner_zone = sensel_leak_sum(effects) / sensel_leak_sum(before);
+  for (float& zone : calibration.planes.dead_zone) zone /= static_cast<float>(inner_zone);
   for (std::size_t i = 0; i < calibration.planes.gain.size(); ++i) {
     const double own = leak_sum(effects, skin, i) / leak_sum(before, skin, i);
     calibration.planes.gain[i] *= static_cast<float>(own / inner);

@@ -61,12 +61,17 @@ SenselPatch spread(const PressedLoad& load, double middle, double edge, double c
 
 }  // namespace
 
-LeakedPatch leak_patch(const PressedLoad& load, const Leaks& leaks) {
-  const SenselPatch v = spread(load, 1, leaks[2], leaks[3]);
+LeakedPatch leak_patch(const PressedLoad& load, const Leaks& leaks, double zone) {
+  SenselPatch v = spread(load, 1, leaks[2], leaks[3]);
+  SenselPatch by_edge = spread(load, 0, 1, 0);
+  SenselPatch by_corner = spread(load, 0, 0, 1);
+  for (std::size_t i = 0; zone > 0 && i < v.size(); ++i) {
+    if (v.at(i) <= zone) by_edge.at(i) = by_corner.at(i) = 0;
+    v.at(i) = std::max(0.0, v.at(i) - zone);
+  }
   const NeighbourSums sums = neighbour_sums(v);
   return {leak_sensels(v, leaks),
-          {sums.inside, sums.across, leak_sensels(spread(load, 0, 1, 0), leaks),
-           leak_sensels(spread(load, 0, 0, 1), leaks)}};
+          {sums.inside, sums.across, leak_sensels(by_edge, leaks), leak_sensels(by_corner, leaks)}};
 }
 
 std::optional<std::size_t> inactive_sensel(const PressedLoad& readings, double margin) {
@@ -76,13 +81,14 @@ std::optional<std::size_t> inactive_sensel(const PressedLoad& readings, double m
   return readings.at(first) < readings.at(first + 2) ? first : first + 2;
 }
 
-PressedLoad unleak(const PressedLoad& readings, const Leaks& leaks,
+PressedLoad unleak(const PressedLoad& readings, const Leaks& leaks, double zone,
                    const std::optional<std::size_t>& inactive) {
   constexpr int kSteps = 30;  // of a contraction by 0.8 or less
   PressedLoad load = readings;
+  for (double& each : load) each += zone;
   for (int step = 0; step < kSteps; ++step) {
     if (inactive) load.at(*inactive) = 0;
-    const SenselPatch read = leak_patch(load, leaks).readings;
+    const SenselPatch read = leak_patch(load, leaks, zone).readings;
     for (std::size_t n = 0; n < load.size(); ++n) {
       load.at(n) += readings.at(n) - read.at(kPressedSensels.at(n));
       load.at(n) = std::max(0.0, load.at(n));

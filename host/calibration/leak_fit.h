@@ -19,12 +19,13 @@ inline constexpr std::array<std::size_t, 4> kPressedSensels = {15, 14, 20, 21};
 /// V of the pressed pillar's sensels.
 using PressedLoad = std::array<double, 4>;
 
-/// What a patch reads under a load, and its derivatives by the leaks.
+/// What a patch reads under a load, and its derivatives by the leaks. Sensels read V above the dead
+/// zone `zone`, counts.
 struct LeakedPatch {
   SenselPatch readings;
   std::array<SenselPatch, 4> derivatives;
 };
-[[nodiscard]] LeakedPatch leak_patch(const PressedLoad& load, const Leaks& leaks);
+[[nodiscard]] LeakedPatch leak_patch(const PressedLoad& load, const Leaks& leaks, double zone);
 
 /// The sensel, 0 to 3, that carries no load: the smaller one of the diagonal whose sum exceeds the
 /// other one's by `margin`. Unset if neither does.
@@ -32,7 +33,7 @@ struct LeakedPatch {
                                                          double margin);
 
 /// V of the pressed pillar from its own readings; zero for the `inactive` sensel.
-[[nodiscard]] PressedLoad unleak(const PressedLoad& readings, const Leaks& leaks,
+[[nodiscard]] PressedLoad unleak(const PressedLoad& readings, const Leaks& leaks, double zone,
                                  const std::optional<std::size_t>& inactive);
 
 }  // namespace pillarfield

@@ -117,7 +117,8 @@ void store(const MemoryFit& fit, const std::vector<double>& ends, double residua
   // A factor on the readings goes into k, and so into all loads.
   const double scale = curved ? 1 : fit.slopes[0];
   if (curved) {
-    const ResponseCurve curve = followed_by(calibration, fit, ends, full_leak_sum(planes.effects));
+    const ResponseCurve curve =
+        followed_by(calibration, fit, ends, sensel_leak_sum(planes.effects));
     set_power_law(calibration, std::nullopt);
     planes.effects.curve = curve;
   }
@@ -168,9 +169,10 @@ void MemoryFinder::add(const FrameView& frame, double time_s, double pressure_kp
   }
   const double area_mm2 = skin_.pillar_pitch_mm() * skin_.pillar_pitch_mm();
   const double force_n = 1e-3 * pressure_kpa * area_mm2;
-  samples_.push_back(
-      {begins_ ? 0 : time_s - time_s_, *calibration_.counts_per_newton * force_n,
-       sum / static_cast<double>(count) / full_leak_sum(calibration_.planes.effects)});
+  const SensorEffects& effects = calibration_.planes.effects;
+  samples_.push_back({begins_ ? 0 : time_s - time_s_,
+                      *calibration_.counts_per_newton * force_n * pillar_leak_sum(effects),
+                      sum / static_cast<double>(count) / sensel_leak_sum(effects)});
   time_s_ = time_s;
   begins_ = false;
 }

@@ -33,7 +33,7 @@ FrameView WireCorrection::operator()(const FrameView& raw) {
     for (std::size_t col = 0; col < raw.cols; ++col) {
       const auto reading = static_cast<float>(readings[col]);
       float& corrected = out[row * raw.cols + col];
-      if (row >= 2 * plan_.skin.pillar_rows() || col >= 2 * plan_.skin.pillar_cols()) {
+      if (row / 2 >= plan_.skin.pillar_rows() || col / 2 >= plan_.skin.pillar_cols()) {
         corrected = reading;
         continue;
       }

@@ -97,9 +97,9 @@ std::vector<CalibrationPlane> calibration_planes(const SolverPlan& plan, const S
 CalibrationMemory::CalibrationMemory(const cl::Context& context, const SolverPlan& plan,
                                      const SpeedPaths& paths)
     : planes_(calibration_planes(plan, paths)),
-      plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))) {
-  has_tare_ = std::ranges::count(planes_, CalibrationPlane::tare) > 0;
-  state_bytes_ = bytes_of_states(plan);
+      plane_bytes_(page_aligned(plan.skin.sensels() * sizeof(float))),
+      state_bytes_(bytes_of_states(plan)),
+      has_tare_(std::ranges::count(planes_, CalibrationPlane::tare) > 0) {
   if (planes_.empty()) return;
   const std::size_t planes = planes_.size() - (state_bytes_ > 0 ? 1 : 0);
   const std::size_t bytes = planes * plane_bytes_ + state_bytes_;

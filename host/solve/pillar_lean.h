@@ -13,16 +13,23 @@ struct PillarLean {
   single_precision::Lean y;
 };
 
-/// The lean of the pillar `index` from its normal force and those beside it; zero beyond the edge.
+/// The lean of the pillar `index` from its normal force and those of its row and column; zero
+/// beyond the edge.
 [[nodiscard]] inline PillarLean pillar_lean(const ForceFieldView& forces, std::size_t index) {
-  const std::size_t row = index / forces.cols;
-  const std::size_t col = index - row * forces.cols;
-  const auto normal = [&](bool exists, std::size_t at) { return exists ? forces.normal[at] : 0; };
-  const float own = forces.normal[index];
-  return {single_precision::lean_between(normal(col > 0, index - 1), own,
-                                         normal(col + 1 < forces.cols, index + 1)),
-          single_precision::lean_between(normal(row + 1 < forces.rows, index + forces.cols), own,
-                                         normal(row > 0, index - forces.cols))};
+  const auto row = static_cast<std::int64_t>(index / forces.cols);
+  const auto col = static_cast<std::int64_t>(index % forces.cols);
+  const auto normal = [&](std::int64_t down, std::int64_t right) {
+    const std::int64_t r = row + down;
+    const std::int64_t c = col + right;
+    const bool exists = r >= 0 && c >= 0 && r < forces.rows && c < forces.cols;
+    return exists ? forces.normal[static_cast<std::size_t>(r * forces.cols + c)] : 0.0F;
+  };
+  const auto along = [&](std::int64_t down, std::int64_t right) {
+    return single_precision::lean_between(normal(-2 * down, -2 * right), normal(-down, -right),
+                                          forces.normal[index], normal(down, right),
+                                          normal(2 * down, 2 * right));
+  };
+  return {along(0, 1), along(-1, 0)};
 }
 
 }  // namespace pillarfield

@@ -94,7 +94,7 @@ maths::Sensel SenselReader::active(maths::Sensel sensel, std::size_t row, std::s
 
 /// Zero outside the pillars; rows and columns before the first are huge numbers.
 float SenselReader::leak_source(std::size_t row, std::size_t col) const {
-  if (row >= frame_.rows / 2 * 2 || col >= frame_.cols / 2 * 2) return 0;
+  if (row / 2 >= frame_.rows / 2 || col / 2 >= frame_.cols / 2) return 0;
   const std::size_t beside = col + static_cast<std::size_t>(inward(col));
   const maths::Sensel sensel = linear(row, col);
   return maths::source_or(sensel, maths::leak_source(sensel, stages_.threshold),

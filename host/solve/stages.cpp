@@ -26,12 +26,12 @@ constexpr std::array kStages = {
           .macro = "PF_WIRES",
           .is_named = [](const Plan& plan) { return effects(plan).wires.has_value(); },
           .place = StagePlace::frame,
-          .needs_neighbours = true},
+          .reach = 1},
     Stage{.name = "bend",
           .macro = "PF_BEND",
           .is_named = is_bent,
           .place = StagePlace::frame,
-          .needs_neighbours = true,
+          .reach = 1,
           .has_memory = true},
     Stage{"tare", "PF_TARE",
           [](const Plan& plan) {
@@ -44,7 +44,7 @@ constexpr std::array kStages = {
     Stage{.name = "leak",
           .macro = "PF_LEAK",
           .is_named = [](const Plan& plan) { return effects(plan).sensel_leak.has_value(); },
-          .needs_neighbours = true},
+          .reach = 1},
     Stage{.name = "memory",
           .macro = "PF_MEMORY",
           .is_named = [](const Plan& plan) { return effects(plan).memory.has_value(); },
@@ -67,23 +67,23 @@ constexpr std::array kStages = {
           .macro = "PF_PILLAR_LEAK",
           .is_named = [](const Plan& plan) { return effects(plan).pillar_leak.has_value(); },
           .place = StagePlace::frame,
-          .needs_neighbours = true},
+          .reach = 1},
     Stage{.name = "lean",
           .macro = "PF_LEAN",
           .is_named = [](const Plan& plan) { return effects(plan).arm_mm.has_value(); },
           .place = StagePlace::frame,
-          .needs_neighbours = true},
+          .reach = 2},
     Stage{.name = "follow_baseline",
           .macro = "PF_BASELINE",
           .is_named = [](const Plan& plan) { return plan.baseline_rate.has_value(); },
           .place = StagePlace::frame,
-          .needs_neighbours = true,
+          .reach = 1,
           .has_memory = true},
     Stage{.name = "estimate_contacts",
           .macro = nullptr,
           .is_named = [](const Plan& plan) { return plan.estimator == Estimator::contact; },
           .place = StagePlace::host,
-          .needs_neighbours = true,
+          .reach = 1,
           .has_memory = true},
 };
 
@@ -107,8 +107,9 @@ bool may_solve_changes(const SolverPlan& plan) {
 }
 
 std::uint32_t neighbour_reach(const SolverPlan& plan) {
-  return static_cast<std::uint32_t>(
-      std::ranges::count_if(stages_of(plan), &Stage::needs_neighbours));
+  std::uint32_t reach = 0;
+  for (const Stage& stage : stages_of(plan)) reach += stage.reach;
+  return reach;
 }
 
 }  // namespace pillarfield

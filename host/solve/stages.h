@@ -18,7 +18,7 @@ struct Stage {
   const char* macro = nullptr;  ///< defined where the stage is named; null: the stage always runs
   bool (*is_named)(const SolverPlan& plan) = nullptr;
   StagePlace place = StagePlace::pillar;
-  bool needs_neighbours = false;  ///< reads sensels or pillars beyond one pillar
+  std::uint32_t reach = 0;  ///< how many pillars beyond its own it reads
   bool has_memory = false;  ///< keeps state from frame to frame; frames are solved in their order
 };
 

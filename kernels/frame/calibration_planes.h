@@ -143,10 +143,14 @@ typedef struct {
   uint end;
 } Band;
 
-/* Pillar rows of this work-item: one of get_global_size(1) bands of nearly equal height. */
+/* Pillar rows of this work-item: one of get_global_size(1) bands of nearly equal height. Even bands
+ * come before odd ones: PoCL gives its first thread the first half of the work-groups at once, and
+ * a contact that lies in one half of the skin would keep the other threads idle. */
 PF_INLINE Band band_of_rows(uint rows) {
   const ulong bands = get_global_size(1);
-  const ulong band = get_global_id(1);
+  const ulong even = (bands + 1) / 2;
+  const ulong at = get_global_id(1);
+  const ulong band = at < even ? 2 * at : 2 * (at - even) + 1;
   const Band result = {(uint)(band * rows / bands), (uint)((band + 1) * rows / bands)};
   return result;
 }

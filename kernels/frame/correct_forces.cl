@@ -17,7 +17,8 @@ PF_INLINE Real load_pillars(global const float* row, int col, uint cols) {
 #endif
 }
 
-/* Values of the pillars `down` rows below (1, 0 or -1) and from column `col` on; zero outside. */
+/* Values of the pillars `down` rows below, above if negative, and from column `col` on; zero
+ * outside. */
 PF_INLINE Real load_near(global const float* plane, Layout layout, uint row, int down, int col) {
   const uint at = row + (uint)down;
   if (at >= (uint)layout.rows) return (Real)(0.0f);
@@ -161,10 +162,12 @@ kernel void correct_forces(global const PF_SENSEL* restrict raw,
       if (!any_lane(is_loaded(results + layout.status, layout, row, col))) continue;
       const int at = (int)col;
       const Real own = load_near(normal, layout, row, 0, at);
-      const Lean x = lean_between(load_near(normal, layout, row, 0, at - 1), own,
-                                  load_near(normal, layout, row, 0, at + 1));
-      const Lean y = lean_between(load_near(normal, layout, row, 1, at), own,
-                                  load_near(normal, layout, row, -1, at));
+      const Lean x = lean_between(
+          load_near(normal, layout, row, 0, at - 2), load_near(normal, layout, row, 0, at - 1), own,
+          load_near(normal, layout, row, 0, at + 1), load_near(normal, layout, row, 0, at + 2));
+      const Lean y = lean_between(
+          load_near(normal, layout, row, 2, at), load_near(normal, layout, row, 1, at), own,
+          load_near(normal, layout, row, -1, at), load_near(normal, layout, row, -2, at));
       const Solution solution =
           correct_solution(load_solution(results, layout, row, col), x, y, planes.stages);
       store_corrected(solution, output, (size_t)row * cols + col, block.lanes);

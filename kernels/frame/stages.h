@@ -278,9 +278,10 @@ PF_INLINE Force per_coefficient(Force force, Stages stages) {
 
 #ifdef PF_UNCERTAINTY
 PF_INLINE ShearWeights shear_weights(Stages stages) {
-  ShearWeights weights = {PF_REAL(1.0), PF_REAL(1.0)};
+  ShearWeights weights = {PF_REAL(1.0), PF_REAL(1.0), true};
 #ifdef PF_SHEAR_COEFFICIENT
   if (PF_NAMED(shear_coefficient)) {
+    weights.are_one = false;
     weights.x = PF_CONSTANT(Real, PF_PER_COEFFICIENT_X);
     weights.y = PF_CONSTANT(Real, PF_PER_COEFFICIENT_Y);
   }

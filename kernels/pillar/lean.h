@@ -7,34 +7,47 @@ typedef struct {
   Real deviation;
 } Lean;
 
-/* The lean of a pillar with the normal force `own` towards `after`, N. Negative forces count as
- * zero. The polynomial is exact, to first
- * order, in a pressure that varies linearly; its other coefficients are
- * least squares over bodies of six shapes on an elastic half-space, and the deviation is what they
- * leave. */
-PF_INLINE Lean lean_between(Real before, Real own, Real after) {
+/* outer / (outer + inner) of two forces; negative ones count as zero, and it is zero without any.
+ */
+PF_INLINE Real outer_part(Real outer, Real inner) {
+  const Real zero = PF_REAL(0.0);
+  const Real a = outer > zero ? outer : zero;
+  const Real b = inner > zero ? inner : zero;
+  return a > zero ? a / (a + b) : zero;
+}
+
+PF_INLINE Real size_of(Real x) { return x < PF_REAL(0.0) ? -x : x; }
+
+/* The lean towards `after` of a pillar with the normal force `own`, N; the pillars in its line are
+ * far_before, before, own, after, far_after. The complete odd cubic in four ratios, exact to first
+ * order in a pressure that varies linearly; its other coefficients are least squares over bodies on
+ * an elastic half-space (tools/lean), and the deviation is what they leave. */
+PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, Real far_after) {
   const Real zero = PF_REAL(0.0);
   const Real one = PF_REAL(1.0);
-  const Real low = before > zero ? before : zero;
-  const Real high = after > zero ? after : zero;
+  const Real half_pitch = PF_REAL(0.5);
   const Mask loaded = own > zero;
-  const Real force = loaded ? own : one;
-  const Real a = low / (low + force);
-  const Real b = high / (high + force);
-  const Real difference = b - a;
-  const Real sum = a + b;
-  const Real product = PF_REAL(4.0) * a * b;
-  const Real uneven = PF_REAL(0.336) * (one - product) - PF_REAL(1.149) * (sum - product) +
-                      PF_REAL(1.485) * (sum * sum - product);
-  const Real moment = force * (difference * (product * PF_REAL(0.16666666666666666667) + uneven));
-  const Real steep = difference < zero ? -difference : difference;
-  const Real cube = steep * steep * steep;
-  const Real apart = one - (sum + sum);
-  const Real lonely = apart > zero ? PF_REAL(0.25) * (apart * apart) : zero;
-  const Real deviation =
-      PF_REAL(0.01) + PF_REAL(0.04) * steep + PF_REAL(0.11) * (cube * cube) + lonely;
+  const Real low = outer_part(before, own);
+  const Real high = outer_part(after, own);
+  const Real far_low = outer_part(far_before, before);
+  const Real far_high = outer_part(far_after, after);
+  const Real d = high - low;
+  const Real e = far_high - far_low;
+  const Real s = high + low - one;
+  const Real t = far_high + far_low - one;
+  const Real by_d = PF_REAL(0.16666666666666666667) + s * (PF_REAL(-0.139) + PF_REAL(0.366) * s) +
+                    t * (PF_REAL(-0.500) + PF_REAL(1.174) * s - PF_REAL(1.170) * t) +
+                    d * (PF_REAL(0.783) * d - PF_REAL(1.196) * e) + PF_REAL(0.243) * (e * e);
+  const Real by_e = s * (PF_REAL(0.791) - PF_REAL(1.083) * s + PF_REAL(0.981) * t) +
+                    t * (PF_REAL(0.039) + PF_REAL(0.105) * t) + PF_REAL(0.019) * (e * e);
+  const Real part = d * by_d + e * by_e;
+  const Real bounded = part < -half_pitch ? -half_pitch : (part > half_pitch ? half_pitch : part);
+  const Real steep = size_of(d);
+  const Real deviation = PF_REAL(0.005) + PF_REAL(0.094) * (steep * steep * steep) +
+                         PF_REAL(0.007) * size_of(s) + PF_REAL(0.08) * (s * s) +
+                         PF_REAL(0.011) * size_of(e - d);
   Lean lean;
-  lean.moment = loaded ? moment : zero;
-  lean.deviation = loaded ? force * deviation : zero;
+  lean.moment = loaded ? own * bounded : zero;
+  lean.deviation = loaded ? own * deviation : zero;
   return lean;
 }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
+#include "base/quantile.h"
 #include "calibration/normal_equations.h"
 #include "pillarfield/equilibration.h"
 #include "pillarfield/tare.h"
@@ -19,7 +21,8 @@ using core_test::message_of;
 using core_test::PressedSkin;
 
 /// A skin with noise 0.5 and gains of 5 % that leaks.
-PressedSkin leaking_skin(const SenselLeak& sensel, const PillarLeak& pillar) {
+PressedSkin leaking_skin(const SenselLeak& sensel, const PillarLeak& pillar,
+                         double dead_zone_counts = 0) {
   SensorModel sensor;
   sensor.tare_counts = 12;
   sensor.gain_spread = 0.05;
@@ -28,7 +31,8 @@ PressedSkin leaking_skin(const SenselLeak& sensel, const PillarLeak& pillar) {
   sensor.leak_across = sensel.across;
   sensor.pillar_leak_edge = pillar.edge;
   sensor.pillar_leak_corner = pillar.corner;
-  return PressedSkin(20, 20, sensor);
+  sensor.dead_zone_counts = dead_zone_counts;
+  return {20, 20, sensor};
 }
 
 SkinCalibration equilibrated_with_leaks(PressedSkin& skin) {
@@ -36,6 +40,18 @@ SkinCalibration equilibrated_with_leaks(PressedSkin& skin) {
       take_tare(blank_calibration(skin.skin()), skin.bare(100), {}).calibration;
   const FrameStatistics pressed = skin.press(0.3, 100);
   const UniformPress presses[] = {{pressed, skin.pressure_kpa(0.3)}};
+  return equilibrate(tared, presses, {}).calibration;
+}
+
+/// With dead zones, from three pressures.
+SkinCalibration equilibrated_with_dead_zones(PressedSkin& skin) {
+  const SkinCalibration tared =
+      take_tare(blank_calibration(skin.skin()), skin.bare(100), {}).calibration;
+  std::vector<FrameStatistics> pressed;
+  for (const double force_n : {0.1, 0.3, 0.6}) pressed.push_back(skin.press(force_n, 100));
+  const UniformPress presses[] = {{pressed[0], skin.pressure_kpa(0.1)},
+                                  {pressed[1], skin.pressure_kpa(0.3)},
+                                  {pressed[2], skin.pressure_kpa(0.6)}};
   return equilibrate(tared, presses, {}).calibration;
 }
 
@@ -53,10 +69,12 @@ void press_places(PressedSkin& skin, double friction, int stride, LeakFinder& fi
     tip.shape = ContactShape::flat_punch;
     tip.motion = ContactMotion::slide;
     tip.friction = friction;
+    const int row = place / 18;
+    const int col = place % 18;
     tip.direction_deg = 37 * place % 360;
     tip.contact_radius_mm = 0.3;
     tip.reference_load_n = 0.5;
-    tip.path = {{0, (place % 18 - 8.5) * pitch, (place / 18 - 8.5) * pitch, 0.5}};
+    tip.path = {{0, (col - 8.5) * pitch, (row - 8.5) * pitch, 0.5}};
     scene.load = std::vector<Contact>{tip};
     Simulator(scene).render(index++, frame, truth);
     finder.add(frame.view());
@@ -103,6 +121,22 @@ TEST(LeakCalibration, FindsTheLeaksBetweenPillars) {
   expect_within_errors(result, {0.03, 0.01}, {0.02, 0.005});
   EXPECT_TRUE(result.calibration.planes.effects.pillar_leak);
   EXPECT_LT(result.standard_error.pillar.edge, 0.001);
+}
+
+/// The sensels beside a pressed pillar bear 8 counts, those at its corners less than the dead zone.
+/// Dead zones come after the leak between pillars: only that between sensels scales them.
+TEST(LeakCalibration, FindsWhatADeadZoneHidesInPart) {
+  for (const double edge : {0.0, 0.02}) {
+    PressedSkin skin = leaking_skin({0.05, 0.02}, {edge, edge / 4}, 5);
+    LeakFinder finder(skin.skin(), equilibrated_with_dead_zones(skin));
+    press_places(skin, 2, 3, finder);
+    const LeakResult result = finder.result();
+    EXPECT_NEAR(result.leak.pillar.edge, edge, 0.002);
+    EXPECT_EQ(result.leak.pillar.corner, 0);
+    EXPECT_NEAR(result.leak.sensel.inside, 0.05, 0.003);
+    std::vector<float> zones = result.calibration.planes.dead_zone;
+    EXPECT_NEAR(median(zones) * 320 / *result.calibration.counts_per_newton, 5, 0.2) << edge;
+  }
 }
 
 TEST(LeakCalibration, WithoutAnInactiveSenselInsideIsUnknown) {
