@@ -131,22 +131,20 @@ PF_INLINE float largest_gain(float largest, Tile tile) {
   return row * column * own * PF_BOUND_RESERVE;
 }
 
-/* True if a tile is idle; then writes gains of 1, unless an earlier frame did. */
+/* True if a tile is idle; then writes gains of 1. */
 PF_INLINE bool find_idle_tile(TileRange range, Tile tile, WireVectors wires, size_t first,
                               global float* columns) {
 #ifdef PF_SKIP_IDLE_TILES
   const float gain = largest_gain(range.largest, tile);
   const bool idle = gain <= PF_WIRE_LARGEST_GAIN(PF_FLOAT) &&
                     range.largest * (gain - 1.0f) + PF_ACTIVATION_STEP <= range.distance;
-  const bool was_idle = wires.row[first] == 1.0f && wires.bound[first] == PF_IDLE_TILE;
-  if (!idle || was_idle) return idle;
-  for (uint i = 0; i < tile.rows; ++i) {
+  for (uint i = 0; idle && i < tile.rows; ++i) {
     wires.row[first + i] = 1.0f;
     wires.own[first + i] = 0.0f;
     wires.bound[first + i] = PF_IDLE_TILE;
   }
-  for (uint i = 0; i < tile.cols; ++i) columns[i] = 1.0f;
-  return true;
+  for (uint i = 0; idle && i < tile.cols; ++i) columns[i] = 1.0f;
+  return idle;
 #else
   return false;
 #endif
