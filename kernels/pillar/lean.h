@@ -51,3 +51,10 @@ PF_INLINE Lean lean_between(Real far_before, Real before, Real own, Real after, 
   lean.deviation = loaded ? own * deviation : zero;
   return lean;
 }
+
+/* True if a sensel that is usable by its bit of the status is loaded by less than `margin`, or an
+ * unusable one by more than -margin. */
+PF_INLINE Mask loads_otherwise(Bits status, int bit, Real load, Real margin) {
+  const Mask usable = mask_of(status & PF_BITS(bit));
+  return (usable && load < margin) || (!usable && load > -margin);
+}
